@@ -131,6 +131,16 @@ def test_sources_of_the_rust_core_have_no_tests_because_none_would_run() -> None
         assert not re.search(r"^\s*//[/!] ```", text, re.MULTILINE), path
 
 
+def test_native_classes_are_never_borrowed_mutably() -> None:
+    # PyO3 raises RuntimeError if code that Python runs meanwhile uses the object, which is a call
+    # of another thread, say. A frozen class has no such borrows; its locks are held briefly.
+    for path in (vectors.ROOT / "rust" / "py" / "src").rglob("*.rs"):
+        text = path.read_text("utf-8")
+        for declared in re.findall(r"#\[pyclass\(.*", text):
+            assert "frozen" in declared, f"{path}: {declared}"
+        assert "try_borrow" not in text, path
+
+
 def test_importing_the_package_loads_no_extra() -> None:
     script = (
         "import sys, cobotwire\n"

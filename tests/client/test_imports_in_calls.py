@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+import _thread
 import json
 import subprocess
 import sys
-from typing import Any
+import threading
+from importlib import import_module
+from pathlib import Path
 
 import pytest
 
 from cobotwire.editions.mercury_a1 import TABLE as MERCURY
 from cobotwire.editions.mycobot280 import TABLE as TODAY
+from cobotwire.protocol.lazy import import_aside
 from cobotwire.protocol.table import Table
 from cobotwire.simulator import PtyServer, SimulatedArm
 
@@ -81,9 +85,25 @@ print(json.dumps(found))
     ],
 )
 def test_calls_import_nothing_in_their_thread(table: Table, kind: str, codec: str) -> None:
-    noisy: Any = SimulatedArm(table)
-    with PtyServer(noisy) as server:
+    with PtyServer(SimulatedArm(table)) as server:
         command = [sys.executable, "-c", CALLS, table.edition, server.url, kind, codec]
         done = subprocess.run(command, capture_output=True, text=True, timeout=120, check=False)
     assert done.returncode == 0, done.stderr
     assert json.loads(done.stdout) == []
+
+
+def test_ctrl_c_does_not_end_an_import_aside(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "slow_to_import.py").write_text("import time\ntime.sleep(0.3)\nDONE = True\n")
+    monkeypatch.syspath_prepend(tmp_path)
+    threading.Timer(0.1, _thread.interrupt_main).start()
+    with pytest.raises(KeyboardInterrupt):
+        import_aside("slow_to_import")
+    found: list[bool] = []
+    other = threading.Thread(
+        target=lambda: found.append(import_module("slow_to_import").DONE), daemon=True
+    )
+    other.start()
+    other.join(5)
+    assert found == [True]

@@ -187,6 +187,9 @@ class AsyncClient:
         Raises:
             UsageError: an argument is not allowed, or is not a query; nothing was sent.
         """
+        from cobotwire.protocol.lazy import import_aside
+
+        import_aside("cobotwire.client.aio_streaming")
         from cobotwire.client.aio_streaming import AsyncStream
 
         settings = self._settings.for_stream(timeout)
@@ -214,6 +217,9 @@ class AsyncClient:
         Raises:
             UsageError: an argument is not allowed, or the edition has no such event.
         """
+        from cobotwire.protocol.lazy import import_aside
+
+        import_aside("cobotwire.client.aio_events")
         from cobotwire.client.aio_events import AsyncEventStream
         from cobotwire.client.events import EventQueue, Wanted
         from cobotwire.client.opening import check_seconds

@@ -7,16 +7,20 @@ import time
 from collections.abc import Callable
 from contextlib import suppress
 from functools import partial
+from typing import TYPE_CHECKING
 
-from cobotwire.client.aio_slots import AsyncSlots
 from cobotwire.client.aio_steps import AsyncSteps
 from cobotwire.client.opening import OpenPort, PortOpener
 from cobotwire.client.port_memory import PortMemory
 from cobotwire.client.traffic import TrafficListener, TrafficListeners
 from cobotwire.protocol.errors import CaptureError, LinkError, UsageError
+from cobotwire.protocol.lazy import import_aside
 from cobotwire.session import EncodedRequest, Exchange, Pending, PendingRequest, RetryPolicy
 from cobotwire.transport import forks
 from cobotwire.transport.timing import times_of
+
+if TYPE_CHECKING:
+    from cobotwire.client.aio_slots import AsyncSlots
 
 # The longest wait, after which a listening task checks whether the transport is gone.
 LISTEN_SECONDS = 0.05
@@ -40,9 +44,6 @@ class AsyncConnection:
             UsageError: the port is not allowed, or is a transport with a clock of its own; or the
                 path of the recording is not allowed.
         """
-        # Calls need these, and import nothing: see `protocol/lazy`.
-        from cobotwire.client import aio_events, aio_lending, aio_streaming  # noqa: F401
-
         opener.check()
         port = opener.port
         if not times_of(port).real:
@@ -114,6 +115,9 @@ class AsyncConnection:
 
     def slots(self, closed: Callable[[], bool]) -> AsyncSlots:
         """Return what sends the requests of a stream until ``closed`` returns True."""
+        import_aside("cobotwire.client.aio_slots")
+        from cobotwire.client.aio_slots import AsyncSlots
+
         return AsyncSlots(self._opened, closed)
 
     async def listen(self, seconds: float, done: Callable[[], bool] | None = None) -> None:

@@ -14,6 +14,7 @@ from cobotwire.client.aio_writing import AsyncWriter
 from cobotwire.client.traffic import TrafficListeners
 from cobotwire.codec.interface import Event
 from cobotwire.protocol.errors import LinkError
+from cobotwire.protocol.lazy import import_aside
 from cobotwire.session import Exchange, Pending, PendingRequest
 from cobotwire.transport.aio import attach
 from cobotwire.transport.interface import Transport
@@ -70,6 +71,7 @@ class AsyncSteps:
             return None
         if self._lending is None:
             # Imported here: most programs open no stream.
+            import_aside("cobotwire.client.aio_lending")
             from cobotwire.client.aio_lending import Lending
 
             try:

@@ -201,6 +201,9 @@ class Client:
         Raises:
             UsageError: an argument is not allowed, or is not a query; nothing was sent.
         """
+        from cobotwire.protocol.lazy import import_aside
+
+        import_aside("cobotwire.client.streaming")
         from cobotwire.client.streaming import Stream
 
         settings = self._settings.for_stream(timeout)
@@ -228,6 +231,9 @@ class Client:
         Raises:
             UsageError: an argument is not allowed, or the edition has no such event.
         """
+        from cobotwire.protocol.lazy import import_aside
+
+        import_aside("cobotwire.client.event_streams")
         from cobotwire.client.event_streams import EventStream
         from cobotwire.client.events import EventQueue, Wanted
         from cobotwire.client.opening import check_seconds

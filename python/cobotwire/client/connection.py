@@ -4,19 +4,22 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from cobotwire.client.leading import CHECK_SECONDS
 from cobotwire.client.native_call import native_call
 from cobotwire.client.opening import PortOpener
 from cobotwire.client.port_memory import PortMemory
-from cobotwire.client.slots import Slots
 from cobotwire.client.steps import SLICE_SECONDS, Steps
 from cobotwire.client.traffic import TrafficListener, TrafficListeners
+from cobotwire.protocol.lazy import import_aside
 from cobotwire.session import Answer, EncodedRequest, Exchange, PendingRequest, RetryPolicy
 from cobotwire.session.turns import DRAIN_SECONDS
 from cobotwire.transport import forks
 from cobotwire.transport.timing import times_of
+
+if TYPE_CHECKING:
+    from cobotwire.client.slots import Slots
 
 
 class Connection:
@@ -34,9 +37,6 @@ class Connection:
             UsageError: the port, the baud rate or the path of the recording is not allowed.
             LinkError: the port does not exist, or cannot be opened.
         """
-        # Calls need these, and import nothing: see `protocol/lazy`.
-        from cobotwire.client import event_streams, streaming  # noqa: F401
-
         self._port = opener.open()
         self._transport = self._port.transport
         self.url = self._transport.url
@@ -122,6 +122,9 @@ class Connection:
 
     def slots(self, closed: Callable[[], bool]) -> Slots:
         """Return what sends the requests of a stream until ``closed`` returns True."""
+        import_aside("cobotwire.client.slots")
+        from cobotwire.client.slots import Slots
+
         return Slots(self.now, self.sleep, self.answer, closed)
 
     def listen(self, seconds: float, done: Callable[[], bool] | None = None) -> None:

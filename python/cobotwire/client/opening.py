@@ -86,7 +86,12 @@ def settings(
 
 def _load_for_calls(table: Table) -> None:
     """Import what calls need besides the session: no call imports anything."""
-    for module in ("copy", "cobotwire.protocol.roles", "cobotwire.session.motion"):
+    for module in (
+        "copy",
+        "cobotwire.client.events",
+        "cobotwire.protocol.roles",
+        "cobotwire.session.motion",
+    ):
         import_module(module)
     package = table.commands[0].package if table.commands else ""
     if package:

@@ -13,7 +13,8 @@ import threading
 from contextlib import suppress
 from importlib import import_module
 
-from cobotwire.protocol.light import TYPE_CHECKING
+# As in `light`, which refers to the table, while errors need this module.
+TYPE_CHECKING = False
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
