@@ -266,7 +266,8 @@ class AsyncClient:
     async def _stop_all_for(self, error: BaseException) -> None:
         """Send ``stop`` once for an error to each address that was used."""
         interrupt: BaseException | None = None
-        for client in (self, *self._views.values()):
+        clients: list[AsyncClient] = [self, *self._views.values()]
+        for client in clients:
             try:
                 await client._stop_for(error)
             except BaseException as raised:
