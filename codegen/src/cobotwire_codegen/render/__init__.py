@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from binascii import crc32
 from collections.abc import Iterator
 from dataclasses import replace
 from functools import cache
@@ -49,14 +50,16 @@ def render_python(
     jinja = environment(templates)
     edition = with_used_types(edition)
     sharing = Sharing(edition, base)
-    common = {"edition": edition, "sharing": sharing}
+    table = edition_json(edition)
+    checksum = f"{crc32(table.encode()):08x}"
+    common = {"edition": edition, "sharing": sharing, "checksum": checksum}
     files = {
         PurePosixPath(f"{name}.py"): jinja.get_template(f"python/{name}.py.j2").render(common)
         for name in ("__init__", "enums", "table", "values")
     }
     # Type checkers use the annotations of an installed package only if it has this file.
     files[PurePosixPath("py.typed")] = ""
-    files[PurePosixPath("edition.json")] = edition_json(edition)
+    files[PurePosixPath("edition.json")] = table
     files[PurePosixPath("sources.json")] = sources_json(edition)
     files |= _messages(jinja, common)
     for way in WAYS:
