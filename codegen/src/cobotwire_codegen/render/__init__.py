@@ -18,6 +18,7 @@ from jinja2 import (
     PackageLoader,
     StrictUndefined,
 )
+from jinja2.sandbox import SandboxedEnvironment
 
 from cobotwire_codegen import lower
 from cobotwire_codegen.model import Bits, Edition, Enum, Flag, Listed, Quantity, Type, Value
@@ -160,22 +161,28 @@ def with_used_types(edition: Edition) -> Edition:
 
 
 def environment(templates: Path | None = None) -> Environment:
-    """Return the environment of all templates; those in ``templates`` replace the shipped ones."""
+    """Return the environment of all templates; those in ``templates`` replace the shipped ones.
+
+    Jinja's sandbox stops the usual ways out of a foreign template. It is not a proof: what the
+    generator gives to templates was not written for it.
+    """
     if templates is None:
         return _shipped()
     # Made anew each time: the user of `watch` may add a template.
-    return _environment(FileSystemLoader(templates), PackageLoader("cobotwire_codegen"))
+    return _environment(
+        SandboxedEnvironment, FileSystemLoader(templates), PackageLoader("cobotwire_codegen")
+    )
 
 
 @cache
 def _shipped() -> Environment:
     """Return the environment of the shipped templates, so that each is compiled once."""
-    return _environment(PackageLoader("cobotwire_codegen"))
+    return _environment(Environment, PackageLoader("cobotwire_codegen"))
 
 
-def _environment(*loaders: BaseLoader) -> Environment:
+def _environment(kind: type[Environment], *loaders: BaseLoader) -> Environment:
     """Return an environment that takes each template from the first loader that has it."""
-    jinja = Environment(
+    jinja = kind(
         loader=ChoiceLoader(loaders),
         undefined=StrictUndefined,
         trim_blocks=True,
