@@ -11,7 +11,6 @@ import sys
 from collections.abc import Mapping
 from typing import Any
 
-import front_end
 import maturin
 from maturin import (
     get_requires_for_build_editable,
@@ -20,6 +19,8 @@ from maturin import (
     prepare_metadata_for_build_editable,
     prepare_metadata_for_build_wheel,
 )
+
+import front_end
 
 __all__ = [
     "build_editable",

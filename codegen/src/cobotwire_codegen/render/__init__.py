@@ -188,7 +188,8 @@ def _environment(kind: type[Environment], *loaders: BaseLoader) -> Environment:
         trim_blocks=True,
         lstrip_blocks=True,
         keep_trailing_newline=True,
-        autoescape=False,  # noqa: S701  (the output is Python, Markdown, JSON and Lua, each escaped by its own filter)
+        # The output is Python, Markdown, JSON and Lua, each escaped by its own filter.
+        autoescape=False,
     )
     jinja.globals.update(
         api=python_api,
