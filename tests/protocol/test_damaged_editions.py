@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import shutil
 import sys
 from collections.abc import Callable, Iterator
@@ -16,11 +17,13 @@ from cobotwire import editions
 from cobotwire.cli.app import app
 from cobotwire.protocol.damage import KINDS
 from cobotwire.protocol.errors import UsageError
+from cobotwire.studio.explained import sources_of
 from in_process import run
 
 SHIPPED = Path(editions.__file__).parent
 BUS = SHIPPED.parent / "diagnose" / "servo_bus" / "edition.json"
-SAMPLED = 80
+# FULL=1 damages every value, and takes minutes.
+SAMPLED = 10**9 if os.environ.get("FULL") else 80
 # What takes the place of a value.
 VALUES: tuple[Any, ...] = (None, True, -1, 10**30, 1e300, "", "x", "\ud800", [], [[]], {}, {"x": 1})
 # What happens to the whole file, and what the error says.
@@ -88,10 +91,14 @@ def _nodes(value: Any, path: str = "$") -> Iterator[tuple[Any, Any, str]]:
             yield from _nodes(each, here)
 
 
+def _sample(draw: Random, nodes: list[Any]) -> list[Any]:
+    return draw.sample(nodes, min(SAMPLED, len(nodes)))
+
+
 def test_every_damaged_value_is_refused_and_named(package: Path) -> None:
     document = json.loads((package / "edition.json").read_bytes())
     draw = Random(1)
-    for parent, key, path in draw.sample(list(_nodes(document)), SAMPLED):
+    for parent, key, path in _sample(draw, list(_nodes(document))):
         kept, value = parent[key], draw.choice(VALUES)
         if value == kept and type(value) is type(kept):
             continue
@@ -108,7 +115,7 @@ def test_every_missing_key_is_refused_and_named_where_the_table_needs_it(package
     document = json.loads((package / "edition.json").read_bytes())
     keyed = [node for node in _nodes(document) if isinstance(node[0], dict)]
     named = 0
-    for parent, key, path in Random(2).sample(keyed, SAMPLED // 2):
+    for parent, key, path in _sample(Random(2), keyed):
         kept = dict(parent)
         del parent[key]
         text = _error(package, json.dumps(document).encode())
@@ -152,3 +159,12 @@ def test_command_line_reports_a_damaged_edition_in_one_line(
     assert (ended.returncode, ended.stdout) == (2, "")
     assert ended.stderr.startswith(f"cobotwire: {other}/edition.json: $.edition is missing; ")
     assert len(ended.stderr.splitlines()) == 1
+
+
+@pytest.mark.parametrize("text", ["", "[]", "{}", "[" * 100_000, '{"commands": {"get_angles": 1}}'])
+def test_studio_reports_damaged_sources_of_commands(package: Path, text: str) -> None:
+    other = package.parent / f"{package.name}_sources_{abs(hash(text))}"
+    shutil.copytree(package, other)
+    (other / "sources.json").write_text(text)
+    with pytest.raises(UsageError, match=r"sources\.json is damaged; generate"):
+        sources_of(editions.load(str(other)))

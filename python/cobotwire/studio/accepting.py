@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import errno
 import logging
 import socket
 from contextlib import suppress
@@ -19,7 +20,8 @@ from cobotwire.studio.gate import SCOPE_STATE
 QUEUE = 4096
 # How often connections are looked through for those that have waited too long.
 SWEEP_SECONDS = 1.0
-# After the system could not accept a connection.
+# After the process could open no file for a connection.
+NO_MORE_FILES = (errno.EMFILE, errno.ENFILE, errno.ENOBUFS, errno.ENOMEM)
 PAUSE_SECONDS = 0.05
 
 
@@ -53,10 +55,11 @@ class Server(uvicorn.Server):
         while True:
             try:
                 accepted, _ = await loop.sock_accept(self._listening)
-            except OSError:
-                # The process may open no more files, or the other end has gone again.
-                self._open.make_room()
-                await asyncio.sleep(PAUSE_SECONDS)
+            except OSError as error:
+                # Else the other end has gone again, which must cost the others nothing.
+                if error.errno in NO_MORE_FILES:
+                    self._open.make_room()
+                await asyncio.sleep(PAUSE_SECONDS if error.errno in NO_MORE_FILES else 0)
                 continue
             with suppress(OSError):
                 await loop.connect_accepted_socket(self._protocol, accepted)
