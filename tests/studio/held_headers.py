@@ -35,7 +35,7 @@ def holding(studio: Studio, count: int, way: str) -> Iterator[None]:
         while not over.is_set():
             held[:] = [each for each in held if not _ended(each)]
             held.extend(_opened(studio, sent) for _ in range(count - len(held)))
-            over.wait(0.2)
+            over.wait(0.5)
 
     held.extend(_opened(studio, sent) for _ in range(count))
     thread = threading.Thread(target=hold)

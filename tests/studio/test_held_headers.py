@@ -54,7 +54,7 @@ def test_page_stops_the_arm_and_another_opens_while_connections_are_held(
 
 
 def test_thousands_of_held_connections_delay_no_page(studio: Studio) -> None:
-    assert failure(studio, 2000, "half a header") == ""
+    assert failure(studio, 1500, "half a header") == ""
 
 
 def test_process_that_may_open_few_files_serves_pages_and_logs_no_traceback() -> None:
