@@ -49,7 +49,7 @@ ONE_IMPORTER = {
     "libcst": ["pymycobot/migrate/"],
     "ruamel": ["simulator/faults/nodes.py"],
     "starlette": ["studio/app.py", "studio/feed.py", "studio/serving.py"],
-    "uvicorn": ["studio/serving.py"],
+    "uvicorn": ["studio/accepting.py", "studio/serving.py"],
 }
 
 

@@ -45,6 +45,11 @@ class Package(NamedTuple):
         return folder / f"{self.name}.version"
 
     @property
+    def shipped(self) -> bool:
+        """Whether it belongs to the package, and not only to its tests."""
+        return self.files[0][1].startswith(PAGE)
+
+    @property
     def present(self) -> bool:
         """Whether this version is here."""
         files = all((ROOT / path).is_file() for _, path in self.files)

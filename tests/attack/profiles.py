@@ -40,6 +40,8 @@ class Profile:
         stalls: whether the peer stops reading now and then.
         interrupts: whether Ctrl-C comes in the main thread.
         cancels: whether calls are cancelled.
+        holds: whether the calls are Stops of pages of `cobotwire studio`, while connections without
+            its token are held open.
         clients: which clients run it.
     """
 
@@ -54,6 +56,7 @@ class Profile:
     stalls: bool = False
     interrupts: bool = False
     cancels: bool = False
+    holds: bool = False
     clients: tuple[Clients, ...] = field(default=("blocking", "asyncio"))
 
     @property
@@ -157,6 +160,12 @@ _ALL = (
         cancels=True,
         clients=("asyncio",),
         weight=1.5,
+    ),
+    Profile(
+        "held headers",
+        "connections to `cobotwire studio` that never send a whole request",
+        holds=True,
+        clients=("blocking",),
     ),
 )
 PROFILES = {profile.name: profile for profile in _ALL}

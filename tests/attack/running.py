@@ -17,6 +17,7 @@ from attack.ends import PtyEnd, TcpEnd
 from attack.judge import Judge, Scene
 from attack.line import HostileLine
 from attack.machine import MachineMeter
+from attack.pages import attack_studio
 from attack.plans import Plan, plan
 from attack.profiles import PROFILES
 from attack.setting import Setting, table_of
@@ -37,6 +38,8 @@ class Closable(Protocol):
 
 def attack(chosen: Plan, change: Callable[[Any], Any] | None = None) -> Tally:
     """Run a plan and judge it; ``change`` makes another client of the edition's."""
+    if chosen.profile.holds:
+        return attack_studio(chosen)
     codec = codecs.load(table_of(chosen), "reference")
     peer = HostilePeer(codec, chosen.faults, chosen.seed)
     end = TcpEnd(small=chosen.profile.stalls) if chosen.tcp else PtyEnd()

@@ -10,7 +10,11 @@ from pathlib import Path
 
 import pytest
 
+import cobotwire.cli.app
 import vectors
+from cobotwire.cli.app import app
+from cobotwire.studio import extras
+from in_process import run
 
 CLI = vectors.ROOT / "python" / "cobotwire" / "cli"
 
@@ -74,3 +78,15 @@ def test_missing_package_is_named_in_one_sentence(
     assert result.returncode != 0
     assert result.stdout == ""
     assert result.stderr == f"cobotwire: {sentence}\n"
+
+
+def test_package_that_was_built_without_the_page_leaves_out_the_verb_and_says_why(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    assert " studio " in run(app, "cobotwire", "--help").stdout or not extras.CURVES.is_file()
+    for module in (extras, cobotwire.cli.app):
+        monkeypatch.setattr(module, "CURVES", tmp_path / "uPlot.esm.js")
+    assert " studio " not in run(app, "cobotwire", "--help").stdout
+    refused = run(app, "cobotwire", "studio", "--no-browser")
+    assert refused.returncode == 2
+    assert refused.stderr.startswith("cobotwire: cobotwire studio needs uPlot, which was left out")

@@ -78,6 +78,7 @@ def test_build_rejects_invalid_folders(folder: Path, words: tuple[str, ...], mes
             "enums.py.j2:2: UndefinedError: 'nope' is undefined",
         ),
         ("python/enums.py.j2", "{{ 1 // 0 }}", "enums.py.j2:1: ZeroDivisionError"),
+        ("python/enums.py.j2", "{{ ''.__class__.__mro__ }}", "SecurityError: access to attribute"),
         (
             "python/enum.py.j2",
             "",

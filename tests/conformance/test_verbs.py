@@ -89,11 +89,12 @@ def test_native_codec_conforms() -> None:
 @pytest.mark.parametrize(
     ("source", "message"),
     [
-        ("raise SystemExit(3)", "ended with code 3"),
+        ("raise SystemExit(3)", "crashed: it ended with code 3"),
+        ("pass", "ended: it did not answer question 1; it ended with code 0"),
         ("import time; time.sleep(60)", "no answer within"),
         ("print('hello'); input()", "is not JSON"),
     ],
-    ids=["crashes", "hangs", "babbles"],
+    ids=["crashes", "ends", "hangs", "babbles"],
 )
 def test_command_without_a_greeting_could_not_be_tested(source: str, message: str) -> None:
     done = _run("codec", "--timeout", "1", "--", sys.executable, "-c", source)
@@ -158,6 +159,8 @@ def test_client_tester_on_a_public_address_warns(host: str, warns: bool) -> None
     ended = _run(*words)
     warning = f"cobotwire: anyone who can reach {host} can connect, and is judged as the client\n"
     assert ended.stderr == (warning if warns else "")
+    assert ended.returncode == 2
+    assert ended.stdout.endswith("\nThe run is incomplete: the client sent no request.\n")
 
 
 def test_interrupted_run_is_resumed_and_a_run_is_repeated_from_its_report(tmp_path: Path) -> None:

@@ -65,7 +65,7 @@ def package(tmp_path_factory: pytest.TempPathFactory) -> Any:
 
 @pytest.fixture(params=["reference", "native"])
 def loaded(request: pytest.FixtureRequest, package: Any) -> Codec:
-    return codecs.load(load_table(package.__name__), request.param)
+    return codecs.load(load_table(package.__name__, None), request.param)
 
 
 def kinds(events: list[Any]) -> list[type]:

@@ -29,9 +29,11 @@ from cobotwire.editions import mycobot280
 from cobotwire.editions.mycobot280 import Angles, GetAngles, GetAnglesReply
 from cobotwire.session import Traffic, UnexpectedFrame
 from cobotwire.simulator import SimulatedArm, TcpServer
+from cobotwire.studio.accepting import Server
 from cobotwire.studio.access import Access
 from cobotwire.studio.app import make_app
 from cobotwire.studio.arm_line import ArmLine, PortOptions
+from cobotwire.studio.connections import Connections
 from cobotwire.studio.live import LiveSession
 from cobotwire.studio.sending import Control
 from cobotwire.studio.stage import Stage
@@ -96,12 +98,13 @@ def serving() -> Iterator[tuple[FastLine, LiveSession, Access]]:
             yield
             task.cancel()
 
-        app = make_app(Stage(edition, session, Control(False)), access, lifespan)
+        connections = Connections()
+        app = make_app(Stage(edition, session, Control(False)), access, connections, lifespan)
         config = uvicorn.Config(
             app, ws="websockets-sansio", ws_per_message_deflate=False, log_level="error"
         )
-        server = uvicorn.Server(config)
-        thread = threading.Thread(target=server.run, args=([listening],))
+        server = Server(config, listening, connections)
+        thread = threading.Thread(target=server.run)
         thread.start()
         try:
             yield line, session, access

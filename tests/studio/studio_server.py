@@ -29,10 +29,11 @@ class Answer(NamedTuple):
 
 
 class Studio(NamedTuple):
-    """A running server."""
+    """A running server; when it has ended, ``log`` has what it wrote to its error output."""
 
     process: subprocess.Popen[str]
     url: str
+    log: list[str]
 
     @property
     def port(self) -> int:
@@ -90,20 +91,21 @@ class Studio(NamedTuple):
 
 
 @contextmanager
-def running(*words: str, edition: str = "mycobot280") -> Iterator[Studio]:
-    """Run a server; end it with Ctrl-C, as users do."""
-    script = "from cobotwire.cli import main; main()"
+def running(*words: str, edition: str = "mycobot280", first: str = "") -> Iterator[Studio]:
+    """Run a server, after other Python statements; end it with Ctrl-C, as users do."""
+    script = f"{first}\nfrom cobotwire.cli import main; main()"
     command = [sys.executable, "-c", script, "--edition", edition, "studio", "--no-browser", *words]
     process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
     assert process.stdout is not None
+    log: list[str] = []
     try:
         url = process.stdout.readline().strip()
         assert url, process.communicate(timeout=SECONDS)
-        yield Studio(process, url)
+        yield Studio(process, url, log)
     finally:
         process.send_signal(signal.SIGINT)
         try:
-            process.communicate(timeout=SECONDS)
+            log.append(process.communicate(timeout=SECONDS)[1])
         except subprocess.TimeoutExpired:
             process.kill()
             process.communicate()

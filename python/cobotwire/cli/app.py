@@ -11,6 +11,7 @@ from cobotwire.cli.shared.completers import complete_editions
 from cobotwire.cli.shared.exit_codes import EPILOG, exit_on_errors
 from cobotwire.cli.shared.lazy_group import LazyGroup
 from cobotwire.editions import DEFAULT
+from cobotwire.studio.extras import CURVES
 
 # In the order of --help, each with its text there: --help imports no verb.
 VERBS = {
@@ -37,6 +38,10 @@ VERBS = {
 class _App(LazyGroup):
     verbs = VERBS
     modules = "cobotwire.cli."
+
+    def list_commands(self, context: click.Context) -> list[str]:
+        """Return the verbs; a package that was built without the studio's page lacks that one."""
+        return [verb for verb in VERBS if verb != "studio" or CURVES.is_file()]
 
     def invoke(self, context: click.Context) -> Any:
         with exit_on_errors():

@@ -65,7 +65,12 @@ def load(name: str = DEFAULT) -> Edition:
         hint = did_you_mean(name, names()) or f"; choose from {', '.join(names())}"
         message = f"there is no edition {name!r}{hint}"
         raise UsageError("edition", name, message=message) from None
-    if not hasattr(package, "TABLE") or not hasattr(package, "CLIENT"):
+    try:
+        complete = hasattr(package, "TABLE") and hasattr(package, "CLIENT")
+    except ImportError as error:
+        message = f"{name}: {error}; generate the package again with cobotwire-gen"
+        raise UsageError("edition", name, message=message) from error
+    if not complete:
         message = f"{name} is not the package of an edition; make one with cobotwire-gen build"
         raise UsageError("edition", name, message=message)
     return package  # type: ignore[no-any-return]

@@ -5,10 +5,12 @@ from __future__ import annotations
 import json
 import os
 import sys
+from binascii import crc32
 from collections.abc import Iterator
 from itertools import product
 from typing import Any
 
+from cobotwire.protocol.errors import UsageError
 from cobotwire.protocol.robot import load_robot
 from cobotwire.protocol.table import (
     Address,
@@ -37,17 +39,41 @@ from cobotwire.protocol.type_records import (
 )
 
 VERSION = 2
+CARRIAGE_RETURN = b"\r"
 # The kinds of types that are more than one number or a row of numbers.
 SHAPED = ("bits", "bytes", "text", "list")
 
 
-def load_table(package: str) -> Table:
+def load_table(package: str, checksum: str | None = "") -> Table:
     """Return the table of a generated package, which is given by its full name.
 
+    ``checksum`` is that of ``edition.json``, as cobotwire-gen wrote it: a damaged table could move
+    an arm in a way that nobody meant. None: the package is hand-written, and states none.
+
     Raises:
-        ValueError: another version of cobotwire-gen made the package.
+        UsageError: the file is missing or damaged, or another version of cobotwire-gen made it.
     """
-    return table_of(_document(package), package)
+    path, data = _stored(package)
+    found = checksum_of(data)
+    if checksum in (found, None):
+        document: Record = json.loads(data)
+        if document["version"] == VERSION:
+            return table_of(document, package)
+        reason = f"it has version {document['version']} of the format, not {VERSION}"
+    elif not checksum:
+        reason = "another version of cobotwire-gen made the package: it states no checksum"
+    else:
+        from cobotwire.protocol.damage import damage_of
+
+        damage = damage_of(data, lambda document: table_of(document, package))
+        reason = f"{damage}; its checksum is {found}, not {checksum}"
+    message = f"{path}: {reason}; generate the package again with cobotwire-gen"
+    raise UsageError("edition", package, message=message)
+
+
+def checksum_of(data: bytes) -> str:
+    """Return the CRC-32 of an ``edition.json``, whatever ends its lines."""
+    return f"{crc32(data.replace(CARRIAGE_RETURN, b'')):08x}"
 
 
 def table_of(document: Record, package: str = "") -> Table:
@@ -104,8 +130,12 @@ def _check(record: Record) -> Check:
 
 
 def load_places(package: str) -> dict[str, str]:
-    """Return the place of each command in the spec: ``file:line``, and where a delta changed it."""
-    return {record["name"]: record["place"] for record in _document(package)["commands"]}
+    """Return the place of each command in the spec: ``file:line``, and where a delta changed it.
+
+    The table of the package was loaded before, so its file is as it was written.
+    """
+    document: Record = json.loads(_stored(package)[1])
+    return {record["name"]: record["place"] for record in document["commands"]}
 
 
 def load_digest(package: str) -> str:
@@ -115,24 +145,20 @@ def load_digest(package: str) -> str:
     return sha256(_stored(package)[1]).hexdigest()
 
 
-def _document(package: str) -> Record:
-    """Return a package's ``edition.json``."""
-    path, data = _stored(package)
-    document: Record = json.loads(data)
-    if document["version"] != VERSION:
-        raise ValueError(
-            f"{path} has version {document['version']} of the format, not {VERSION}; "
-            "generate the package again with cobotwire-gen"
-        )
-    return document
-
-
 def _stored(package: str) -> tuple[str, bytes]:
-    """Return the path and bytes of a package's ``edition.json``, also from inside a zip file."""
+    """Return the path and bytes of a package's ``edition.json``, also from inside a zip file.
+
+    Raises:
+        UsageError: it cannot be read.
+    """
     module = sys.modules[package]
     path = os.path.join(os.path.dirname(str(module.__file__)), "edition.json")
     loader: Any = module.__spec__ and module.__spec__.loader
-    data: bytes = loader.get_data(path)
+    try:
+        data: bytes = loader.get_data(path)
+    except OSError as error:
+        message = f"{path} cannot be read: {error.strerror or error}; generate the package again"
+        raise UsageError("edition", package, message=message) from None
     return path, data
 
 

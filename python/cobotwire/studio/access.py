@@ -73,7 +73,7 @@ class Access:
             return 403, "requests from other sites are refused"
         if method not in ("GET", "HEAD") and origin is None:
             return 403, "the request lacks its origin"
-        if (method == "WEBSOCKET" or path.startswith("/api/")) and not self._knows(headers):
+        if (method == "WEBSOCKET" or path.startswith("/api/")) and not self.knows(headers):
             return 401, "the token is missing or wrong; open the address that cobotwire printed"
         return None
 
@@ -87,7 +87,8 @@ class Access:
         # Rebinding needs a name, so every numeric address is harmless.
         return name in ("localhost", self.host.lower()) or _is_ip(name)
 
-    def _knows(self, headers: Mapping[str, str]) -> bool:
+    def knows(self, headers: Mapping[str, str]) -> bool:
+        """Return whether a request carries the token."""
         _, _, given = headers.get("authorization", "").partition("Bearer ")
         for protocol in headers.get("sec-websocket-protocol", "").split(","):
             if protocol.strip().startswith(TOKEN_PROTOCOL):

@@ -15,6 +15,7 @@ from starlette.routing import BaseRoute, Route, WebSocketRoute
 
 from cobotwire.protocol.errors import CobotwireError, UsageError
 from cobotwire.studio.access import Access
+from cobotwire.studio.connections import Connections
 from cobotwire.studio.exported import Selection, written
 from cobotwire.studio.extras import PAGE
 from cobotwire.studio.feed import Feed
@@ -39,7 +40,7 @@ Handler = Callable[[Request], Awaitable[Response]]
 Lifespan = Callable[[Starlette], AbstractAsyncContextManager[None]]
 
 
-def make_app(stage: Stage, access: Access, lifespan: Lifespan) -> App:
+def make_app(stage: Stage, access: Access, connections: Connections, lifespan: Lifespan) -> App:
     """Return the application that serves a stage to those who may see it."""
     routes: list[BaseRoute] = [Route(address, _file(address)) for address in FILES]
     api = _Api(stage)
@@ -55,7 +56,7 @@ def make_app(stage: Stage, access: Access, lifespan: Lifespan) -> App:
         Route("/api/stop", _answering(api.stop), methods=["POST"]),
         WebSocketRoute("/api/feed", Feed(stage).serve),
     ]
-    return Gate(Starlette(routes=routes, lifespan=lifespan), access)
+    return Gate(Starlette(routes=routes, lifespan=lifespan), access, connections)
 
 
 def _file(address: str) -> Handler:

@@ -12,6 +12,7 @@ from cobotwire.codec.interface import Codec, DecodedMessage
 from cobotwire.diagnose import Finding
 from cobotwire.diagnose.explain import Part, frame_parts
 from cobotwire.editions import Edition
+from cobotwire.protocol.errors import UsageError
 from cobotwire.studio.describing import Describer, frame_of
 from cobotwire.studio.entries import Entry
 
@@ -109,6 +110,9 @@ def sources_of(edition: Edition) -> Mapping[str, Any]:
     """Return where each command is described: its place in the spec, lines, errata, disputes.
 
     Empty for a package that an older cobotwire-gen built.
+
+    Raises:
+        UsageError: the file is damaged.
     """
     return _read_sources(str(Path(getattr(edition, "__file__", "")).parent / "sources.json"))
 
@@ -116,7 +120,12 @@ def sources_of(edition: Edition) -> Mapping[str, Any]:
 @lru_cache
 def _read_sources(path: str) -> Mapping[str, Any]:
     try:
-        found: dict[str, Any] = json.loads(Path(path).read_text(encoding="utf-8"))["commands"]
+        found = json.loads(Path(path).read_text(encoding="utf-8"))["commands"]
     except OSError:
         return {}
+    except (ValueError, LookupError, TypeError, RecursionError):
+        found = None
+    if not isinstance(found, dict) or not all(isinstance(each, dict) for each in found.values()):
+        message = f"{path} is damaged; generate the package again with cobotwire-gen"
+        raise UsageError("edition", path, message=message)
     return found

@@ -8,7 +8,7 @@ from pathlib import Path
 from cobotwire.protocol.errors import UsageError
 
 PAGE = Path(__file__).parent / "page"
-# The curves are drawn by uPlot, which wheels ship and ``make`` fetches: tools/front_end.py.
+# The curves are drawn by uPlot, which wheels ship and builds fetch: tools/build_backend.py.
 CURVES = PAGE / "vendor" / "uPlot.esm.js"
 
 
@@ -25,5 +25,9 @@ def check_extra() -> None:
             message = f"cobotwire studio needs {package}: pip install 'cobotwire[studio]'"
             raise UsageError(package, message=message) from error
     if not CURVES.is_file():
-        message = f"{CURVES} is missing; in a checkout, `make front-end` fetches it"
+        message = (
+            "cobotwire studio needs uPlot, which was left out of this package, because the npm "
+            "registry could not be reached when it was built; build it again where it can, or "
+            "install a released wheel (in a checkout: make front-end)"
+        )
         raise UsageError("uPlot", message=message)

@@ -8,12 +8,17 @@ from contextlib import suppress
 from typing import Any
 
 from cobotwire.studio.access import HEADERS, Access
+from cobotwire.studio.connections import Connection, Connections
 
 # Arguments of one command are the largest thing that a page sends.
 LARGEST_BODY = 64 << 10
+# No address of the page has more characters.
+LONGEST_PATH = 200
 # How much of the body of a refused request is read, in bytes, and for how long, in seconds.
 DISCARDED = 1 << 20
 DISCARD_SECONDS = 2.0
+# The scope of a request has its connection as this state.
+SCOPE_STATE = "connection"
 
 Scope = MutableMapping[str, Any]
 Message = MutableMapping[str, Any]
@@ -25,14 +30,23 @@ App = Callable[[Scope, Receive, Send], Awaitable[None]]
 class Gate:
     """An ASGI application around another one, which sees only requests that may pass."""
 
-    def __init__(self, inner: App, access: Access) -> None:
-        self._inner, self._access = inner, access
+    def __init__(self, inner: App, access: Access, connections: Connections) -> None:
+        self._inner, self._access, self._connections = inner, access, connections
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Serve a request, a WebSocket, or the start and the end of the server."""
         if scope["type"] == "lifespan":
             await self._inner(scope, receive, send)
             return
+        connection: Connection = scope["state"][SCOPE_STATE]
+        try:
+            await self._serve(scope, receive, send, connection)
+        finally:
+            self._connections.end(connection)
+
+    async def _serve(
+        self, scope: Scope, receive: Receive, send: Send, connection: Connection
+    ) -> None:
         headers: dict[str, str] = {}
         for name, value in scope["headers"]:
             text = value.decode("latin-1")
@@ -42,10 +56,14 @@ class Gate:
         socket = scope["type"] == "websocket"
         method = "WEBSOCKET" if socket else scope["method"]
         refusal = self._access.refusal(method, scope["path"], headers)
+        known = refusal is None and self._access.knows(headers)
+        self._connections.begin(connection, known)
         if refusal is None and not headers.get("content-length", "0").isdigit():
             refusal = 400, "the content length is not a number"
         if refusal is None and int(headers.get("content-length", "0")) > LARGEST_BODY:
             refusal = 413, "the request is too long"
+        if refusal is None and len(scope["path"]) > LONGEST_PATH:
+            refusal = 414, "the address is too long"
         if refusal is None and "transfer-encoding" in headers:
             refusal = 411, "the request lacks its length"
         if refusal is None:

@@ -20,9 +20,11 @@ from cobotwire import editions
 from cobotwire.capture import is_capture
 from cobotwire.editions import Edition
 from cobotwire.protocol.errors import CobotwireError, LinkError, UsageError
+from cobotwire.studio.accepting import Server
 from cobotwire.studio.access import Access
 from cobotwire.studio.app import make_app
 from cobotwire.studio.arm_line import ArmLine, PortOptions
+from cobotwire.studio.connections import Connections
 from cobotwire.studio.live import REMARKS, LiveSession
 from cobotwire.studio.recorded import RecordedSession
 from cobotwire.studio.sending import Control
@@ -32,7 +34,6 @@ from cobotwire.studio.stage import Stage
 FASTEST_POLL = 200.0
 # What pages send is small.
 LARGEST_MESSAGE = 4096
-MOST_CONNECTIONS = 256
 # Open pages have this long to close their connections at the end.
 END_SECONDS = 2
 
@@ -91,8 +92,9 @@ def serve(options: Options, announce: Callable[[Access], None]) -> None:
             for task in tasks:
                 task.cancel()
 
+        connections = Connections()
         config = uvicorn.Config(
-            make_app(stage, access, lifespan),
+            make_app(stage, access, connections, lifespan),
             ws="websockets-sansio",
             ws_max_size=LARGEST_MESSAGE,
             ws_per_message_deflate=False,
@@ -100,10 +102,9 @@ def serve(options: Options, announce: Callable[[Access], None]) -> None:
             access_log=False,
             server_header=False,
             proxy_headers=False,
-            limit_concurrency=MOST_CONNECTIONS,
             timeout_graceful_shutdown=END_SECONDS,
         )
-        uvicorn.Server(config).run(sockets=[listening])
+        Server(config, listening, connections).run()
 
 
 @contextmanager

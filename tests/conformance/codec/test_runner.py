@@ -96,7 +96,9 @@ def test_missing_command_raises_link_error() -> None:
 
 def test_command_that_ends_at_once_raises_no_answer() -> None:
     with Program([sys.executable, "-c", ""]) as program:
-        with pytest.raises(NoAnswer, match="ended with code 0"):
+        with pytest.raises(
+            NoAnswer, match=r"^ended: it did not answer question 1; it ended with code 0$"
+        ):
             Run(TABLE, program)
 
 
@@ -310,3 +312,10 @@ def test_answer_that_is_nested_deeply_is_babbling(
         report = Run(TABLE, program).ask_all(decoding[:1])
     [failure] = [result for result in _failed(report) if "nested" in result.reason]
     assert "is nested too deeply" in failure.reason
+
+
+def test_command_that_closes_its_output_and_runs_on_is_silent_and_has_not_crashed() -> None:
+    script = "import os, time; os.close(1); time.sleep(60)"
+    with Program([sys.executable, "-c", script], timeout=5) as program:
+        with pytest.raises(NoAnswer, match=r"^silent: it closed its output but is still running$"):
+            Run(TABLE, program)

@@ -13,6 +13,12 @@ from cobotwire_codegen.model.commands import NoId
 _DIRECTIONS: tuple[Literal["request", "reply"], ...] = ("request", "reply")
 
 
+def some_command(edition: Edition) -> Iterator[Problem]:
+    """Report an edition without commands: its client could do nothing."""
+    if not edition.commands:
+        yield Problem(edition.place, "no-command", f"the edition {edition.name} has no command")
+
+
 def ids_fit(edition: Edition) -> Iterator[Problem]:
     """Report ids that are larger than CMD."""
     most = 256**edition.frame.command_number.width - 1
@@ -151,6 +157,7 @@ def queries_not_acked(edition: Edition) -> Iterator[Problem]:
 
 
 RULES = (
+    some_command,
     ids_fit,
     replies_cover_command,
     payload_fits,

@@ -61,7 +61,8 @@ SHARED = ("--wireshark", "--construct")
 @click.option(
     "--templates",
     type=click.Path(exists=True, file_okay=False),
-    help="Templates of your own; each replaces the built-in one of the same name.",
+    help="Templates of your own; each replaces the built-in one of the same name. Templates are "
+    "code: they decide what the package does when it is imported. Use only those that you trust.",
 )
 @click.option("--check", "check_only", is_flag=True, help="Write nothing; fail if files are stale.")
 @format_option

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from binascii import crc32
 from collections.abc import Iterator
 from dataclasses import replace
 from functools import cache
@@ -17,6 +18,7 @@ from jinja2 import (
     PackageLoader,
     StrictUndefined,
 )
+from jinja2.sandbox import SandboxedEnvironment
 
 from cobotwire_codegen import lower
 from cobotwire_codegen.model import Bits, Edition, Enum, Flag, Listed, Quantity, Type, Value
@@ -49,14 +51,16 @@ def render_python(
     jinja = environment(templates)
     edition = with_used_types(edition)
     sharing = Sharing(edition, base)
-    common = {"edition": edition, "sharing": sharing}
+    table = edition_json(edition)
+    checksum = f"{crc32(table.encode()):08x}"
+    common = {"edition": edition, "sharing": sharing, "checksum": checksum}
     files = {
         PurePosixPath(f"{name}.py"): jinja.get_template(f"python/{name}.py.j2").render(common)
         for name in ("__init__", "enums", "table", "values")
     }
     # Type checkers use the annotations of an installed package only if it has this file.
     files[PurePosixPath("py.typed")] = ""
-    files[PurePosixPath("edition.json")] = edition_json(edition)
+    files[PurePosixPath("edition.json")] = table
     files[PurePosixPath("sources.json")] = sources_json(edition)
     files |= _messages(jinja, common)
     for way in WAYS:
@@ -157,28 +161,35 @@ def with_used_types(edition: Edition) -> Edition:
 
 
 def environment(templates: Path | None = None) -> Environment:
-    """Return the environment of all templates; those in ``templates`` replace the shipped ones."""
+    """Return the environment of all templates; those in ``templates`` replace the shipped ones.
+
+    Jinja's sandbox stops the usual ways out of a foreign template. It is not a proof: what the
+    generator gives to templates was not written for it.
+    """
     if templates is None:
         return _shipped()
     # Made anew each time: the user of `watch` may add a template.
-    return _environment(FileSystemLoader(templates), PackageLoader("cobotwire_codegen"))
+    return _environment(
+        SandboxedEnvironment, FileSystemLoader(templates), PackageLoader("cobotwire_codegen")
+    )
 
 
 @cache
 def _shipped() -> Environment:
     """Return the environment of the shipped templates, so that each is compiled once."""
-    return _environment(PackageLoader("cobotwire_codegen"))
+    return _environment(Environment, PackageLoader("cobotwire_codegen"))
 
 
-def _environment(*loaders: BaseLoader) -> Environment:
+def _environment(kind: type[Environment], *loaders: BaseLoader) -> Environment:
     """Return an environment that takes each template from the first loader that has it."""
-    jinja = Environment(
+    jinja = kind(
         loader=ChoiceLoader(loaders),
         undefined=StrictUndefined,
         trim_blocks=True,
         lstrip_blocks=True,
         keep_trailing_newline=True,
-        autoescape=False,  # noqa: S701  (the output is Python, Markdown, JSON and Lua, each escaped by its own filter)
+        # The output is Python, Markdown, JSON and Lua, each escaped by its own filter.
+        autoescape=False,
     )
     jinja.globals.update(
         api=python_api,

@@ -125,4 +125,4 @@ def _print_summary(report: Report, to_stderr: bool) -> None:
     )
     if not report.finished:
         why = f": {printable(report.stopped)}" if report.stopped else ""
-        echo(f"The run ended before its end{why}.")
+        echo(f"The run is incomplete{why}.")

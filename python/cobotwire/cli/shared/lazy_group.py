@@ -32,4 +32,4 @@ class LazyGroup(click.Group):
     def format_commands(self, context: click.Context, formatter: click.HelpFormatter) -> None:
         """Write the list of the verbs."""
         with formatter.section("Commands"):
-            formatter.write_dl(list(self.verbs.items()))
+            formatter.write_dl([(verb, self.verbs[verb]) for verb in self.list_commands(context)])

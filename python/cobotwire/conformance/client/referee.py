@@ -112,7 +112,9 @@ class Referee:
         due = self._history.missing_text()
         if due is not None:
             self._observe(missing_text(due), due)
-        self.report.finished = self.requests > 0 and not self.report.stopped
+        if not self.requests and not self.report.stopped:
+            self.report.stopped = "the client sent no request"
+        self.report.finished = not self.report.stopped
         self.report.seconds = self._now()
         self.report.results = [*self._tally.results(), *self._script_results()]
         return self.report

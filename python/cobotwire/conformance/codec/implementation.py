@@ -26,10 +26,10 @@ STARTING = 3
 
 
 class NoAnswer(CobotwireError):
-    """The implementation crashed, is silent, or does not speak the protocol.
+    """The implementation crashed or ended, is silent, or does not speak the protocol.
 
     Attributes:
-        kind: ``crashed``, ``silent`` or ``babbling``.
+        kind: ``crashed``, ``ended`` (without an error), ``silent`` or ``babbling``.
     """
 
     def __init__(self, kind: str, detail: str) -> None:
@@ -143,7 +143,7 @@ class Program:
             try:
                 data = data[os.write(process.stdin.fileno(), data) :]
             except BrokenPipeError:
-                raise NoAnswer("crashed", self._last_words(process)) from None
+                raise self._gone(process) from None
             except BlockingIOError:
                 continue
 
@@ -154,7 +154,7 @@ class Program:
             self._wait_for(process.stdout, selectors.EVENT_READ, deadline, seconds)
             chunk = process.stdout.read(65536)
             if chunk == b"":
-                raise NoAnswer("crashed", self._last_words(process))
+                raise self._gone(process)
             self._output += chunk or b""
             if len(self._output) > LONGEST_LINE:
                 raise NoAnswer("babbling", f"a line of more than {LONGEST_LINE} bytes")
@@ -181,12 +181,15 @@ class Program:
             raise NoAnswer("babbling", f"{line[:120]!r} is not an answer to question {self._count}")
         return answer
 
-    def _last_words(self, process: subprocess.Popen[bytes]) -> str:
+    def _gone(self, process: subprocess.Popen[bytes]) -> NoAnswer:
         try:
             code = process.wait(1.0)
         except subprocess.TimeoutExpired:
-            return "it closed its output but is still running"
-        return ending(code, self._diagnostics)
+            return NoAnswer("silent", "it closed its output but is still running")
+        how = ending(code, self._diagnostics)
+        if code:
+            return NoAnswer("crashed", how)
+        return NoAnswer("ended", f"it did not answer question {self._count}; {how}")
 
 
 def _is_deeper(value: Any, levels: int) -> bool:

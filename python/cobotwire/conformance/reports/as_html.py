@@ -68,7 +68,7 @@ def _head(report: Report, title: str) -> Iterator[Element]:
     counts = Counter((result.verdict, result.cause) for result in report.results)
     if not report.finished:
         why = f": {report.stopped}" if report.stopped else ""
-        yield _banner("unstable", f"The run ended before its end{why}.")
+        yield _banner("unstable", f"The run is incomplete{why}.")
     if report.failures:
         yield _banner("fail", "It does not conform.")
     elif report.finished:

@@ -25,6 +25,14 @@ EXPLANATIONS = (
         "parity: none",
     ),
     Explanation(
+        "no-command",
+        "An edition has no command.",
+        "Its client would have no methods, and every frame would be noise.",
+        "Add a command; in a delta, keep one of its base.",
+        "commands: []",
+        "commands: [lamp_commands.yaml]",
+    ),
+    Explanation(
         "bad-id",
         "A command's id is larger than CMD.",
         "CMD is one byte, or two with `command_bytes: 2` in the frame.",
