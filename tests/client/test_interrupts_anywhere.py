@@ -231,7 +231,7 @@ def test_second_ctrl_c_at_any_line_neither_keeps_the_arm_moving_nor_the_port_ope
         arm = MyCobot(transport)
         tracer = InterruptAt(number)
         with tracing(tracer):
-            arm.__exit__(error and type(error), error, None)
+            arm.__exit__(None if error is None else type(error), error, None)
         if not tracer.reached:
             break
         reached += 1
