@@ -18,11 +18,25 @@ class AsyncWriter:
     """Writes requests, and before them what ends an earlier request that was cut."""
 
     def __init__(
-        self, transport: AsyncTransport, alignment: Alignment, listeners: TrafficListeners
+        self,
+        transport: AsyncTransport,
+        alignment: Alignment,
+        listeners: TrafficListeners,
+        limited: bool,
     ) -> None:
+        """Take what writes, and whether a deadline limits calls."""
         self._transport = transport
+        self._limited = limited
         self._alignment = alignment
         self._listeners = listeners
+
+    def is_free(self) -> bool:
+        """Return whether a request may be written now.
+
+        If calls are ``limited`` by a deadline, the line takes bytes: what is queued would be sent
+        after it, too.
+        """
+        return not self._limited or self._transport.is_free()
 
     async def write(self, request: bytes) -> None:
         """Write a request, and wait until all of it was taken.

@@ -48,12 +48,14 @@ class Steps:
         exchange: Exchange,
         listeners: TrafficListeners,
         now: Callable[[], float],
+        limited: bool = False,
     ) -> None:
+        """Take what the steps use, and whether a deadline limits calls."""
         self._transport = transport
         self.exchange = exchange
         self.listeners = listeners
         self.now = now
-        self.writer = Writer(transport, exchange.alignment)
+        self.writer = Writer(transport, exchange.alignment, limited)
         self.state = threading.Lock()
         self.reading = threading.RLock()
         self.leading = Leading(self.state)
@@ -77,7 +79,7 @@ class Steps:
         with self.reading:
             self.leading.turns += 1
             data = self._read(0.0)
-            if data or writer.lock.locked():
+            if data or not writer.is_free():
                 with self.state:
                     exchange.enqueue(pending)
                 self._advance(data)
@@ -95,8 +97,13 @@ class Steps:
         while not pending.done:
             if self.leading.leads():
                 self.turn(SLICE_SECONDS)
+            elif (left := pending.ends_by - self.now()) > 0:
+                self.leading.follow(pending, left)
             else:
-                self.leading.follow(pending)
+                # Whatever keeps the leader, no other thread waits longer than it may.
+                with self.state:
+                    events = self.exchange.end_overdue(now := self.now())
+                self.listeners.received(events, now)
 
     def leave(self, pending: Pending) -> None:
         """Have Ctrl-C and a vanished transport leave everything ready for the next call."""
@@ -137,11 +144,13 @@ class Steps:
         with self.state:
             events, outgoing = exchange.advance(data, now)
         if outgoing:
-            if self.writer.lock.locked():
-                # Another thread writes, perhaps to a full line. Deadlines go on meanwhile.
-                time.sleep(TURN_SECONDS)
-            else:
+            free = self.writer.is_free()
+            exchange.note_full(not free)
+            if free:
                 self._send_request(drained=not data)
+            else:
+                # The line is full, or another thread writes. Deadlines go on meanwhile.
+                time.sleep(TURN_SECONDS)
         if events:
             self.leading.wake_followers()
             self.listeners.received(events, now)

@@ -5,20 +5,29 @@ from __future__ import annotations
 from cobotwire.protocol.errors import LinkError
 from cobotwire.session.alignment import Alignment
 from cobotwire.transport.interface import LendingTransport, PollableTransport, Transport
-from cobotwire.transport.waiting import line_lock
+from cobotwire.transport.waiting import has_room, line_lock
 
 
 class Writer:
     """Writes requests, and before them what ends an earlier request that was cut.
 
     Attributes:
-        lock: held by the caller of each method, so that frames do not mix.
+        lock: held by the caller of each method that writes, so that frames do not mix.
     """
 
-    def __init__(self, transport: Transport, alignment: Alignment) -> None:
+    def __init__(self, transport: Transport, alignment: Alignment, limited: bool = False) -> None:
         self._transport = transport
         self._alignment = alignment
+        self._limited = limited
         self.lock = line_lock()
+
+    def is_free(self) -> bool:
+        """Return whether a request may be written now: no thread writes.
+
+        If calls are ``limited`` by a deadline, the line also takes bytes: to wait for that would
+        take time, and would leave half a request.
+        """
+        return not self.lock.locked() and (not self._limited or has_room(self._transport))
 
     def write(self, request: bytes) -> bytes:
         """Write a request.

@@ -167,6 +167,10 @@ class AsyncTransport(Protocol):
         """
         ...
 
+    def is_free(self) -> bool:
+        """Return whether everything that was written was taken, and more may be."""
+        ...
+
     def close(self) -> None:
         """Stop watching and close the transport. Closing twice is harmless."""
         ...

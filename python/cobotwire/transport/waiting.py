@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 
 from cobotwire import codec as codecs
 from cobotwire.transport.alarm import Alarm, new_alarm
+from cobotwire.transport.interface import PollableTransport
 
 if TYPE_CHECKING:
     from cobotwire._native import MomentWriter
@@ -82,6 +83,16 @@ def moment_writer() -> MomentWriter | None:
         with suppress(OSError):
             return _native.MomentWriter()
     return None
+
+
+def has_room(transport: object) -> bool:
+    """Return whether a transport takes some bytes now, as far as the system tells."""
+    try:
+        descriptor = transport.fileno() if isinstance(transport, PollableTransport) else None
+        return descriptor is None or is_ready(descriptor, 0, writing=True)
+    except (OSError, ValueError):
+        # It is closed, or cannot be waited for: writing tells.
+        return True
 
 
 class Waiter:
