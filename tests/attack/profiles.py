@@ -40,6 +40,9 @@ class Profile:
         stalls: whether the peer stops reading now and then.
         interrupts: whether Ctrl-C comes in the main thread.
         cancels: whether calls are cancelled.
+        fresh: whether the users run in a fresh process.
+        signals: whether Ctrl-C is a real signal; one of them ends the ``with`` block of the client.
+        notes: whether stale and damaged notes of earlier sessions lie on the port.
         clients: which clients run it.
     """
 
@@ -54,6 +57,9 @@ class Profile:
     stalls: bool = False
     interrupts: bool = False
     cancels: bool = False
+    fresh: bool = False
+    signals: bool = False
+    notes: bool = False
     clients: tuple[Clients, ...] = field(default=("blocking", "asyncio"))
 
     @property
@@ -157,6 +163,35 @@ _ALL = (
         cancels=True,
         clients=("asyncio",),
         weight=1.5,
+    ),
+    Profile(
+        "starts",
+        "threads call in the first 0.1 s of a fresh process, among bytes of the servos",
+        (ServoLeak(probability=0.6), Late(seconds=0.0, jitter_seconds=0.01, probability=0.2)),
+        one_way=0.4,
+        fresh=True,
+        seconds=0.1,
+        clients=("blocking",),
+        weight=0.3,
+    ),
+    Profile(
+        "signals",
+        "signals interrupt the main thread of a fresh process, and end it while threads wait",
+        (Late(seconds=0.0, jitter_seconds=0.3, probability=0.1), ServoLeak(probability=0.1)),
+        one_way=0.5,
+        interrupts=True,
+        fresh=True,
+        signals=True,
+        seconds=0.5,
+        clients=("blocking",),
+        weight=0.5,
+    ),
+    Profile(
+        "notes",
+        "stale and damaged notes lie on the port whenever it is opened",
+        (Late(seconds=0.1, jitter_seconds=0.8, probability=0.1),),
+        closes=0.3,
+        notes=True,
     ),
 )
 PROFILES = {profile.name: profile for profile in _ALL}

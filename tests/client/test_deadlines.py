@@ -15,8 +15,9 @@ from typing import Any, NamedTuple
 
 import pytest
 
+from attack.ends import PtyEnd
 from both_ways import InLoop, Opener
-from cobotwire import MyCobot, MyCobot280, ReplyTimeout, RetryPolicy, UsageError
+from cobotwire import LinkError, MyCobot, MyCobot280, ReplyTimeout, RetryPolicy, UsageError
 from cobotwire import codec as codecs
 from cobotwire.editions.mycobot import TABLE, AsyncMyCobot, GetEncoder
 from cobotwire.editions.mycobot280 import AsyncMyCobot280
@@ -203,6 +204,22 @@ def test_full_line_delays_no_call_and_gets_none_of_it_later_but_the_stop_of_a_fa
     drained.join()
     pty.close()
     assert received == [MOTION * sent + STOP]
+
+
+def test_request_of_which_the_line_takes_a_part_ends_in_time(open_arm: Opener) -> None:
+    end = PtyEnd()
+    with open_arm(end.url, deadline=0.2) as arm:
+        end.fill(10, lambda data: None)
+        calls: list[Callable[[], object]] = [
+            lambda: arm.send_angles(ANGLES, 50),
+            lambda: arm.get_encoder(1),
+        ]
+        for call in calls:
+            began = time.monotonic()
+            with pytest.raises((LinkError, ReplyTimeout), match=r"only 1. of 21|was not sent"):
+                call()
+            assert time.monotonic() - began < 0.2 + MORE
+    end.close()
 
 
 @pytest.mark.parametrize("who", [MyCobot280, lambda *a, **o: InLoop(AsyncMyCobot280, *a, **o)])

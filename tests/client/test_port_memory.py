@@ -21,13 +21,15 @@ from cobotwire.client.port_memory import PortMemory
 from cobotwire.client.port_notes import LONGEST
 from cobotwire.editions.mycobot import AsyncMyCobot
 from cobotwire.editions.mycobot280 import MyCobot280
+from cobotwire.session import Exchange
 from cobotwire.session.alignment import Part
 from cobotwire.session.leftover import LateFrame, Leftover
+from cobotwire.session.request import RequestEncoder
 from cobotwire.transport import open_transport
 from command_line import run_program
 from scripted_peer import ScriptedPeer
 from slow_arm import SlowArm
-from stuck_pty import ANGLES, MOTION, STOP, StuckPty, frames
+from stuck_pty import ANGLES, CODEC, MOTION, STOP, StuckPty, frames
 
 LATE = 0.75
 GET_ENCODER = bytes.fromhex("FE FE 03 3B 01 FA")
@@ -192,14 +194,17 @@ ANY_JSON = st.recursive(
     lambda inner: st.lists(inner, max_size=3) | st.dictionaries(st.text(max_size=5), inner),
     max_leaves=6,
 )
+FRAMES = st.sampled_from([GET_ENCODER, MOTION, b"\xfe\xfe\x1a"]).map(bytes.hex) | st.binary(
+    max_size=8
+).map(bytes.hex)
 NUMBERS = st.floats() | st.integers() | st.just(10**400)
 # Each is what a note has in that place, or anything else.
 VALUES = {
     "port": ANY_JSON,
     "boot": ANY_JSON,
     "clocks": st.lists(NUMBERS, min_size=1, max_size=3) | ANY_JSON,
-    "late": st.lists(st.tuples(st.just(GET_ENCODER.hex()), NUMBERS), max_size=3) | ANY_JSON,
-    "parts": st.lists(st.tuples(st.just(MOTION.hex()), NUMBERS), max_size=3) | ANY_JSON,
+    "late": st.lists(st.tuples(FRAMES, NUMBERS), max_size=3) | ANY_JSON,
+    "parts": st.lists(st.tuples(FRAMES, st.integers(1, 9) | NUMBERS), max_size=3) | ANY_JSON,
 }
 
 
@@ -229,6 +234,19 @@ def test_whatever_a_note_holds_a_port_is_opened_and_holds_no_request_for_longer_
     assert bool(caplog.records) <= found.empty, "what is used needs no warning"
     assert bool(caplog.records) or isinstance(content, dict), "bytes are no note"
     assert not list(folder.iterdir())
+    exchange = Exchange(CODEC)
+    exchange.take_over(found)
+    assert exchange.leave(0.0).parts == found.parts
+
+
+def test_note_of_a_session_that_lost_its_port_is_read(memory: PortMemory, folder: Path) -> None:
+    exchange = Exchange(CODEC)
+    exchange.send_one_way(RequestEncoder(CODEC).encode("send_angles", [ANGLES, 50]), 0.0)
+    exchange.fail(LinkError("/dev/arm", "it is gone"), 0.0)
+    left = exchange.leave(0.0)
+    memory.leave(left)
+    port_memory._here.clear()
+    assert set(memory.recall().parts) == set(left.parts) != set()
 
 
 @pytest.mark.parametrize("kind", ["fifo", "link", "folder", "socket", "of another user"])

@@ -47,8 +47,7 @@ class Connection:
         self.listeners = TrafficListeners(trace, self.url, self.now)
         self._exchange = exchange
         self._deadline = deadline
-        limited = deadline < inf
-        self._steps = Steps(self._transport, exchange, self.listeners, self.now, limited)
+        self._steps = Steps(self._transport, exchange, self.listeners, self.now, deadline)
         self._native = native_call(self._steps, self._transport, deadline)
         self._memory = PortMemory(self._transport)
         exchange.take_over(self._memory.recall())
@@ -63,15 +62,15 @@ class Connection:
         """
         steps, called_at = self._steps, self.now()
         ends_by = called_at + (self._deadline if deadline is None else deadline)
-        while ends_by < inf and not steps.writer.is_free():
-            if self.now() >= ends_by:
-                raise self._exchange.unsent(request, self.now() - called_at)
+        while self.now() < ends_by < inf and not steps.writer.is_free():
             time.sleep(TURN_SECONDS)
         with steps.writer.lock:
             with steps.state:
                 now = self.now()
+                if now >= ends_by:
+                    raise self._exchange.unsent(request, now - called_at)
                 data, pending = self._exchange.send_one_way(request, now, ack_within, ends_by)
-            align = steps.writer.write(data)
+            align = steps.writer.write(data, ends_by - now)
         self.listeners.sent(align, data)
         if pending is not None:
             try:

@@ -65,12 +65,12 @@ class Turns:
 
     def end_overdue(self, now: float) -> list[SessionEvent]:
         """End the requests of callers that wait no longer; return what happened to a sent one."""
-        overdue = [pending for pending in self._queued() if pending.ends_by <= now]
-        for pending in overdue:
-            held = self.free_at(pending, now) > now
-            waited_for: WaitedFor = "hold" if held else "line" if self.line_is_full else "turn"
-            pending.expire(self._codec, now - pending.queued_at, 0, waited_for)
-        if overdue:
+        if any(pending.ends_by <= now for pending in self.queue):
+            for pending, free_at in self._free_times(now):
+                if pending.ends_by <= now:
+                    full: WaitedFor = "line" if self.line_is_full else "turn"
+                    waited_for = "hold" if free_at > now else full
+                    pending.expire(self._codec, now - pending.queued_at, 0, waited_for)
             self.drop_done()
         waiting = self.waiting()
         if waiting is None or waiting.ends_by > now:
@@ -98,8 +98,8 @@ class Turns:
         waiting = self.waiting()
         if waiting is not None:
             return self._next_attempt(waiting, now)
-        for pending in self._queued():
-            if self.free_at(pending, now) <= now < pending.ends_by:
+        for pending, free_at in self._free_times(now):
+            if free_at <= now < pending.ends_by:
                 break
         else:
             return b""
@@ -126,10 +126,11 @@ class Turns:
 
     def next_at(self, now: float) -> float:
         """Return when something is to be sent, or a wait ends, unless bytes come; inf: never."""
-        waiting, queued = self.waiting(), self._queued() if self.queue else []
-        soonest = min([pending.ends_by for pending in queued], default=inf)
+        waiting, soonest = self.waiting(), inf
+        if self.queue:
+            soonest = min([pending.ends_by for pending in self._queued()], default=inf)
         if waiting is None:
-            return min([soonest, *(self.free_at(pending, now) for pending in queued)])
+            return min([soonest, *(free_at for _, free_at in self._free_times(now))])
         soonest, repeat_at = (
             min(soonest, waiting.ends_at, waiting.ends_by),
             self._repeat_at(waiting),
@@ -142,6 +143,14 @@ class Turns:
             return now
         held_until = self._outstanding.held_until(pending.request)
         return now if held_until is None else held_until
+
+    def _free_times(self, now: float) -> list[tuple[PendingRequest, float]]:
+        """Return each queued request, and from when on it may be sent."""
+        queued = self._queued()
+        # Many callers may want the same.
+        alike = {pending.request.frame: pending for pending in queued}
+        known = {frame: self.free_at(pending, now) for frame, pending in alike.items()}
+        return [(pending, known[pending.request.frame]) for pending in queued]
 
     def _begin(self, pending: PendingRequest, now: float) -> None:
         request, fed = pending.request, self._framer.fed

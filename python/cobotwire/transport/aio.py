@@ -90,6 +90,12 @@ class PolledTransport:
         """Return whether everything that was written was taken, and more may be."""
         return not self.unwritten and has_room(self._transport)
 
+    def end_writing(self) -> None:
+        """Send no more of what was written and not taken yet."""
+        if self.unwritten:
+            taken = f"only {self._taken} of {len(self.unwritten[0][0])} bytes were taken in time"
+            self._end_writing(LinkError(self._transport.url, f"cannot be written: {taken}"))
+
     def write_rest(self, data: bytes, taken: int, done: Done) -> None:
         """Send what follows the first ``taken`` bytes of ``data``; nothing else is being sent."""
         self._taken = taken
@@ -258,6 +264,9 @@ class ThreadedTransport:
     def is_free(self) -> bool:
         """Return whether everything that was written was taken."""
         return not self._unwritten
+
+    def end_writing(self) -> None:
+        """Do nothing: the thread that writes cannot be interrupted."""
 
     def _end(self, done: Done, error: LinkError | None) -> None:
         self._unwritten -= 1

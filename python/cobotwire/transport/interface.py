@@ -171,6 +171,10 @@ class AsyncTransport(Protocol):
         """Return whether everything that was written was taken, and more may be."""
         ...
 
+    def end_writing(self) -> None:
+        """Send no more of what was written and not taken yet, where that is possible."""
+        ...
+
     def close(self) -> None:
         """Stop watching and close the transport. Closing twice is harmless."""
         ...

@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 
 from cobotwire import codec as codecs
 from cobotwire.transport.alarm import Alarm, new_alarm
-from cobotwire.transport.interface import PollableTransport
 
 if TYPE_CHECKING:
     from cobotwire._native import MomentWriter
@@ -87,8 +86,10 @@ def moment_writer() -> MomentWriter | None:
 
 def has_room(transport: object) -> bool:
     """Return whether a transport takes some bytes now, as far as the system tells."""
+    # Checking for the protocol takes longer than all of this.
+    fileno = getattr(transport, "fileno", None)
     try:
-        descriptor = transport.fileno() if isinstance(transport, PollableTransport) else None
+        descriptor = None if fileno is None else fileno()
         return descriptor is None or is_ready(descriptor, 0, writing=True)
     except (OSError, ValueError):
         # It is closed, or cannot be waited for: writing tells.
