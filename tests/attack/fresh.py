@@ -4,18 +4,21 @@ from __future__ import annotations
 
 import base64
 import pickle
+import signal
 import subprocess
 import sys
 import time
 from collections.abc import Callable
+from pathlib import Path
 
 from attack.blocking import run_threads
 from attack.plans import Plan
 from attack.record import Record
 from attack.setting import Setting
 
+TESTS = Path(__file__).parents[1]
 # Besides the run itself: to start, to import, and to end.
-START_SECONDS = 10.0
+START_SECONDS = 5.0
 
 
 def run_fresh(setting: Setting, settle: Callable[[], None]) -> str:
@@ -29,15 +32,17 @@ def run_fresh(setting: Setting, settle: Callable[[], None]) -> str:
     work = base64.b64encode(pickle.dumps((setting.plan, setting.url))).decode()
     longest = START_SECONDS + setting.plan.seconds + setting.longest
     process = subprocess.Popen(
-        [sys.executable, "-m", "attack.fresh", work],
+        [sys.executable, "-X", "faulthandler", "-m", "attack.fresh", work],
         stdin=subprocess.PIPE,
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
+        cwd=TESTS,
     )
     try:
         written, errors = process.communicate(timeout=longest)
     except subprocess.TimeoutExpired:
-        process.kill()
+        # It then prints where each thread is.
+        process.send_signal(signal.SIGABRT)
         return f"the process hung for {longest:.1f} s\n{process.communicate()[1].decode()}"
     if process.returncode:
         return f"the process ended with code {process.returncode}\n{errors.decode()}"

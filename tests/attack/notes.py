@@ -1,4 +1,4 @@
-"""Leave stale and damaged notes of earlier sessions on the port of a run."""
+"""Leave a stale or damaged note of an earlier session on the port of a run."""
 
 from __future__ import annotations
 
@@ -14,6 +14,8 @@ from cobotwire.client import port_notes
 GET_ENCODER = "FE FE 03 3B 01 FA"
 # The most that a clock of another boot may be ahead.
 AHEAD_SECONDS = 3000.0
+# Of another boot, by its name or its clock; with another number, other bytes; no file.
+KINDS = ("boot", "before", "number", "bytes", "pipe")
 
 
 def leave_note(url: str, random: Random) -> None:
@@ -22,7 +24,7 @@ def leave_note(url: str, random: Random) -> None:
     path, now = Path(port_notes._path(key, create=True)), time.monotonic()
     with suppress(FileNotFoundError):
         path.unlink()
-    kind = random.choice(("boot", "before", "number", "bytes", "pipe"))
+    kind = random.choice(KINDS)
     if kind == "pipe":
         os.mkfifo(path)
         return

@@ -42,7 +42,7 @@ class Profile:
         cancels: whether calls are cancelled.
         fresh: whether the users run in a fresh process.
         signals: whether Ctrl-C is a real signal; one of them ends the ``with`` block of the client.
-        notes: whether stale and damaged notes of earlier sessions lie on the port.
+        notes: whether a stale or damaged note of an earlier session lies on the port.
         clients: which clients run it.
     """
 
@@ -188,10 +188,11 @@ _ALL = (
     ),
     Profile(
         "notes",
-        "stale and damaged notes lie on the port whenever it is opened",
+        "a stale or damaged note lies on the port when it is opened",
         (Late(seconds=0.1, jitter_seconds=0.8, probability=0.1),),
-        closes=0.3,
         notes=True,
+        seconds=0.5,
+        weight=0.5,
     ),
 )
 PROFILES = {profile.name: profile for profile in _ALL}

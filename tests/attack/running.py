@@ -49,7 +49,7 @@ def attack(chosen: Plan, change: Callable[[Any], Any] | None = None) -> Tally:
             setting.client = change(setting.client)
         settle, failed = partial(_settle, line, setting), ""
         if chosen.profile.notes:
-            leave_note(line.url, Random(f"{chosen.seed} first note"))
+            leave_note(line.url, Random(f"{chosen.seed} note"))
         if chosen.profile.fresh and change is None:
             failed = run_fresh(setting, settle)
         else:
@@ -80,8 +80,6 @@ def _happen(line: HostileLine, setting: Setting, shared: Closable) -> None:
             line.replug()
         elif profile.closes:
             time.sleep(profile.closes * random.uniform(0.5, 1.5))
-            if profile.notes:
-                leave_note(line.url, random)
             shared.close()
         elif profile.stalls:
             time.sleep(random.uniform(0.05, 0.2))

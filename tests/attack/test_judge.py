@@ -8,6 +8,7 @@ from typing import Any
 
 import pytest
 
+from attack import notes
 from attack.plans import Plan, plan
 from attack.profiles import PROFILES
 from attack.running import attack
@@ -143,6 +144,7 @@ def test_call_that_never_ends_is_lost() -> None:
 
 def test_note_of_another_boot_that_is_believed_loses_calls(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(port_notes, "_boot", lambda: "another")
+    monkeypatch.setattr(notes, "KINDS", ("boot",))
     assert "lost" in counts(attack(chosen("notes", seconds=0.5)))
 
 
