@@ -49,8 +49,9 @@ PASSAGES = [
 
     One-way requests are sent once and at once, also while another thread waits for a reply; their
     methods return when the bytes are written. Requests that have a reply take turns. Queries are
-    sent again within their deadline, as ``retry`` says. After a request was given up, the next one
-    like it is held until its late reply can no longer come, since the two look alike.
+    sent again within their ``timeout``, as ``retry`` says. After a request was given up, the next
+    one like it is held until its late reply can no longer come, since the two look alike. With a
+    ``deadline``, none of this makes a call take longer.
 
     Many threads may share one arm. Ctrl-C leaves it usable.
     """''',
@@ -67,9 +68,15 @@ PASSAGES = [
             port: a serial port, or any URL that pyserial opens (``socket://host:port``); or an open
                 transport.
             baudrate: bits a second; default: that of the edition.
-            timeout: seconds that the arm has to reply, all attempts included; default: those of the
-                command in the edition.
-            retry: how often queries are sent within that time; default: up to three times.
+            timeout: seconds that the arm has to reply once a request is sent, all attempts
+                included; default: those of the command in the edition. Before it is sent, a call
+                waits for its turn, and until no late reply can pass for its own.
+            deadline: seconds that a call may take from its beginning, all of this included;
+                default: any time. Then it raises :class:`ReplyTimeout`, which says what the call
+                waited for, and whether it was sent; if it was not, it never will be. Waited motions
+                and loops have a ``timeout`` of their own; each of their requests has this deadline.
+                Opening the port is not limited.
+            retry: how often queries are sent within their ``timeout``; default: up to three times.
             limits: where the arm may be sent, narrower or wider than the edition says.
             codec: ``native`` or ``reference``; default: the native one, where it is built.
             trace: the first traffic listener; see :meth:`add_traffic_listener`.

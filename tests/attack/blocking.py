@@ -12,6 +12,7 @@ from random import Random
 from types import FrameType
 from typing import Any
 
+from attack.calls import Drawn
 from attack.record import observe_native_calls, open_observed
 from attack.setting import Setting
 from cobotwire import CobotwireError, LinkError
@@ -51,22 +52,33 @@ class Shared:
         """Close it; calls in other threads end with an error."""
         self.client.close()
 
+    @property
+    def transport_is_closed(self) -> bool:
+        """Whether the transport that was opened last is closed."""
+        closed: bool = self._transport._closed
+        return closed
+
     def _open(self) -> None:
         setting = self.setting
-        plan, small = setting.plan, setting.plan.profile.stalls
+        small = setting.plan.profile.stalls
         self._transport = open_observed(setting.url, setting.baudrate, setting.record, small=small)
-        self.client = setting.client(
-            self._transport, codec=plan.codec, timeout=plan.timeout, retry=setting.retry
-        )
+        self.client = setting.client(self._transport, **setting.options)
         observe_native_calls(setting.record, self.client)
 
 
 class Interrupts:
-    """Ctrl-C for the main thread, as often as there is a call that it can hit."""
+    """Ctrl-C for the main thread, as often as there is a call that it can hit.
 
-    def __init__(self, random: Random) -> None:
+    Attributes:
+        armed: whether a call can be hit.
+        raised: how many were.
+    """
+
+    def __init__(self, random: Random, signals: bool) -> None:
         self.armed = False
+        self.raised = 0
         self._random = random
+        self._strike = _signal_main if signals else _thread.interrupt_main
         self._over = threading.Event()
         self._thread = threading.Thread(target=self._interrupt, daemon=True)
 
@@ -83,12 +95,13 @@ class Interrupts:
     def _handle(self, number: int, frame: FrameType | None) -> None:
         if self.armed:
             self.armed = False
+            self.raised += 1
             raise KeyboardInterrupt
 
     def _interrupt(self) -> None:
         while not self._over.wait(self._random.expovariate(1 / 0.004)):
             if self.armed:
-                _thread.interrupt_main()
+                self._strike()
 
 
 def run_threads(
@@ -110,8 +123,12 @@ def run_threads(
     for thread in (*threads, happening):
         thread.start()
     if plan.profile.interrupts:
-        with Interrupts(Random(f"{plan.seed} interrupts")) as interrupts:
-            _user(shared, 0, interrupts)
+        random = Random(f"{plan.seed} interrupts")
+        with Interrupts(random, plan.profile.signals) as interrupts:
+            if plan.profile.signals:
+                _end_block(shared, random, interrupts)
+            else:
+                _user(shared, 0, interrupts)
     happening.join()
     until = time.monotonic() + setting.longest
     for thread in threads:
@@ -121,6 +138,27 @@ def run_threads(
     shared.close()
     for thread in threads:
         thread.join(JOIN_SECONDS)
+
+
+def _signal_main() -> None:
+    main = threading.main_thread().ident
+    assert main is not None, "it runs"
+    signal.pthread_kill(main, signal.SIGINT)
+
+
+def _end_block(shared: Shared, random: Random, interrupts: Interrupts) -> None:
+    """Call in a ``with`` block until one of the signals ends it: stop is sent once.
+
+    Other threads call meanwhile, and afterwards on the closed client.
+    """
+    setting, last = shared.setting, random.randint(1, 5)
+    with suppress(KeyboardInterrupt), shared.client:
+        while interrupts.raised < last and not setting.over:
+            _call(shared, 0, random, interrupts)
+        stop = setting.begin(0, Drawn("stop", (), None))
+        raise KeyboardInterrupt
+    closed = shared.transport_is_closed
+    setting.record.end(stop, *(("value", None) if closed else ("exception", "the port is open")))
 
 
 def _user(shared: Shared, user: int, interrupts: Interrupts | None = None) -> None:

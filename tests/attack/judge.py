@@ -116,7 +116,9 @@ class Judge:
         self._fail(call, "silently wrong", *self._evidence.explain(call))
 
     def _judge_time(self, call: Call) -> None:
-        due = self._due(call)
+        due, deadline = self._due(call), self._plan.deadline
+        if deadline is not None:
+            due = min(due, call.began + deadline + LATE_SECONDS)
         if call.ended <= due or call.ending == "interrupted":
             return
         excess = call.ended - due

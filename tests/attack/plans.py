@@ -29,6 +29,7 @@ class Plan:
         calls: how many calls end the run earlier.
         restores: whether a client that got a LinkError is replaced.
         reopens: whether its transport is reopened instead.
+        deadline: seconds that each call may take as a whole; None: any time.
     """
 
     profile: Profile
@@ -45,6 +46,7 @@ class Plan:
     calls: int
     restores: bool
     reopens: bool
+    deadline: float | None
 
     @property
     def faults(self) -> tuple[Fault, ...]:
@@ -62,7 +64,7 @@ class Plan:
         return (
             f"profile {self.profile.name}, seed {self.seed}: {kind}, {self.client}, {self.codec}, "
             f"{self.edition}, {self.users} users, timeout {self.timeout} s x {self.attempts}, "
-            f"grace {self.grace} s" + self._way
+            f"grace {self.grace} s, deadline {self.deadline}" + self._way
         )
 
 
@@ -82,12 +84,14 @@ def plan(profile: Profile, seed: int, seconds: float | None = None, calls: int =
     return Plan(
         profile,
         seed,
-        # Only a pty takes half a frame.
-        tcp=random.random() < (0.2 if profile.stalls else 0.5),
+        # Only a pty takes half a frame. TCP may lose what is written just before it is closed.
+        tcp=random.random() < (0.2 if profile.stalls else 0.5) and not profile.signals,
         client=client,
         codec=random.choice(("native", "reference")),
         edition=random.choice(("mycobot280", "mycobot280", "mycobot")),
-        users=random.randint(2, 8) if profile.interrupts else random.randint(1, 8),
+        users=random.randint(2 + 2 * profile.fresh, 8)
+        if profile.interrupts or profile.fresh
+        else random.randint(1, 8),
         timeout=random.choice((0.2, 0.3, 0.5)),
         attempts=random.choice((1, 2, 3)),
         grace=random.choice((0.3, 1.0)),
@@ -95,4 +99,5 @@ def plan(profile: Profile, seed: int, seconds: float | None = None, calls: int =
         calls=calls,
         restores=profile.parts or (profile.stalls and random.random() < 0.4),
         reopens=client == "blocking" and random.random() < 0.5,
+        deadline=random.choice((None, None, 0.4)),
     )

@@ -42,6 +42,9 @@ class Profile:
         cancels: whether calls are cancelled.
         holds: whether the calls are Stops of pages of `cobotwire studio`, while connections without
             its token are held open.
+        fresh: whether the users run in a fresh process.
+        signals: whether Ctrl-C is a real signal; one of them ends the ``with`` block of the client.
+        notes: whether a stale or damaged note of an earlier session lies on the port.
         clients: which clients run it.
     """
 
@@ -57,6 +60,9 @@ class Profile:
     interrupts: bool = False
     cancels: bool = False
     holds: bool = False
+    fresh: bool = False
+    signals: bool = False
+    notes: bool = False
     clients: tuple[Clients, ...] = field(default=("blocking", "asyncio"))
 
     @property
@@ -166,6 +172,36 @@ _ALL = (
         "connections to `cobotwire studio` that never send a whole request",
         holds=True,
         clients=("blocking",),
+    ),
+    Profile(
+        "starts",
+        "threads call in the first 0.1 s of a fresh process, among bytes of the servos",
+        (ServoLeak(probability=0.6), Late(seconds=0.0, jitter_seconds=0.01, probability=0.2)),
+        one_way=0.4,
+        fresh=True,
+        seconds=0.1,
+        clients=("blocking",),
+        weight=0.3,
+    ),
+    Profile(
+        "signals",
+        "signals interrupt the main thread of a fresh process, and end it while threads wait",
+        (Late(seconds=0.0, jitter_seconds=0.3, probability=0.1), ServoLeak(probability=0.1)),
+        one_way=0.5,
+        interrupts=True,
+        fresh=True,
+        signals=True,
+        seconds=0.5,
+        clients=("blocking",),
+        weight=0.5,
+    ),
+    Profile(
+        "notes",
+        "a stale or damaged note lies on the port when it is opened",
+        (Late(seconds=0.1, jitter_seconds=0.8, probability=0.1),),
+        notes=True,
+        seconds=0.5,
+        weight=0.5,
     ),
 )
 PROFILES = {profile.name: profile for profile in _ALL}

@@ -14,9 +14,11 @@ from attack.arm import HostilePeer
 from attack.blocking import run_threads
 from attack.calls import SHORT
 from attack.ends import PtyEnd, TcpEnd
+from attack.fresh import run_fresh
 from attack.judge import Judge, Scene
 from attack.line import HostileLine
 from attack.machine import MachineMeter
+from attack.notes import leave_note
 from attack.pages import attack_studio
 from attack.plans import Plan, plan
 from attack.profiles import PROFILES
@@ -48,8 +50,17 @@ def attack(chosen: Plan, change: Callable[[Any], Any] | None = None) -> Tally:
         setting = Setting(chosen, line.url)
         if change is not None:
             setting.client = change(setting.client)
-        run: Callable[..., None] = run_threads if chosen.client == "blocking" else run_tasks
-        run(setting, partial(_happen, line, setting), partial(_settle, line, setting))
+        settle, failed = partial(_settle, line, setting), ""
+        if chosen.profile.notes:
+            leave_note(line.url, Random(f"{chosen.seed} note"))
+        if chosen.profile.fresh and change is None:
+            failed = run_fresh(setting, settle)
+        else:
+            run: Callable[..., None] = run_threads if chosen.client == "blocking" else run_tasks
+            run(setting, partial(_happen, line, setting), settle)
+    if failed:
+        # Its calls are not known; at least one of them was lost.
+        return Tally(chosen.profile.name, calls=1, lost=1, failures=[f"{chosen}\n{failed}"])
     stalls = [meter.late, line.stalls, *machine.stops.values()]
     return Judge(Scene(setting, line, peer, stalls)).judge()
 

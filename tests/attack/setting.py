@@ -32,6 +32,7 @@ class Setting:
         flooding: whether users send only one-way requests, to fill a line that nobody reads.
         flood: which ones; empty: any.
         longest: seconds that a call can take by its rules, the wait for its turn included.
+        options: the arguments of the clients.
     """
 
     def __init__(self, plan: Plan, url: str) -> None:
@@ -47,6 +48,12 @@ class Setting:
         self.baudrate = self.table.baudrate
         self.codec = codecs.load(self.table, "reference")
         self.retry = RetryPolicy(attempts=plan.attempts, shortest_attempt=0.05, grace=plan.grace)
+        self.options: dict[str, Any] = {
+            "codec": plan.codec,
+            "timeout": plan.timeout,
+            "retry": self.retry,
+            "deadline": plan.deadline,
+        }
         turn = plan.timeout + plan.grace
         if plan.profile.stalls:
             turn += WRITE_SECONDS

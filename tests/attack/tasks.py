@@ -40,12 +40,9 @@ class SharedInLoop:
     async def open(self) -> None:
         """Make a client on a transport of its own."""
         setting = self.setting
-        plan = setting.plan
-        small = plan.profile.stalls
+        small = setting.plan.profile.stalls
         transport = open_observed(setting.url, setting.baudrate, setting.record, small=small)
-        self.client = setting.client(
-            transport, codec=plan.codec, timeout=plan.timeout, retry=setting.retry
-        )
+        self.client = setting.client(transport, **setting.options)
         await self.client.open()
 
     def close(self) -> None:

@@ -8,10 +8,12 @@ from typing import Any
 
 import pytest
 
+from attack import notes
 from attack.plans import Plan, plan
 from attack.profiles import PROFILES
 from attack.running import attack
 from attack.tally import FORBIDDEN, Tally
+from cobotwire.client import port_notes
 from cobotwire.session import turns
 from cobotwire.simulator.faults import Corrupted
 
@@ -28,6 +30,7 @@ def chosen(name: str = "benign", **changes: Any) -> Plan:
         "grace": 0.3,
         "seconds": 2.0,
         "calls": 120,
+        "deadline": None,
     }
     return replace(plan(PROFILES[name], 1), **{**usual, **changes})
 
@@ -113,17 +116,18 @@ def test_undocumented_exception_is_counted() -> None:
     assert counts(attack(chosen(), change)) == ["exceptions"]
 
 
-def test_call_that_ends_after_its_deadline_is_late() -> None:
+@pytest.mark.parametrize(("deadline", "slept"), [(None, 0.6), (0.2, 0.35)])
+def test_call_that_ends_after_its_deadline_is_late(deadline: float | None, slept: float) -> None:
     def change(client: Any) -> Any:
         class Slow(client):  # type: ignore[misc]
             def get_encoder(self, joint: int) -> int:
                 value: int = super().get_encoder(joint)
-                time.sleep(0.6)
+                time.sleep(slept)
                 return value
 
         return Slow
 
-    assert "late" in counts(attack(chosen(users=1, seconds=1.0), change))
+    assert "late" in counts(attack(chosen(users=1, seconds=1.0, deadline=deadline), change))
 
 
 def test_call_that_never_ends_is_lost() -> None:
@@ -136,6 +140,17 @@ def test_call_that_never_ends_is_lost() -> None:
         return Waiting
 
     assert counts(attack(chosen(users=1, seconds=0.3), change)) == ["lost"]
+
+
+def test_note_of_another_boot_that_is_believed_loses_calls(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(port_notes, "_boot", lambda: "another")
+    monkeypatch.setattr(notes, "KINDS", ("boot",))
+    assert "lost" in counts(attack(chosen("notes", seconds=0.5)))
+
+
+def test_process_that_fails_is_lost(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("sys.executable", "/bin/false")
+    assert counts(attack(chosen("starts"))) == ["lost"]
 
 
 def test_damaged_value_is_recognised_as_a_limit() -> None:

@@ -4,26 +4,32 @@ from __future__ import annotations
 
 import json
 import os
+import socket
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
 import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
 
 from both_ways import InLoop
 from cobotwire import LinkError, MyCobot, ReplyTimeout
-from cobotwire.client import port_memory
+from cobotwire.client import port_memory, port_notes
 from cobotwire.client.port_memory import PortMemory
+from cobotwire.client.port_notes import LONGEST
 from cobotwire.editions.mycobot import AsyncMyCobot
 from cobotwire.editions.mycobot280 import MyCobot280
+from cobotwire.session import Exchange
 from cobotwire.session.alignment import Part
 from cobotwire.session.leftover import LateFrame, Leftover
+from cobotwire.session.request import RequestEncoder
 from cobotwire.transport import open_transport
 from command_line import run_program
 from scripted_peer import ScriptedPeer
 from slow_arm import SlowArm
-from stuck_pty import ANGLES, MOTION, STOP, StuckPty, frames
+from stuck_pty import ANGLES, CODEC, MOTION, STOP, StuckPty, frames
 
 LATE = 0.75
 GET_ENCODER = bytes.fromhex("FE FE 03 3B 01 FA")
@@ -137,29 +143,154 @@ def test_note_of_another_time_expects_no_reply(memory: PortMemory, until: float)
     assert memory.recall().empty
 
 
-DAMAGED = {
-    "empty": "",
-    "not JSON": "{",
-    "deep": "[" * 60_000,
-    "no object": "[]",
-    "no port": "{}",
-    "no list": '{"port": PORT, "late": 5, "parts": []}',
-    "no hex": '{"port": PORT, "late": [["zz", 1.0]], "parts": []}',
-    "no number": '{"port": PORT, "late": [["FEFE033B01FA", "x"]], "parts": []}',
-    "whole part": '{"port": PORT, "late": [], "parts": [["FEFE033B01FA", 7]]}',
-    "tiny frame": '{"port": PORT, "late": [], "parts": [["FE", 1]]}',
-    "long number": '{"port": PORT, "late": [], "parts": [["FEFE033B01FA", 1' + "0" * 5000 + "]]}",
-    "another port": '{"port": "other", "late": [], "parts": [["FEFE033B01FA", 2]]}',
+@pytest.mark.parametrize("boot", ["another", "", 5])
+def test_note_of_another_boot_expects_no_reply(
+    memory: PortMemory, folder: Path, monkeypatch: pytest.MonkeyPatch, boot: object
+) -> None:
+    this_boot = folder.parent / "boot_id"
+    this_boot.write_text("this\n")
+    monkeypatch.setattr(port_notes, "BOOT_ID", str(this_boot))
+    # The clock of this boot shows more than that of the other one did.
+    _damage(memory, folder, boot=boot)
+    assert memory.recall() == Leftover((), (Part(MOTION, 8),)), "the arm may hold the part"
+
+
+@pytest.mark.parametrize("passed", [0.0, 5.0, 20.0])
+def test_system_without_boot_ids_goes_by_the_clock_that_has_advanced_further(
+    memory: PortMemory, folder: Path, monkeypatch: pytest.MonkeyPatch, passed: float
+) -> None:
+    monkeypatch.setattr(port_notes, "BOOT_ID", "/nope")
+    _damage(memory, folder, clocks=[time.monotonic(), time.time() - passed])
+    late = [late.until - time.monotonic() for late in memory.recall().late]
+    assert late == ([pytest.approx(10 - passed, abs=1)] if passed < 10 else [])
+
+
+def test_clock_that_shows_less_than_the_note_is_of_another_boot(
+    memory: PortMemory, folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(port_notes, "BOOT_ID", "/nope")
+    later = time.monotonic() + 1000
+    _damage(memory, folder, clocks=[later, time.time()], late=[[GET_ENCODER.hex(), later + 1]])
+    assert not memory.recall().late
+
+
+def _damage(memory: PortMemory, folder: Path, **values: object) -> None:
+    """Leave a note with these values in the place of its own."""
+    until = time.monotonic() + 10
+    memory.leave(Leftover((LateFrame(GET_ENCODER, until),), (Part(MOTION, 8),)))
+    port_memory._here.clear()
+    [path] = folder.iterdir()
+    path.write_text(json.dumps(json.loads(path.read_text()) | values))
+
+
+ANY_JSON = st.recursive(
+    st.none()
+    | st.booleans()
+    | st.integers()
+    | st.just(10**400)
+    | st.floats()
+    | st.text(max_size=8)
+    | st.sampled_from([GET_ENCODER.hex(), "FE", "FEFE"]),
+    lambda inner: st.lists(inner, max_size=3) | st.dictionaries(st.text(max_size=5), inner),
+    max_leaves=6,
+)
+FRAMES = st.sampled_from([GET_ENCODER, MOTION, b"\xfe\xfe\x1a"]).map(bytes.hex) | st.binary(
+    max_size=8
+).map(bytes.hex)
+NUMBERS = st.floats() | st.integers() | st.just(10**400)
+# Each is what a note has in that place, or anything else.
+VALUES = {
+    "port": ANY_JSON,
+    "boot": ANY_JSON,
+    "clocks": st.lists(NUMBERS, min_size=1, max_size=3) | ANY_JSON,
+    "late": st.lists(st.tuples(FRAMES, NUMBERS), max_size=3) | ANY_JSON,
+    "parts": st.lists(st.tuples(FRAMES, st.integers(1, 9) | NUMBERS), max_size=3) | ANY_JSON,
 }
 
 
-@pytest.mark.parametrize("text", DAMAGED.values(), ids=DAMAGED.keys())
-def test_damaged_note_is_no_note(memory: PortMemory, folder: Path, text: str) -> None:
+@given(
+    st.binary(max_size=60)
+    | st.sampled_from([b"", b"{", b"[" * 60_000, b"\xff\xfe{", bytes(70_000), b"1" * 5000])
+    | ANY_JSON.map(lambda value: json.dumps(value).encode())
+    | st.fixed_dictionaries({}, optional=VALUES)
+)
+@settings(suppress_health_check=[HealthCheck.function_scoped_fixture])
+def test_whatever_a_note_holds_a_port_is_opened_and_holds_no_request_for_longer_than_a_grace(
+    memory: PortMemory,
+    folder: Path,
+    caplog: pytest.LogCaptureFixture,
+    content: bytes | dict[str, Any],
+) -> None:
+    caplog.clear()
+    memory.leave(Leftover((LateFrame(GET_ENCODER, time.monotonic() + 5),), (Part(MOTION, 8),)))
+    port_memory._here.clear()
+    [path] = folder.iterdir()
+    if isinstance(content, bytes):
+        path.write_bytes(content)
+    else:
+        path.write_text(json.dumps(json.loads(path.read_text()) | content))
+    found = memory.recall()
+    assert all(late.until <= time.monotonic() + LONGEST for late in found.late)
+    assert bool(caplog.records) <= found.empty, "what is used needs no warning"
+    assert bool(caplog.records) or isinstance(content, dict), "bytes are no note"
+    assert not list(folder.iterdir())
+    exchange = Exchange(CODEC)
+    exchange.take_over(found)
+    assert exchange.leave(0.0).parts == found.parts
+
+
+def test_note_of_a_session_that_lost_its_port_is_read(memory: PortMemory, folder: Path) -> None:
+    exchange = Exchange(CODEC)
+    exchange.send_one_way(RequestEncoder(CODEC).encode("send_angles", [ANGLES, 50]), 0.0)
+    exchange.fail(LinkError("/dev/arm", "it is gone"), 0.0)
+    left = exchange.leave(0.0)
+    memory.leave(left)
+    port_memory._here.clear()
+    assert set(memory.recall().parts) == set(left.parts) != set()
+
+
+@pytest.mark.parametrize("kind", ["fifo", "link", "folder", "socket", "of another user"])
+def test_what_is_in_the_place_of_a_note_is_not_read(
+    memory: PortMemory,
+    folder: Path,
+    caplog: pytest.LogCaptureFixture,
+    monkeypatch: pytest.MonkeyPatch,
+    kind: str,
+) -> None:
     memory.leave(Leftover((), (Part(MOTION, 8),)))
     port_memory._here.clear()
     [path] = folder.iterdir()
-    path.write_text(text.replace("PORT", json.dumps(memory._keys[0])))
+    note = path.rename(folder.parent / "note")
+    if kind == "fifo":
+        os.mkfifo(path)
+    elif kind == "link":
+        path.symlink_to(note)
+    elif kind == "folder":
+        path.mkdir()
+    elif kind == "socket":
+        with socket.socket(socket.AF_UNIX) as bound:
+            bound.bind(str(path))
+    else:
+        note.rename(path)
+        mine = os.fstat
+        monkeypatch.setattr(os, "fstat", lambda file: _of_another_user(mine(file)))
     assert memory.recall().empty
+    assert [record.levelname for record in caplog.records] == ["WARNING"]
+    assert str(path) in caplog.text
+
+
+def _of_another_user(found: os.stat_result) -> os.stat_result:
+    return os.stat_result((*found[:4], found.st_uid + 1, *found[5:]))
+
+
+def test_client_opens_a_port_whose_note_is_a_pipe(memory: PortMemory, folder: Path) -> None:
+    with ScriptedPeer([bytes.fromhex("FE FE 03 12 01 FA")]) as peer:
+        folder.mkdir()
+        os.mkfifo(port_notes._path(PortMemory(open_transport(peer.url, 115200))._keys[0]))
+        started = time.monotonic()
+        with MyCobot(peer.url) as arm:
+            assert arm.is_power_on()
+        assert time.monotonic() - started < 1
 
 
 def test_folder_that_others_can_write_is_not_used(memory: PortMemory, folder: Path) -> None:

@@ -4,16 +4,21 @@ Queries are repeated, one-way requests are acknowledged or not, calls are cancel
 late, lost, cut or duplicated. No reply goes to another request if it starts to arrive within the
 grace, and its second copy (if any) arrives before the next request is sent. A one-way request is
 confirmed only by its own acknowledgement.
+
+The law of deadlines: no caller waits longer than until its deadline. A request is not sent after
+it, and the error says how often it was sent by then.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from math import inf
 
 from hypothesis import settings
 from hypothesis import strategies as st
 from hypothesis.stateful import RuleBasedStateMachine, initialize, invariant, precondition, rule
 
+from cobotwire import ReplyTimeout
 from cobotwire import codec as codecs
 from cobotwire.editions.mycobot280 import TABLE
 from cobotwire.session import Exchange, Pending, PendingAck, PendingRequest, RetryPolicy
@@ -26,6 +31,7 @@ REQUESTS = ["get_encoder", "get_joint_min_angle", "get_angles_plan"]
 ONE_WAY = ["set_color", "set_encoder"]
 POLICY = RetryPolicy(attempts=3, shortest_attempt=0.05)
 MOST = 1000
+DEADLINES = st.sampled_from([inf, 0.1, 0.3, 1.5])
 
 
 @dataclass
@@ -60,12 +66,12 @@ class Sharing(RuleBasedStateMachine):
         self.known: list[Known] = []
 
     @precondition(lambda self: len(self.exchange._turns.queue) < 3)
-    @rule(name=st.sampled_from(REQUESTS), joint=st.integers(1, 2))
-    def submit(self, name: str, joint: int) -> None:
+    @rule(name=st.sampled_from(REQUESTS), joint=st.integers(1, 2), deadline=DEADLINES)
+    def submit(self, name: str, joint: int, deadline: float) -> None:
         """Submit a request of another caller."""
         values = () if name == "get_angles_plan" else (joint,)
-        request = self.encode(name, values)
-        self.known.append(Known(self.exchange.submit(request, self.now, POLICY, 0.2)))
+        request, ends_by = self.encode(name, values), self.now + deadline
+        self.known.append(Known(self.exchange.submit(request, self.now, POLICY, 0.2, ends_by)))
 
     @rule(
         delay=st.floats(0.0, GRACE_SECONDS - 0.001),
@@ -82,6 +88,7 @@ class Sharing(RuleBasedStateMachine):
             return
         pending = self.exchange.sent_last
         assert isinstance(pending, PendingRequest)
+        assert self.now < pending.ends_by, "its caller may not wait any longer"
         known = next(known for known in self.known if known.pending is pending)
         self.count += 1
         number = self.count % MOST
@@ -98,11 +105,15 @@ class Sharing(RuleBasedStateMachine):
         wait=st.sampled_from([None, 0.05, 0.9]),
         delay=st.floats(0.0, GRACE_SECONDS - 0.001),
         lost=st.sampled_from([False, True]),
+        deadline=DEADLINES,
     )
-    def one_way(self, name: str, wait: float | None, delay: float, lost: bool) -> None:
+    def one_way(
+        self, name: str, wait: float | None, delay: float, lost: bool, deadline: float
+    ) -> None:
         """Send a one-way request at once; the arm may acknowledge it."""
         request = self.encode(name, (1, 2, 3) if name == "set_color" else (1, 2000, 50))
-        _, pending = self.exchange.send_one_way(request, self.now, wait)
+        ends_by = self.now + deadline
+        _, pending = self.exchange.send_one_way(request, self.now, wait, ends_by)
         if pending is not None:
             self.known.append(Known(pending))
         if not lost:
@@ -139,7 +150,9 @@ class Sharing(RuleBasedStateMachine):
                 self.receive(bytes_until(self.line, reply), cut=False)
         self.now = end
         if not late:
-            self.exchange.wake(self.now)
+            self.exchange.advance(b"", self.now)
+            waiting = [known.pending for known in self.known if not known.pending.done]
+            assert all(pending.ends_by > self.now for pending in waiting), "it waits too long"
             self._judge()
 
     def _judge(self) -> None:
@@ -148,6 +161,11 @@ class Sharing(RuleBasedStateMachine):
             if not pending.done or known.judged:
                 continue
             known.judged = True
+            error = pending._error
+            if isinstance(error, ReplyTimeout) and error.waited_for:
+                sent = len(known.numbers) if isinstance(pending, PendingRequest) else 1
+                assert error.attempts == sent
+                assert (error.waited_for == "reply") == bool(sent)
             if pending._error is None and isinstance(pending, PendingRequest):
                 assert _number(pending) in known.numbers, "the reply to another request"
             elif pending._error is None and isinstance(pending, PendingAck):
@@ -156,9 +174,12 @@ class Sharing(RuleBasedStateMachine):
 
     @invariant()
     def waiting_call_has_a_time_to_wake(self) -> None:
-        """Check that the exchange has a time to wake while a call waits."""
-        if hasattr(self, "exchange") and any(not known.pending.done for known in self.known):
-            assert self.exchange.idle_seconds(self.now) is not None
+        """Check that the exchange has a time to wake while a call waits, by each deadline."""
+        ends = [known.pending.ends_by for known in self.known if not known.pending.done]
+        if ends:
+            idle = self.exchange.idle_seconds(self.now)
+            assert idle is not None
+            assert idle <= max(0.0, min(ends) - self.now)
 
 
 def _values(pending: PendingRequest, number: int) -> list[object]:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from math import inf
+
 from cobotwire.protocol.light import TYPE_CHECKING
 
 # Imported when a client is opened, or when it needs them. So a program that only imports a client
@@ -39,6 +41,7 @@ class AsyncClient:
         baudrate: int | None = None,
         *,
         timeout: float | None = None,
+        deadline: float | None = None,
         retry: RetryPolicy | None = None,
         limits: Limits | None = None,
         codec: codecs.CodecName | None = None,
@@ -53,7 +56,7 @@ class AsyncClient:
             UsageError: an argument is not allowed.
         """
         from cobotwire.client.aio_connection import AsyncConnection
-        from cobotwire.client.opening import PortOpener, check_on_error, settings
+        from cobotwire.client.opening import PortOpener, check_deadline, check_on_error, settings
         from cobotwire.protocol.addresses import find_address
         from cobotwire.session.exchange import Exchange
         from cobotwire.session.request import RequestEncoder
@@ -69,7 +72,8 @@ class AsyncClient:
         codec_used = self._settings.codec
         speed = self.table.baudrate if baudrate is None else baudrate
         opener = PortOpener(port, speed, codec_used, record)
-        self._connection = AsyncConnection(opener, Exchange(codec_used), trace)
+        exchange, longest = Exchange(codec_used), check_deadline(deadline)
+        self._connection = AsyncConnection(opener, exchange, trace, longest)
 
     # unasync: off
     async def open(self) -> None:
@@ -179,7 +183,7 @@ class AsyncClient:
         Args:
             requests: messages of commands of safety class query.
             rate: samples a second, above 0 and up to 1000.
-            timeout: seconds that each request has; default: as in other calls.
+            timeout: seconds that the arm has to reply to each request; default: as in other calls.
 
         Returns:
             The stream. Iterating raises LinkError when the transport is gone, and nothing else.
@@ -291,7 +295,8 @@ class AsyncClient:
 
         sent = True
         try:
-            await self._send(stop.request_type())
+            # That it is sent matters more than when.
+            await self._send(stop.request_type(), deadline=inf)
         except CobotwireError:
             # The first error is what is reported; this one would hide it.
             sent = False
@@ -323,8 +328,16 @@ class AsyncClient:
         done = await self._connection.request(encoded, retry, wait)
         return request.result_of(done.result())
 
-    async def _send(self, request: Request[None], ack_within: float | None = None) -> None:
-        """Send a one-way request at once; wait for its acknowledgement if ``ack_within`` says."""
+    async def _send(
+        self,
+        request: Request[None],
+        ack_within: float | None = None,
+        deadline: float | None = None,
+    ) -> None:
+        """Send a one-way request at once; wait for its acknowledgement if ``ack_within`` says.
+
+        ``deadline`` is another one than that of the client.
+        """
         if ack_within is not None:
             from cobotwire.client.opening import check_seconds
             from cobotwire.session.request import check_acknowledged
@@ -333,4 +346,4 @@ class AsyncClient:
         encoded = self._encoder.encode_request(request)
         if ack_within is not None:
             check_acknowledged(encoded)
-        await self._connection.send(encoded, ack_within)
+        await self._connection.send(encoded, ack_within, deadline)

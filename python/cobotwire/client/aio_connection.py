@@ -7,9 +7,10 @@ import time
 from collections.abc import Callable
 from contextlib import suppress
 from functools import partial
+from math import inf
 from typing import TYPE_CHECKING
 
-from cobotwire.client.aio_steps import AsyncSteps
+from cobotwire.client.aio_steps import FULL_SECONDS, AsyncSteps
 from cobotwire.client.opening import OpenPort, PortOpener
 from cobotwire.client.port_memory import PortMemory
 from cobotwire.client.traffic import TrafficListener, TrafficListeners
@@ -37,8 +38,9 @@ class AsyncConnection:
         opener: PortOpener,
         exchange: Exchange,
         trace: TrafficListener | None,
+        deadline: float,
     ) -> None:
-        """Note what to open; :meth:`open` opens it.
+        """Note what to open; :meth:`open` opens it. Calls may take ``deadline`` seconds, or inf.
 
         Raises:
             UsageError: the port is not allowed, or is a transport with a clock of its own; or the
@@ -54,6 +56,7 @@ class AsyncConnection:
         self.url = port if isinstance(port, str) else port.url
         self.listeners = TrafficListeners(trace, self.url)
         self._exchange = exchange
+        self._deadline = deadline
         self._steps: AsyncSteps | None = None
         forks.watch(self)
 
@@ -77,16 +80,27 @@ class AsyncConnection:
         transport = self._port.transport
         self._memory = PortMemory(transport)
         self._exchange.take_over(self._memory.recall())
-        self._steps = AsyncSteps(transport, self._exchange, self.listeners)
+        self._steps = AsyncSteps(transport, self._exchange, self.listeners, self._deadline)
 
-    async def send(self, request: EncodedRequest, ack_within: float | None) -> None:
-        """Send a one-way request at once; wait ``ack_within`` seconds for its acknowledgement."""
-        steps = self._opened()
+    async def send(
+        self, request: EncodedRequest, ack_within: float | None, deadline: float | None = None
+    ) -> None:
+        """Send a one-way request at once; wait ``ack_within`` seconds for its acknowledgement.
+
+        ``deadline`` is another one than that of the other calls.
+        """
+        steps, called_at = self._opened(), self.now()
+        ends_by = called_at + (self._deadline if deadline is None else deadline)
+        while ends_by < inf and steps.lost is None and not steps.writer.is_free():
+            left = ends_by - self.now()
+            if left <= 0:
+                raise steps.exchange.unsent(request, self.now() - called_at)
+            await asyncio.sleep(min(left, FULL_SECONDS))
         exchange = steps.exchange
-        data, pending = exchange.send_one_way(request, self.now(), ack_within)
+        data, pending = exchange.send_one_way(request, self.now(), ack_within, ends_by)
         try:
             steps.check()
-            await steps.writer.write(data)
+            await steps.writer.write(data, ends_by)
             steps.turn()
             if pending is not None:
                 await self._wait(pending)
@@ -104,7 +118,8 @@ class AsyncConnection:
             LinkError: the connection is not open.
         """
         steps = self._opened()
-        pending = PendingRequest(request, wait, policy, self.now())
+        now = self.now()
+        pending = PendingRequest(request, wait, policy, now, now + self._deadline)
         try:
             steps.start(pending)
             await self._wait(pending)

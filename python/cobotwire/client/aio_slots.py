@@ -91,6 +91,7 @@ class AsyncSlots:
         timed.call = slot or self.send
         if slot is not None:
             wait = encoded.command.deadline_ms / 1000 if poll.wait is None else poll.wait
+            wait = min(wait, steps.deadline)
             moment = at if due else inf
             name, over = encoded.command.name, self._over
             if slot.plan(encoded.frame, name, wait, over, moment) and due:
@@ -110,20 +111,21 @@ class AsyncSlots:
             if self._closed():
                 over.set_result(None)
             else:
-                self._steps.start(self._new_pending())
+                self._steps.start(self._new_pending(time.monotonic()))
         except Exception as error:
             # The consumer raises it, since nobody waits for a timer.
             over.set_exception(error)
 
     def resume(self, alone: Alone, requested_at: float, offset: int) -> PendingRequest:
         """Make the request known to the session, which was sent without it."""
-        pending = self._new_pending()
+        pending = self._new_pending(requested_at)
         alone.resume_sent(pending, requested_at, offset)
         return pending
 
-    def _new_pending(self) -> PendingRequest:
+    def _new_pending(self, now: float) -> PendingRequest:
         _, encoded, policy, wait = self._poll
-        self._pending = pending = PendingRequest(encoded, wait, policy, self._at)
+        ends_by = now + self._steps.deadline
+        self._pending = pending = PendingRequest(encoded, wait, policy, self._at, ends_by)
         pending.when_done(self._wake)
         return pending
 

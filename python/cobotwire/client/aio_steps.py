@@ -6,6 +6,7 @@ import asyncio
 import time
 from collections.abc import Sequence
 from functools import partial
+from math import inf
 from typing import TYPE_CHECKING
 
 from cobotwire.client.aio_native_call import native_call
@@ -22,6 +23,8 @@ from cobotwire.transport.interface import Transport
 if TYPE_CHECKING:
     from cobotwire.client.aio_lending import Lending, NativeSlot, Slots
 
+# How often a line that takes no bytes is tried again.
+FULL_SECONDS = 0.002
 # A timer that goes off this early or late is left as it is.
 TIMER_SLACK = 0.0005
 
@@ -36,13 +39,19 @@ class AsyncSteps:
         writer: writes requests.
         native: makes native calls, if there are any.
         lost: why the transport is gone; None: it is there.
+        deadline: how many seconds a call may take; perhaps inf.
     """
 
     def __init__(
-        self, transport: Transport, exchange: Exchange, listeners: TrafficListeners
+        self,
+        transport: Transport,
+        exchange: Exchange,
+        listeners: TrafficListeners,
+        deadline: float,
     ) -> None:
         """Attach an open transport to the running loop."""
         self._exchange = exchange
+        self.deadline = deadline
         self.listeners = listeners
         self._lending: Lending | None = None
         self.loop = asyncio.get_running_loop()
@@ -51,7 +60,8 @@ class AsyncSteps:
         self.lost: LinkError | None = None
         self._news: asyncio.Future[None] | None = None
         self.transport = attach(transport, self.turn)
-        self.writer = AsyncWriter(self.transport, exchange.alignment, listeners)
+        limited = deadline < inf
+        self.writer = AsyncWriter(self.transport, exchange.alignment, listeners, limited)
         self.native = native_call(self.transport, exchange, self.writer, self._written)
 
     @property
@@ -103,19 +113,20 @@ class AsyncSteps:
 
         What has come already is taken first.
         """
-        native, exchange = self.native, self.exchange
-        if native and pending.request.plain and not self.lost and self.listeners.silent:
+        native, exchange, free = self.native, self.exchange, self.writer.is_free()
+        if native and free and pending.request.plain and not self.lost and self.listeners.silent:
             events = native.send(pending)
             if events is not None:
                 now = pending.requested_at
-                if not pending.done and self._timed.moment > now + pending.shortest_attempt:
+                soonest = min(now + pending.shortest_attempt, pending.ends_by)
+                if not pending.done and self._timed.moment > soonest:
                     self.set_timer(now)
                 if events:
                     self.listeners.received(events, now)
                     self._end_wait()
                 return
         data = self._read()
-        if not data and self.lost is None:
+        if free and not data and self.lost is None:
             now = time.monotonic()
             frame = exchange.begin(pending, now)
             if frame:
@@ -186,13 +197,19 @@ class AsyncSteps:
         return b""
 
     def _advance(self, data: bytes, drained: bool = True) -> None:
-        exchange, now = self._exchange, time.monotonic()
+        exchange, now, full = self._exchange, time.monotonic(), False
         events, outgoing = exchange.advance(data, now)
         if self.lost is not None:
             events += exchange.fail(self.lost, now)
         elif outgoing:
-            self._send_request(now, drained and not data)
-        self.set_timer(now)
+            full = not self.writer.is_free()
+            exchange.note_full(full)
+            if not full:
+                self._send_request(now, drained and not data)
+        if full:
+            self._wake_at(now + FULL_SECONDS)
+        else:
+            self.set_timer(now)
         if events:
             self.listeners.received(events, now)
             self._end_wait()

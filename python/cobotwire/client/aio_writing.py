@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import asyncio
+import time
 from collections.abc import Callable
 from functools import partial
+from math import inf
 
 from cobotwire.client.traffic import TrafficListeners
 from cobotwire.protocol.errors import LinkError
@@ -18,20 +20,39 @@ class AsyncWriter:
     """Writes requests, and before them what ends an earlier request that was cut."""
 
     def __init__(
-        self, transport: AsyncTransport, alignment: Alignment, listeners: TrafficListeners
+        self,
+        transport: AsyncTransport,
+        alignment: Alignment,
+        listeners: TrafficListeners,
+        limited: bool,
     ) -> None:
+        """Take what writes, and whether a deadline limits calls."""
         self._transport = transport
+        self._limited = limited
         self._alignment = alignment
         self._listeners = listeners
 
-    async def write(self, request: bytes) -> None:
-        """Write a request, and wait until all of it was taken.
+    def is_free(self) -> bool:
+        """Return whether a request may be written now.
+
+        If calls are ``limited`` by a deadline, the line takes bytes: what is queued would be sent
+        after it, too.
+        """
+        return not self._limited or self._transport.is_free()
+
+    async def write(self, request: bytes, ends_by: float = inf) -> None:
+        """Write a request, and wait until all of it was taken, but not after ``ends_by``.
 
         Raises:
             LinkError: the transport is gone, or does not take the bytes.
         """
-        over: asyncio.Future[None] = asyncio.get_running_loop().create_future()
+        loop = asyncio.get_running_loop()
+        over: asyncio.Future[None] = loop.create_future()
         if not self.begin(request, partial(_end_wait, over)):
+            if ends_by < inf:
+                await asyncio.wait([over], timeout=ends_by - time.monotonic())
+                if not over.done():
+                    self._transport.end_writing()
             await over
 
     def begin(self, request: bytes, done: Done) -> bool:

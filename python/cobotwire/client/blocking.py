@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+from math import inf
+
 from cobotwire.protocol.light import TYPE_CHECKING
 
 # Imported when a client is opened, or when it needs them. So a program that only imports a client
@@ -30,8 +32,9 @@ class Client:
 
     One-way requests are sent once and at once, also while another thread waits for a reply; their
     methods return when the bytes are written. Requests that have a reply take turns. Queries are
-    sent again within their deadline, as ``retry`` says. After a request was given up, the next one
-    like it is held until its late reply can no longer come, since the two look alike.
+    sent again within their ``timeout``, as ``retry`` says. After a request was given up, the next
+    one like it is held until its late reply can no longer come, since the two look alike. With a
+    ``deadline``, none of this makes a call take longer.
 
     Many threads may share one arm. Ctrl-C leaves it usable.
     """
@@ -44,6 +47,7 @@ class Client:
         baudrate: int | None = None,
         *,
         timeout: float | None = None,
+        deadline: float | None = None,
         retry: RetryPolicy | None = None,
         limits: Limits | None = None,
         codec: codecs.CodecName | None = None,
@@ -58,9 +62,15 @@ class Client:
             port: a serial port, or any URL that pyserial opens (``socket://host:port``); or an open
                 transport.
             baudrate: bits a second; default: that of the edition.
-            timeout: seconds that the arm has to reply, all attempts included; default: those of the
-                command in the edition.
-            retry: how often queries are sent within that time; default: up to three times.
+            timeout: seconds that the arm has to reply once a request is sent, all attempts
+                included; default: those of the command in the edition. Before it is sent, a call
+                waits for its turn, and until no late reply can pass for its own.
+            deadline: seconds that a call may take from its beginning, all of this included;
+                default: any time. Then it raises :class:`ReplyTimeout`, which says what the call
+                waited for, and whether it was sent; if it was not, it never will be. Waited motions
+                and loops have a ``timeout`` of their own; each of their requests has this deadline.
+                Opening the port is not limited.
+            retry: how often queries are sent within their ``timeout``; default: up to three times.
             limits: where the arm may be sent, narrower or wider than the edition says.
             codec: ``native`` or ``reference``; default: the native one, where it is built.
             trace: the first traffic listener; see :meth:`add_traffic_listener`.
@@ -79,7 +89,7 @@ class Client:
             LinkError: the port does not exist, or cannot be opened.
         """
         from cobotwire.client.connection import Connection
-        from cobotwire.client.opening import PortOpener, check_on_error, settings
+        from cobotwire.client.opening import PortOpener, check_deadline, check_on_error, settings
         from cobotwire.protocol.addresses import find_address
         from cobotwire.session.exchange import Exchange
         from cobotwire.session.request import RequestEncoder
@@ -95,7 +105,8 @@ class Client:
         codec_used = self._settings.codec
         speed = self.table.baudrate if baudrate is None else baudrate
         opener = PortOpener(port, speed, codec_used, record)
-        self._connection = Connection(opener, Exchange(codec_used), trace)
+        exchange, longest = Exchange(codec_used), check_deadline(deadline)
+        self._connection = Connection(opener, exchange, trace, longest)
 
     def close(self) -> None:
         """Close the transport. The arm is sent nothing. Closing twice is harmless.
@@ -193,7 +204,7 @@ class Client:
         Args:
             requests: messages of commands of safety class query.
             rate: samples a second, above 0 and up to 1000.
-            timeout: seconds that each request has; default: as in other calls.
+            timeout: seconds that the arm has to reply to each request; default: as in other calls.
 
         Returns:
             The stream. Iterating raises LinkError when the transport is gone, and nothing else.
@@ -307,7 +318,8 @@ class Client:
 
         sent = True
         try:
-            self._send(stop.request_type())
+            # That it is sent matters more than when.
+            self._send(stop.request_type(), deadline=inf)
         except CobotwireError:
             # The first error is what is reported; this one would hide it.
             sent = False
@@ -338,8 +350,16 @@ class Client:
             wait = self._settings.at_most(longest, encoded.command)
         return request.result_of(self._connection.call(encoded, retry, wait))
 
-    def _send(self, request: Request[None], ack_within: float | None = None) -> None:
-        """Send a one-way request at once; wait for its acknowledgement if ``ack_within`` says."""
+    def _send(
+        self,
+        request: Request[None],
+        ack_within: float | None = None,
+        deadline: float | None = None,
+    ) -> None:
+        """Send a one-way request at once; wait for its acknowledgement if ``ack_within`` says.
+
+        ``deadline`` is another one than that of the client.
+        """
         if ack_within is not None:
             from cobotwire.client.opening import check_seconds
             from cobotwire.session.request import check_acknowledged
@@ -348,4 +368,4 @@ class Client:
         encoded = self._encoder.encode_request(request)
         if ack_within is not None:
             check_acknowledged(encoded)
-        self._connection.send(encoded, ack_within)
+        self._connection.send(encoded, ack_within, deadline)

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
+from math import inf
 from typing import TYPE_CHECKING, Any
 
 from cobotwire.client.leading import CHECK_SECONDS
 from cobotwire.client.native_call import native_call
 from cobotwire.client.opening import PortOpener
 from cobotwire.client.port_memory import PortMemory
-from cobotwire.client.steps import SLICE_SECONDS, Steps
+from cobotwire.client.steps import SLICE_SECONDS, TURN_SECONDS, Steps
 from cobotwire.client.traffic import TrafficListener, TrafficListeners
 from cobotwire.protocol.lazy import import_aside
 from cobotwire.session import Answer, EncodedRequest, Exchange, PendingRequest, RetryPolicy
@@ -30,8 +31,11 @@ class Connection:
         opener: PortOpener,
         exchange: Exchange,
         trace: TrafficListener | None,
+        deadline: float,
     ) -> None:
         """Open the port, unless it is an open transport.
+
+        Calls may take ``deadline`` seconds, perhaps inf.
 
         Raises:
             UsageError: the port, the baud rate or the path of the recording is not allowed.
@@ -43,20 +47,31 @@ class Connection:
         self.now, self.sleep, _ = times_of(self._transport)
         self.listeners = TrafficListeners(trace, self.url, self.now)
         self._exchange = exchange
-        self._steps = Steps(self._transport, exchange, self.listeners, self.now)
-        self._native = native_call(self._steps, self._transport)
+        self._deadline = deadline
+        self._steps = Steps(self._transport, exchange, self.listeners, self.now, deadline)
+        self._native = native_call(self._steps, self._transport, deadline)
         self._memory = PortMemory(self._transport)
         exchange.take_over(self._memory.recall())
         forks.watch(self)
 
-    def send(self, request: EncodedRequest, ack_within: float | None) -> None:
-        """Send a one-way request at once; wait ``ack_within`` seconds for its acknowledgement."""
-        steps = self._steps
+    def send(
+        self, request: EncodedRequest, ack_within: float | None, deadline: float | None = None
+    ) -> None:
+        """Send a one-way request at once; wait ``ack_within`` seconds for its acknowledgement.
+
+        ``deadline`` is another one than that of the other calls.
+        """
+        steps, called_at = self._steps, self.now()
+        ends_by = called_at + (self._deadline if deadline is None else deadline)
+        while self.now() < ends_by < inf and not steps.writer.is_free():
+            time.sleep(TURN_SECONDS)
         with steps.writer.lock:
             with steps.state:
                 now = self.now()
-                data, pending = self._exchange.send_one_way(request, now, ack_within)
-            align = steps.writer.write(data)
+                if now >= ends_by:
+                    raise self._exchange.unsent(request, now - called_at)
+                data, pending = self._exchange.send_one_way(request, now, ack_within, ends_by)
+            align = steps.writer.write(data, ends_by - now)
         self.listeners.sent(align, data)
         if pending is not None:
             try:
@@ -79,12 +94,20 @@ class Connection:
         Raises:
             CobotwireError: the reason why there is no reply.
         """
+        answer = self._lone(request, policy, wait, 0.0)
+        return self.request(request, policy, wait).result() if answer is None else answer[0]
+
+    def _lone(
+        self, request: EncodedRequest, policy: RetryPolicy, wait: float | None, at: float
+    ) -> Answer | None:
+        """Make a native call of a request; return None if it was not sent so."""
         native = self._native
-        if native is not None and request.plain and self.listeners.silent:
-            answer = native.lone(native, request, policy, wait, 0.0)
-            if answer is not None:
-                return answer[0]
-        return self.request(request, policy, wait).result()
+        if native is None or not request.plain or not self.listeners.silent:
+            return None
+        # The rest of a request that is taken in part is waited for.
+        if self._deadline < inf and not self._steps.writer.is_free():
+            return None
+        return native.lone(native, request, policy, wait, at)
 
     def request(
         self, request: EncodedRequest, policy: RetryPolicy, wait: float | None
@@ -95,7 +118,8 @@ class Connection:
             LinkError: the transport is gone.
         """
         steps = self._steps
-        pending = PendingRequest(request, wait, policy, self.now())
+        now = self.now()
+        pending = PendingRequest(request, wait, policy, now, now + self._deadline)
         try:
             steps.start(pending)
             steps.wait(pending)
@@ -111,11 +135,9 @@ class Connection:
         Raises:
             CobotwireError: the reason why there is no reply.
         """
-        native = self._native
-        if native is not None and request.plain and self.listeners.silent:
-            answer = native.lone(native, request, policy, wait, at)
-            if answer is not None:
-                return answer
+        answer = self._lone(request, policy, wait, at)
+        if answer is not None:
+            return answer
         while (left := at - self.now()) > 0:
             self.sleep(left)
         return self.request(request, policy, wait).answer()

@@ -49,8 +49,11 @@ class Leading:
             if self.followers:
                 self.wake_followers()
 
-    def follow(self, pending: Pending) -> None:
-        """Wait until the leader has something, or another thread must lead."""
+    def follow(self, pending: Pending, longest: float) -> None:
+        """Wait until the leader has something, or another thread must lead.
+
+        The wait takes ``longest`` seconds at most.
+        """
         baton = threading.Lock()
         baton.acquire()
         with self._state:
@@ -58,7 +61,7 @@ class Leading:
             if pending.done or leader is None:
                 return
             self.followers.append(baton)
-        if not baton.acquire(timeout=CHECK_SECONDS):
+        if not baton.acquire(timeout=min(longest, CHECK_SECONDS)) and longest >= CHECK_SECONDS:
             with self._state:
                 if (leader, turns) == (self.leader, self.turns):
                     # Ctrl-C took it out of its loop before it could resign, or it is very slow.

@@ -7,6 +7,7 @@ comes is one frame and the reply. Everything else goes on step by step.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from math import inf
 
 from cobotwire.client.steps import SLICE_SECONDS, Steps
 from cobotwire.codec.interface import Event
@@ -18,8 +19,11 @@ from cobotwire.transport.waiting import native_calls
 Lone = Callable[["NativeCall", EncodedRequest, RetryPolicy, float | None, float], Answer | None]
 
 
-def native_call(steps: Steps, transport: Transport) -> NativeCall | None:
-    """Return how the native module makes calls; None: transport or codec do not allow it."""
+def native_call(steps: Steps, transport: Transport, deadline: float = inf) -> NativeCall | None:
+    """Return how the native module makes calls; None: transport or codec do not allow it.
+
+    Calls may take ``deadline`` seconds.
+    """
     exchange = steps.exchange
     native, framer = native_calls(), exchange.framer
     # The codec can be the reference all the same.
@@ -29,7 +33,7 @@ def native_call(steps: Steps, transport: Transport) -> NativeCall | None:
         return None
     transport.lend()
     lone = native.lone_calls(framer, transport, steps, exchange.alone, SLICE_SECONDS)
-    return NativeCall(steps, lone.call)
+    return NativeCall(steps, lone.call, deadline)
 
 
 class NativeCall:
@@ -43,8 +47,8 @@ class NativeCall:
         leave: gives up a request that was resumed.
     """
 
-    def __init__(self, steps: Steps, lone: Lone) -> None:
-        self._steps = steps
+    def __init__(self, steps: Steps, lone: Lone, deadline: float) -> None:
+        self._steps, self._deadline = steps, deadline
         self._alone = steps.exchange.alone
         self.lone = lone
         self.finish_write = steps.writer.finish_write
@@ -62,7 +66,8 @@ class NativeCall:
         try:
             with steps.state:
                 now = steps.now()
-                pending = PendingRequest(begun[0], wait, policy, begun[1])
+                ends_by = begun[1] + self._deadline
+                pending = PendingRequest(begun[0], wait, policy, begun[1], ends_by)
                 events = self._alone.resume(begun, pending, received, now)
             steps.listeners.received(events, now)
             return pending

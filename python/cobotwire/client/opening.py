@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from importlib import import_module
+from math import inf
 from typing import TYPE_CHECKING, Literal, NamedTuple, TypedDict
 
 from cobotwire import codec as codecs
@@ -29,6 +30,7 @@ class SharedOptions(TypedDict, total=False):
 
     baudrate: int | None
     timeout: float | None
+    deadline: float | None
     retry: RetryPolicy | None
     limits: Limits | None
     codec: codecs.CodecName | None
@@ -107,6 +109,16 @@ def check_seconds(argument: str, value: float | None) -> None:
     right = isinstance(value, int | float) and not isinstance(value, bool) and 0 < value < 3600
     if value is not None and not right:
         raise UsageError(argument, value, "seconds above 0 and below 3600")
+
+
+def check_deadline(seconds: float | None) -> float:
+    """Return how many seconds a call may take; None: inf.
+
+    Raises:
+        UsageError: it is not a number of seconds above 0 and below 3600.
+    """
+    check_seconds("deadline", seconds)
+    return inf if seconds is None else seconds
 
 
 def check_on_error(value: OnError) -> OnError:

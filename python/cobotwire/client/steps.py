@@ -13,6 +13,7 @@ from __future__ import annotations
 import threading
 import time
 from collections.abc import Callable
+from math import inf
 
 from cobotwire.client.leading import Leading
 from cobotwire.client.traffic import TrafficListeners
@@ -26,6 +27,8 @@ from cobotwire.transport.waiting import line_lock
 SLICE_SECONDS = 0.02
 # How long the leader leaves the line to a thread that writes, before it reads again.
 TURN_SECONDS = 0.0005
+# The least time that a write has, if a deadline limits it.
+SHORTEST_WRITE = 0.02
 # A write that takes longer than this was held up by a full line.
 SLOW_WRITE_SECONDS = 0.005
 
@@ -48,12 +51,14 @@ class Steps:
         exchange: Exchange,
         listeners: TrafficListeners,
         now: Callable[[], float],
+        deadline: float = inf,
     ) -> None:
+        """Take what the steps use, and how many seconds a call may take."""
         self._transport = transport
         self.exchange = exchange
         self.listeners = listeners
         self.now = now
-        self.writer = Writer(transport, exchange.alignment)
+        self.writer = Writer(transport, exchange.alignment, deadline)
         self.state = threading.Lock()
         self.reading = threading.RLock()
         self.leading = Leading(self.state)
@@ -77,16 +82,16 @@ class Steps:
         with self.reading:
             self.leading.turns += 1
             data = self._read(0.0)
-            if data or writer.lock.locked():
+            if data or not writer.is_free():
                 with self.state:
                     exchange.enqueue(pending)
-                self._advance(data)
+                self._advance(data, pending.ends_by)
                 return
             with writer.lock:
                 with self.state:
                     now = self.now()
                     frame = exchange.begin(pending, now)
-                align = self._write_request(pending, frame, now) if frame else None
+                align = self._write_request(pending, frame, now, inf) if frame else None
             if align is not None:
                 self.listeners.sent(align, frame)
 
@@ -94,9 +99,14 @@ class Steps:
         """Lead or follow until a request is done."""
         while not pending.done:
             if self.leading.leads():
-                self.turn(SLICE_SECONDS)
+                self.turn(SLICE_SECONDS, pending.ends_by)
+            elif (left := pending.ends_by - self.now()) > 0:
+                self.leading.follow(pending, left)
             else:
-                self.leading.follow(pending)
+                # Whatever keeps the leader, no other thread waits longer than it may.
+                with self.state:
+                    events = self.exchange.end_overdue(now := self.now())
+                self.listeners.received(events, now)
 
     def leave(self, pending: Pending) -> None:
         """Have Ctrl-C and a vanished transport leave everything ready for the next call."""
@@ -105,13 +115,16 @@ class Steps:
                 self.exchange.give_up(pending)
         self.leading.resign()
 
-    def turn(self, longest: float) -> None:
-        """Read once, let time pass, and send the request that is next; this thread leads."""
+    def turn(self, longest: float, ends_by: float = inf) -> None:
+        """Read once, let time pass, and send the request that is next; this thread leads.
+
+        Its caller waits no longer than until ``ends_by``.
+        """
         with self.reading:
             self.leading.turns += 1
             with self.state:
                 idle = self.exchange.idle_seconds(self.now())
-            self._advance(self._read(longest if idle is None else min(idle, longest)))
+            self._advance(self._read(longest if idle is None else min(idle, longest)), ends_by)
 
     def drain(self, until: float) -> None:
         """Read what has come, so that no buffer overflows while only one-way requests are sent."""
@@ -131,22 +144,24 @@ class Steps:
             self._lose(error)
             raise
 
-    def _advance(self, data: bytes) -> None:
+    def _advance(self, data: bytes, ends_by: float) -> None:
         """Take what was read, let time pass, and send the request that is next."""
         exchange, now = self.exchange, self.now()
         with self.state:
             events, outgoing = exchange.advance(data, now)
         if outgoing:
-            if self.writer.lock.locked():
-                # Another thread writes, perhaps to a full line. Deadlines go on meanwhile.
-                time.sleep(TURN_SECONDS)
+            free = self.writer.is_free()
+            exchange.note_full(not free)
+            if free:
+                self._send_request(not data, ends_by)
             else:
-                self._send_request(drained=not data)
+                # The line is full, or another thread writes. Deadlines go on meanwhile.
+                time.sleep(TURN_SECONDS)
         if events:
             self.leading.wake_followers()
             self.listeners.received(events, now)
 
-    def _send_request(self, drained: bool) -> None:
+    def _send_request(self, drained: bool, ends_by: float) -> None:
         with self.writer.lock:
             with self.state:
                 now = self.now()
@@ -154,19 +169,23 @@ class Steps:
                 pending = self.exchange.sent_last
             if not data or pending is None:
                 return
-            align = self._write_request(pending, data, now)
+            align = self._write_request(pending, data, now, ends_by)
         if align is not None:
             self.listeners.sent(align, data)
 
-    def _write_request(self, pending: PendingRequest, data: bytes, now: float) -> bytes | None:
+    def _write_request(
+        self, pending: PendingRequest, data: bytes, now: float, ends_by: float
+    ) -> bytes | None:
         """Write a request that the exchange gave at ``now``; the caller holds the writer's lock.
+
+        Neither its caller nor that of this thread, which waits until ``ends_by``, waits longer.
 
         Returns:
             As :meth:`Writer.write`; None if the request was not written.
         """
-        writer = self.writer
+        writer, longest = self.writer, max(SHORTEST_WRITE, min(ends_by, pending.ends_by) - now)
         try:
-            return writer.write_if_free(data) if pending.repeated else writer.write(data)
+            return writer.write_if_free(data) if pending.repeated else writer.write(data, longest)
         except LinkError as error:
             with self.state:
                 self.exchange.fail_waiting(error)

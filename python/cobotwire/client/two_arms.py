@@ -43,8 +43,8 @@ class TwoArms(Generic[ArmT]):
             client: the class of both clients.
             left: the port of the left arm, as the client takes it.
             right: the port of the right arm.
-            options: ``baudrate``, ``timeout``, ``retry``, ``limits``, ``codec`` and ``on_error`` of
-                both clients; see :class:`cobotwire.client.Client`.
+            options: ``baudrate``, ``timeout``, ``deadline``, ``retry``, ``limits``, ``codec`` and
+                ``on_error`` of both clients; see :class:`cobotwire.client.Client`.
 
         Raises:
             UsageError: an argument is not allowed.

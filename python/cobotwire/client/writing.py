@@ -2,33 +2,54 @@
 
 from __future__ import annotations
 
+import time
+from math import inf
+
 from cobotwire.protocol.errors import LinkError
 from cobotwire.session.alignment import Alignment
 from cobotwire.transport.interface import LendingTransport, PollableTransport, Transport
-from cobotwire.transport.waiting import line_lock
+from cobotwire.transport.waiting import has_room, line_lock
+
+# How often a write is tried again that must end in time.
+TRY_SECONDS = 0.001
 
 
 class Writer:
     """Writes requests, and before them what ends an earlier request that was cut.
 
     Attributes:
-        lock: held by the caller of each method, so that frames do not mix.
+        lock: held by the caller of each method that writes, so that frames do not mix.
     """
 
-    def __init__(self, transport: Transport, alignment: Alignment) -> None:
+    def __init__(self, transport: Transport, alignment: Alignment, deadline: float = inf) -> None:
+        """Take what writes, and how many seconds a call may take."""
         self._transport = transport
+        # Checking for the protocol takes longer than to write.
+        self._pollable = transport if isinstance(transport, PollableTransport) else None
         self._alignment = alignment
+        self._deadline = deadline
         self.lock = line_lock()
 
-    def write(self, request: bytes) -> bytes:
-        """Write a request.
+    def is_free(self) -> bool:
+        """Return whether a request may be written now: no thread writes.
+
+        If calls have a deadline, the line also takes bytes: to wait for that would take time, and
+        would leave half a request.
+        """
+        return not self.lock.locked() and (self._deadline == inf or has_room(self._transport))
+
+    def write(self, request: bytes, longest: float = inf) -> bytes:
+        """Write a request, within ``longest`` seconds.
 
         Returns:
             What was written before it, to end an earlier request that was cut; mostly nothing.
         """
         align = self._alignment.align
         try:
-            self._transport.write(align + request)
+            if longest == inf:
+                self._transport.write(align + request)
+            else:
+                self._write_within(longest, align + request)
             if align:
                 self._alignment.end()
         except LinkError as error:
@@ -45,12 +66,12 @@ class Writer:
         Returns:
             As :meth:`write`; None if the line did not take all of it.
         """
-        if not isinstance(self._transport, PollableTransport):
+        if self._pollable is None:
             return self.write(request)
         align = self._alignment.align
         taken: int | None = None
         try:
-            taken = self._transport.write_some(align + request)
+            taken = self._pollable.write_some(align + request)
         finally:
             if taken != len(align + request):
                 self._alignment.cut(align, request, taken)
@@ -64,10 +85,25 @@ class Writer:
         """Write the rest of a request of which ``written`` bytes were taken."""
         assert isinstance(self._transport, LendingTransport), "it has lent its descriptor"
         try:
-            self._transport.finish_write(request, written)
+            if self._deadline == inf:
+                self._transport.finish_write(request, written)
+            else:
+                self._write_within(self._deadline, request, written)
         except LinkError as error:
             error.written = self._alignment.cut(b"", request, error.written)
             raise
         except BaseException:
             self._alignment.cut(b"", request, None)
             raise
+
+    def _write_within(self, seconds: float, data: bytes, written: int = 0) -> None:
+        transport = self._pollable
+        if transport is None:
+            self._transport.write(data)
+            return
+        until = time.monotonic() + seconds
+        while (written := written + transport.write_some(data[written:])) < len(data):
+            if time.monotonic() >= until:
+                taken = f"only {written} of {len(data)} bytes were taken in {seconds:.3f} s"
+                raise LinkError(transport.url, f"cannot be written: {taken}", written)
+            time.sleep(TRY_SECONDS)

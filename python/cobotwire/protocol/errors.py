@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Mapping, Sequence
-from typing import Any, NamedTuple
+from typing import Any, Literal, NamedTuple
 
 from cobotwire.protocol.lazy import import_aside
 from cobotwire.protocol.printable import printable
@@ -134,16 +134,27 @@ class LinkError(CobotwireError, OSError):
         super().__init__(f"{url}: {detail}")
 
 
+WaitedFor = Literal["turn", "hold", "line", "reply"]
+_WHILE: dict[WaitedFor, str] = {
+    "turn": "while it waited for its turn",
+    "hold": "while a late reply to an earlier request could still come, and pass for its own",
+    "line": "while the line took no bytes",
+    "reply": "while it waited for its reply",
+}
+
+
 class ReplyTimeout(CobotwireError, TimeoutError):
-    """The reply, or the requested acknowledgement, did not arrive before the deadline.
+    """The reply, or the requested acknowledgement, did not arrive in time.
 
     Attributes:
         command: the name of the command.
-        waited: seconds from the request to the error.
+        waited: seconds from the request to the error; from the call, if its deadline passed.
         received: what was received instead, one line each.
-        attempts: how often the request was sent; 0 if it was held back all the time, because an
-            outstanding reply could have been mistaken for its own.
+        attempts: how often the request was sent; 0 if it was not sent, and never will be.
         request: the call with its arguments, for example ``get_encoder(joint=1)``.
+        waited_for: what the call waited for when the ``deadline`` of the client passed: ``turn``,
+            ``hold``, ``line`` or ``reply``; empty if another time was over: that of the arm to
+            reply, or of a line to be read before a request.
     """
 
     def __init__(
@@ -153,16 +164,23 @@ class ReplyTimeout(CobotwireError, TimeoutError):
         received: tuple[str, ...],
         attempts: int = 1,
         request: str = "",
+        waited_for: WaitedFor | None = None,
     ) -> None:
         self.command = command
         self.waited = waited
         self.received = received
         self.attempts = attempts
         self.request = request or command
+        self.waited_for = waited_for or ""
         meanwhile = "; ".join(received) if received else "nothing"
+        if waited_for is not None and not attempts:
+            why = f"its deadline passed after {waited:.3f} s {_WHILE[waited_for]}"
+            super().__init__(f"{self.request} was not sent: {why}")
+            return
         if attempts:
             times = "1 attempt" if attempts == 1 else f"{attempts} attempts"
-            what = f"no reply to {self.request} within {waited:.3f} s after {times}"
+            within = "" if waited_for is None else "its deadline, "
+            what = f"no reply to {self.request} within {within}{waited:.3f} s after {times}"
         else:
             what = f"{self.request} was not sent within {waited:.3f} s"
         super().__init__(f"{what}; received meanwhile: {meanwhile}")

@@ -72,10 +72,11 @@ class PendingAck(Pending):
 
     __slots__ = ("ack", "until")
 
-    def __init__(self, ack: ExpectedAck, until: float) -> None:
+    def __init__(self, ack: ExpectedAck, until: float, ends_by: float) -> None:
         super().__init__(ack.request)
         self.ack = ack
         self.until = until
+        self.ends_by = ends_by
 
 
 class Acknowledged(NamedTuple):
@@ -170,14 +171,19 @@ class Acks:
     @property
     def next_end(self) -> float:
         """When the first wait ends; infinity if nobody waits."""
-        return min((p.until for p in self.waiting if not p.done), default=inf)
+        return min((min(p.until, p.ends_by) for p in self.waiting if not p.done), default=inf)
 
     def expect(
-        self, request: EncodedRequest, now: float, offset: int, within: float | None
+        self,
+        request: EncodedRequest,
+        now: float,
+        offset: int,
+        within: float | None,
+        ends_by: float = inf,
     ) -> tuple[ExpectedAck, PendingAck | None]:
         """Note that a request goes out; its acknowledgement can begin at ``offset``.
 
-        The second is there if a caller waits ``within`` seconds for it.
+        The second is there if a caller waits ``within`` seconds for it, and not after ``ends_by``.
         """
         slow = request.command.safety == "motion" and not self._motions_at_once
         usual = MOTION_SECONDS if slow else GRACE_SECONDS
@@ -195,7 +201,7 @@ class Acks:
         ack.doubts = acks.doubts_of(request)
         acks.expected.append(ack)
         acks.uncertain.append(ack)
-        pending = PendingAck(ack, now + within)
+        pending = PendingAck(ack, now + within, ends_by)
         self.waiting.append(pending)
         return ack, pending
 
@@ -265,12 +271,16 @@ class Acks:
     def wake(self, now: float, echoes: bool) -> None:
         """End the waits whose time is over: a copy counts, unless the line ``echoes``."""
         for pending in self.waiting:
-            if pending.until <= now and not pending.done:
+            if pending.done:
+                continue
+            if pending.until <= now:
                 copied = self._commands[pending.request.command.id].copied is pending.ack
                 if copied and not echoes:
                     pending.succeed({})
                 else:
                     pending.expire(self._codec, now - pending.ack.sent_at, 1)
+            elif pending.ends_by <= now:
+                pending.expire(self._codec, now - pending.ack.sent_at, 1, "reply")
         self.drop_done()
 
     def fail(self, error: LinkError) -> None:

@@ -27,7 +27,7 @@ from typing import Any
 
 from cobotwire.codec.interface import Codec, Event, Frame
 from cobotwire.protocol.addresses import NOBODY
-from cobotwire.protocol.errors import LinkError
+from cobotwire.protocol.errors import LinkError, ReplyTimeout
 from cobotwire.protocol.shared import once_per_table
 from cobotwire.protocol.table import Table
 from cobotwire.session.acks import Acks, PendingAck
@@ -40,7 +40,7 @@ from cobotwire.session.outstanding import OutstandingReplies, late_replies
 from cobotwire.session.pending import Pending, PendingRequest
 from cobotwire.session.policy import RetryPolicy
 from cobotwire.session.replies import Replies
-from cobotwire.session.request import EncodedRequest, request_of
+from cobotwire.session.request import EncodedRequest, as_call, request_of
 from cobotwire.session.turns import Turns
 
 
@@ -73,10 +73,18 @@ class Exchange:
     # What callers want.
 
     def submit(
-        self, request: EncodedRequest, now: float, policy: RetryPolicy, wait: float | None = None
+        self,
+        request: EncodedRequest,
+        now: float,
+        policy: RetryPolicy,
+        wait: float | None = None,
+        ends_by: float = inf,
     ) -> PendingRequest:
-        """Queue a request; ``wait`` is its deadline in seconds, None: that of the edition."""
-        pending = PendingRequest(request, wait, policy, now)
+        """Queue a request; the arm has ``wait`` seconds to reply, None: those of the edition.
+
+        Its caller waits until ``ends_by``.
+        """
+        pending = PendingRequest(request, wait, policy, now, ends_by)
         self.enqueue(pending)
         return pending
 
@@ -84,19 +92,31 @@ class Exchange:
         """Queue a request whose caller already holds it, and gives it up in any case."""
         self._turns.queue.append(pending)
 
+    def unsent(self, request: EncodedRequest, waited: float) -> ReplyTimeout:
+        """Return the error of a one-way request that its caller's deadline keeps from being sent.
+
+        It waited so many seconds for the line to take bytes.
+        """
+        call = as_call(request, self._codec)
+        return ReplyTimeout(request.command.name, waited, (), 0, call, "line")
+
     def send_one_way(
-        self, request: EncodedRequest, now: float, ack_within: float | None = None
+        self,
+        request: EncodedRequest,
+        now: float,
+        ack_within: float | None = None,
+        ends_by: float = inf,
     ) -> tuple[bytes, PendingAck | None]:
         """Return the bytes of a one-way request, to be written now.
 
         The second is there if ``ack_within`` says how many seconds its acknowledgement is waited
-        for, and the edition has one.
+        for, and the edition has one. Its caller waits until ``ends_by``.
         """
         self._echo.sent_one_way(request, self.framer.fed)
         self.alignment.last_request = request.frame
         if not request.command.ack or request.replier == NOBODY:
             return request.frame + request.text, None
-        ack, pending = self._acks.expect(request, now, self.framer.fed, ack_within)
+        ack, pending = self._acks.expect(request, now, self.framer.fed, ack_within, ends_by)
         if request.command.id in self._replying_ids:
             self._outstanding.expect(request, ack.until)
         return request.frame + request.text, pending
@@ -170,6 +190,8 @@ class Exchange:
             # So it is after each reply.
             if self._acks.waiting:
                 self._acks.wake(now, self._echo.proven)
+            if self._turns.queue:
+                self._turns.end_overdue(now)
             return events, bool(self._turns.queue)
         events += self.wake(now)
         return events, self._turns.has_next(now)
@@ -186,9 +208,17 @@ class Exchange:
         events = []
         if waiting is not None and waiting.ends_at <= now:
             events = self._replies.end_wait(waiting, now)
+        return events + self.end_overdue(now)
+
+    def end_overdue(self, now: float) -> list[SessionEvent]:
+        """End the requests of callers that wait no longer; return what happened to a sent one."""
         if self._acks.waiting:
             self._acks.wake(now, self._echo.proven)
-        return events
+        return self._turns.end_overdue(now)
+
+    def note_full(self, full: bool) -> None:
+        """Note whether the line took no bytes when a request was to be sent."""
+        self._turns.line_is_full = full
 
     def idle_seconds(self, now: float) -> float | None:
         """Return for how long nothing is to be done unless bytes come; None: without end."""

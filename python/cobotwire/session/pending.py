@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from math import inf
 from typing import Any
 
 from cobotwire.codec.interface import Codec, DecodedMessage, Frame, Noise
-from cobotwire.protocol.errors import CobotwireError, LinkError, ReplyTimeout
+from cobotwire.protocol.errors import CobotwireError, LinkError, ReplyTimeout, WaitedFor
 from cobotwire.session.events import FrameEvent
 from cobotwire.session.policy import RetryPolicy
 from cobotwire.session.received import ReceivedMeanwhile
@@ -23,13 +24,15 @@ class Pending:
     Attributes:
         request: what is sent.
         done: whether it has ended; then :meth:`result` tells how.
+        ends_by: when its caller waits no longer; inf: its caller has no deadline.
     """
 
-    __slots__ = ("_error", "_fields", "_on_done", "_received", "done", "request")
+    __slots__ = ("_error", "_fields", "_on_done", "_received", "done", "ends_by", "request")
 
     def __init__(self, request: EncodedRequest) -> None:
         self.request = request
         self.done = False
+        self.ends_by = inf
         self._fields: dict[str, Any] = {}
         self._error: CobotwireError | None = None
         self._on_done: Callable[[], object] | None = None
@@ -70,12 +73,14 @@ class Pending:
         self._error = error
         self._end()
 
-    def expire(self, codec: Codec, waited: float, attempts: int) -> None:
+    def expire(
+        self, codec: Codec, waited: float, attempts: int, waited_for: WaitedFor | None = None
+    ) -> None:
         """End it with a ReplyTimeout, which lists what was received meanwhile."""
         frame, command = self.request.frame, self.request.command
         received = () if self._received is None else self._received.lines(codec, frame, command)
         call = as_call(self.request, codec)
-        self.fail(ReplyTimeout(command.name, waited, received, attempts, call))
+        self.fail(ReplyTimeout(command.name, waited, received, attempts, call, waited_for))
 
     def cancel(self) -> None:
         """End it without a word: its caller does not wait any longer."""
@@ -117,12 +122,18 @@ class PendingRequest(Pending):
     )
 
     def __init__(
-        self, request: EncodedRequest, wait: float | None, policy: RetryPolicy, now: float
+        self,
+        request: EncodedRequest,
+        wait: float | None,
+        policy: RetryPolicy,
+        now: float,
+        ends_by: float = inf,
     ) -> None:
-        """Queue a request; ``wait`` is its deadline in seconds, None: that of the edition."""
+        """Queue a request; the arm has ``wait`` seconds to reply, None: those of the edition."""
         # As the base class does: a call of its constructor takes as long as all of this.
         self.request = request
         self.done = False
+        self.ends_by = ends_by
         self._fields = {}
         self._error = None
         self._on_done = None

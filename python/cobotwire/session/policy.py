@@ -17,14 +17,14 @@ def _is_number(value: object) -> bool:
 
 @record(frozen=True, slots=True)
 class RetryPolicy:
-    """Splits the deadline of a query into attempts. Only queries are ever sent again.
+    """Splits the ``timeout`` of a query into attempts. Only queries are ever sent again.
 
     On real lines a reply comes within some 30 ms or never, so sending again beats waiting longer.
-    The deadline does not change: three attempts within 500 ms are one every 167 ms.
+    The time to reply does not change: three attempts within 500 ms are one every 167 ms.
 
     Attributes:
         attempts: how often a query is sent at most, 1..100; 1 never repeats it.
-        shortest_attempt: seconds that each attempt gets at least, above 0; a short deadline has
+        shortest_attempt: seconds that each attempt gets at least, above 0; a short timeout has
             fewer attempts.
         grace: seconds after an attempt during which its late reply is still expected, 0 or more.
             A later request whose reply would look the same is held until then, even if a late reply

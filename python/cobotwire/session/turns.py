@@ -1,7 +1,8 @@
 """Whose turn it is: one request waits for its reply at a time, and the others queue.
 
 They queue in the order of submission; one that is held for an outstanding reply is overtaken. The
-deadline runs from the first sending, so that it measures the arm's silence and not the queue.
+time to reply runs from the first sending, so that it measures the arm's silence and not the queue.
+A caller's deadline runs from the call: a request that was not sent by then is never sent.
 """
 
 from __future__ import annotations
@@ -9,9 +10,10 @@ from __future__ import annotations
 from math import inf
 
 from cobotwire.codec.interface import Codec, Framer
-from cobotwire.protocol.errors import LinkError, ReplyTimeout
+from cobotwire.protocol.errors import LinkError, ReplyTimeout, WaitedFor
 from cobotwire.session.alignment import Alignment
 from cobotwire.session.echo import EchoDetector
+from cobotwire.session.events import RequestExpired, SessionEvent
 from cobotwire.session.outstanding import OutstandingReplies
 from cobotwire.session.pending import PendingRequest
 from cobotwire.session.request import as_call
@@ -28,6 +30,7 @@ class Turns:
         queue: what waits for its turn, oldest first; an interrupt may leave in it what is done, or
             was sent.
         last: the request that was sent last; it waits for its reply unless it is done.
+        line_is_full: whether the line took no bytes when the next request was to be sent.
     """
 
     def __init__(
@@ -42,6 +45,7 @@ class Turns:
         self._alignment, self._outstanding, self._echo = alignment, outstanding, echo
         self.queue: list[PendingRequest] = []
         self.last: PendingRequest | None = None
+        self.line_is_full = False
 
     def waiting(self) -> PendingRequest | None:
         """Return the request that waits for its reply."""
@@ -59,9 +63,28 @@ class Turns:
             self._outstanding.expect_late(waiting, 0)
             waiting.fail(error)
 
+    def end_overdue(self, now: float) -> list[SessionEvent]:
+        """End the requests of callers that wait no longer; return what happened to a sent one."""
+        if any(pending.ends_by <= now for pending in self.queue):
+            for pending, free_at in self._free_times(now):
+                if pending.ends_by <= now:
+                    full: WaitedFor = "line" if self.line_is_full else "turn"
+                    waited_for = "hold" if free_at > now else full
+                    pending.expire(self._codec, now - pending.queued_at, 0, waited_for)
+            self.drop_done()
+        waiting = self.waiting()
+        if waiting is None or waiting.ends_by > now:
+            return []
+        attempts, requested_at = len(waiting.attempt_times), waiting.requested_at
+        # A copy of it does not count as its reply: that one still had time to come.
+        self._outstanding.expect_late(waiting, 0)
+        waiting.expire(self._codec, now - waiting.queued_at, attempts, "reply")
+        return [RequestExpired(waiting.request.command, requested_at, attempts)]
+
     def begin(self, pending: PendingRequest, now: float) -> bytes:
         """Return the bytes of a request if nothing else is under way; otherwise queue it."""
-        if self.waiting() is not None or self.queue or self._outstanding.replies:
+        held = self.queue or self._outstanding.replies or pending.ends_by <= now
+        if held or self.waiting() is not None:
             self.queue.append(pending)
             return b""
         self._begin(pending, now)
@@ -75,8 +98,8 @@ class Turns:
         waiting = self.waiting()
         if waiting is not None:
             return self._next_attempt(waiting, now)
-        for pending in self._queued():
-            if self.free_at(pending, now) <= now:
+        for pending, free_at in self._free_times(now):
+            if free_at <= now < pending.ends_by:
                 break
         else:
             return b""
@@ -103,13 +126,16 @@ class Turns:
 
     def next_at(self, now: float) -> float:
         """Return when something is to be sent, or a wait ends, unless bytes come; inf: never."""
-        waiting = self.waiting()
-        if waiting is not None:
-            soonest, repeat_at = waiting.ends_at, self._repeat_at(waiting)
-            return soonest if repeat_at is None or repeat_at >= soonest else repeat_at
+        waiting, soonest = self.waiting(), inf
         if self.queue:
-            return min([self.free_at(p, now) for p in self._queued()], default=inf)
-        return inf
+            soonest = min([pending.ends_by for pending in self._queued()], default=inf)
+        if waiting is None:
+            return min([soonest, *(free_at for _, free_at in self._free_times(now))])
+        soonest, repeat_at = (
+            min(soonest, waiting.ends_at, waiting.ends_by),
+            self._repeat_at(waiting),
+        )
+        return soonest if repeat_at is None or repeat_at >= soonest else repeat_at
 
     def free_at(self, pending: PendingRequest, now: float) -> float:
         """Return from when on no late reply can be mistaken for the request's."""
@@ -117,6 +143,14 @@ class Turns:
             return now
         held_until = self._outstanding.held_until(pending.request)
         return now if held_until is None else held_until
+
+    def _free_times(self, now: float) -> list[tuple[PendingRequest, float]]:
+        """Return each queued request, and from when on it may be sent."""
+        queued = self._queued()
+        # Many callers may want the same.
+        alike = {pending.request.frame: pending for pending in queued}
+        known = {frame: self.free_at(pending, now) for frame, pending in alike.items()}
+        return [(pending, known[pending.request.frame]) for pending in queued]
 
     def _begin(self, pending: PendingRequest, now: float) -> None:
         request, fed = pending.request, self._framer.fed
@@ -135,7 +169,7 @@ class Turns:
 
     def _next_attempt(self, waiting: PendingRequest, now: float) -> bytes:
         repeat_at = self._repeat_at(waiting)
-        if repeat_at is None or repeat_at > now:
+        if repeat_at is None or not repeat_at <= now < waiting.ends_by:
             return b""
         self._echo.sent_again()
         waiting.repeat(now)

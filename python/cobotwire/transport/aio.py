@@ -21,6 +21,7 @@ from cobotwire.transport.interface import (
     Transport,
 )
 from cobotwire.transport.loop_readers import readers_of
+from cobotwire.transport.waiting import has_room
 
 if TYPE_CHECKING:
     from cobotwire._native import StreamLine, StreamSlot
@@ -84,6 +85,16 @@ class PolledTransport:
             return False
         self.unwritten.append((data, done))
         return False
+
+    def is_free(self) -> bool:
+        """Return whether everything that was written was taken, and more may be."""
+        return not self.unwritten and has_room(self._transport)
+
+    def end_writing(self) -> None:
+        """Send no more of what was written and not taken yet."""
+        if self.unwritten:
+            taken = f"only {self._taken} of {len(self.unwritten[0][0])} bytes were taken in time"
+            self._end_writing(LinkError(self._transport.url, f"cannot be written: {taken}"))
 
     def write_rest(self, data: bytes, taken: int, done: Done) -> None:
         """Send what follows the first ``taken`` bytes of ``data``; nothing else is being sent."""
@@ -223,7 +234,7 @@ class ThreadedTransport:
         self._read_queue: queue.SimpleQueue[bytes | LinkError] = queue.SimpleQueue()
         # With each write how many had failed when it was queued, as far as the loop knew.
         self._write_queue: queue.SimpleQueue[tuple[bytes, Done, int] | None] = queue.SimpleQueue()
-        self._failures = 0
+        self._failures = self._unwritten = 0
         self._lost: LinkError | None = None
         self._closed = False
         forks.watch(self)
@@ -246,8 +257,20 @@ class ThreadedTransport:
 
     def write(self, data: bytes, done: Done) -> bool:
         """Send ``data`` after what was sent before."""
-        self._write_queue.put((data, done, self._failures))
+        self._unwritten += 1
+        self._write_queue.put((data, partial(self._end, done), self._failures))
         return False
+
+    def is_free(self) -> bool:
+        """Return whether everything that was written was taken."""
+        return not self._unwritten
+
+    def end_writing(self) -> None:
+        """Do nothing: the thread that writes cannot be interrupted."""
+
+    def _end(self, done: Done, error: LinkError | None) -> None:
+        self._unwritten -= 1
+        done(error)
 
     def close(self) -> None:
         """Stop watching and close the transport."""

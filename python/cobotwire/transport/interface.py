@@ -167,6 +167,14 @@ class AsyncTransport(Protocol):
         """
         ...
 
+    def is_free(self) -> bool:
+        """Return whether everything that was written was taken, and more may be."""
+        ...
+
+    def end_writing(self) -> None:
+        """Send no more of what was written and not taken yet, where that is possible."""
+        ...
+
     def close(self) -> None:
         """Stop watching and close the transport. Closing twice is harmless."""
         ...

@@ -84,6 +84,18 @@ def moment_writer() -> MomentWriter | None:
     return None
 
 
+def has_room(transport: object) -> bool:
+    """Return whether a transport takes some bytes now, as far as the system tells."""
+    # Checking for the protocol takes longer than all of this.
+    fileno = getattr(transport, "fileno", None)
+    try:
+        descriptor = None if fileno is None else fileno()
+        return descriptor is None or is_ready(descriptor, 0, writing=True)
+    except (OSError, ValueError):
+        # It is closed, or cannot be waited for: writing tells.
+        return True
+
+
 class Waiter:
     """Waits until a descriptor can be read or written, the time is over, or :meth:`wake`.
 

@@ -1,0 +1,260 @@
+"""No call takes longer than the client's deadline, whatever the line does and whoever else calls.
+
+A request that was not sent by then is never sent, and its error says which of both it was.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import itertools
+import threading
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
+from typing import Any, NamedTuple
+
+import pytest
+
+from attack.ends import PtyEnd
+from both_ways import InLoop, Opener
+from cobotwire import LinkError, MyCobot, MyCobot280, ReplyTimeout, RetryPolicy, UsageError
+from cobotwire import codec as codecs
+from cobotwire.editions.mycobot import TABLE, AsyncMyCobot, GetEncoder
+from cobotwire.editions.mycobot280 import AsyncMyCobot280
+from cobotwire.session import Exchange, RequestReceived
+from cobotwire.session.device import DeviceEvent
+from cobotwire.session.request import RequestEncoder
+from cobotwire.simulator import PtyServer, SimulatedArm, TcpServer
+from cobotwire.simulator.faults import Echo, Fault, Late, Scenario
+from scripted_peer import ScriptedPeer
+from slow_arm import SlowArm
+from stalls import unstalled
+from stuck_pty import ANGLES, MOTION, STOP, StuckPty
+
+TIMEOUT, DEADLINE = 0.4, 0.5
+# What a call may take besides: until its thread or task has its turn.
+MORE = 0.05
+THREADS, TASKS, SECONDS = 8, 50, 0.7
+ONCE = RetryPolicy(attempts=1)
+CODEC = codecs.load(TABLE, "reference")
+LATE = Late(seconds=0.3, jitter_seconds=0.6, probability=0.3)
+
+
+class Call(NamedTuple):
+    """How long a call took, how often its request was sent, and what it waited for at the end."""
+
+    seconds: float
+    attempts: int
+    waited_for: str
+
+
+@contextmanager
+def hostile_arm(kind: str, faults: tuple[Fault, ...]) -> Iterator[tuple[str, list[DeviceEvent]]]:
+    """Serve an arm on a bad line; yield its URL, and what it received."""
+    received: list[DeviceEvent] = []
+    arm = SimulatedArm(TABLE, on_event=lambda event, reply: received.append(event))
+    peer = Scenario(name="hostile", faults=faults).wrap(arm, CODEC)
+    with PtyServer(peer) if kind == "pty" else TcpServer(lambda: peer) as server:
+        yield server.url, received
+
+
+def measured(began: float, error: ReplyTimeout | None = None) -> Call:
+    seconds = time.monotonic() - began
+    return (
+        Call(seconds, 1, "") if error is None else Call(seconds, error.attempts, error.waited_for)
+    )
+
+
+def call_in_threads(arm: Any) -> list[Call]:
+    until, calls = time.monotonic() + SECONDS, list[Call]()
+
+    def work(joint: int) -> None:
+        while time.monotonic() < until:
+            began = time.monotonic()
+            try:
+                arm.get_encoder(joint)
+                calls.append(measured(began))
+            except ReplyTimeout as error:
+                calls.append(measured(began, error))
+
+    threads = [threading.Thread(target=work, args=(1 + n % 6,)) for n in range(THREADS)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    return calls
+
+
+async def call_in_tasks(arm: Any) -> list[Call]:
+    until, calls = time.monotonic() + SECONDS, list[Call]()
+
+    async def work(joint: int) -> None:
+        while time.monotonic() < until:
+            began = time.monotonic()
+            try:
+                await arm.get_encoder(joint)
+                calls.append(measured(began))
+            except ReplyTimeout as error:
+                calls.append(measured(began, error))
+
+    await asyncio.gather(*(work(1 + n % 6) for n in range(TASKS)))
+    return calls
+
+
+def run_threads(url: str, **options: Any) -> list[Call]:
+    with MyCobot(url, **options) as arm:
+        return call_in_threads(arm)
+
+
+def run_tasks(url: str, **options: Any) -> list[Call]:
+    async def run() -> list[Call]:
+        async with AsyncMyCobot(url, **options) as arm:
+            return await call_in_tasks(arm)
+
+    return asyncio.run(run())
+
+
+@pytest.mark.parametrize(
+    ("run", "kind", "codec", "faults"),
+    [
+        (run_threads, "pty", "native", (LATE,)),
+        (run_threads, "tcp", "reference", (LATE, Echo())),
+        (run_tasks, "pty", "reference", (LATE, Echo())),
+        (run_tasks, "tcp", "native", (LATE,)),
+    ],
+)
+def test_no_call_takes_longer_than_the_deadline_and_errors_say_truly_what_was_sent(
+    run: Callable[..., list[Call]], kind: str, codec: str, faults: tuple[Fault, ...]
+) -> None:
+    def attempt() -> tuple[list[Call], int]:
+        with hostile_arm(kind, faults) as (url, received):
+            calls = run(url, timeout=TIMEOUT, deadline=DEADLINE, retry=ONCE, codec=codec)
+            # What was not sent by its deadline would come now.
+            time.sleep(0.1)
+            frames = [event.frame for event in received if isinstance(event, RequestReceived)]
+        return calls, len(frames)
+
+    calls, received = unstalled(attempt, MORE / 2)
+    assert max(call.seconds for call in calls) < DEADLINE + MORE
+    assert sum(call.attempts for call in calls) == received
+    assert any(call.attempts == 0 and call.waited_for for call in calls), "the line was contended"
+
+
+def test_error_says_what_the_call_waited_for() -> None:
+    exchange, encode = Exchange(CODEC), RequestEncoder(CODEC).encode
+    first = exchange.submit(encode("get_encoder", (1,)), 0.0, ONCE, 0.2, 0.5)
+    assert exchange.outgoing(0.0, drained=True)
+    turn = exchange.submit(encode("get_angles", ()), 0.0, ONCE, 0.2, 0.1)
+    exchange.wake(0.1)
+    exchange.wake(0.2)
+    hold = exchange.submit(encode("get_encoder", (2,)), 0.3, ONCE, 0.2, 0.8)
+    reply = exchange.submit(encode("is_power_on", ()), 0.7, ONCE, 0.2, 0.8)
+    assert exchange.outgoing(0.7, drained=True)
+    exchange.advance(b"", 0.8)
+    late = exchange.submit(encode("get_angles", ()), 0.8, ONCE, 0.2, 0.8)
+    assert not exchange.outgoing(0.8, drained=True), "its caller no longer waits"
+    exchange.submit(encode("is_power_on", ()), 0.8, ONCE, 0.2, 1.0)
+    assert not exchange.outgoing(0.8, drained=True), "a late reply could pass for its own"
+    exchange.note_full(True)
+    exchange.advance(b"", 0.9)
+    texts = [str(pending._error) for pending in (first, turn, hold, reply, late)]
+    assert texts == [
+        "no reply to get_encoder(joint=1) within 0.200 s after 1 attempt; received meanwhile: "
+        "nothing",
+        "get_angles() was not sent: its deadline passed after 0.100 s while it waited for its turn",
+        "get_encoder(joint=2) was not sent: its deadline passed after 0.500 s while a late reply "
+        "to an earlier request could still come, and pass for its own",
+        "no reply to is_power_on() within its deadline, 0.100 s after 1 attempt; received "
+        "meanwhile: nothing",
+        "get_angles() was not sent: its deadline passed after 0.100 s while the line took no bytes",
+    ]
+
+
+def fill(arm: Any) -> int:
+    """Send requests until the line takes none; return how many it took."""
+    for sent in itertools.count():
+        try:
+            arm.send_angles(ANGLES, 50)
+        except ReplyTimeout:
+            return sent
+    raise AssertionError
+
+
+def test_full_line_delays_no_call_and_gets_none_of_it_later_but_the_stop_of_a_failed_block(
+    open_arm: Opener,
+) -> None:
+    pty, received = StuckPty(), list[bytes]()
+    # Later than the deadline, earlier than a write fails.
+    drained = threading.Timer(0.3, lambda: received.append(pty.drain()))
+
+    def use(arm: Any) -> int:
+        sent = fill(arm)
+        for call in (arm.stop, arm.get_angles, lambda: arm.get_encoder(1)):
+            began = time.monotonic()
+            with pytest.raises(ReplyTimeout, match=r"was not sent: .* the line took no bytes"):
+                call()
+            assert time.monotonic() - began < 0.1 + MORE
+        return sent
+
+    sent = 0
+    with suppress(ZeroDivisionError), open_arm(pty.url, deadline=0.1) as arm:
+        sent = use(arm)
+        drained.start()
+        sent //= 0
+    drained.join()
+    pty.close()
+    assert received == [MOTION * sent + STOP]
+
+
+def test_request_of_which_the_line_takes_a_part_ends_in_time(open_arm: Opener) -> None:
+    end = PtyEnd()
+    with open_arm(end.url, deadline=0.2) as arm:
+        end.fill(10, lambda data: None)
+        calls: list[Callable[[], object]] = [
+            lambda: arm.send_angles(ANGLES, 50),
+            lambda: arm.get_encoder(1),
+        ]
+        for call in calls:
+            began = time.monotonic()
+            with pytest.raises((LinkError, ReplyTimeout), match=r"only 1. of 21|was not sent"):
+                call()
+            assert time.monotonic() - began < 0.2 + MORE
+    end.close()
+
+
+@pytest.mark.parametrize("who", [MyCobot280, lambda *a, **o: InLoop(AsyncMyCobot280, *a, **o)])
+def test_acknowledgement_is_not_waited_for_longer(who: Callable[..., Any]) -> None:
+    with ScriptedPeer() as peer, who(peer.url, deadline=0.1) as arm:
+        began = time.monotonic()
+        with pytest.raises(ReplyTimeout, match=r"within its deadline, 0\.1.. s after 1 attempt"):
+            arm.send_angles([0] * 6, 50, ack_within=1)
+        assert time.monotonic() - began < 0.1 + MORE
+
+
+def test_waited_motion_has_a_time_of_its_own(open_arm: Opener) -> None:
+    with PtyServer(SimulatedArm(TABLE)) as server, open_arm(server.url, deadline=0.2) as arm:
+        arm.power_on()
+        began = time.monotonic()
+        arm.move_angles([30, 0, 0, 0, 0, 0], 60, timeout=10)
+        assert time.monotonic() - began > 0.2
+        assert arm.get_angles()[0] == pytest.approx(30, abs=0.1)
+
+
+@pytest.mark.parametrize("timeout", [0.1, 2.0])
+def test_request_of_a_stream_has_the_deadline(open_arm: Opener, timeout: float) -> None:
+    arm_with_late_replies = SlowArm({1: 0.2})
+    with open_arm(arm_with_late_replies.url, deadline=0.1) as arm:
+        stream = arm.stream(GetEncoder(1), rate=10, timeout=timeout)
+        closing = threading.Timer(0.6, stream.close)
+        closing.start()
+        assert list(stream) == [], "each reply is too late"
+        closing.join()
+    arm_with_late_replies.close()
+
+
+@pytest.mark.parametrize("deadline", [0, -1, float("nan"), 3600, True, "1"])
+def test_deadline_is_a_number_of_seconds(deadline: Any) -> None:
+    with pytest.raises(
+        UsageError, match=r"deadline is .*; allowed: seconds above 0 and below 3600"
+    ):
+        AsyncMyCobot("/nope", deadline=deadline)
