@@ -22,6 +22,9 @@ LARGEST_TURN = 30.0
 # One turn in steps of three degrees; in steps of seven millimetres, beyond any reach.
 JOG_STEPS = 121
 
+# Reported numbers that differ by less are the same: it is far below the wire's steps.
+SAME = 1e-6
+
 Point = tuple[float, ...]
 
 
@@ -126,7 +129,11 @@ def go_to_coords(
     if arm.geometry is None:
         return reject(arm, f"rejected: {arm.robot.why_no_geometry}")
     start = arm.angles.target(now) if _queues(arm) else arm.angles.stop_at(now)
-    end = target if isinstance(target, Pose) else arm.pose_of(tuple(target), start)
+    if not isinstance(target, Pose):
+        target = tuple(target)
+        if is_there(arm, target, start):
+            return go_to_angles(arm, start, speed, now)
+    end = target if isinstance(target, Pose) else arm.pose_of(target, start)
     effort = Effort()
     goal = solve(arm, end, start, effort)
     if goal is None:
@@ -174,6 +181,18 @@ def jog(
         arm.remarks.append(f"ends early: no joint angles were found further on{_ended(effort)}")
     _go_along(arm, points, speed, now, queue=False)
     return True
+
+
+def is_there(arm: ArmState, coords: Point, angles: Point) -> bool:
+    """Return whether coordinates are those that the arm reports at some angles.
+
+    Then these angles are the nearest solution. The coordinates are rounded, so calculating could
+    find others, far away where the elbow or the wrist is straight, or beyond a limit.
+    """
+    reported = arm.reported_coords(arm.on_ticks(angles))
+    return reported is not None and all(
+        math.isclose(one, other, abs_tol=SAME) for one, other in zip(reported, coords)
+    )
 
 
 def solve(arm: ArmState, end: Pose, start: Point, effort: Effort) -> Point | None:
