@@ -132,6 +132,10 @@ class LinkError(CobotwireError, OSError):
         super().__init__(f"{url}: {detail}")
 
 
+# How the line of text begins that a simulated arm sends in place of a reply that it cannot make.
+SIMULATED = "simulated arm: "
+
+
 class ReplyTimeout(CobotwireError, TimeoutError):
     """The reply, or the requested acknowledgement, did not arrive before the deadline.
 
@@ -142,6 +146,8 @@ class ReplyTimeout(CobotwireError, TimeoutError):
         attempts: how often the request was sent; 0 if it was held back all the time, because an
             outstanding reply could have been mistaken for its own.
         request: the call with its arguments, for example ``get_encoder(joint=1)``.
+        refusal: why the arm, which is simulated, cannot reply; empty if it did not say so. It will
+            not reply if it is sent again.
     """
 
     def __init__(
@@ -163,7 +169,12 @@ class ReplyTimeout(CobotwireError, TimeoutError):
             what = f"no reply to {self.request} within {waited:.3f} s after {times}"
         else:
             what = f"{self.request} was not sent within {waited:.3f} s"
-        super().__init__(f"{what}; received meanwhile: {meanwhile}")
+        found = re.search(f"{SIMULATED}([^']+)", meanwhile)
+        self.refusal = found[1] if found else ""
+        if self.refusal:
+            super().__init__(f"{what}, because the arm is simulated: {self.refusal}")
+        else:
+            super().__init__(f"{what}; received meanwhile: {meanwhile}")
 
 
 class EditionUnknown(CobotwireError):

@@ -16,7 +16,7 @@ from cobotwire.simulator.behaviour.registry import Unanswerable
 from cobotwire.simulator.devices import missing_joints, replies_to
 from cobotwire.simulator.events import Events
 from cobotwire.simulator.peer import IDLE_SECONDS
-from cobotwire.simulator.replies import clamped, completed
+from cobotwire.simulator.replies import clamped, completed, refusal
 
 EventListener = Callable[[DeviceEvent, bytes], None]
 """Takes an event of a connection and the bytes of the reply; empty: there is no reply."""
@@ -148,7 +148,7 @@ class ArmConnection:
         except Unanswerable as error:
             why = str(error) or self._arm.table.robot.why_no_geometry
             self._arm.note(command, f"no reply: {why}")
-            return b""
+            return refusal(why)
         if not command.requires_reply and not (command.ack and self._arm.acks):
             return b""
         if isinstance(reply, Sized):

@@ -13,6 +13,7 @@ from collections.abc import Callable, Iterable, Mapping
 from cobotwire.simulator.kinematics import Effort, Pose, nearest
 from cobotwire.simulator.kinematics.descent import STEPS_OF_A_REQUEST
 from cobotwire.simulator.kinematics.straight import straight_line
+from cobotwire.simulator.replies import Unanswerable
 from cobotwire.simulator.state import ArmState
 
 # A straight line is solved at points that are at most this far apart.
@@ -127,7 +128,7 @@ def go_to_coords(
     if not may_move(arm, speed):
         return False
     if arm.geometry is None:
-        return reject(arm, f"rejected: {arm.robot.why_no_geometry}")
+        raise Unanswerable
     start = arm.angles.target(now) if _queues(arm) else arm.angles.stop_at(now)
     if not isinstance(target, Pose):
         target = tuple(target)
@@ -170,7 +171,7 @@ def jog(
     start = arm.angles.stop_at(now)
     here = arm.end(start)
     if here is None:
-        return reject(arm, f"rejected: {arm.robot.why_no_geometry}")
+        raise Unanswerable
     effort = Effort()
     ends = (way(here, step * n) for n in range(1, JOG_STEPS))
     points = _follow(arm, ends, start, effort, whole=False)
