@@ -13,7 +13,6 @@ from typing import Any
 import pytest
 
 from cobotwire import codec as codecs
-from cobotwire.client import Client
 from cobotwire.editions import load, names
 from cobotwire.inspect.monitor import Monitor
 from cobotwire.protocol.errors import ReplyTimeout
@@ -56,11 +55,10 @@ def _counting() -> tuple[SimulatedArm, Counter[str]]:
     return SimulatedArm(EDITION.TABLE, powered=True, on_event=count), received
 
 
-def _in_memory(package: Any, silent: bool = False) -> Client:
+def _in_memory(package: Any, silent: bool = False) -> Any:
     clock = SteppedClock()
     arm = SimulatedArm(package.TABLE, clock=clock, powered=True)
-    client: Client = package.CLIENT(MemoryTransport(Silent(arm) if silent else arm, clock))
-    return client
+    return package.CLIENT(MemoryTransport(Silent(arm) if silent else arm, clock))
 
 
 @pytest.mark.parametrize("edition", WITHOUT_GEOMETRY)
@@ -77,15 +75,17 @@ def test_error_of_unanswerable_query_says_why_in_every_edition(edition: str) -> 
 @pytest.mark.parametrize(
     "serve", [PtyServer, lambda arm: TcpServer(arm.connect)], ids=["pty", "tcp"]
 )
-def test_refused_motion_is_not_acknowledged_and_says_why(serve: Any) -> None:
-    with (
-        serve(SimulatedArm(EDITION.TABLE, powered=True)) as server,
-        EDITION.CLIENT(server.url) as arm,
-    ):
+def test_refused_motion_is_noted_on_the_line_and_query_says_why(serve: Any) -> None:
+    seen: list[bytes] = []
+    arm = SimulatedArm(EDITION.TABLE, powered=True)
+    with serve(arm) as server, EDITION.CLIENT(server.url) as client:
+        client.add_traffic_listener(lambda traffic: seen.append(traffic.data))
+        # It is acknowledged, as a real arm acknowledges what it rejects.
+        client.send_coords([100, 0, 200, 0, 0, 0], 50, ack_within=5.0)
+        assert f"simulated arm: {REASON}".encode() in b"".join(seen)
+        assert arm.notes[-1].text.startswith(f"rejected: {REASON}")
         with pytest.raises(ReplyTimeout, match=REASON):
-            arm.send_coords([100, 0, 200, 0, 0, 0], 50, ack_within=0.2)
-        with pytest.raises(ReplyTimeout, match=REASON):
-            arm.get_coords()
+            client.get_coords()
 
 
 def test_silence_without_a_reason_is_reported_as_before() -> None:

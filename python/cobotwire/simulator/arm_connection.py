@@ -147,8 +147,22 @@ class ArmConnection:
             reply = self._arm.perform(command, given, address) if performed else None
         except Unanswerable as error:
             why = str(error) or self._arm.table.robot.why_no_geometry
-            self._arm.note(command, f"no reply: {why}")
-            return refusal(why)
+            if command.safety == "query":
+                self._arm.note(command, f"no reply: {why}")
+                return refusal(why)
+            # It is replied to or acknowledged, as everything that the arm rejects.
+            self._arm.note(command, f"rejected: {why}")
+            return refusal(why) + self._encode_reply(command, given, None, address)
+        return self._encode_reply(command, given, reply, address)
+
+    def _encode_reply(
+        self,
+        command: Command,
+        given: Mapping[str, Any],
+        reply: Reply[Any] | Sized | None,
+        address: int | None,
+    ) -> bytes:
+        """Return the bytes of a reply or an acknowledgement; empty if the command has none."""
         if not command.requires_reply and not (command.ack and self._arm.acks):
             return b""
         if isinstance(reply, Sized):

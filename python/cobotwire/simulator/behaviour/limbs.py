@@ -71,12 +71,17 @@ def _without_geometry(arm: ArmState, now: float, request: Any) -> None:
     raise Unanswerable
 
 
-for _request in (
+def _rejected(arm: ArmState, now: float, request: Any) -> None:
+    arm.remarks.append("rejected: the geometry of this robot is not known")
+
+
+for _query in (
     *(m.GetCoord, m.GetBaseCoord, m.GetBaseCoords, m.Collision),
     *(m.SingleToBaseCoords, m.BaseToSingleCoords),
-    *(m.WriteBaseCoord, m.WriteBaseCoords, m.JogIncCoord),
 ):
-    LIMBS.behaviour(_request)(_without_geometry)
+    LIMBS.behaviour(_query)(_without_geometry)
+for _motion in (m.WriteBaseCoord, m.WriteBaseCoords, m.JogIncCoord):
+    LIMBS.behaviour(_motion)(_rejected)
 
 
 @LIMBS.behaviour(m.SetPlanSpeed)
