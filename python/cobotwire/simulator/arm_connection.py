@@ -16,7 +16,7 @@ from cobotwire.simulator.behaviour.registry import Unanswerable
 from cobotwire.simulator.devices import missing_joints, replies_to
 from cobotwire.simulator.events import Events
 from cobotwire.simulator.peer import IDLE_SECONDS
-from cobotwire.simulator.replies import clamped, completed, refusal
+from cobotwire.simulator.replies import PREFIX, clamped, completed, refusal
 
 EventListener = Callable[[DeviceEvent, bytes], None]
 """Takes an event of a connection and the bytes of the reply; empty: there is no reply."""
@@ -127,6 +127,9 @@ class ArmConnection:
             message = event.message
             receivers = self._arm.receivers(message.address)
             replies = [self._reply_of(event, each) for each in receivers]
+            frames = [b"" if reply.startswith(PREFIX) else reply for reply in replies]
+            # Where one of several devices can reply, the others need not say why they cannot.
+            replies = frames if any(frames) else replies
             return b"".join(replies_to(self._arm.table, message.address, replies))
         if isinstance(event, TextReceived):
             for address in self._arm.receivers(event.address):

@@ -8,6 +8,8 @@ from typing import Any
 from cobotwire.protocol.errors import SIMULATED
 from cobotwire.protocol.table import Command, Field, Number, Variant
 
+PREFIX = SIMULATED.encode()
+
 
 class Unanswerable(Exception):
     """The arm does not know what a reply reports, or where to move, and sends no reply.
