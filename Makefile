@@ -173,6 +173,7 @@ table: .venv/.tools .venv/.native ## compare our clients with pymycobot on bad l
 
 conform: .venv/.tools .venv/.native ## break subjects of EDITIONS (all) on purpose; count what the conformance tests find; FULL=1: all mutants; WRITE=1: write the table
 	PYTHONPATH=tests $(BIN)/python -m mutation $(EDITIONS) $(if $(FULL),,--sample 3) $(if $(WRITE),--write)
+	POSES=500 $(BIN)/python -m pytest -q tests/conformance/device/test_start_poses.py -k any_pose
 
 defects: .venv/.tools .venv/.native ## test independent subjects with planted defects; write the table of docs/conformance.md
 	PYTHONPATH=tests:tests/peers $(BIN)/python -m defects $(or $(DEFECTS),--write)

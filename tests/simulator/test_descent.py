@@ -10,7 +10,7 @@ import pytest
 from scipy.optimize import least_squares
 
 from cobotwire.editions import load, names
-from cobotwire.simulator.kinematics import Geometry, Pose, flange, geometry_of
+from cobotwire.simulator.kinematics import Effort, Geometry, Pose, flange, geometry_of
 from cobotwire.simulator.kinematics.descent import _columns, descend
 from cobotwire.simulator.kinematics.forward import frames
 from cobotwire.simulator.kinematics.inverse import REFINING_RADIAN
@@ -55,7 +55,7 @@ def test_pose_is_found_from_angles_near_it(name: str) -> None:
         angles = [chance.uniform(-140, 140) for _ in range(geometry.joints)]
         guess = [angle + chance.uniform(-3, 3) for angle in angles]
         target = flange(geometry, angles)
-        found = descend(geometry, target, guess, limits, REFINING_RADIAN)
+        found = descend(geometry, target, guess, limits, REFINING_RADIAN, Effort())
         millimetres, degrees = flange(geometry, found).distance(target)
         assert millimetres < 0.01
         assert degrees < 0.01
@@ -83,7 +83,7 @@ def test_targets_at_the_edge_of_the_reach_are_those_of_another_least_squares() -
         pose = flange(MYCOBOT_280, guess)
         x, y, z = (part + chance.uniform(-0.3, 0.3) for part in pose.origin)
         target = pose._replace(origin=(x, y, z))
-        found = descend(MYCOBOT_280, target, guess, LIMITS, REFINING_RADIAN)
+        found = descend(MYCOBOT_280, target, guess, LIMITS, REFINING_RADIAN, Effort())
         other = _by_scipy(MYCOBOT_280, target, guess)
         (way, _), (way_there, _) = (
             flange(MYCOBOT_280, one).distance(target) for one in (found, other)

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import math
 import random
+from collections.abc import Sequence
 
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from cobotwire.simulator.kinematics import Geometry, Link, Pose, flange, nearest
-from cobotwire.simulator.kinematics.search import search
+from cobotwire.simulator.kinematics import Effort, Geometry, Link, Pose, flange, nearest
+from cobotwire.simulator.kinematics import search as searches
 from kinematic_samples import LIMITS, MYCOBOT_280, random_angles, within_limits
 
 Row = tuple[float, float, float, float]
@@ -42,6 +43,8 @@ LEVEL = Geometry(
     )
 )
 WIDE = (-160.0, 160.0)
+# Steps for all starts of a search.
+ENOUGH = 3000
 
 lengths = st.integers(0, 200).map(float)
 alphas = st.sampled_from([-90.0, 0.0, 90.0]) | st.integers(-180, 180).map(float)
@@ -49,11 +52,22 @@ links = st.builds(Link, st.integers(-180, 180).map(float), alphas, lengths, leng
 geometries = st.lists(links, min_size=4, max_size=7).map(lambda rows: Geometry(tuple(rows)))
 
 
+def search(
+    geometry: Geometry,
+    target: Pose,
+    present: Sequence[float],
+    limits: list[tuple[float, float]],
+    largest_turn: float = math.inf,
+) -> tuple[float, ...] | None:
+    """Return what a search finds that takes as long as it needs."""
+    return searches.search(geometry, target, present, limits, largest_turn, Effort(ENOUGH))
+
+
 def _reached(
     geometry: Geometry, target: Pose, present: list[float], limits: list[tuple[float, float]]
 ) -> tuple[float, float]:
     """Return how many millimetres and degrees the solution is from a target inside the reach."""
-    found = nearest(geometry, target, present, limits)
+    found = nearest(geometry, target, present, limits, effort=Effort(ENOUGH))
     assert found is not None
     assert all(low <= angle <= high for angle, (low, high) in zip(found, limits))
     return flange(geometry, found).distance(target)

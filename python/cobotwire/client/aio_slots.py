@@ -52,6 +52,7 @@ class AsyncSlots:
 
         Raises:
             LinkError: the transport is gone.
+            ReplyTimeout: the arm, which is simulated, cannot reply.
         """
         self._steps = steps = self._opened()
         readings = []
@@ -73,7 +74,9 @@ class AsyncSlots:
                 fields, requested_at, replied_at = answer
                 value = result_of(poll.request, fields)
                 readings.append(Reading(value, requested_at, replied_at))
-        except (ReplyTimeout, ProtocolError):
+        except (ReplyTimeout, ProtocolError) as error:
+            if isinstance(error, ReplyTimeout) and error.refusal:
+                raise
             return []
         except BaseException:
             self._give_up()

@@ -53,12 +53,15 @@ class Slots:
 
         Raises:
             LinkError: the transport is gone.
+            ReplyTimeout: the arm, which is simulated, cannot reply.
         """
         readings = []
         for poll in polls:
             try:
                 reading = self.reading(poll, at)
-            except (ReplyTimeout, ProtocolError):
+            except (ReplyTimeout, ProtocolError) as error:
+                if isinstance(error, ReplyTimeout) and error.refusal:
+                    raise
                 return []
             if reading is None:
                 return None

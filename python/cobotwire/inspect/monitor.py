@@ -66,6 +66,8 @@ class Monitor:
         self._listener = DiagnosingListener(codec)
         self._answered = 0
         self._error = ""
+        # Why a simulated arm cannot reply, by command: it is not asked again.
+        self._refused: dict[str, str] = {}
 
     def samples(self, count: int | None = None) -> Iterator[Observation]:
         """Yield ``count`` samples, or samples without end.
@@ -108,10 +110,15 @@ class Monitor:
         )
 
     def _query(self, command: Command) -> Any:
+        if command.name in self._refused:
+            self._error = self._refused[command.name]
+            return None
         try:
             value = getattr(self._arm, command.name)()
         except (ReplyTimeout, ProtocolError) as error:
             self._error = str(error)
+            if isinstance(error, ReplyTimeout) and error.refusal:
+                self._refused[command.name] = self._error
             return None
         self._answered += 1
         return value

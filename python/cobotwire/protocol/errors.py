@@ -141,6 +141,8 @@ _WHILE: dict[WaitedFor, str] = {
     "line": "while the line took no bytes",
     "reply": "while it waited for its reply",
 }
+# How the line of text begins that a simulated arm sends in place of a reply that it cannot make.
+SIMULATED = "simulated arm: "
 
 
 class ReplyTimeout(CobotwireError, TimeoutError):
@@ -155,6 +157,8 @@ class ReplyTimeout(CobotwireError, TimeoutError):
         waited_for: what the call waited for when the ``deadline`` of the client passed: ``turn``,
             ``hold``, ``line`` or ``reply``; empty if another time was over: that of the arm to
             reply, or of a line to be read before a request.
+        refusal: why the arm, which is simulated, cannot reply; empty if it did not say so. It will
+            not reply if it is sent again.
     """
 
     def __init__(
@@ -173,6 +177,8 @@ class ReplyTimeout(CobotwireError, TimeoutError):
         self.request = request or command
         self.waited_for = waited_for or ""
         meanwhile = "; ".join(received) if received else "nothing"
+        found = re.search(f"{SIMULATED}([^']+)", meanwhile)
+        self.refusal = found[1] if found else ""
         if waited_for is not None and not attempts:
             why = f"its deadline passed after {waited:.3f} s {_WHILE[waited_for]}"
             super().__init__(f"{self.request} was not sent: {why}")
@@ -183,7 +189,10 @@ class ReplyTimeout(CobotwireError, TimeoutError):
             what = f"no reply to {self.request} within {within}{waited:.3f} s after {times}"
         else:
             what = f"{self.request} was not sent within {waited:.3f} s"
-        super().__init__(f"{what}; received meanwhile: {meanwhile}")
+        if self.refusal:
+            super().__init__(f"{what}, because the arm is simulated: {self.refusal}")
+        else:
+            super().__init__(f"{what}; received meanwhile: {meanwhile}")
 
 
 class EditionUnknown(CobotwireError):

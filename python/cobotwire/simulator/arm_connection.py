@@ -16,7 +16,7 @@ from cobotwire.simulator.behaviour.registry import Unanswerable
 from cobotwire.simulator.devices import missing_joints, replies_to
 from cobotwire.simulator.events import Events
 from cobotwire.simulator.peer import IDLE_SECONDS
-from cobotwire.simulator.replies import clamped, completed
+from cobotwire.simulator.replies import PREFIX, clamped, completed, refusal
 
 EventListener = Callable[[DeviceEvent, bytes], None]
 """Takes an event of a connection and the bytes of the reply; empty: there is no reply."""
@@ -127,6 +127,9 @@ class ArmConnection:
             message = event.message
             receivers = self._arm.receivers(message.address)
             replies = [self._reply_of(event, each) for each in receivers]
+            frames = [b"" if reply.startswith(PREFIX) else reply for reply in replies]
+            # Where one of several devices can reply, the others need not say why they cannot.
+            replies = frames if any(frames) else replies
             return b"".join(replies_to(self._arm.table, message.address, replies))
         if isinstance(event, TextReceived):
             for address in self._arm.receivers(event.address):
@@ -147,8 +150,22 @@ class ArmConnection:
             reply = self._arm.perform(command, given, address) if performed else None
         except Unanswerable as error:
             why = str(error) or self._arm.table.robot.why_no_geometry
-            self._arm.note(command, f"no reply: {why}")
-            return b""
+            if command.safety == "query":
+                self._arm.note(command, f"no reply: {why}")
+                return refusal(why)
+            # It is replied to or acknowledged, as everything that the arm rejects.
+            self._arm.note(command, f"rejected: {why}")
+            return refusal(why) + self._encode_reply(command, given, None, address)
+        return self._encode_reply(command, given, reply, address)
+
+    def _encode_reply(
+        self,
+        command: Command,
+        given: Mapping[str, Any],
+        reply: Reply[Any] | Sized | None,
+        address: int | None,
+    ) -> bytes:
+        """Return the bytes of a reply or an acknowledgement; empty if the command has none."""
         if not command.requires_reply and not (command.ack and self._arm.acks):
             return b""
         if isinstance(reply, Sized):

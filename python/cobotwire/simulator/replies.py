@@ -5,7 +5,26 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
+from cobotwire.protocol.errors import SIMULATED
 from cobotwire.protocol.table import Command, Field, Number, Variant
+
+PREFIX = SIMULATED.encode()
+
+
+class Unanswerable(Exception):
+    """The arm does not know what a reply reports, or where to move, and sends no reply.
+
+    Its text is the reason; without one, the edition does not state the geometry.
+    """
+
+
+def refusal(why: str) -> bytes:
+    """Return the line that is sent in place of a reply: clients quote it in their errors.
+
+    It is text as firmware prints it, so every client passes over it. Details follow after a colon;
+    they are left to the notes.
+    """
+    return f"{SIMULATED}{why.partition(':')[0]}\r\n".encode("ascii", "replace")
 
 
 def completed(

@@ -10,16 +10,21 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable, Mapping
 
-from cobotwire.simulator.kinematics import Pose, nearest
+from cobotwire.simulator.kinematics import Effort, Pose, nearest
+from cobotwire.simulator.kinematics.descent import STEPS_OF_A_REQUEST
 from cobotwire.simulator.kinematics.straight import straight_line
+from cobotwire.simulator.replies import Unanswerable
 from cobotwire.simulator.state import ArmState
 
 # A straight line is solved at points that are at most this far apart.
-STEP_MILLIMETRES, STEP_DEGREES = 5.0, 2.0
+STEP_MILLIMETRES, STEP_DEGREES = 7.0, 3.0
 # A joint that would turn more than this between two such points cannot follow, in degrees.
 LARGEST_TURN = 30.0
-# One turn in steps of two degrees; in steps of five millimetres, beyond any reach.
-JOG_STEPS = 181
+# One turn in steps of three degrees; in steps of seven millimetres, beyond any reach.
+JOG_STEPS = 121
+
+# Reported numbers that differ by less are the same: it is far below the wire's steps.
+SAME = 1e-6
 
 Point = tuple[float, ...]
 
@@ -123,24 +128,25 @@ def go_to_coords(
     if not may_move(arm, speed):
         return False
     if arm.geometry is None:
-        return reject(arm, f"rejected: {arm.robot.why_no_geometry}")
+        raise Unanswerable
     start = arm.angles.target(now) if _queues(arm) else arm.angles.stop_at(now)
-    end = target if isinstance(target, Pose) else arm.pose_of(tuple(target), start)
-    goal = solve(arm, end, start)
+    if not isinstance(target, Pose):
+        target = tuple(target)
+        if is_there(arm, target, start):
+            return go_to_angles(arm, start, speed, now)
+    end = target if isinstance(target, Pose) else arm.pose_of(target, start)
+    effort = Effort()
+    goal = solve(arm, end, start, effort)
     if goal is None:
         return False
     if not straight:
         return go_to_angles(arm, goal, speed, now)
     here = arm.end(start)
-    points = (
-        [] if here is None else _follow(arm, straight_line(here, end, _steps(here, end)), start)
-    )
+    assert here is not None, "the geometry is known"
+    points = _follow(arm, straight_line(here, end, _steps(here, end)), start, effort)
     if not points:
-        return reject(
-            arm,
-            "rejected: the joints cannot follow a straight line",
-            arm.error_codes.no_straight_line,
-        )
+        why = f"rejected: the joints cannot follow a straight line{_ended(effort)}"
+        return reject(arm, why, arm.error_codes.no_straight_line)
     _go_along(arm, points, speed, now, queue=_queues(arm))
     return True
 
@@ -165,34 +171,56 @@ def jog(
     start = arm.angles.stop_at(now)
     here = arm.end(start)
     if here is None:
-        return reject(arm, f"rejected: {arm.robot.why_no_geometry}")
-    points = _follow(arm, (way(here, step * n) for n in range(1, JOG_STEPS)), start, whole=False)
+        raise Unanswerable
+    effort = Effort()
+    ends = (way(here, step * n) for n in range(1, JOG_STEPS))
+    points = _follow(arm, ends, start, effort, whole=False)
     if not points:
-        return reject(
-            arm, "rejected: the end cannot move in this direction", arm.error_codes.no_solution
-        )
+        why = f"rejected: the end cannot move in this direction{_ended(effort)}"
+        return reject(arm, why, arm.error_codes.no_solution)
+    if not effort.left:
+        arm.remarks.append(f"ends early: no joint angles were found further on{_ended(effort)}")
     _go_along(arm, points, speed, now, queue=False)
     return True
 
 
-def solve(arm: ArmState, end: Pose, start: Point) -> Point | None:
+def is_there(arm: ArmState, coords: Point, angles: Point) -> bool:
+    """Return whether coordinates are those that the arm reports at some angles.
+
+    Then these angles are the nearest solution. The coordinates are rounded, so calculating could
+    find others, far away where the elbow or the wrist is straight, or beyond a limit.
+    """
+    reported = arm.reported_coords(arm.on_ticks(angles))
+    return reported is not None and all(
+        math.isclose(one, other, abs_tol=SAME) for one, other in zip(reported, coords)
+    )
+
+
+def solve(arm: ArmState, end: Pose, start: Point, effort: Effort) -> Point | None:
     """Return the angles nearest to ``start`` that bring the end there; else None, with a note."""
     assert arm.geometry is not None, "the caller has checked this"
-    found = nearest(arm.geometry, arm.flange_for(end), start, arm.limits())
+    found = nearest(arm.geometry, arm.flange_for(end), start, arm.limits(), effort=effort)
     if found is None:
         coords = ", ".join(f"{value:.2f}" for value in end.coords)
-        reject(arm, f"rejected: no joint angles reach ({coords})", arm.error_codes.no_solution)
+        why = f"rejected: no joint angles reach ({coords}){_ended(effort)}"
+        reject(arm, why, arm.error_codes.no_solution)
     return found
 
 
+def _ended(effort: Effort) -> str:
+    """Return what to add to a reason if the search has come to its end."""
+    return "" if effort.left else f"; the search ended after {STEPS_OF_A_REQUEST} steps"
+
+
 def _follow(
-    arm: ArmState, ends: Iterable[Pose], start: Point, *, whole: bool = True
+    arm: ArmState, ends: Iterable[Pose], start: Point, effort: Effort, *, whole: bool = True
 ) -> list[Point]:
     """Return the angles along a way; if its end cannot be reached, nothing, or the first part."""
     assert arm.geometry is not None, "the caller has checked this"
     limits, points = arm.limits(), [start]
     for end in ends:
-        found = nearest(arm.geometry, arm.flange_for(end), points[-1], limits, LARGEST_TURN)
+        target = arm.flange_for(end)
+        found = nearest(arm.geometry, target, points[-1], limits, LARGEST_TURN, effort)
         if found is None or max(abs(a - b) for a, b in zip(found, points[-1])) > LARGEST_TURN:
             return [] if whole else points[1:]
         points.append(found)

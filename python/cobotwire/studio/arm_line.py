@@ -159,12 +159,13 @@ class ArmLine:
 
     def _poll(self) -> None:
         due = time.monotonic() + (1 / self._rate if self._polled else 0.1)
-        for command in self._polled:
+        for command in tuple(self._polled):
             try:
                 getattr(self._arm, command.name)()
-            except (ReplyTimeout, ProtocolError):
+            except (ReplyTimeout, ProtocolError) as error:
                 # Pages see on the line what came instead.
-                continue
+                if isinstance(error, ReplyTimeout) and error.refusal:
+                    self._polled.remove(command)
         self._arm.listen(max(0.0, due - time.monotonic()))
 
     def _reopen(self) -> None:

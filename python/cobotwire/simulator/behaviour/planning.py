@@ -6,8 +6,9 @@ from cobotwire.editions.mycobot280 import messages as m
 from cobotwire.simulator.behaviour.motion import moves_straight
 from cobotwire.simulator.behaviour.registry import Unanswerable, behaviour, known, query, row
 from cobotwire.simulator.coordinates import pose_with
+from cobotwire.simulator.kinematics import Effort
 from cobotwire.simulator.state import ArmState
-from cobotwire.simulator.targets import go_to_coords, go_to_encoders, solve
+from cobotwire.simulator.targets import go_to_coords, go_to_encoders, is_there, solve
 
 # The speed at which the simulated arm moves to each recorded point, in percent.
 DRAG_SPEED = 50
@@ -57,7 +58,9 @@ def solve_inv_kinematics(
     if arm.geometry is None:
         raise Unanswerable
     near = tuple(request.angles)
-    found = solve(arm, arm.pose_of(request.coords, near), near)
+    if is_there(arm, tuple(request.coords), near):
+        return m.SolveInvKinematicsReply(angles=row(near))
+    found = solve(arm, arm.pose_of(request.coords, near), near, Effort())
     return m.SolveInvKinematicsReply(angles=row(near if found is None else found))
 
 

@@ -17,14 +17,8 @@ from typing import Any, NamedTuple, TypeVar
 
 from cobotwire.protocol.messages import Reply, Request
 from cobotwire.protocol.table import Command, Direction, Table
+from cobotwire.simulator.replies import Unanswerable as Unanswerable
 from cobotwire.simulator.state import ArmState
-
-
-class Unanswerable(Exception):
-    """The arm does not know what a reply reports, and sends none.
-
-    Its text is the reason; without one, the edition does not state the geometry.
-    """
 
 
 class Sized(NamedTuple):

@@ -15,8 +15,9 @@ from cobotwire.simulator.kinematics.geometry import Angles, Geometry
 from cobotwire.simulator.kinematics.nearness import Limits
 from cobotwire.simulator.kinematics.pose import Pose, Vector, cross
 
-# How many steps are taken at most.
-STEPS = 60
+# How many steps are taken at most: of one descent, and of all descents for one request. A step
+# takes about 0.1 ms, and a reply must not wait for a search.
+STEPS, STEPS_OF_A_REQUEST = 60, 80
 # The descent ends if it has come no nearer by this share within so many steps.
 PROGRESS, PATIENCE = 0.02, 8
 # The damping of a step: at first, and the least, in square millimetres.
@@ -28,12 +29,32 @@ CLOSE = 1e-6
 X, Y, Z = 0, 1, 2
 
 
+class Effort:
+    """The steps that the descents for one request may still take.
+
+    Steps are counted, not time: so a simulated arm does the same on any machine and any clock.
+    """
+
+    def __init__(self, steps: int = STEPS_OF_A_REQUEST) -> None:
+        self.left = steps
+
+    def spend(self, steps: int = 1) -> None:
+        """Count steps that were taken."""
+        self.left = max(0, self.left - steps)
+
+
 def descend(
-    geometry: Geometry, target: Pose, start: Sequence[float], limits: Limits, radian: float
+    geometry: Geometry,
+    target: Pose,
+    start: Sequence[float],
+    limits: Limits,
+    radian: float,
+    effort: Effort,
 ) -> Angles:
     """Return angles inside the limits, near ``start``, at which the flange is nearest to a target.
 
-    ``radian`` is the number of millimetres that weigh as much as a turn by one radian.
+    ``radian`` is the number of millimetres that weigh as much as a turn by one radian. If the
+    ``effort`` comes to its end first, the angles are the nearest so far.
     """
     angles, damping = clamped(start, limits), DAMPING
     here = frames(geometry, angles)
@@ -41,8 +62,9 @@ def descend(
     distance = best = math.hypot(*errors)
     waited = 0
     for _ in range(STEPS):
-        if distance < CLOSE or waited > PATIENCE:
+        if distance < CLOSE or waited > PATIENCE or not effort.left:
             break
+        effort.spend()
         step = _step(_columns(geometry, here, radian), errors, damping, angles, limits)
         tried = clamped([angle + turn for angle, turn in zip(angles, step)], limits)
         frames_there = frames(geometry, tried)

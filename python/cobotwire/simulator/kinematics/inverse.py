@@ -1,19 +1,18 @@
 """Inverse kinematics: the joint angles that bring the flange to a pose, for any geometry.
 
-Arms with the axes of the 280 have a solution in closed form. A pose may lie slightly out of their
-reach, because the wire rounds it or the arm is stretched out; then least squares find the nearest
-angles. For other arms, ``search`` finds the angles step by step.
+Arms with the axes of the 280, the 320 or the mechArm have a solution in closed form. A pose may lie
+slightly out of their reach, because the wire rounds it or the arm is stretched out; then least
+squares find the nearest angles. For other arms, ``search`` finds the angles step by step.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from functools import lru_cache
 from itertools import islice
 
 from cobotwire.simulator.kinematics.closed_form import ROUNDING, is_solved, solutions
-from cobotwire.simulator.kinematics.descent import descend
+from cobotwire.simulator.kinematics.descent import Effort, descend
 from cobotwire.simulator.kinematics.geometry import Angles, Geometry
 from cobotwire.simulator.kinematics.nearness import (
     DEGREES,
@@ -23,6 +22,8 @@ from cobotwire.simulator.kinematics.nearness import (
     Limits,
     by_way,
     misses,
+    way_between,
+    within,
 )
 from cobotwire.simulator.kinematics.pose import Pose
 from cobotwire.simulator.kinematics.search import search
@@ -31,8 +32,10 @@ from cobotwire.simulator.kinematics.search import search
 NEAR_MILLIMETRES, NEAR_DEGREES = 10.0, 3.0
 # How many guesses are refined before a target counts as out of reach.
 GUESSES = 8
-# How many results are kept.
-REMEMBERED = 1024
+# How many solutions in closed form take as long as a step of a descent. A straight wrist has 96.
+SOLUTIONS_A_STEP = 2
+# How many solutions may continue a way, before all are compared.
+CONTINUING = 4
 # A turn weighs as much as the distance by which it moves the ends of the three axes: 7.07 mm for a
 # degree. This is nearly the ratio of the two tolerances, so least squares come near to both alike.
 REFINING_RADIAN = math.degrees(1) * 5 * math.sqrt(2)
@@ -44,6 +47,7 @@ def nearest(
     present: Sequence[float],
     limits: Limits,
     largest_turn: float = math.inf,
+    effort: Effort | None = None,
 ) -> Angles | None:
     """Return the solution inside the limits that is nearest to the present angles, or None.
 
@@ -55,23 +59,27 @@ def nearest(
             form, it is the nearest of those that the search finds.
         limits: the lowest and the highest angle of each joint, in degrees.
         largest_turn: solutions in which a joint turns further than this, in degrees, are of no
-            use; the search for them is left out.
+            use; the search for them is left out. The first solution within it is taken.
+        effort: bounds the search; None: that of one request. What it does not find counts as out of
+            reach.
     """
-    return _nearest(geometry, target, tuple(present), tuple(limits), largest_turn)
-
-
-# Programs return to the same places, and a place that is out of reach takes the longest.
-@lru_cache(maxsize=REMEMBERED)
-def _nearest(
-    geometry: Geometry,
-    target: Pose,
-    present: Angles,
-    limits: tuple[tuple[float, float], ...],
-    largest_turn: float,
-) -> Angles | None:
+    effort = Effort() if effort is None else effort
     if not is_solved(geometry):
-        return search(geometry, target, present, limits, largest_turn)
+        return search(geometry, target, present, limits, largest_turn, effort)
+    if largest_turn < math.inf:
+        # The next point of a way: nearly always the first solution continues it.
+        for one in islice(solutions(geometry, target, present), CONTINUING):
+            near = within(one, present, limits, ROUNDING)
+            if (
+                near is not None
+                and way_between(near, present)[0] <= largest_turn
+                and not misses(geometry, near, target, EXACT_MILLIMETRES, EXACT_DEGREES)
+            ):
+                return near
+    if not effort.left:
+        return None
     found = list(solutions(geometry, target, present))
+    effort.spend(len(found) // SOLUTIONS_A_STEP)
     for one in by_way(found, present, limits, ROUNDING):
         if not misses(geometry, one, target, EXACT_MILLIMETRES, EXACT_DEGREES):
             return one
@@ -81,7 +89,7 @@ def _nearest(
         if not misses(geometry, one, target, NEAR_MILLIMETRES, NEAR_DEGREES)
     )
     for guess in islice(almost, GUESSES):
-        better = descend(geometry, target, guess, limits, REFINING_RADIAN)
+        better = descend(geometry, target, guess, limits, REFINING_RADIAN, effort)
         if not misses(geometry, better, target, MILLIMETRES, DEGREES):
             return better
     return None

@@ -8,6 +8,8 @@ from typing import NamedTuple
 
 Vector = tuple[float, float, float]
 NOWHERE: Vector = (0.0, 0.0, 0.0)
+# Below this cosine of ry, rx and rz turn about the same axis.
+UPRIGHT = 1e-9
 
 
 class Pose(NamedTuple):
@@ -32,8 +34,11 @@ class Pose(NamedTuple):
     @property
     def coords(self) -> tuple[float, ...]:
         """The six coordinates: x y z in millimetres, then degrees: rx, rz -180..180, ry -90..90."""
-        (xx, xy, xz), (_, _, yz), (_, _, zz), origin = self
+        (xx, xy, xz), (_, yy, yz), (_, zy, zz), origin = self
         rx, ry, rz = math.atan2(yz, zz), math.atan2(-xz, math.hypot(xx, xy)), math.atan2(xy, xx)
+        if math.hypot(xx, xy) < UPRIGHT:
+            # Both turns are about one axis, and the last digits would decide about each.
+            rx, rz = math.atan2(-zy, yy), 0.0
         return (*origin, math.degrees(rx), math.degrees(ry), math.degrees(rz))
 
     def then(self, other: Pose) -> Pose:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 
-from cobotwire.simulator.kinematics.descent import clamped, descend
+from cobotwire.simulator.kinematics.descent import Effort, clamped, descend
 from cobotwire.simulator.kinematics.geometry import Angles, Geometry
 from cobotwire.simulator.kinematics.nearness import (
     DEGREES,
@@ -31,12 +31,14 @@ def search(
     target: Pose,
     present: Sequence[float],
     limits: Limits,
-    largest_turn: float = math.inf,
+    largest_turn: float,
+    effort: Effort,
 ) -> Angles | None:
     """Return angles inside the limits that bring the flange to ``target``; None: none were found.
 
-    The search starts only at angles within ``largest_turn`` degrees of the present ones: for a
-    point on the way of a motion, whose joints cannot jump. What it finds may be further away.
+    The search ends with the ``effort``. It starts only at angles within ``largest_turn`` degrees of
+    the present ones: for a point on the way of a motion, whose joints cannot jump. What it finds
+    may be further away.
 
     Of several solutions, the nearest to ``present`` is returned. If none is exact, angles that miss
     the target by less than the wire's rounding count as a solution.
@@ -45,10 +47,12 @@ def search(
         return None
     exact: list[Angles] = []
     rough: list[Angles] = []
-    first, *others = _starts(present, limits)
-    near = (start for start in others if _turn(start, present) <= largest_turn)
-    for index, start in enumerate((first, *near)):
-        found = descend(geometry, target, start, limits, SEARCH_RADIAN)
+    for index, start in enumerate(_starts(present, limits)):
+        if index and _turn(start, present) > largest_turn:
+            continue
+        if not effort.left:
+            break
+        found = descend(geometry, target, start, limits, SEARCH_RADIAN, effort)
         if not misses(geometry, found, target, EXACT_MILLIMETRES, EXACT_DEGREES):
             exact.append(found)
             # The joints' own start usually leads to the nearest solution.

@@ -1,0 +1,128 @@
+"""Test that what a simulated arm cannot know reaches every user with the reason, and is asked once.
+
+A real arm of the same edition replies, so nothing may be left out before the arm has refused.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import time
+from collections import Counter
+from typing import Any
+
+import pytest
+
+from cobotwire import codec as codecs
+from cobotwire.editions import load, names
+from cobotwire.inspect.monitor import Monitor
+from cobotwire.protocol.errors import ReplyTimeout
+from cobotwire.session import RequestReceived
+from cobotwire.session.device import DeviceEvent
+from cobotwire.simulator import MemoryTransport, PtyServer, SimulatedArm, SteppedClock, TcpServer
+from cobotwire.studio.arm_line import ArmLine, PortOptions
+
+WITHOUT_GEOMETRY = [name for name in names() if load(name).TABLE.robot.geometry is None]
+REASON = "the geometry of this arm is not known"
+EDITION: Any = load("pro630")
+
+
+class Silent:
+    """An arm that does not reply to get_coords, and does not say why."""
+
+    wait = None
+
+    def __init__(self, arm: SimulatedArm) -> None:
+        self._arm = arm
+
+    def receive(self, data: bytes) -> bytes:
+        """Pass on what is received; drop text."""
+        reply = self._arm.receive(data)
+        return reply if reply.startswith(b"\xfe") else b""
+
+    def flush(self) -> bytes:
+        """Pass on what the arm sends by itself."""
+        return self._arm.flush()
+
+
+def _counting() -> tuple[SimulatedArm, Counter[str]]:
+    """Return an arm, and how often it receives each request."""
+    received: Counter[str] = Counter()
+
+    def count(event: DeviceEvent, reply: bytes) -> None:
+        if isinstance(event, RequestReceived):
+            received[event.message.command.name] += 1
+
+    return SimulatedArm(EDITION.TABLE, powered=True, on_event=count), received
+
+
+def _in_memory(package: Any, silent: bool = False) -> Any:
+    clock = SteppedClock()
+    arm = SimulatedArm(package.TABLE, clock=clock, powered=True)
+    return package.CLIENT(MemoryTransport(Silent(arm) if silent else arm, clock))
+
+
+@pytest.mark.parametrize("edition", WITHOUT_GEOMETRY)
+def test_error_of_unanswerable_query_says_why_in_every_edition(edition: str) -> None:
+    package: Any = load(edition)
+    query = package.TABLE.in_role("coordinates").name
+    with _in_memory(package) as arm:
+        with pytest.raises(ReplyTimeout, match=f"because the arm is simulated: {REASON}$") as error:
+            getattr(arm, query)()
+        assert error.value.refusal == REASON
+        assert getattr(arm, package.TABLE.in_role("joints").name)() is not None
+
+
+@pytest.mark.parametrize(
+    "serve", [PtyServer, lambda arm: TcpServer(arm.connect)], ids=["pty", "tcp"]
+)
+def test_refused_motion_is_noted_on_the_line_and_query_says_why(serve: Any) -> None:
+    seen: list[bytes] = []
+    arm = SimulatedArm(EDITION.TABLE, powered=True)
+    with serve(arm) as server, EDITION.CLIENT(server.url) as client:
+        client.add_traffic_listener(lambda traffic: seen.append(traffic.data))
+        # It is acknowledged, as a real arm acknowledges what it rejects.
+        client.send_coords([100, 0, 200, 0, 0, 0], 50, ack_within=5.0)
+        assert f"simulated arm: {REASON}".encode() in b"".join(seen)
+        assert arm.notes[-1].text.startswith(f"rejected: {REASON}")
+        with pytest.raises(ReplyTimeout, match=REASON):
+            client.get_coords()
+
+
+def test_silence_without_a_reason_is_reported_as_before() -> None:
+    with _in_memory(EDITION, silent=True) as arm:
+        with pytest.raises(ReplyTimeout, match="received meanwhile: nothing") as error:
+            arm.get_coords()
+    assert error.value.refusal == ""
+
+
+def test_stream_of_what_the_arm_cannot_know_ends_with_the_reason() -> None:
+    async def sample(url: str) -> None:
+        async with EDITION.ASYNC_CLIENT(url) as arm:
+            async for _ in arm.stream(EDITION.messages.GetCoords(), rate=20):
+                pytest.fail("the arm replied")
+
+    with PtyServer(SimulatedArm(EDITION.TABLE, powered=True)) as server:
+        with EDITION.CLIENT(server.url) as arm, pytest.raises(ReplyTimeout, match=REASON):
+            next(iter(arm.stream(EDITION.messages.GetCoords(), rate=20)))
+        with pytest.raises(ReplyTimeout, match=REASON):
+            asyncio.run(sample(server.url))
+
+
+@pytest.mark.parametrize(("silent", "unanswered"), [(False, 3), (True, 9)])
+def test_monitor_asks_again_only_if_the_arm_did_not_refuse(silent: bool, unanswered: int) -> None:
+    with _in_memory(EDITION, silent=silent) as arm:
+        *_, last = Monitor(arm, codecs.load(EDITION.TABLE), 10).samples(3)
+    assert last.values["get_coords"] is None
+    assert last.values["get_angles"] is not None
+    assert last.unanswered == unanswered, "a query is sent three times"
+    assert (REASON in last.error) is not silent
+
+
+def test_studio_stops_polling_what_the_arm_cannot_know() -> None:
+    simulated, received = _counting()
+    with PtyServer(simulated) as server, ArmLine(EDITION, PortOptions(server.url), 50.0):
+        until = time.monotonic() + 20
+        while received["get_angles"] < 5 and time.monotonic() < until:
+            time.sleep(0.02)
+    assert received["get_angles"] >= 5
+    assert received["get_coords"] == 3, "a query is sent three times"

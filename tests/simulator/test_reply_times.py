@@ -1,0 +1,134 @@
+"""Test that no reply waits for a search of joint angles, whatever the target.
+
+Work is counted in calls of functions, which no other load of the machine changes.
+"""
+
+from __future__ import annotations
+
+import cProfile
+import random
+import statistics
+import time
+from collections.abc import Iterator
+from contextlib import suppress
+from dataclasses import replace
+from typing import Any
+
+import pytest
+
+from cobotwire.editions import load, names
+from cobotwire.protocol.errors import UsageError
+from cobotwire.protocol.table import Command, Table
+from cobotwire.simulator import PtyServer, SimulatedArm
+from cobotwire.simulator.kinematics import Geometry, coords_of, flange, geometry_of, nearest
+from cobotwire.simulator.kinematics.closed_form import is_solved
+from simulator.bench import Bench
+
+WITH_GEOMETRY = [name for name in names() if geometry_of(load(name).TABLE) is not None]
+# Commands that calculate joint angles; no edition has all of them.
+SOLVING = (
+    *("send_coord", "send_coords", "jog_coord", "jog_rpy", "jog_increment_coord"),
+    "solve_inv_kinematics",
+)
+# A call takes a fifth of a microsecond. The most that 7,400 such requests took were 58,352 calls.
+MOST_CALLS = 75_000
+SECONDS = 0.02
+ROUND = (0.0, 0.0, 0.0, 10.0, -20.0, 90.0, -90.0)
+
+
+def _limits(table: Table) -> list[tuple[float, float]]:
+    numbers = table.in_role("joint targets").request[0].fields[0].cases[0].numbers
+    return [
+        (max(n.physical(n.minimum), -165.0), min(n.physical(n.maximum), 165.0)) for n in numbers
+    ]
+
+
+def _pose(chance: random.Random, limits: list[tuple[float, float]]) -> tuple[float, ...]:
+    """Draw angles; often a straight elbow or wrist, where a pose has no or many solutions."""
+    if chance.random() < 0.4:
+        return tuple(chance.uniform(low, high) for low, high in limits)
+    return tuple(min(max(chance.choice(ROUND), low), high) for low, high in limits)
+
+
+def _target(chance: random.Random, table: Table) -> tuple[float, ...]:
+    """Draw coordinates: reachable, at the edge of the reach, or nearly anywhere."""
+    geometry = geometry_of(table)
+    assert geometry is not None
+    x, y, z, *turns = coords_of(geometry, _pose(chance, _limits(table)))
+    share = chance.choice((1.0, 0.999, 1.002, chance.uniform(0.2, 1.3)))
+    return tuple(round(value, 2) for value in (x * share, y * share, z * share, *turns))
+
+
+def _requests(table: Table, count: int) -> Iterator[tuple[tuple[float, ...], Command, list[Any]]]:
+    """Yield start poses, and requests for which an arm calculates joint angles."""
+    chance = random.Random(320)
+    commands = [command for command in table.commands if command.name in SOLVING]
+    for _ in range(count):
+        start, target = _pose(chance, _limits(table)), _target(chance, table)
+        command, axis = chance.choice(commands), chance.randint(1, 6)
+        values = {"coords": target, "axis": axis, "coord": target[axis - 1], "angles": start}
+        values |= {"direction": chance.randint(0, 1), "increment": chance.uniform(-200, 200)}
+        values |= {"speed": 50, "mode": 1}
+        if command.name == "jog_rpy":
+            values["axis"] = 1 + axis % 3
+        yield start, command, [values[field.name] for field in command.request[-1].fields]
+
+
+@pytest.mark.parametrize("edition", WITH_GEOMETRY)
+def test_work_for_a_reply_is_bounded_for_every_target(edition: str) -> None:
+    table, worst = load(edition).TABLE, (0, "nothing")
+    bench, sent = Bench(table), 0
+    for start, command, values in _requests(table, 40):
+        bench.send("stop")
+        bench.arm.state.angles.place(start, bench.clock())
+        with cProfile.Profile() as profile, suppress(UsageError):
+            bench.send(command.name, *values)
+            sent += 1
+        calls = sum(entry.callcount for entry in profile.getstats())
+        worst = max(worst, (calls, f"{command.name}{values} from {start}"))
+        bench.clock.sleep(100)
+    assert sent > 20
+    assert worst[0] < MOST_CALLS, worst
+
+
+def test_next_reply_of_the_320_does_not_wait_for_unreachable_targets() -> None:
+    edition: Any = load("mycobot320")
+    simulated, times = SimulatedArm(edition.TABLE, powered=True), []
+    with PtyServer(simulated) as server, edition.CLIENT(server.url) as arm:
+        for place in range(9):
+            started = time.perf_counter()
+            arm.send_coords([300.0 + place, 150.0, 400.0, -90.0, 30.0, 10.0], 50)
+            arm.get_angles()
+            times.append(time.perf_counter() - started)
+    assert {note.command for note in simulated.notes} == {"send_coords"}
+    # Some of them may wait for other processes.
+    assert statistics.median(times) < SECONDS
+
+
+@pytest.mark.parametrize("edition", WITH_GEOMETRY)
+def test_pose_of_any_angles_is_found_by_the_shipped_arms(edition: str) -> None:
+    table = load(edition).TABLE
+    geometry, limits, chance = geometry_of(table), _limits(table), random.Random(9)
+    assert geometry is not None
+    assert is_solved(geometry)
+    for _ in range(100):
+        angles, present = (_pose(chance, limits) for _ in range(2))
+        target = flange(geometry, angles)
+        found = nearest(geometry, target, present, limits)
+        assert found is not None, (angles, present)
+        assert max(flange(geometry, found).distance(target)) <= 2e-3
+
+
+def test_search_that_is_too_long_ends_and_says_so() -> None:
+    edition: Any = load("mycobot320")
+    stated = geometry_of(edition.TABLE)
+    assert stated is not None
+    # No axes of another arm are those of a closed form.
+    skew = Geometry(tuple(replace(link, alpha=link.alpha + 7) for link in stated.links))
+    arm = SimulatedArm(edition.TABLE, powered=True, geometry=skew)
+    with PtyServer(arm) as server, edition.CLIENT(server.url) as client:
+        client.send_coords([300.0, 150.0, 400.0, -90.0, 30.0, 10.0], 50)
+        client.get_angles()
+    [note] = arm.notes
+    assert note.text.startswith("rejected: no joint angles reach (300.00, 150.00, 400.00")
+    assert note.text.endswith("; the search ended after 80 steps")
