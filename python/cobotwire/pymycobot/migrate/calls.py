@@ -8,7 +8,11 @@ from functools import lru_cache
 from importlib.resources import files
 from typing import Any
 
+import cobotwire
+import cobotwire.pymycobot
 from cobotwire.pymycobot.layer.absent import absent
+
+_LAYER = "cobotwire.pymycobot.layer."
 
 
 @dataclass(frozen=True, slots=True)
@@ -20,18 +24,21 @@ class Call:
         parameters: the library's parameters in their order, each with its default as text.
         arguments: our arguments in their order: the library's parameter, and our default.
         result: how the library gives the result.
-        row: whether our result is a named tuple where the library's is a list.
+        gives: what to make of our result to have the library's: ``same``, ``int``, ``list``,
+            ``ints``; ``nothing`` if only the library has one, ``parts`` if no word does it.
         keywords: our arguments that have no position.
         address: the library's parameter that selects the device; empty if there is none.
+        by_hand: whether a helper of the layer has the method, not the generated class.
     """
 
     calls: str
     parameters: dict[str, str]
     arguments: dict[str, tuple[str, str]]
     result: str = "plain"
-    row: bool = False
+    gives: str = "nothing"
     keywords: tuple[str, ...] = ()
     address: str = ""
+    by_hand: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,6 +46,7 @@ class LibraryClass:
     """A class of the library.
 
     Attributes:
+        name: its name.
         opens: what its constructor opens.
         constructor: the parameters of its constructor.
         native: our class.
@@ -50,6 +58,7 @@ class LibraryClass:
         absent: why names have no counterpart.
     """
 
+    name: str
     opens: str
     constructor: tuple[str, ...]
     native: str
@@ -60,12 +69,41 @@ class LibraryClass:
     methods: dict[str, Call]
     absent: dict[str, str]
 
+    def call(self, method: str) -> Call | None:
+        """Return how a method is called in our client; None if no single call does the same."""
+        found = self.methods.get(method)
+        if found is None or not self.has(method) or not hasattr(self.client, found.calls):
+            return None
+        # Helpers of the layer send something else than the command of that name.
+        return found if found.by_hand or not self.is_by_hand(method) else None
+
+    def has(self, method: str) -> bool:
+        """Return whether the library's class has a method."""
+        return hasattr(self.layer, method)
+
+    def is_by_hand(self, method: str) -> bool:
+        """Return whether the layer does more for a method than to send one command."""
+        return bool(getattr(self.layer, method).__module__.startswith(_LAYER))
+
+    @property
+    def client(self) -> type:
+        """Our class."""
+        found: type = getattr(cobotwire, self.native)
+        return found
+
+    @property
+    def layer(self) -> type:
+        """Our class that has the library's methods."""
+        found: type = getattr(cobotwire.pymycobot, self.name)
+        return found
+
 
 def _waited(kind: str, parameters: dict[str, str], *names: str, address: str = "") -> Call:
     given = [each for each in parameters if each != address]
     arguments = {name: (each, "") for name, each in zip(names, given)}
     arguments["timeout"] = ("timeout", "")
-    return Call(f"move_{kind}", parameters, arguments, keywords=("timeout",), address=address)
+    keywords = ("timeout",)
+    return Call(f"move_{kind}", parameters, arguments, "plain", "nothing", keywords, address, True)
 
 
 def _waits(timeout: str = "15", address: str = "") -> dict[str, Call]:
@@ -80,11 +118,11 @@ def _waits(timeout: str = "15", address: str = "") -> dict[str, Call]:
 
 
 # Methods of several requests that our clients have too, and those of helpers of the layer.
-_SEVERAL = {**_waits(), "close": Call("close", {}, {})}
+_SEVERAL = {**_waits(), "close": Call("close", {}, {}, gives="same", by_hand=True)}
 _OF_HELPERS = {
     "Limbs": {
         **_waits(address="id"),
-        "get_base_coords": Call("get_base_coords", {}, {}),
+        "get_base_coords": Call("get_base_coords", {}, {}, gives="parts", by_hand=True),
         "set_encoders": Call(
             "set_encoders",
             {"id": "", "encoders": "", "speed": ""},
@@ -92,6 +130,7 @@ _OF_HELPERS = {
             result="one_speed",
             keywords=("speed",),
             address="id",
+            by_hand=True,
         ),
     },
     "WaitingLonger": _waits("30"),
@@ -124,6 +163,7 @@ def _class(name: str, given: dict[str, Any], like: LibraryClass | None) -> Libra
     homes = (_HOMES.get(each, _HOME) for each in known)
     home = next(homes, like.home if like else _HOME).format(joints=given["joints"])
     return LibraryClass(
+        name,
         given["opens"],
         tuple(given["constructor"]),
         given["native"],

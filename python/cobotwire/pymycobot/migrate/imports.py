@@ -8,7 +8,6 @@ import libcst as cst
 from libcst.helpers import get_full_name_for_node
 
 from cobotwire.pymycobot.migrate.calls import library
-from cobotwire.pymycobot.migrate.names import LIBRARY
 
 OURS = "cobotwire.pymycobot"
 # What the layer has beside classes, by the module of the library.
@@ -17,12 +16,6 @@ KEPT = {
     "genre": {"Angle", "Coord"},
     "utils": {"get_port_list", "detect_port_of_basic"},
 }
-
-
-def is_of_library(node: cst.ImportFrom) -> bool:
-    """Return whether a line imports names of the library."""
-    name = get_full_name_for_node(node.module) if node.module else ""
-    return (name or "").partition(".")[0] == LIBRARY
 
 
 def rewritten(node: cst.ImportFrom) -> tuple[list[cst.ImportFrom], list[str]]:

@@ -1,111 +1,258 @@
-"""Finds the names of a program that stand for arms, and those that stand for their results."""
+"""Finds what the variables and functions of a program may be."""
 
 from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterable
 
 import libcst as cst
 from libcst.helpers import get_full_name_for_node
 
-from cobotwire.pymycobot.migrate.calls import LibraryClass, library
+from cobotwire.pymycobot.migrate.calls import Call, library
+from cobotwire.pymycobot.migrate.keys import Key, Keys
+from cobotwire.pymycobot.migrate.values import (
+    NONE,
+    UNKNOWN,
+    Arm,
+    Instance,
+    Kind,
+    Result,
+    Value,
+    Values,
+)
 
 LIBRARY = "pymycobot"
-# What a program does with a list and cannot do with a tuple.
-_CHANGING = {"append", "extend", "insert", "remove", "pop", "clear", "sort", "reverse", "copy"}
+_NOTHING: Values = frozenset()
 
 
-class Names(cst.CSTVisitor):
-    """What the names of a program are.
-
-    Attributes:
-        classes: classes of the library by the names that the program gives them.
-        several: names that stand for different classes.
-        arms: variables and attributes (``self.mc``) that are assigned an arm, with its class.
-        results: variables that are assigned the result of a call of an arm.
-        lists: those of ``results`` that are used in a way that only a list allows.
-    """
+class Bindings(cst.CSTVisitor):
+    """Where a program gives values to names, calls functions, and returns values."""
 
     def __init__(self) -> None:
-        self.classes: dict[str, str] = {}
-        self.several: set[str] = set()
-        self.arms: dict[str, LibraryClass] = {}
-        self.results: set[str] = set()
-        self.lists: set[str] = set()
+        self.assigned: list[tuple[cst.CSTNode, cst.BaseExpression | None]] = []
+        self.annotated: list[tuple[cst.CSTNode, cst.BaseExpression]] = []
+        self.calls: list[cst.Call] = []
+        self.functions: list[cst.FunctionDef] = []
+        self.returns: dict[cst.FunctionDef, list[cst.BaseExpression]] = defaultdict(list)
+        # The names that imports give to what is not the module of that name.
+        self.imported: set[str] = set()
+        self.uses_library = False
+        self._inside: list[cst.FunctionDef] = []
+
+    def visit_Import(self, node: cst.Import) -> None:
+        self._import(alias for alias in node.names if alias.asname)
 
     def visit_ImportFrom(self, node: cst.ImportFrom) -> None:
-        module = get_full_name_for_node(node.module) if node.module else ""
-        if (module or "").partition(".")[0] != LIBRARY or isinstance(node.names, cst.ImportStar):
-            return
-        for alias in node.names:
-            name = alias.evaluated_name
-            if name in library():
-                self.classes[alias.evaluated_alias or name] = name
+        self.uses_library = self.uses_library or is_of_library(node)
+        if not isinstance(node.names, cst.ImportStar):
+            self._import(node.names)
+
+    def _import(self, aliases: Iterable[cst.ImportAlias]) -> None:
+        self.imported |= {each.evaluated_alias or each.evaluated_name for each in aliases}
 
     def visit_Assign(self, node: cst.Assign) -> None:
         for target in node.targets:
-            self._assigned(get_full_name_for_node(target.target), node.value)
-            self._changed(target.target)
+            self._assign(target.target, node.value)
 
     def visit_AnnAssign(self, node: cst.AnnAssign) -> None:
-        name = get_full_name_for_node(node.target)
-        self._annotated(name, node.annotation)
+        self.annotated.append((node.target, node.annotation.annotation))
         if node.value is not None:
-            self._assigned(name, node.value)
+            self._assign(node.target, node.value)
 
-    def visit_Param(self, node: cst.Param) -> None:
-        if node.annotation is not None:
-            self._annotated(node.name.value, node.annotation)
+    def visit_NamedExpr(self, node: cst.NamedExpr) -> None:
+        self._assign(node.target, node.value)
 
     def visit_WithItem(self, node: cst.WithItem) -> None:
         if node.asname is not None:
-            self._assigned(get_full_name_for_node(node.asname.name), node.item)
+            self._assign(node.asname.name, node.item)
 
     def visit_AugAssign(self, node: cst.AugAssign) -> None:
-        self._changed(node.target)
-        name = get_full_name_for_node(node.target)
-        if name:
-            self.lists.add(name)
+        self._assign(node.target, None)
 
-    def visit_Del(self, node: cst.Del) -> None:
-        self._changed(node.target)
+    def visit_For(self, node: cst.For) -> None:
+        self._assign(node.target, None)
 
-    def visit_BinaryOperation(self, node: cst.BinaryOperation) -> None:
-        for side in (node.left, node.right):
-            name = get_full_name_for_node(side)
-            if name:
-                self.lists.add(name)
+    def visit_CompFor(self, node: cst.CompFor) -> None:
+        self._assign(node.target, None)
 
     def visit_Call(self, node: cst.Call) -> None:
-        if isinstance(node.func, cst.Attribute) and node.func.attr.value in _CHANGING:
-            name = get_full_name_for_node(node.func.value)
-            if name:
-                self.lists.add(name)
+        self.calls.append(node)
 
-    def _annotated(self, name: str | None, annotation: cst.Annotation) -> None:
-        """Note a name with the annotation of a class as an arm of it."""
-        kind = get_full_name_for_node(annotation.annotation)
-        if name and kind in self.classes:
-            self.arms[name] = library()[self.classes[kind]]
+    def visit_FunctionDef(self, node: cst.FunctionDef) -> None:
+        self.functions.append(node)
+        self._inside.append(node)
 
-    def _assigned(self, name: str | None, value: cst.BaseExpression) -> None:
-        other = get_full_name_for_node(value)
-        if name and isinstance(value, cst.Name | cst.Attribute) and other in self.arms:
-            self.arms[name] = self.arms[other]
-        if name and isinstance(value, cst.Name) and other in self.classes:
-            self._named(name, self.classes[other])
-        if name is None or not isinstance(value, cst.Call):
+    def leave_FunctionDef(self, original_node: cst.FunctionDef) -> None:
+        self._inside.pop()
+
+    def visit_Return(self, node: cst.Return) -> None:
+        if self._inside and node.value is not None:
+            self.returns[self._inside[-1]].append(node.value)
+
+    def _assign(self, target: cst.CSTNode, value: cst.BaseExpression | None) -> None:
+        if not isinstance(target, cst.Tuple | cst.List):
+            self.assigned.append((target, value))
             return
-        called = get_full_name_for_node(value.func) or ""
-        if called in self.classes:
-            self.arms[name] = library()[self.classes[called]]
-        elif called.rpartition(".")[0] in self.arms:
-            self.results.add(name)
+        given: list[cst.BaseExpression | None] = [None] * len(target.elements)
+        if isinstance(value, cst.Tuple | cst.List) and len(value.elements) == len(given):
+            given = [each.value for each in value.elements]
+        for element, part in zip(target.elements, given, strict=True):
+            self._assign(element.value, part)
 
-    def _named(self, name: str, kind: str) -> None:
-        """Note a name that a program gives to a class."""
-        if self.classes.setdefault(name, kind) != kind:
-            self.several.add(name)
 
-    def _changed(self, target: cst.CSTNode) -> None:
-        if isinstance(target, cst.Subscript):
-            name = get_full_name_for_node(target.value)
-            if name:
-                self.lists.add(name)
+class Names:
+    """What the names of a program may be: classes of the library, arms, results of arms."""
+
+    def __init__(self, keys: Keys, found: Bindings) -> None:
+        self.keys = keys
+        keys.stored |= found.imported
+        self.uses_library = found.uses_library
+        self._found = found
+        self._bound: dict[Key, Values] = {}
+        # A name with several functions is not followed.
+        made: dict[Key, list[cst.FunctionDef]] = defaultdict(list)
+        for each in found.functions:
+            made[keys.function_key(each)].append(each)
+        self._functions = {key: each[0] for key, each in made.items() if len(each) == 1}
+        for _ in range(8):
+            before = dict(self._bound)
+            self._bind()
+            if before == self._bound:
+                break
+
+    def key(self, node: cst.CSTNode) -> Key | None:
+        """Return the key of a name or of an attribute; None if the node is something else."""
+        if isinstance(node, cst.Name):
+            return self.keys.key(node)
+        if not isinstance(node, cst.Attribute):
+            return None
+        owners = [each.key for each in self.values(node.value) if isinstance(each, Instance)]
+        owner = owners[0] if len(owners) == 1 else self.keys.owner(node.value)
+        before = owner or self.key(node.value)
+        return before and (*before, node.attr.value)
+
+    def values(self, node: cst.CSTNode) -> Values:
+        """Return everything that an expression may be."""
+        if isinstance(node, cst.Name):
+            return frozenset({NONE}) if node.value == "None" else self._of_name(node)
+        if isinstance(node, cst.Attribute):
+            return self._bound.get(self.key(node) or (), _NOTHING)
+        if isinstance(node, cst.IfExp):
+            return self.values(node.body) | self.values(node.orelse)
+        if isinstance(node, cst.BooleanOperation):
+            return self.values(node.left) | self.values(node.right)
+        if isinstance(node, cst.NamedExpr):
+            return self.values(node.value)
+        return self._of_call(node) if isinstance(node, cst.Call) else frozenset({UNKNOWN})
+
+    def arms(self, node: cst.CSTNode) -> list[str]:
+        """Return the classes of the library that an expression may be an object of."""
+        return sorted(each.kind for each in self.values(node) if isinstance(each, Arm))
+
+    def kinds(self, node: cst.CSTNode) -> list[str]:
+        """Return the classes of the library that an expression may be."""
+        return sorted(each.name for each in self.values(node) if isinstance(each, Kind))
+
+    def is_only(self, node: cst.CSTNode, kind: type[Value]) -> bool:
+        """Return whether an expression is nothing but values of a kind, and perhaps None."""
+        return all(isinstance(each, kind) for each in self.values(node) - {NONE})
+
+    def called(self, node: cst.CSTNode) -> list[Call]:
+        """Return the methods of the library that a node may call."""
+        if not isinstance(node, cst.Call) or not isinstance(node.func, cst.Attribute):
+            return []
+        name = node.func.attr.value
+        found = (library()[kind].call(name) for kind in self.arms(node.func.value))
+        return [each for each in found if each]
+
+    def parameter(self, argument: cst.Arg) -> cst.Param | None:
+        """Return the parameter of a function of this program that an argument is given to."""
+        call = self.keys.parents.get(argument)
+        function = self._function(call) if isinstance(call, cst.Call) else None
+        if function is None or not isinstance(call, cst.Call) or argument.star:
+            return None
+        is_method = self.keys.class_of(function) is not None
+        taken = function.params.params[1 if is_method else 0 :]
+        if argument.keyword is not None:
+            every = (*taken, *function.params.kwonly_params)
+            named = [each for each in every if each.name.value == argument.keyword.value]
+            return named[0] if named else None
+        at = call.args.index(argument)
+        starred = any(each.star for each in call.args[:at])
+        return taken[at] if at < len(taken) and not starred else None
+
+    def _of_name(self, node: cst.Name) -> Values:
+        imported = {
+            Kind(alias.evaluated_name)
+            for each in self.keys.assigned(node)
+            if isinstance(each, cst.ImportFrom) and is_of_library(each)
+            for alias in (() if isinstance(each.names, cst.ImportStar) else each.names)
+            if node.value == (alias.evaluated_alias or alias.evaluated_name)
+            and alias.evaluated_name in library()
+        }
+        return self._bound.get(self.keys.key(node), _NOTHING) | imported
+
+    def _of_call(self, node: cst.Call) -> Values:
+        function, owner = self._function(node), self._class(node)
+        if owner is not None:
+            return frozenset({Instance(self.keys.class_key(owner))})
+        if function is not None:
+            return self._bound.get(_returned(function), _NOTHING)
+        made = frozenset(Arm(each) for each in self.kinds(node.func))
+        results = frozenset(Result(each.gives) for each in self.called(node))
+        return made | results or frozenset({UNKNOWN})
+
+    def _function(self, node: cst.Call) -> cst.FunctionDef | None:
+        """Return the function of this program that is called."""
+        owner = self._class(node)
+        key = (*self.keys.class_key(owner), "__init__") if owner else self.key(node.func)
+        found = self._functions.get(key or ())
+        if found is None or found.decorators or found.asynchronous:
+            return None
+        return found
+
+    def _class(self, node: cst.Call) -> cst.ClassDef | None:
+        """Return the class of this program that is called."""
+        found = self.keys.assigned(node.func) if isinstance(node.func, cst.Name) else []
+        return found[0] if len(found) == 1 and isinstance(found[0], cst.ClassDef) else None
+
+    def _bind(self) -> None:
+        for target, annotation in self._found.annotated:
+            self._note(target, (Arm(each) for each in self.kinds(annotation)))
+        for target, value in self._found.assigned:
+            self._note(target, {UNKNOWN} if value is None else self.values(value))
+        for function, returned in self._found.returns.items():
+            values = frozenset().union(*map(self.values, returned))
+            self._bound[_returned(function)] = values
+        given: dict[cst.Param, Values] = {}
+        for call in self._found.calls:
+            for argument in call.args:
+                parameter = self.parameter(argument)
+                if parameter is not None:
+                    given[parameter] = given.get(parameter, _NOTHING) | self.values(argument.value)
+        for function in self._found.functions:
+            for parameter in (*function.params.params, *function.params.kwonly_params):
+                self._note(parameter.name, self._of_parameter(parameter, given))
+
+    def _of_parameter(self, node: cst.Param, given: dict[cst.Param, Values]) -> Values:
+        kinds = self.kinds(node.annotation.annotation) if node.annotation else []
+        if kinds:
+            return frozenset(Arm(each) for each in kinds)
+        default = self.values(node.default) if node.default else _NOTHING
+        return default | given.get(node, frozenset({UNKNOWN}))
+
+    def _note(self, target: cst.CSTNode, values: Iterable[Value]) -> None:
+        key = self.key(target)
+        if key is not None:
+            self._bound[key] = self._bound.get(key, _NOTHING) | frozenset(values)
+
+
+def _returned(node: cst.FunctionDef) -> Key:
+    """Return the key of what a function returns."""
+    return ("returned", id(node))
+
+
+def is_of_library(node: cst.ImportFrom) -> bool:
+    """Return whether a line imports names of the library."""
+    name = get_full_name_for_node(node.module) if node.module else ""
+    return (name or "").partition(".")[0] == LIBRARY and not node.relative
