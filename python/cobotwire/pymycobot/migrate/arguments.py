@@ -43,7 +43,7 @@ def ours(call: Call, arguments: Sequence[cst.Arg]) -> list[cst.Arg] | str:
         return HIDDEN
     passed = {parameter for parameter, _ in call.arguments.values()} | {call.address, QUIET}
     for name in known.keys() - passed:
-        if code(known[name]) != call.parameters[name]:
+        if code(known[name]) not in ("None", call.parameters[name]):
             return DROPPED.format(call.calls, name)
     count = sum(1 for each in arguments if each.keyword is None)
     positional = set(list(call.parameters)[:count])

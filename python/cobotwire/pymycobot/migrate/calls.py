@@ -106,14 +106,19 @@ def _waited(kind: str, parameters: dict[str, str], *names: str, address: str = "
     return Call(f"move_{kind}", parameters, arguments, "plain", "nothing", keywords, address, True)
 
 
-def _waits(timeout: str = "15", address: str = "") -> dict[str, Call]:
-    """Return the methods that wait for the end of a motion."""
+def _waits(timeout: str = "15", address: str = "", mode: str = "0") -> dict[str, Call]:
+    """Return the methods that wait for the end of a motion.
+
+    The default of the mode is empty if the class has none, and None if its robot has none.
+    """
     before = {address: ""} if address else {}
     angles = {**before, "degrees": "", "speed": "", "timeout": timeout}
-    coords = {**before, "coords": "", "speed": "", "mode": "0", "timeout": "15"}
+    path = {"mode": mode} if mode else {}
+    coords = {**before, "coords": "", "speed": "", **path, "timeout": "15"}
+    names = ["coords", "speed", *(["mode"] if mode == "0" else [])]
     return {
         "sync_send_angles": _waited("angles", angles, "angles", "speed", address=address),
-        "sync_send_coords": _waited("coords", coords, "coords", "speed", "mode", address=address),
+        "sync_send_coords": _waited("coords", coords, *names, address=address),
     }
 
 
@@ -134,6 +139,8 @@ _OF_HELPERS = {
         ),
     },
     "WaitingLonger": _waits("30"),
+    "WaitingWithoutMode": _waits(mode=""),
+    "WaitingInChain": _waits(mode="None"),
 }
 _HOMES = {
     "HomingAndWaiting": "move_angles([0] * {joints}, 30)",

@@ -8,10 +8,12 @@ from typing import Any
 import libcst as cst
 from libcst.metadata import (
     Assignment,
+    CodeRange,
     ExpressionContext,
     ExpressionContextProvider,
     MetadataWrapper,
     ParentNodeProvider,
+    PositionProvider,
     ScopeProvider,
 )
 
@@ -23,16 +25,21 @@ class Keys:
 
     Attributes:
         parents: the parent of each node.
+        positions: where each node is.
         loads: where the program reads each variable that is a plain name.
         stored: the plain names that the program gives to anything.
     """
 
     def __init__(self, wrapper: MetadataWrapper) -> None:
-        self.parents: Mapping[cst.CSTNode, cst.CSTNode] = wrapper.resolve(ParentNodeProvider)
-        self._scopes: Mapping[cst.CSTNode, Any] = wrapper.resolve(ScopeProvider)
+        found: Any = wrapper.resolve_many(
+            [ParentNodeProvider, ScopeProvider, ExpressionContextProvider, PositionProvider]
+        )
+        self.parents: Mapping[cst.CSTNode, cst.CSTNode] = found[ParentNodeProvider]
+        self.positions: Mapping[cst.CSTNode, CodeRange] = found[PositionProvider]
+        self._scopes: Mapping[cst.CSTNode, Any] = found[ScopeProvider]
+        self._contexts: Mapping[cst.CSTNode, Any] = found[ExpressionContextProvider]
         self.loads: dict[Key, list[cst.Name]] = {}
         self.stored: set[str] = set()
-        self._contexts = wrapper.resolve(ExpressionContextProvider)
         for node, context in self._contexts.items():
             if not isinstance(node, cst.Name):
                 continue

@@ -109,11 +109,10 @@ class Names:
         self.uses_library = found.uses_library
         self._found = found
         self._bound: dict[Key, Values] = {}
-        # A name with several functions is not followed.
-        made: dict[Key, list[cst.FunctionDef]] = defaultdict(list)
+        # The methods of a class and of those that inherit from it have one key.
+        self._functions: dict[Key, list[cst.FunctionDef]] = defaultdict(list)
         for each in found.functions:
-            made[keys.function_key(each)].append(each)
-        self._functions = {key: each[0] for key, each in made.items() if len(each) == 1}
+            self._functions[keys.function_key(each)].append(each)
         for _ in range(8):
             before = dict(self._bound)
             self._bind()
@@ -165,14 +164,22 @@ class Names:
         found = (library()[kind].call(name) for kind in self.arms(node.func.value))
         return [each for each in found if each]
 
-    def parameter(self, argument: cst.Arg) -> cst.Param | None:
-        """Return the parameter of a function of this program that an argument is given to."""
+    def parameters(self, argument: cst.Arg) -> list[cst.Param]:
+        """Return the parameters that take an argument, in each function that may be called.
+
+        Nothing is returned if the function is none of this program, or hides the argument.
+        """
         call = self.keys.parents.get(argument)
-        function = self._function(call) if isinstance(call, cst.Call) else None
-        if function is None or not isinstance(call, cst.Call) or argument.star:
-            return None
-        is_method = self.keys.class_of(function) is not None
-        taken = function.params.params[1 if is_method else 0 :]
+        functions = self._called(call) if isinstance(call, cst.Call) and not argument.star else []
+        found = [
+            self._parameter(each, cst.ensure_type(call, cst.Call), argument) for each in functions
+        ]
+        return [each for each in found if each] if all(found) else []
+
+    def _parameter(
+        self, function: cst.FunctionDef, call: cst.Call, argument: cst.Arg
+    ) -> cst.Param | None:
+        taken = function.params.params[1 if self.keys.class_of(function) else 0 :]
         if argument.keyword is not None:
             every = (*taken, *function.params.kwonly_params)
             named = [each for each in every if each.name.value == argument.keyword.value]
@@ -193,23 +200,22 @@ class Names:
         return self._bound.get(self.keys.key(node), _NOTHING) | imported
 
     def _of_call(self, node: cst.Call) -> Values:
-        function, owner = self._function(node), self._class(node)
+        owner, functions = self._class(node), self._called(node)
         if owner is not None:
             return frozenset({Instance(self.keys.class_key(owner))})
-        if function is not None:
-            return self._bound.get(_returned(function), _NOTHING)
+        if functions:
+            returned = (self._bound.get(_returned(each), _NOTHING) for each in functions)
+            return frozenset().union(*returned)
         made = frozenset(Arm(each) for each in self.kinds(node.func))
         results = frozenset(Result(each.gives) for each in self.called(node))
         return made | results or frozenset({UNKNOWN})
 
-    def _function(self, node: cst.Call) -> cst.FunctionDef | None:
-        """Return the function of this program that is called."""
+    def _called(self, node: cst.Call) -> list[cst.FunctionDef]:
+        """Return the functions of this program that a call may call."""
         owner = self._class(node)
         key = (*self.keys.class_key(owner), "__init__") if owner else self.key(node.func)
-        found = self._functions.get(key or ())
-        if found is None or found.decorators or found.asynchronous:
-            return None
-        return found
+        found = self._functions.get(key or (), [])
+        return [] if any(each.decorators or each.asynchronous for each in found) else found
 
     def _class(self, node: cst.Call) -> cst.ClassDef | None:
         """Return the class of this program that is called."""
@@ -227,8 +233,7 @@ class Names:
         given: dict[cst.Param, Values] = {}
         for call in self._found.calls:
             for argument in call.args:
-                parameter = self.parameter(argument)
-                if parameter is not None:
+                for parameter in self.parameters(argument):
                     given[parameter] = given.get(parameter, _NOTHING) | self.values(argument.value)
         for function in self._found.functions:
             for parameter in (*function.params.params, *function.params.kwonly_params):

@@ -21,7 +21,7 @@ from cobotwire.pymycobot.migrate.uses import Uses
 
 # Functions that call nothing of an arm.
 _HARMLESS = {"bool", "callable", "hash", "id", "isinstance", "print", "repr", "str", "type"}
-_RUNNING = {"eval", "exec", "__import__", "importlib.import_module"}
+_RUNNING, _IMPORTING = {"eval", "exec"}, {"__import__", "import_module", "importlib.import_module"}
 _STORING = cst.AssignTarget | cst.Param | cst.AsName | cst.NameItem | cst.Del | cst.Annotation
 _TESTING = cst.If | cst.While | cst.Assert | cst.Comparison | cst.ComparisonTarget
 _PASSING = cst.Assign | cst.AnnAssign | cst.NamedExpr | cst.WithItem | cst.Return | cst.Expr
@@ -36,7 +36,8 @@ class Places(cst.CSTVisitor):
         self.names = names = uses.names
         self._parents = names.keys.parents
         self._decide = decide
-        self._uses_library = False
+        self._uses_library = names.uses_library
+        self._ran = False
 
     def visit_Import(self, node: cst.Import) -> None:
         for alias in node.names:
@@ -47,7 +48,6 @@ class Places(cst.CSTVisitor):
     def visit_ImportFrom(self, node: cst.ImportFrom) -> None:
         if not is_of_library(node):
             return
-        self._uses_library = True
         line = self._parents[node]
         if not isinstance(line, cst.SimpleStatementLine) or len(line.body) > 1:
             self._decide(node, NOT_STATEMENT)
@@ -60,9 +60,12 @@ class Places(cst.CSTVisitor):
     def visit_Call(self, node: cst.Call) -> None:
         self._visit_value(node)
         name = get_full_name_for_node(node.func) or ""
-        runs = name in _RUNNING and (self._uses_library or _names_library(node))
-        if runs and not (name.endswith("import_module") and not _names_library(node)):
+        runs = name in _RUNNING and self._uses_library
+        runs = runs or (name in _IMPORTING and _names_library(node))
+        if runs and not self._ran:
             self._decide(node, BY_TEXT.format(name))
+            # A program that runs one text often runs many.
+            self._ran = True
 
     def visit_Comparison(self, node: cst.Comparison) -> None:
         if self._uses.is_failure_test(node):
@@ -92,7 +95,7 @@ class Places(cst.CSTVisitor):
 
     def _is_followed(self, node: cst.BaseExpression, inside: cst.CSTNode) -> bool:
         if isinstance(inside, cst.Arg):
-            if inside.keyword is node or self.names.parameter(inside) is not None:
+            if inside.keyword is node or self.names.parameters(inside):
                 return True
             call = self._parents[inside]
             name = call.func.value if isinstance(call, cst.Call) and _is_name(call) else ""

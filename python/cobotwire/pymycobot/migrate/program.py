@@ -7,7 +7,7 @@ from typing import NamedTuple
 import libcst as cst
 from libcst.codemod import CodemodContext
 from libcst.codemod.visitors import AddImportsVisitor
-from libcst.metadata import MetadataWrapper, PositionProvider
+from libcst.metadata import MetadataWrapper
 
 from cobotwire.protocol.errors import UsageError
 from cobotwire.pymycobot.migrate.decisions import Decision
@@ -45,11 +45,10 @@ def migrate(text: str, name: str = "the program") -> Migrated:
     keys, found = Keys(wrapper), Bindings()
     wrapper.module.visit(found)
     uses = Uses(Names(keys, found))
-    positions = wrapper.resolve(PositionProvider)
     decisions: set[Decision] = set()
 
     def decide(node: cst.CSTNode, what: str) -> None:
-        start = positions[node].start
+        start = keys.positions[node].start
         decisions.add(Decision(start.line, start.column + 1, what))
 
     rewriter = Rewriter(uses, decide)

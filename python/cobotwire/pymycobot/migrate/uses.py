@@ -74,10 +74,15 @@ class Uses:
 
     def may_be_arm(self, node: cst.BaseExpression, method: str) -> bool:
         """Return whether a value that is not known here may be an arm, by what is called of it."""
-        if self.names.kinds(node):
+        if self.names.kinds(node) or self._is_result(node):
             return False
         uses_library = self.names.uses_library
         return method in TELLING or (uses_library and method in _methods())
+
+    def _is_result(self, node: cst.BaseExpression) -> bool:
+        """Return whether a value comes from a method of an arm; what is called then is listed."""
+        func = node.func if isinstance(node, cst.Call) else None
+        return isinstance(func, cst.Attribute) and bool(self.names.arms(func.value))
 
     def is_hidden(self, name: str) -> bool:
         """Return whether the program uses the name of a function of Python for something else."""
