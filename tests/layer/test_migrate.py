@@ -118,7 +118,7 @@ def test_what_a_person_must_decide_is_listed(line: str, says: str) -> None:
     ],
 )
 def test_program_of_a_mercury_is_rewritten(before: str, after: str, says: str) -> None:
-    head = "from {} import {}\nmc = {}('/dev/ttyAMA1')\n"
+    head = "from {} import {}\nmc = {}(port)\n"
     found = migrate(f"{head.format('pymycobot', 'Mercury', 'Mercury')}{before}\n")
     assert found.text == f"{head.format('cobotwire', 'MercuryA1', 'MercuryA1')}{after}\n"
     assert any(says in str(each) for each in found.decisions)

@@ -6,6 +6,7 @@ import json
 from dataclasses import dataclass
 from functools import lru_cache
 from importlib.resources import files
+from inspect import isfunction
 from typing import Any
 
 import cobotwire
@@ -81,6 +82,10 @@ class LibraryClass:
         """Return whether the library's class has a method."""
         return hasattr(self.layer, method)
 
+    def is_method(self, name: str) -> bool:
+        """Return whether a name is a method of the library's class, not an attribute."""
+        return not name.startswith("_") and isfunction(getattr(self.layer, name, None))
+
     def is_by_hand(self, method: str) -> bool:
         """Return whether the layer does more for a method than to send one command."""
         return bool(getattr(self.layer, method).__module__.startswith(_LAYER))
@@ -136,6 +141,11 @@ _OF_HELPERS = {
             keywords=("speed",),
             address="id",
             by_hand=True,
+        ),
+    },
+    "MethodsOfPro450": {
+        "power_on": Call(
+            "power_on", {"mode": "1"}, {"mode": ("mode", "1")}, gives="same", by_hand=True
         ),
     },
     "WaitingLonger": _waits("30"),

@@ -7,6 +7,7 @@ from collections.abc import Iterable
 import libcst as cst
 from libcst.helpers import get_full_name_for_node
 
+from cobotwire.pymycobot import error
 from cobotwire.pymycobot.migrate.calls import library
 
 OURS = "cobotwire.pymycobot"
@@ -14,6 +15,7 @@ OURS = "cobotwire.pymycobot"
 KEPT = {
     "": {"PI_BAUD", "PI_PORT", "Angle", "Coord", "utils"},
     "genre": {"Angle", "Coord"},
+    "error": {name for name in vars(error) if name.endswith("Exception")},
     "utils": {"get_port_list", "detect_port_of_basic"},
 }
 
@@ -32,7 +34,7 @@ def rewritten(node: cst.ImportFrom) -> tuple[list[cst.ImportFrom], list[str]]:
         if name in library():
             native = library()[name].native
             ours.append(alias.with_changes(name=cst.Name(native)))
-        elif name in KEPT.get(rest, set()) or rest == "error":
+        elif name in KEPT.get(rest, set()):
             kept.append(alias)
         else:
             left.append(alias)

@@ -36,14 +36,12 @@ class Bindings(cst.CSTVisitor):
         self.returns: dict[cst.FunctionDef, list[cst.BaseExpression]] = defaultdict(list)
         # The names that imports give to what is not the module of that name.
         self.imported: set[str] = set()
-        self.uses_library = False
         self._inside: list[cst.FunctionDef] = []
 
     def visit_Import(self, node: cst.Import) -> None:
         self._import(alias for alias in node.names if alias.asname)
 
     def visit_ImportFrom(self, node: cst.ImportFrom) -> None:
-        self.uses_library = self.uses_library or is_of_library(node)
         if not isinstance(node.names, cst.ImportStar):
             self._import(node.names)
 
@@ -106,18 +104,18 @@ class Names:
     def __init__(self, keys: Keys, found: Bindings) -> None:
         self.keys = keys
         keys.stored |= found.imported
-        self.uses_library = found.uses_library
         self._found = found
         self._bound: dict[Key, Values] = {}
         # The methods of a class and of those that inherit from it have one key.
         self._functions: dict[Key, list[cst.FunctionDef]] = defaultdict(list)
         for each in found.functions:
             self._functions[keys.function_key(each)].append(each)
-        for _ in range(8):
-            before = dict(self._bound)
-            self._bind()
-            if before == self._bound:
-                break
+        # At first, what is not known yet is nothing; in the end it is unknown.
+        for unbound in (_NOTHING, frozenset({UNKNOWN})):
+            before = None
+            while before != self._bound:
+                before = dict(self._bound)
+                self._bind(unbound)
 
     def key(self, node: cst.CSTNode) -> Key | None:
         """Return the key of a name or of an attribute; None if the node is something else."""
@@ -155,6 +153,16 @@ class Names:
     def is_only(self, node: cst.CSTNode, kind: type[Value]) -> bool:
         """Return whether an expression is nothing but values of a kind, and perhaps None."""
         return all(isinstance(each, kind) for each in self.values(node) - {NONE})
+
+    def arm_names(self, methods: frozenset[str]) -> set[str]:
+        """Return the last words of the names of arms, and of what these methods are called of."""
+        arms = (key for key, found in self._bound.items() if any(isinstance(v, Arm) for v in found))
+        found = {str(key[-1]) for key in arms}
+        for call in self._found.calls:
+            if isinstance(call.func, cst.Attribute) and call.func.attr.value in methods:
+                name = get_full_name_for_node(call.func.value) or ""
+                found.add(name.rpartition(".")[2])
+        return found
 
     def called(self, node: cst.CSTNode) -> list[Call]:
         """Return the methods of the library that a node may call."""
@@ -222,14 +230,15 @@ class Names:
         found = self.keys.assigned(node.func) if isinstance(node.func, cst.Name) else []
         return found[0] if len(found) == 1 and isinstance(found[0], cst.ClassDef) else None
 
-    def _bind(self) -> None:
+    def _bind(self, unbound: Values) -> None:
         for target, annotation in self._found.annotated:
             self._note(target, (Arm(each) for each in self.kinds(annotation)))
         for target, value in self._found.assigned:
-            self._note(target, {UNKNOWN} if value is None else self.values(value))
+            found = frozenset({UNKNOWN}) if value is None else self.values(value)
+            self._note(target, found or unbound)
         for function, returned in self._found.returns.items():
-            values = frozenset().union(*map(self.values, returned))
-            self._bound[_returned(function)] = values
+            key = _returned(function)
+            self._bound[key] = self._bound.get(key, _NOTHING).union(*map(self.values, returned))
         given: dict[cst.Param, Values] = {}
         for call in self._found.calls:
             for argument in call.args:

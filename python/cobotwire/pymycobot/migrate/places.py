@@ -6,6 +6,7 @@ import libcst as cst
 from libcst.helpers import get_full_name_for_node
 
 from cobotwire.pymycobot.migrate import imports
+from cobotwire.pymycobot.migrate.calls import library
 from cobotwire.pymycobot.migrate.decisions import (
     ATTRIBUTE,
     BY_TEXT,
@@ -15,6 +16,7 @@ from cobotwire.pymycobot.migrate.decisions import (
     NOT_STATEMENT,
     UTILITY,
     Decide,
+    why_left,
 )
 from cobotwire.pymycobot.migrate.names import LIBRARY, is_of_library
 from cobotwire.pymycobot.migrate.uses import Uses
@@ -36,7 +38,7 @@ class Places(cst.CSTVisitor):
         self.names = names = uses.names
         self._parents = names.keys.parents
         self._decide = decide
-        self._uses_library = names.uses_library
+        self._imports_library = False
         self._ran = False
 
     def visit_Import(self, node: cst.Import) -> None:
@@ -48,6 +50,7 @@ class Places(cst.CSTVisitor):
     def visit_ImportFrom(self, node: cst.ImportFrom) -> None:
         if not is_of_library(node):
             return
+        self._imports_library = True
         line = self._parents[node]
         if not isinstance(line, cst.SimpleStatementLine) or len(line.body) > 1:
             self._decide(node, NOT_STATEMENT)
@@ -60,7 +63,7 @@ class Places(cst.CSTVisitor):
     def visit_Call(self, node: cst.Call) -> None:
         self._visit_value(node)
         name = get_full_name_for_node(node.func) or ""
-        runs = name in _RUNNING and self._uses_library
+        runs = name in _RUNNING and self._imports_library
         runs = runs or (name in _IMPORTING and _names_library(node))
         if runs and not self._ran:
             self._decide(node, BY_TEXT.format(name))
@@ -77,10 +80,16 @@ class Places(cst.CSTVisitor):
     def visit_Attribute(self, node: cst.Attribute) -> None:
         self._visit_value(node)
         if self.names.arms(node.value) and not self._is_called(node) and not self._is_stored(node):
-            self._decide(node, ATTRIBUTE.format(get_full_name_for_node(node) or node.attr.value))
+            self._decide(node, self._why_not_called(node))
         is_kept = node.attr.value in imports.KEPT["utils"]
         if isinstance(node.value, cst.Name) and self._is_utils(node.value) and not is_kept:
             self._decide(node, UTILITY.format(node.attr.value))
+
+    def _why_not_called(self, node: cst.Attribute) -> str:
+        kind, name = library()[self.names.arms(node.value)[0]], node.attr.value
+        if kind.call(name):
+            return ATTRIBUTE.format(get_full_name_for_node(node) or name)
+        return why_left(kind, name)
 
     def _visit_value(self, node: cst.BaseExpression) -> None:
         """Note an arm that is given to something that cannot be followed."""

@@ -20,6 +20,7 @@ from cobotwire.pymycobot.migrate.decisions import (
     HOME,
     MIXED,
     NO_RESULT,
+    NOT_ACKNOWLEDGED,
     OTHER_ROBOT,
     PARTS,
     RESULTS,
@@ -122,8 +123,7 @@ class Rewriter(cst.CSTTransformer):
         if call.gives == "same" or not uses:
             return made
         if call.gives not in _FORMS:
-            other = NO_RESULT if call.gives == "nothing" else RESULTS.get(call.result, PARTS)
-            self.decide(original, other.format(call.calls))
+            self.decide(original, _why_other(call))
             return made
         if call.gives != "ints" and all(self.uses.is_proven(use, call.gives) for use in uses):
             return made
@@ -139,12 +139,13 @@ class Rewriter(cst.CSTTransformer):
         if known is None:
             self.decide(original, HIDDEN)
             return updated
-        if kind.on_ports:
+        place, speed = (known.get(each) for each in kind.constructor[:2])
+        is_known = isinstance(place, cst.SimpleString) and place.evaluated_value
+        if kind.on_ports and (not is_known or is_known in kind.on_ports):
             there, *ports = kind.on_ports
             self.decide(original, OTHER_ROBOT.format(kind.native, there, " or ".join(ports)))
         if "timeout" in known:
             self.decide(original, TIMEOUT)
-        place, speed = (known.get(each) for each in kind.constructor[:2])
         if place is None:
             self.decide(original, f"{kind.native} needs the port")
             return updated
@@ -226,6 +227,14 @@ def _is_about_motion(call: Call, known: dict[str, cst.BaseExpression], kind: Lib
     quiet = code(known[QUIET]) if QUIET in known else call.parameters.get(QUIET)
     # The Pro 450 is asked before it jogs.
     return quiet != "True" or kind.native == "Pro450"
+
+
+def _why_other(call: Call) -> str:
+    """Return how the result of our method differs from that of the library's."""
+    if call.gives == "nothing":
+        waits = call.by_hand or call.result == "done"
+        return NO_RESULT.format(call.calls) + ("" if waits else NOT_ACKNOWLEDGED)
+    return RESULTS.get(call.result, PARTS).format(call.calls)
 
 
 def _called(name: str, *arguments: cst.BaseExpression) -> cst.Call:

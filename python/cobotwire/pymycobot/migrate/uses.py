@@ -20,9 +20,6 @@ _OF_NUMBERS = cst.Add | cst.Subtract | cst.Multiply | cst.Divide | cst.FloorDivi
 _KINDS = {"isinstance", "type"}
 # What the library returns if a call fails; some methods return an empty row.
 _FAILURES = {"-1", "None", "[]", "()", "''", '""'}
-# Methods that nothing but an arm has.
-TELLING = {"send_angle", "send_angles", "send_coord", "send_coords", "sync_send_angles"}
-TELLING |= {"get_angles", "get_coords", "sync_send_coords", "release_all_servos"}
 # Methods of arms that much else has, too.
 _COMMON = {"close", "is_open", "open", "pause", "resume", "stop", "wait"}
 
@@ -47,6 +44,8 @@ class Uses:
         self.names = names
         self._parents = names.keys.parents
         self._stored = names.keys.stored
+        # Names of arms, and of what methods of arms are called of.
+        self._arm_names = names.arm_names(_methods())
 
     def of(self, node: cst.CSTNode) -> list[Use]:
         """Return where the value of an expression is used; nothing if it is dropped."""
@@ -74,10 +73,11 @@ class Uses:
 
     def may_be_arm(self, node: cst.BaseExpression, method: str) -> bool:
         """Return whether a value that is not known here may be an arm, by what is called of it."""
+        name = node.attr if isinstance(node, cst.Attribute) else node
+        like_arm = isinstance(name, cst.Name) and name.value in self._arm_names
         if self.names.kinds(node) or self._is_result(node):
             return False
-        uses_library = self.names.uses_library
-        return method in TELLING or (uses_library and method in _methods())
+        return method in _methods() or (like_arm and method in _COMMON)
 
     def _is_result(self, node: cst.BaseExpression) -> bool:
         """Return whether a value comes from a method of an arm; what is called then is listed."""
@@ -106,7 +106,8 @@ class Uses:
 
     def _forms(self, node: cst.CSTNode) -> set[str]:
         """Return the forms of the results that an expression may be."""
-        return {each.form for each in self.names.values(node) if isinstance(each, Result)}
+        found = (each.form for each in self.names.values(node) if isinstance(each, Result))
+        return {form for form in found if form != "nothing"}
 
     def _is_length(self, node: cst.CSTNode) -> bool:
         called = isinstance(node, cst.Call) and isinstance(node.func, cst.Name) and node.args
