@@ -32,7 +32,7 @@ NO_CALLS = {"open", "wait"}
 # These are always compared.
 STOPPING = {"pause", "resume", "stop"}
 MARK = "# calls\n"
-REJECTED, FAILED, MISTAKE = "rejected", "failed", "fails by mistake"
+REJECTED, FAILED, MISTAKE, ABSENT = "rejected", "failed", "fails by mistake", "no such name"
 
 
 class Done(NamedTuple):
@@ -89,6 +89,8 @@ def done(arm: Any, transport: Recorded, line: str) -> Done:
         kept = [REJECTED]
     except TypeError:
         kept = [MISTAKE]
+    except AttributeError:
+        kept = [ABSENT]
     except (TimeoutError, ProtocolError, ArmNotReady):
         kept = [FAILED]
     return Done(transport.written, kept, kinds(kept))

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import libcst as cst
 from libcst import matchers
 
-from cobotwire.pymycobot.migrate.calls import Call
+from cobotwire.pymycobot.migrate.calls import Call, LibraryClass
 
 QUIET = "_async"
 HIDDEN = "the arguments are not known here; compare them by hand"
@@ -142,3 +142,14 @@ def _in_f_string(node: cst.BaseExpression) -> str:
 def code(node: cst.CSTNode) -> str:
     """Return a node as text."""
     return cst.Module([]).code_for_node(node)
+
+
+def is_about_motion(call: Call, known: dict[str, cst.BaseExpression], kind: LibraryClass) -> bool:
+    """Return whether the library waits for the motion, or a speed may be a row of speeds."""
+    if call.result == "one_speed":
+        return not isinstance(known.get("speed"), cst.Integer)
+    if call.result != "ended":
+        return False
+    quiet = code(known[QUIET]) if QUIET in known else call.parameters.get(QUIET)
+    # The Pro 450 is asked before it jogs.
+    return quiet != "True" or kind.native == "Pro450"

@@ -170,6 +170,15 @@ def library() -> dict[str, LibraryClass]:
     return made
 
 
+def are_alike(kinds: list[LibraryClass], method: str) -> bool:
+    """Return whether a method is rewritten in the same way for all classes."""
+    return all(
+        (kinds[0].native, kinds[0].home, kinds[0].has(method), kinds[0].call(method))
+        == (each.native, each.home, each.has(method), each.call(method))
+        for each in kinds
+    )
+
+
 def _class(name: str, given: dict[str, Any], like: LibraryClass | None) -> LibraryClass:
     helpers: list[str] = given["helpers"]
     methods = dict(like.methods if like else _SEVERAL)

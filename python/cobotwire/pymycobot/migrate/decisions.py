@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import libcst as cst
 
-from cobotwire.pymycobot.migrate.calls import LibraryClass
+from cobotwire.pymycobot.migrate.calls import Call, LibraryClass
 
 
 class Decision(NamedTuple):
@@ -117,3 +117,11 @@ def why_left(kind: LibraryClass, method: str) -> str:
         return f"only {kind.on_ports[0]} has {method}, the client of an arm on a body"
     what = BY_HAND.get(method, f"see cobotwire.pymycobot.{kind.name}.{method}")
     return f"no single call of ours does what the library's {method} does: {what}"
+
+
+def why_other(call: Call) -> str:
+    """Return how the result of our method differs from that of the library's."""
+    if call.gives == "nothing":
+        waits = call.by_hand or call.result == "done"
+        return NO_RESULT.format(call.calls) + ("" if waits else NOT_ACKNOWLEDGED)
+    return RESULTS.get(call.result, PARTS).format(call.calls)

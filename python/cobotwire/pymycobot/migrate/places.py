@@ -107,8 +107,8 @@ class Places(cst.CSTVisitor):
             if inside.keyword is node or self.names.parameters(inside):
                 return True
             call = self._parents[inside]
-            name = call.func.value if isinstance(call, cst.Call) and _is_name(call) else ""
-            return name in _HARMLESS
+            func = call.func if isinstance(call, cst.Call) else None
+            return isinstance(func, cst.Name) and func.value in _HARMLESS
         if isinstance(inside, cst.Assign):
             # A part of a row is followed only if the row has names for its parts.
             return all(isinstance(t.target, cst.Name | cst.Attribute) for t in inside.targets)
@@ -126,10 +126,6 @@ class Places(cst.CSTVisitor):
         return node.value == "utils" and any(
             isinstance(each, cst.ImportFrom) and is_of_library(each) for each in found
         )
-
-
-def _is_name(call: cst.Call) -> bool:
-    return isinstance(call.func, cst.Name)
 
 
 def _names_library(node: cst.Call) -> bool:

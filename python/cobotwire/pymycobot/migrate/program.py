@@ -10,9 +10,10 @@ from libcst.codemod.visitors import AddImportsVisitor
 from libcst.metadata import MetadataWrapper
 
 from cobotwire.protocol.errors import UsageError
+from cobotwire.pymycobot.migrate.bindings import Bindings
 from cobotwire.pymycobot.migrate.decisions import Decision
 from cobotwire.pymycobot.migrate.keys import Keys
-from cobotwire.pymycobot.migrate.names import Bindings, Names
+from cobotwire.pymycobot.migrate.names import Names
 from cobotwire.pymycobot.migrate.places import Places
 from cobotwire.pymycobot.migrate.rewriter import Rewriter
 from cobotwire.pymycobot.migrate.uses import Uses

@@ -10,25 +10,24 @@ from cobotwire.pymycobot.migrate.arguments import (
     QUIET,
     code,
     given,
+    is_about_motion,
     ours,
     serial_arguments,
     socket_arguments,
 )
-from cobotwire.pymycobot.migrate.calls import Call, LibraryClass, library
+from cobotwire.pymycobot.migrate.calls import Call, LibraryClass, are_alike, library
 from cobotwire.pymycobot.migrate.decisions import (
     HIDDEN_NAME,
     HOME,
     MIXED,
-    NO_RESULT,
-    NOT_ACKNOWLEDGED,
     OTHER_ROBOT,
-    PARTS,
     RESULTS,
     SEVERAL,
     TIMEOUT,
     UNKNOWN,
     Decide,
     why_left,
+    why_other,
 )
 from cobotwire.pymycobot.migrate.names import is_of_library
 from cobotwire.pymycobot.migrate.uses import Uses
@@ -86,7 +85,7 @@ class Rewriter(cst.CSTTransformer):
             if self.uses.may_be_arm(arm, method):
                 self.decide(original_node, UNKNOWN.format(name=code(arm)))
             return updated_node
-        if not self.names.is_only(arm, Arm) or not _are_alike(arms, method):
+        if not self.names.is_only(arm, Arm) or not are_alike(arms, method):
             self.decide(original_node, MIXED.format(code(arm)))
             return updated_node
         return self._of_arm(original_node, updated_node, arms[0], method)
@@ -110,7 +109,7 @@ class Rewriter(cst.CSTTransformer):
             self.decide(original, arguments)
             return updated
         known = given(updated.args, list(call.parameters)) or {}
-        if _is_about_motion(call, known, kind):
+        if is_about_motion(call, known, kind):
             self.decide(original, RESULTS[call.result])
         made = _renamed(updated, call.calls).with_changes(args=arguments)
         if call.address in known:
@@ -123,7 +122,7 @@ class Rewriter(cst.CSTTransformer):
         if call.gives == "same" or not uses:
             return made
         if call.gives not in _FORMS:
-            self.decide(original, _why_other(call))
+            self.decide(original, why_other(call))
             return made
         if call.gives != "ints" and all(self.uses.is_proven(use, call.gives) for use in uses):
             return made
@@ -207,34 +206,6 @@ _WRITTEN = {
     "is_torque_gripper": Rewriter.gripper_kind,
     "gripper_stop": Rewriter.stop_gripper,
 }
-
-
-def _are_alike(kinds: list[LibraryClass], method: str) -> bool:
-    """Return whether a method is rewritten in the same way for all classes."""
-    return all(
-        (kinds[0].native, kinds[0].home, kinds[0].has(method), kinds[0].call(method))
-        == (each.native, each.home, each.has(method), each.call(method))
-        for each in kinds
-    )
-
-
-def _is_about_motion(call: Call, known: dict[str, cst.BaseExpression], kind: LibraryClass) -> bool:
-    """Return whether the library waits for the motion, or a speed may be a row of speeds."""
-    if call.result == "one_speed":
-        return not isinstance(known.get("speed"), cst.Integer)
-    if call.result != "ended":
-        return False
-    quiet = code(known[QUIET]) if QUIET in known else call.parameters.get(QUIET)
-    # The Pro 450 is asked before it jogs.
-    return quiet != "True" or kind.native == "Pro450"
-
-
-def _why_other(call: Call) -> str:
-    """Return how the result of our method differs from that of the library's."""
-    if call.gives == "nothing":
-        waits = call.by_hand or call.result == "done"
-        return NO_RESULT.format(call.calls) + ("" if waits else NOT_ACKNOWLEDGED)
-    return RESULTS.get(call.result, PARTS).format(call.calls)
 
 
 def _called(name: str, *arguments: cst.BaseExpression) -> cst.Call:

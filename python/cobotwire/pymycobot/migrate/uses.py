@@ -7,6 +7,7 @@ from functools import lru_cache
 from typing import NamedTuple
 
 import libcst as cst
+from libcst import matchers
 
 from cobotwire.pymycobot.migrate.calls import library
 from cobotwire.pymycobot.migrate.names import Names
@@ -28,6 +29,9 @@ _COMMON = {"close", "is_open", "open", "pause", "resume", "stop", "wait"}
 def _methods() -> frozenset[str]:
     """Return the methods of all classes of the library, but for those that much else has."""
     return frozenset(name for kind in library().values() for name in kind.methods) - _COMMON
+
+
+_LENGTH = matchers.Name("len")
 
 
 class Use(NamedTuple):
@@ -110,10 +114,9 @@ class Uses:
         return {form for form in found if form != "nothing"}
 
     def _is_length(self, node: cst.CSTNode) -> bool:
-        called = isinstance(node, cst.Call) and isinstance(node.func, cst.Name) and node.args
-        if not called or node.func.value != "len":
+        if not isinstance(node, cst.Call) or not matchers.matches(node.func, _LENGTH):
             return False
-        return "list" in self._forms(node.args[0].value)
+        return any("list" in self._forms(each.value) for each in node.args)
 
     def _is_safe_row(self, use: Use) -> bool:
         node, inside = use
