@@ -56,6 +56,7 @@ LISTED = [
     # Arms whose calls are not seen.
     "getattr(mc, 'stop')()",
     "stop = mc.stop\nstop()",
+    "mc.debug = True",
     "arms = [mc]\narms[0].stop()",
     "arms = {'left': mc}\narms['left'].stop()",
     "for each in [mc]:\n    each.stop()",

@@ -79,7 +79,7 @@ class Places(cst.CSTVisitor):
 
     def visit_Attribute(self, node: cst.Attribute) -> None:
         self._visit_value(node)
-        if self.names.arms(node.value) and not self._is_called(node) and not self._is_stored(node):
+        if self.names.arms(node.value) and not self._is_called(node):
             self._decide(node, self._why_not_called(node))
         is_kept = node.attr.value in imports.KEPT["utils"]
         if isinstance(node.value, cst.Name) and self._is_utils(node.value) and not is_kept:
@@ -117,9 +117,6 @@ class Places(cst.CSTVisitor):
     def _is_called(self, node: cst.Attribute) -> bool:
         inside = self._parents[node]
         return isinstance(inside, cst.Call) and inside.func is node
-
-    def _is_stored(self, node: cst.Attribute) -> bool:
-        return isinstance(self._parents[node], cst.AssignTarget)
 
     def _is_utils(self, node: cst.Name) -> bool:
         found = self.names.keys.assigned(node)
