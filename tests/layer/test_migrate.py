@@ -12,6 +12,7 @@ from cobotwire.cli.app import app
 from cobotwire.editions.mycobot280 import TABLE
 from cobotwire.protocol.errors import UsageError
 from cobotwire.pymycobot.migrate import migrate
+from cobotwire.pymycobot.migrate.calls import library
 from cobotwire.simulator import PtyServer, SimulatedArm
 from in_process import run
 
@@ -122,6 +123,20 @@ def test_program_of_a_mercury_is_rewritten(before: str, after: str, says: str) -
     found = migrate(f"{head.format('pymycobot', 'Mercury', 'Mercury')}{before}\n")
     assert found.text == f"{head.format('cobotwire', 'MercuryA1', 'MercuryA1')}{after}\n"
     assert any(says in str(each) for each in found.decisions)
+
+
+@pytest.mark.parametrize("name", sorted(library()))
+def test_constructor_opens_what_the_library_opens_by_default(name: str) -> None:
+    kind = library()[name]
+    place, number = (kind.default(each) for each in kind.constructor[:2])
+    given = "" if place else "'at'"
+    found = migrate(f"from pymycobot import {name}\nmc = {name}({given})\n").text
+    opened = found.partition("mc = ")[2].strip()
+    if kind.opens == "socket":
+        assert opened == f'{kind.native}("socket://{place or "at"}:{number}")'
+    else:
+        assert str(place or "at") in opened
+        assert str(number) == str(kind.usual) or str(number) in opened
 
 
 def test_default_that_ours_lacks_is_written() -> None:

@@ -6,13 +6,16 @@ import json
 from dataclasses import dataclass
 from functools import lru_cache
 from importlib.resources import files
-from inspect import isfunction
+from inspect import Parameter, isfunction, signature
 from typing import Any
 
 import cobotwire
 import cobotwire.pymycobot
+from cobotwire.protocol.table import Table
 from cobotwire.pymycobot.layer.absent import absent
 
+# The TCP port of most classes.
+TCP_PORT = 9000
 _LAYER = "cobotwire.pymycobot.layer."
 
 
@@ -89,6 +92,17 @@ class LibraryClass:
     def is_by_hand(self, method: str) -> bool:
         """Return whether the layer does more for a method than to send one command."""
         return bool(getattr(self.layer, method).__module__.startswith(_LAYER))
+
+    def default(self, parameter: str) -> object:
+        """Return the default of a parameter of the constructor; None if there is none."""
+        found = signature(self.layer).parameters[parameter].default
+        return None if found is Parameter.empty else found
+
+    @property
+    def usual(self) -> int:
+        """The number that a rewritten constructor uses if it is left out: of a port, or a speed."""
+        table: Table = getattr(self.client, "table")  # noqa: B009 - the class is not known here
+        return TCP_PORT if self.opens == "socket" else table.baudrate
 
     @property
     def client(self) -> type:

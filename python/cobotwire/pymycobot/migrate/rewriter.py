@@ -138,7 +138,7 @@ class Rewriter(cst.CSTTransformer):
         if known is None:
             self.decide(original, HIDDEN)
             return updated
-        place, speed = (known.get(each) for each in kind.constructor[:2])
+        place, speed = (_or_default(known, kind, each) for each in kind.constructor[:2])
         is_known = isinstance(place, cst.SimpleString) and place.evaluated_value
         if kind.on_ports and (not is_known or is_known in kind.on_ports):
             there, *ports = kind.on_ports
@@ -206,6 +206,16 @@ _WRITTEN = {
     "is_torque_gripper": Rewriter.gripper_kind,
     "gripper_stop": Rewriter.stop_gripper,
 }
+
+
+def _or_default(
+    known: dict[str, cst.BaseExpression], kind: LibraryClass, parameter: str
+) -> cst.BaseExpression | None:
+    """Return an argument of a constructor, or the library's default if ours may be another."""
+    default = kind.default(parameter)
+    if parameter in known or str(default) in ("None", str(kind.usual)):
+        return known.get(parameter)
+    return cst.parse_expression(f'"{default}"' if isinstance(default, str) else f"{default}")
 
 
 def _called(name: str, *arguments: cst.BaseExpression) -> cst.Call:
