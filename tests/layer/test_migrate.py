@@ -12,6 +12,7 @@ from cobotwire.cli.app import app
 from cobotwire.editions.mycobot280 import TABLE
 from cobotwire.protocol.errors import UsageError
 from cobotwire.pymycobot.migrate import migrate
+from cobotwire.pymycobot.migrate.calls import library
 from cobotwire.simulator import PtyServer, SimulatedArm
 from in_process import run
 
@@ -49,7 +50,8 @@ def decided(line: str) -> list[str]:
         ("mc.go_home()", "mc.send_angles([0] * 6, 10)"),
         ("mc.gripper_stop()", "mc.set_gripper_value(0, 0, 1, 1)"),
         ("mc.wait(2)", "time.sleep(2)"),
-        ("row = mc.get_angles()\nprint(row)", "row = mc.get_angles()\nprint(row)"),
+        ("row = mc.get_angles()\nprint(row)", "row = list(mc.get_angles())\nprint(row)"),
+        ("row = mc.get_angles()\nprint(row[0])", "row = mc.get_angles()\nprint(row[0])"),
         ("row = mc.get_angles()\nrow[0] += 5", "row = list(mc.get_angles())\nrow[0] += 5"),
         ("row = mc.get_coords()\nrow.append(1)", "row = list(mc.get_coords())\nrow.append(1)"),
         ("other = mc\nother.focus_servo(servo_id=1)", "other = mc\nother.focus_servo(joint=1)"),
@@ -64,7 +66,7 @@ def test_call_is_rewritten(before: str, after: str) -> None:
     [
         ("MyCobot280(port, 115200)", "MyCobot280(port, 115200)"),
         ("MyCobot280(port, '1000000')", "MyCobot280(port, 1000000)"),
-        ("MyCobot280(port, baudrate=speed)", "MyCobot280(port, speed)"),
+        ("MyCobot280(port, baudrate=speed)", "MyCobot280(port, int(speed))"),
         ("MyCobot280(port, args.baud, debug=True)", "MyCobot280(port, int(args.baud))"),
         ("MyCobot280Socket('10.0.0.2', 9000)", 'MyCobot280("socket://10.0.0.2:9000")'),
         ("MyCobot280Socket('10.0.0.2', '9000')", 'MyCobot280("socket://10.0.0.2:9000")'),
@@ -83,7 +85,7 @@ def test_constructor_is_rewritten(before: str, after: str) -> None:
     [
         ("if mc.get_angles() == -1: pass", "3:4: a call that fails raises ReplyTimeout"),
         ("row = mc.get_angles()\nif row is None: pass", "4:4: a call that fails raises"),
-        ("mc.get_radians()", "3:1: our result is not rounded"),
+        ("print(mc.get_radians())", "3:7: our result is not rounded"),
         ("mc.gpio_init()", "3:1: our clients drive no pins"),
         ("mc.wait(1).stop()", "3:1: write time.sleep(seconds) in a line of its own"),
         ("mc.send_angles(*given)", "3:1: the arguments are not known here"),
@@ -117,10 +119,24 @@ def test_what_a_person_must_decide_is_listed(line: str, says: str) -> None:
     ],
 )
 def test_program_of_a_mercury_is_rewritten(before: str, after: str, says: str) -> None:
-    head = "from {} import {}\nmc = {}('/dev/ttyAMA1')\n"
+    head = "from {} import {}\nmc = {}(port)\n"
     found = migrate(f"{head.format('pymycobot', 'Mercury', 'Mercury')}{before}\n")
     assert found.text == f"{head.format('cobotwire', 'MercuryA1', 'MercuryA1')}{after}\n"
     assert any(says in str(each) for each in found.decisions)
+
+
+@pytest.mark.parametrize("name", sorted(library()))
+def test_constructor_opens_what_the_library_opens_by_default(name: str) -> None:
+    kind = library()[name]
+    place, number = (kind.default(each) for each in kind.constructor[:2])
+    given = "" if place else "'at'"
+    found = migrate(f"from pymycobot import {name}\nmc = {name}({given})\n").text
+    opened = found.partition("mc = ")[2].strip()
+    if kind.opens == "socket":
+        assert opened == f'{kind.native}("socket://{place or "at"}:{number}")'
+    else:
+        assert str(place or "at") in opened
+        assert str(number) == str(kind.usual) or str(number) in opened
 
 
 def test_default_that_ours_lacks_is_written() -> None:
@@ -176,8 +192,8 @@ def test_class_with_another_name_is_imported_under_ours(module: str) -> None:
 
 def test_speed_that_may_be_a_row_is_a_decision() -> None:
     head = "from {} import MyBuddy\nmb = MyBuddy(port)\n"
-    found = migrate(f"{head.format('pymycobot')}mb.set_encoders(1, row, 80)\n")
-    assert found.text == f"{head.format('cobotwire')}mb.left.set_encoders(row, speed=80)\n"
+    found = migrate(f"{head.format('pymycobot')}mb.set_encoders(1, row, pace)\n")
+    assert found.text == f"{head.format('cobotwire')}mb.left.set_encoders(row, speed=pace)\n"
     assert [each.what.partition(",")[0] for each in found.decisions] == [
         "if this speed is a row with a number for each servo"
     ]
@@ -250,7 +266,7 @@ def test_rewritten_program_runs_and_prints_the_same(tmp_path: Path) -> None:
         )  # fmt: skip
     assert done.stderr == ""
     assert done.stdout.splitlines()[:1] == ["angles [20, 10, 0, 0, 0, 0]"]
-    assert "powered True version 6.5" in done.stdout
+    assert "powered 1 version 6.5" in done.stdout
 
 
 def test_diff_is_shown_and_the_file_stays(tmp_path: Path) -> None:

@@ -1,4 +1,4 @@
-"""Compare all calls of our classes with the maker's classes: ``make layer``."""
+"""Compare all calls of our classes, and what they are rewritten to: ``make layer``."""
 
 from __future__ import annotations
 
@@ -6,9 +6,11 @@ import sys
 from contextlib import redirect_stdout
 from io import StringIO
 
+from cobotwire.pymycobot.migrate.calls import library
 from layer_comparison import compare
 from layer_replies import compare_replies
 from layer_robots import CLOSED_LOOP, LAYER_ROBOTS
+from migrated_calls import compare_migrated
 
 
 def main() -> int:
@@ -23,6 +25,12 @@ def main() -> int:
         replies = f"; {equal} replies equal, {len(ruled)} methods ruled" if equal else ""
         print(f"{name}: {found}{replies}", flush=True)
         for text in (*calls.open, *wrong):
+            print(f"OPEN: {text}")
+            left += 1
+    for name in sorted(library()):
+        equal, listed, wrong = compare_migrated(name)
+        print(f"{name}: {equal} rewritten calls equal, {listed} to decide", flush=True)
+        for text in wrong:
             print(f"OPEN: {text}")
             left += 1
     return 1 if left else 0

@@ -22,15 +22,18 @@ _COLOURS = {"+": "green", "-": "red", "@": "cyan"}
 def migrate(scripts: tuple[str, ...], write: bool, as_json: bool) -> None:
     """Rewrite programs that were written for pymycobot, to use our clients.
 
-    Prints what changes as a diff. What cannot be rewritten stays as it is; each such place is
-    listed on standard error with its line, and what a person must decide there.
+    Prints what changes as a diff. A call is rewritten if the new one sends the same bytes and the
+    program can use its result alike. Each place where that is not certain is listed on standard
+    error with its line, the reason, and what to do; until you did that, do not run the program.
 
-    Exit codes: 0 the programs are whole; 1 there is something to decide.
+    Exit codes: 0 nothing is left to decide; 1 a place is listed; 2 wrong usage, or LibCST is not
+    installed.
     """
     try:
         from cobotwire.pymycobot.migrate import migrate as rewrite
     except ImportError:
-        sys.exit("cobotwire: migrate needs LibCST: pip install 'cobotwire[migrate]'")
+        click.echo("cobotwire: migrate needs LibCST: pip install 'cobotwire[migrate]'", err=True)
+        sys.exit(2)
     texts = [(script, _read(script)) for script in scripts]
     made = [(script, text, rewrite(text, script)) for script, text in texts]
     for script, text, migrated in made:
@@ -46,7 +49,11 @@ def migrate(scripts: tuple[str, ...], write: bool, as_json: bool) -> None:
         if write and migrated.text != text:
             Path(script).write_text(migrated.text, encoding="utf-8", newline="")
             click.echo(f"wrote {printable(script)}", err=as_json)
-    sys.exit(1 if any(migrated.decisions for _, _, migrated in made) else 0)
+    left = sum(len(migrated.decisions) for _, _, migrated in made)
+    if left and not as_json:
+        places = "1 place" if left == 1 else f"{left} places"
+        click.echo(f"{places} to decide before you run what was rewritten", err=True)
+    sys.exit(1 if left else 0)
 
 
 def _read(script: str) -> str:

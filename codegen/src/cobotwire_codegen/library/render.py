@@ -9,7 +9,7 @@ from pathlib import PurePosixPath
 
 from cobotwire_codegen.library.language import RESULTS
 from cobotwire_codegen.library.model import ENDED, QUIET, Library, LibraryClass, Method, Parameter
-from cobotwire_codegen.model import Value
+from cobotwire_codegen.model import Chars, Enum, Flag, Listed, Quantity, Type, Value
 from cobotwire_codegen.render import Files, environment
 from cobotwire_codegen.render.arguments import Argument, arguments, keyword_only
 from cobotwire_codegen.render.layout import laid_out
@@ -97,14 +97,35 @@ def _as_data(method: Method) -> dict[str, object]:
         },
         "result": method.result,
         "keywords": sorted(keyword_only(method.command)),
-        "row": method.result == "plain" and _gives_row(method),
+        "gives": _gives_form(method),
     }
 
 
-def _gives_row(method: Method) -> bool:
-    """Return whether our client returns a named tuple where the library returns a list."""
+def _gives_form(method: Method) -> str:
+    """Return what a program must do to a result of ours to have the library's.
+
+    ``same`` is nothing, ``nothing`` says that only the library has a result. ``list``, ``int`` and
+    ``ints`` (a list of numbers) say what to make of ours, ``parts`` that no word does.
+    """
+    if method.result == ENDED or method.command.ack or not method.command.awaits_reply:
+        has_result = method.result != "nothing" and (method.command.ack or method.result != "plain")
+        return "nothing" if has_result or method.result == ENDED else "same"
     found = results(method.command)
-    return len(found) == 1 and any(isinstance(each, Value) for each in found[0].types)
+    if method.result != "plain" or len(found) != 1 or found[0].optional or method.command.text:
+        return "parts"
+    forms = {_form(each) for each in found[0].types}
+    return forms.pop() if len(forms) == 1 else "parts"
+
+
+def _form(given: Type) -> str:
+    """Return what to make of a value of a type to have the library's."""
+    if isinstance(given, Flag | Enum):
+        return "int"
+    if isinstance(given, Listed):
+        return {"same": "list", "int": "ints"}.get(_form(given.of), "parts")
+    if isinstance(given, Value):
+        return "list"
+    return "same" if isinstance(given, Quantity | Chars) else "parts"
 
 
 def render_page(library: Library) -> Files:

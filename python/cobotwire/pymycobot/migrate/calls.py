@@ -6,9 +6,17 @@ import json
 from dataclasses import dataclass
 from functools import lru_cache
 from importlib.resources import files
+from inspect import Parameter, isfunction, signature
 from typing import Any
 
+import cobotwire
+import cobotwire.pymycobot
+from cobotwire.protocol.table import Table
 from cobotwire.pymycobot.layer.absent import absent
+
+# The TCP port of most classes.
+TCP_PORT = 9000
+_LAYER = "cobotwire.pymycobot.layer."
 
 
 @dataclass(frozen=True, slots=True)
@@ -20,18 +28,21 @@ class Call:
         parameters: the library's parameters in their order, each with its default as text.
         arguments: our arguments in their order: the library's parameter, and our default.
         result: how the library gives the result.
-        row: whether our result is a named tuple where the library's is a list.
+        gives: what to make of our result to have the library's: ``same``, ``int``, ``list``,
+            ``ints``; ``nothing`` if only the library has one, ``parts`` if no word does it.
         keywords: our arguments that have no position.
         address: the library's parameter that selects the device; empty if there is none.
+        by_hand: whether a helper of the layer has the method, not the generated class.
     """
 
     calls: str
     parameters: dict[str, str]
     arguments: dict[str, tuple[str, str]]
     result: str = "plain"
-    row: bool = False
+    gives: str = "nothing"
     keywords: tuple[str, ...] = ()
     address: str = ""
+    by_hand: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,6 +50,7 @@ class LibraryClass:
     """A class of the library.
 
     Attributes:
+        name: its name.
         opens: what its constructor opens.
         constructor: the parameters of its constructor.
         native: our class.
@@ -50,6 +62,7 @@ class LibraryClass:
         absent: why names have no counterpart.
     """
 
+    name: str
     opens: str
     constructor: tuple[str, ...]
     native: str
@@ -60,31 +73,80 @@ class LibraryClass:
     methods: dict[str, Call]
     absent: dict[str, str]
 
+    def call(self, method: str) -> Call | None:
+        """Return how a method is called in our client; None if no single call does the same."""
+        found = self.methods.get(method)
+        if found is None or not self.has(method) or not hasattr(self.client, found.calls):
+            return None
+        # Helpers of the layer send something else than the command of that name.
+        return found if found.by_hand or not self.is_by_hand(method) else None
+
+    def has(self, method: str) -> bool:
+        """Return whether the library's class has a method."""
+        return hasattr(self.layer, method)
+
+    def is_method(self, name: str) -> bool:
+        """Return whether a name is a method of the library's class, not an attribute."""
+        return not name.startswith("_") and isfunction(getattr(self.layer, name, None))
+
+    def is_by_hand(self, method: str) -> bool:
+        """Return whether the layer does more for a method than to send one command."""
+        return bool(getattr(self.layer, method).__module__.startswith(_LAYER))
+
+    def default(self, parameter: str) -> object:
+        """Return the default of a parameter of the constructor; None if there is none."""
+        found = signature(self.layer).parameters[parameter].default
+        return None if found is Parameter.empty else found
+
+    @property
+    def usual(self) -> int:
+        """The number that a rewritten constructor uses if it is left out: of a port, or a speed."""
+        table: Table = getattr(self.client, "table")  # noqa: B009 - the class is not known here
+        return TCP_PORT if self.opens == "socket" else table.baudrate
+
+    @property
+    def client(self) -> type:
+        """Our class."""
+        found: type = getattr(cobotwire, self.native)
+        return found
+
+    @property
+    def layer(self) -> type:
+        """Our class that has the library's methods."""
+        found: type = getattr(cobotwire.pymycobot, self.name)
+        return found
+
 
 def _waited(kind: str, parameters: dict[str, str], *names: str, address: str = "") -> Call:
     given = [each for each in parameters if each != address]
     arguments = {name: (each, "") for name, each in zip(names, given)}
     arguments["timeout"] = ("timeout", "")
-    return Call(f"move_{kind}", parameters, arguments, keywords=("timeout",), address=address)
+    keywords = ("timeout",)
+    return Call(f"move_{kind}", parameters, arguments, "plain", "nothing", keywords, address, True)
 
 
-def _waits(timeout: str = "15", address: str = "") -> dict[str, Call]:
-    """Return the methods that wait for the end of a motion."""
+def _waits(timeout: str = "15", address: str = "", mode: str = "0") -> dict[str, Call]:
+    """Return the methods that wait for the end of a motion.
+
+    The default of the mode is empty if the class has none, and None if its robot has none.
+    """
     before = {address: ""} if address else {}
     angles = {**before, "degrees": "", "speed": "", "timeout": timeout}
-    coords = {**before, "coords": "", "speed": "", "mode": "0", "timeout": "15"}
+    path = {"mode": mode} if mode else {}
+    coords = {**before, "coords": "", "speed": "", **path, "timeout": "15"}
+    names = ["coords", "speed", *(["mode"] if mode == "0" else [])]
     return {
         "sync_send_angles": _waited("angles", angles, "angles", "speed", address=address),
-        "sync_send_coords": _waited("coords", coords, "coords", "speed", "mode", address=address),
+        "sync_send_coords": _waited("coords", coords, *names, address=address),
     }
 
 
 # Methods of several requests that our clients have too, and those of helpers of the layer.
-_SEVERAL = {**_waits(), "close": Call("close", {}, {})}
+_SEVERAL = {**_waits(), "close": Call("close", {}, {}, gives="same", by_hand=True)}
 _OF_HELPERS = {
     "Limbs": {
         **_waits(address="id"),
-        "get_base_coords": Call("get_base_coords", {}, {}),
+        "get_base_coords": Call("get_base_coords", {}, {}, gives="parts", by_hand=True),
         "set_encoders": Call(
             "set_encoders",
             {"id": "", "encoders": "", "speed": ""},
@@ -92,9 +154,17 @@ _OF_HELPERS = {
             result="one_speed",
             keywords=("speed",),
             address="id",
+            by_hand=True,
+        ),
+    },
+    "MethodsOfPro450": {
+        "power_on": Call(
+            "power_on", {"mode": "1"}, {"mode": ("mode", "1")}, gives="same", by_hand=True
         ),
     },
     "WaitingLonger": _waits("30"),
+    "WaitingWithoutMode": _waits(mode=""),
+    "WaitingInChain": _waits(mode="None"),
 }
 _HOMES = {
     "HomingAndWaiting": "move_angles([0] * {joints}, 30)",
@@ -114,6 +184,15 @@ def library() -> dict[str, LibraryClass]:
     return made
 
 
+def are_alike(kinds: list[LibraryClass], method: str) -> bool:
+    """Return whether a method is rewritten in the same way for all classes."""
+    return all(
+        (kinds[0].native, kinds[0].home, kinds[0].has(method), kinds[0].call(method))
+        == (each.native, each.home, each.has(method), each.call(method))
+        for each in kinds
+    )
+
+
 def _class(name: str, given: dict[str, Any], like: LibraryClass | None) -> LibraryClass:
     helpers: list[str] = given["helpers"]
     methods = dict(like.methods if like else _SEVERAL)
@@ -124,6 +203,7 @@ def _class(name: str, given: dict[str, Any], like: LibraryClass | None) -> Libra
     homes = (_HOMES.get(each, _HOME) for each in known)
     home = next(homes, like.home if like else _HOME).format(joints=given["joints"])
     return LibraryClass(
+        name,
         given["opens"],
         tuple(given["constructor"]),
         given["native"],

@@ -2,7 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import NamedTuple
+
+import libcst as cst
+
+from cobotwire.pymycobot.migrate.calls import Call, LibraryClass
 
 
 class Decision(NamedTuple):
@@ -16,6 +21,8 @@ class Decision(NamedTuple):
         return f"{self.line}:{self.column}: {self.what}"
 
 
+# Notes what to decide at a node of the program.
+Decide = Callable[[cst.CSTNode, str], None]
 # By the library's method: what the program must do otherwise.
 _PINS = "our clients drive no pins of this computer; use RPi.GPIO or gpiozero"
 NO_COUNTERPART = {
@@ -57,11 +64,64 @@ RESULTS = {
     "words_of_text": "our result has both texts whole, not their first and last words",
 }
 NEVER_FAILED = (
-    "a call that fails raises ReplyTimeout or ProtocolError here, so this comparison never finds a "
+    "a call that fails raises ReplyTimeout or ProtocolError here, so this test never finds a "
     "failure; catch the error"
 )
+NO_RESULT = (
+    "{0} returns nothing here, and the library's returns a result; do not use it: a call that "
+    "fails raises an error"
+)
+PARTS = "our result is a named tuple of parts, not lists of numbers; name the part: result.{0}"
+HIDDEN_NAME = "this needs Python's {0}, but the program uses that name for something else"
+NOT_ACKNOWLEDGED = ", with ack_within=1.5 also one that the arm does not acknowledge"
+ATTRIBUTE = "{0} is not called here, and only calls are rewritten; write `lambda: {0}()`"
+ESCAPED = (
+    "the arm goes where its calls are not seen here, and they are not rewritten; rewrite them "
+    "there, or annotate the parameter with {0}"
+)
+INHERITS = "{0} inherits from {1}; what it calls of itself is not rewritten: hold an arm instead"
+MIXED = (
+    "{0} is not always an arm of one class, so the call is left as it is; give each arm a name of "
+    "its own"
+)
+NOT_STATEMENT = "this import shares its line; write it in a line of its own, and run this again"
+BY_TEXT = "{0} runs what is not seen here; if that uses the library, rewrite it by hand"
+UTILITY = "cobotwire.pymycobot.utils has no {0}"
 HOME = "go_home waits, and its pose and speed depend on its arguments; use move_angles"
 OTHER_ROBOT = "the class is {} here; if the port is that of an arm on a body, write {} ({})"
 SEVERAL = "{} stands for several classes; write the port and the speed as our classes take them"
 TIMEOUT = "timeout was the time of one read of the port; ours limits the whole wait for a reply"
-UNKNOWN = "{name} may be an arm, whose class is not known here; the call is left as it is"
+UNKNOWN = (
+    "{name} may be an arm, whose class is not known here, so the call is left as it is; annotate it"
+)
+# What methods of the layer do that no single call of ours does.
+BY_HAND = {
+    "power_on": "it waits for the motors; call power_on(), and then time.sleep(1)",
+    "get_coords": "for coordinates now call get_coords(), for those of angles angles_to_coords()",
+    "set_servos_calibration": "call set_servo_calibration for each joint",
+    "set_limit_switch": "it asks is_power_on() before, and motions wait or not from then on",
+    "drag_teach_execute": "it asks is_drag_fifo_empty() before, and waits for the end",
+}
+
+
+def why_left(kind: LibraryClass, method: str) -> str:
+    """Return why a call is left as it is."""
+    # A class that opens a socket would drive the pins of the robot's computer.
+    local = method not in kind.absent or kind.opens == "serial"
+    if local and method in NO_COUNTERPART:
+        return NO_COUNTERPART[method]
+    if not kind.has(method) or method.startswith("_"):
+        why = kind.absent.get(method)
+        return f"{kind.native} has no counterpart of {method}" + (f": {why}" if why else "")
+    if kind.on_ports and method in kind.methods:
+        return f"only {kind.on_ports[0]} has {method}, the client of an arm on a body"
+    what = BY_HAND.get(method, f"see cobotwire.pymycobot.{kind.name}.{method}")
+    return f"no single call of ours does what the library's {method} does: {what}"
+
+
+def why_other(call: Call) -> str:
+    """Return how the result of our method differs from that of the library's."""
+    if call.gives == "nothing":
+        waits = call.by_hand or call.result == "done"
+        return NO_RESULT.format(call.calls) + ("" if waits else NOT_ACKNOWLEDGED)
+    return RESULTS.get(call.result, PARTS).format(call.calls)

@@ -7,22 +7,17 @@ from collections.abc import Iterable
 import libcst as cst
 from libcst.helpers import get_full_name_for_node
 
+from cobotwire.pymycobot import error
 from cobotwire.pymycobot.migrate.calls import library
-from cobotwire.pymycobot.migrate.names import LIBRARY
 
 OURS = "cobotwire.pymycobot"
 # What the layer has beside classes, by the module of the library.
 KEPT = {
     "": {"PI_BAUD", "PI_PORT", "Angle", "Coord", "utils"},
     "genre": {"Angle", "Coord"},
+    "error": {name for name in vars(error) if name.endswith("Exception")},
     "utils": {"get_port_list", "detect_port_of_basic"},
 }
-
-
-def is_of_library(node: cst.ImportFrom) -> bool:
-    """Return whether a line imports names of the library."""
-    name = get_full_name_for_node(node.module) if node.module else ""
-    return (name or "").partition(".")[0] == LIBRARY
 
 
 def rewritten(node: cst.ImportFrom) -> tuple[list[cst.ImportFrom], list[str]]:
@@ -39,7 +34,7 @@ def rewritten(node: cst.ImportFrom) -> tuple[list[cst.ImportFrom], list[str]]:
         if name in library():
             native = library()[name].native
             ours.append(alias.with_changes(name=cst.Name(native)))
-        elif name in KEPT.get(rest, set()) or rest == "error":
+        elif name in KEPT.get(rest, set()):
             kept.append(alias)
         else:
             left.append(alias)

@@ -1,111 +1,200 @@
-"""Finds the names of a program that stand for arms, and those that stand for their results."""
+"""Finds what the variables and functions of a program may be."""
 
 from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterable
 
 import libcst as cst
 from libcst.helpers import get_full_name_for_node
 
-from cobotwire.pymycobot.migrate.calls import LibraryClass, library
+from cobotwire.pymycobot.migrate.bindings import Bindings
+from cobotwire.pymycobot.migrate.calls import Call, library
+from cobotwire.pymycobot.migrate.keys import Key, Keys
+from cobotwire.pymycobot.migrate.values import (
+    NONE,
+    UNKNOWN,
+    Arm,
+    Instance,
+    Kind,
+    Result,
+    Value,
+    Values,
+)
 
 LIBRARY = "pymycobot"
-# What a program does with a list and cannot do with a tuple.
-_CHANGING = {"append", "extend", "insert", "remove", "pop", "clear", "sort", "reverse", "copy"}
+_NOTHING: Values = frozenset()
 
 
-class Names(cst.CSTVisitor):
-    """What the names of a program are.
+class Names:
+    """What the names of a program may be: classes of the library, arms, results of arms."""
 
-    Attributes:
-        classes: classes of the library by the names that the program gives them.
-        several: names that stand for different classes.
-        arms: variables and attributes (``self.mc``) that are assigned an arm, with its class.
-        results: variables that are assigned the result of a call of an arm.
-        lists: those of ``results`` that are used in a way that only a list allows.
-    """
+    def __init__(self, keys: Keys, found: Bindings) -> None:
+        self.keys = keys
+        keys.stored |= found.imported
+        self._found = found
+        self._bound: dict[Key, Values] = {}
+        # The methods of a class and of those that inherit from it have one key.
+        self._functions: dict[Key, list[cst.FunctionDef]] = defaultdict(list)
+        for each in found.functions:
+            self._functions[keys.function_key(each)].append(each)
+        # At first, what is not known yet is nothing; in the end it is unknown.
+        for unbound in (_NOTHING, frozenset({UNKNOWN})):
+            before = None
+            while before != self._bound:
+                before = dict(self._bound)
+                self._bind(unbound)
 
-    def __init__(self) -> None:
-        self.classes: dict[str, str] = {}
-        self.several: set[str] = set()
-        self.arms: dict[str, LibraryClass] = {}
-        self.results: set[str] = set()
-        self.lists: set[str] = set()
+    def key(self, node: cst.CSTNode) -> Key | None:
+        """Return the key of a name or of an attribute; None if the node is something else."""
+        if isinstance(node, cst.Name):
+            return self.keys.key(node)
+        if not isinstance(node, cst.Attribute):
+            return None
+        owners = [each.key for each in self.values(node.value) if isinstance(each, Instance)]
+        owner = owners[0] if len(owners) == 1 else self.keys.owner(node.value)
+        before = owner or self.key(node.value)
+        return before and (*before, node.attr.value)
 
-    def visit_ImportFrom(self, node: cst.ImportFrom) -> None:
-        module = get_full_name_for_node(node.module) if node.module else ""
-        if (module or "").partition(".")[0] != LIBRARY or isinstance(node.names, cst.ImportStar):
-            return
-        for alias in node.names:
-            name = alias.evaluated_name
-            if name in library():
-                self.classes[alias.evaluated_alias or name] = name
+    def values(self, node: cst.CSTNode) -> Values:
+        """Return everything that an expression may be."""
+        if isinstance(node, cst.Name):
+            return frozenset({NONE}) if node.value == "None" else self._of_name(node)
+        if isinstance(node, cst.Attribute):
+            return self._bound.get(self.key(node) or (), _NOTHING)
+        if isinstance(node, cst.IfExp):
+            return self.values(node.body) | self.values(node.orelse)
+        if isinstance(node, cst.BooleanOperation):
+            return self.values(node.left) | self.values(node.right)
+        if isinstance(node, cst.NamedExpr):
+            return self.values(node.value)
+        return self._of_call(node) if isinstance(node, cst.Call) else frozenset({UNKNOWN})
 
-    def visit_Assign(self, node: cst.Assign) -> None:
-        for target in node.targets:
-            self._assigned(get_full_name_for_node(target.target), node.value)
-            self._changed(target.target)
+    def arms(self, node: cst.CSTNode) -> list[str]:
+        """Return the classes of the library that an expression may be an object of."""
+        return sorted(each.kind for each in self.values(node) if isinstance(each, Arm))
 
-    def visit_AnnAssign(self, node: cst.AnnAssign) -> None:
-        name = get_full_name_for_node(node.target)
-        self._annotated(name, node.annotation)
-        if node.value is not None:
-            self._assigned(name, node.value)
+    def kinds(self, node: cst.CSTNode) -> list[str]:
+        """Return the classes of the library that an expression may be."""
+        return sorted(each.name for each in self.values(node) if isinstance(each, Kind))
 
-    def visit_Param(self, node: cst.Param) -> None:
-        if node.annotation is not None:
-            self._annotated(node.name.value, node.annotation)
+    def is_only(self, node: cst.CSTNode, kind: type[Value]) -> bool:
+        """Return whether an expression is nothing but values of a kind, and perhaps None."""
+        return all(isinstance(each, kind) for each in self.values(node) - {NONE})
 
-    def visit_WithItem(self, node: cst.WithItem) -> None:
-        if node.asname is not None:
-            self._assigned(get_full_name_for_node(node.asname.name), node.item)
+    def arm_names(self, methods: frozenset[str]) -> set[str]:
+        """Return the last words of the names of arms, and of what these methods are called of."""
+        arms = (key for key, found in self._bound.items() if any(isinstance(v, Arm) for v in found))
+        found = {str(key[-1]) for key in arms}
+        for call in self._found.calls:
+            if isinstance(call.func, cst.Attribute) and call.func.attr.value in methods:
+                name = get_full_name_for_node(call.func.value) or ""
+                found.add(name.rpartition(".")[2])
+        return found
 
-    def visit_AugAssign(self, node: cst.AugAssign) -> None:
-        self._changed(node.target)
-        name = get_full_name_for_node(node.target)
-        if name:
-            self.lists.add(name)
+    def called(self, node: cst.CSTNode) -> list[Call]:
+        """Return the methods of the library that a node may call."""
+        if not isinstance(node, cst.Call) or not isinstance(node.func, cst.Attribute):
+            return []
+        name = node.func.attr.value
+        found = (library()[kind].call(name) for kind in self.arms(node.func.value))
+        return [each for each in found if each]
 
-    def visit_Del(self, node: cst.Del) -> None:
-        self._changed(node.target)
+    def parameters(self, argument: cst.Arg) -> list[cst.Param]:
+        """Return the parameters that take an argument, in each function that may be called.
 
-    def visit_BinaryOperation(self, node: cst.BinaryOperation) -> None:
-        for side in (node.left, node.right):
-            name = get_full_name_for_node(side)
-            if name:
-                self.lists.add(name)
+        Nothing is returned if the function is none of this program, or hides the argument.
+        """
+        call = self.keys.parents.get(argument)
+        functions = self._called(call) if isinstance(call, cst.Call) and not argument.star else []
+        found = [
+            self._parameter(each, cst.ensure_type(call, cst.Call), argument) for each in functions
+        ]
+        return [each for each in found if each] if all(found) else []
 
-    def visit_Call(self, node: cst.Call) -> None:
-        if isinstance(node.func, cst.Attribute) and node.func.attr.value in _CHANGING:
-            name = get_full_name_for_node(node.func.value)
-            if name:
-                self.lists.add(name)
+    def _parameter(
+        self, function: cst.FunctionDef, call: cst.Call, argument: cst.Arg
+    ) -> cst.Param | None:
+        taken = function.params.params[1 if self.keys.class_of(function) else 0 :]
+        if argument.keyword is not None:
+            every = (*taken, *function.params.kwonly_params)
+            named = [each for each in every if each.name.value == argument.keyword.value]
+            return named[0] if named else None
+        at = call.args.index(argument)
+        starred = any(each.star for each in call.args[:at])
+        return taken[at] if at < len(taken) and not starred else None
 
-    def _annotated(self, name: str | None, annotation: cst.Annotation) -> None:
-        """Note a name with the annotation of a class as an arm of it."""
-        kind = get_full_name_for_node(annotation.annotation)
-        if name and kind in self.classes:
-            self.arms[name] = library()[self.classes[kind]]
+    def _of_name(self, node: cst.Name) -> Values:
+        imported = {
+            Kind(alias.evaluated_name)
+            for each in self.keys.assigned(node)
+            if isinstance(each, cst.ImportFrom) and is_of_library(each)
+            for alias in (() if isinstance(each.names, cst.ImportStar) else each.names)
+            if node.value == (alias.evaluated_alias or alias.evaluated_name)
+            and alias.evaluated_name in library()
+        }
+        return self._bound.get(self.keys.key(node), _NOTHING) | imported
 
-    def _assigned(self, name: str | None, value: cst.BaseExpression) -> None:
-        other = get_full_name_for_node(value)
-        if name and isinstance(value, cst.Name | cst.Attribute) and other in self.arms:
-            self.arms[name] = self.arms[other]
-        if name and isinstance(value, cst.Name) and other in self.classes:
-            self._named(name, self.classes[other])
-        if name is None or not isinstance(value, cst.Call):
-            return
-        called = get_full_name_for_node(value.func) or ""
-        if called in self.classes:
-            self.arms[name] = library()[self.classes[called]]
-        elif called.rpartition(".")[0] in self.arms:
-            self.results.add(name)
+    def _of_call(self, node: cst.Call) -> Values:
+        owner, functions = self._class(node), self._called(node)
+        if owner is not None:
+            return frozenset({Instance(self.keys.class_key(owner))})
+        if functions:
+            returned = (self._bound.get(_returned(each), _NOTHING) for each in functions)
+            return frozenset().union(*returned)
+        made = frozenset(Arm(each) for each in self.kinds(node.func))
+        results = frozenset(Result(each.gives) for each in self.called(node))
+        return made | results or frozenset({UNKNOWN})
 
-    def _named(self, name: str, kind: str) -> None:
-        """Note a name that a program gives to a class."""
-        if self.classes.setdefault(name, kind) != kind:
-            self.several.add(name)
+    def _called(self, node: cst.Call) -> list[cst.FunctionDef]:
+        """Return the functions of this program that a call may call."""
+        owner = self._class(node)
+        key = (*self.keys.class_key(owner), "__init__") if owner else self.key(node.func)
+        found = self._functions.get(key or (), [])
+        return [] if any(each.decorators or each.asynchronous for each in found) else found
 
-    def _changed(self, target: cst.CSTNode) -> None:
-        if isinstance(target, cst.Subscript):
-            name = get_full_name_for_node(target.value)
-            if name:
-                self.lists.add(name)
+    def _class(self, node: cst.Call) -> cst.ClassDef | None:
+        """Return the class of this program that is called."""
+        found = self.keys.assigned(node.func) if isinstance(node.func, cst.Name) else []
+        return found[0] if len(found) == 1 and isinstance(found[0], cst.ClassDef) else None
+
+    def _bind(self, unbound: Values) -> None:
+        for target, annotation in self._found.annotated:
+            self._note(target, (Arm(each) for each in self.kinds(annotation)))
+        for target, value in self._found.assigned:
+            found = frozenset({UNKNOWN}) if value is None else self.values(value)
+            self._note(target, found or unbound)
+        for function, returned in self._found.returns.items():
+            key = _returned(function)
+            self._bound[key] = self._bound.get(key, _NOTHING).union(*map(self.values, returned))
+        given: dict[cst.Param, Values] = {}
+        for call in self._found.calls:
+            for argument in call.args:
+                for parameter in self.parameters(argument):
+                    given[parameter] = given.get(parameter, _NOTHING) | self.values(argument.value)
+        for function in self._found.functions:
+            for parameter in (*function.params.params, *function.params.kwonly_params):
+                self._note(parameter.name, self._of_parameter(parameter, given))
+
+    def _of_parameter(self, node: cst.Param, given: dict[cst.Param, Values]) -> Values:
+        kinds = self.kinds(node.annotation.annotation) if node.annotation else []
+        if kinds:
+            return frozenset(Arm(each) for each in kinds)
+        default = self.values(node.default) if node.default else _NOTHING
+        return default | given.get(node, frozenset({UNKNOWN}))
+
+    def _note(self, target: cst.CSTNode, values: Iterable[Value]) -> None:
+        key = self.key(target)
+        if key is not None:
+            self._bound[key] = self._bound.get(key, _NOTHING) | frozenset(values)
+
+
+def _returned(node: cst.FunctionDef) -> Key:
+    """Return the key of what a function returns."""
+    return ("returned", id(node))
+
+
+def is_of_library(node: cst.ImportFrom) -> bool:
+    """Return whether a line imports names of the library."""
+    name = get_full_name_for_node(node.module) if node.module else ""
+    return (name or "").partition(".")[0] == LIBRARY and not node.relative

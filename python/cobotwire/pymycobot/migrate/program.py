@@ -10,9 +10,13 @@ from libcst.codemod.visitors import AddImportsVisitor
 from libcst.metadata import MetadataWrapper
 
 from cobotwire.protocol.errors import UsageError
+from cobotwire.pymycobot.migrate.bindings import Bindings
 from cobotwire.pymycobot.migrate.decisions import Decision
+from cobotwire.pymycobot.migrate.keys import Keys
 from cobotwire.pymycobot.migrate.names import Names
+from cobotwire.pymycobot.migrate.places import Places
 from cobotwire.pymycobot.migrate.rewriter import Rewriter
+from cobotwire.pymycobot.migrate.uses import Uses
 
 
 class Migrated(NamedTuple):
@@ -39,14 +43,20 @@ def migrate(text: str, name: str = "the program") -> Migrated:
     except cst.ParserSyntaxError as error:
         place = f"{name}:{error.raw_line}:{error.raw_column + 1}"
         raise UsageError("script", place, "a program of Python 3") from None
-    names = Names()
-    # Twice: a method of a class may use an arm that a later method opens.
-    wrapper.module.visit(names)
-    wrapper.module.visit(names)
-    rewriter = Rewriter(names)
-    module = wrapper.visit(rewriter)
+    keys, found = Keys(wrapper), Bindings()
+    wrapper.module.visit(found)
+    uses = Uses(Names(keys, found))
+    decisions: set[Decision] = set()
+
+    def decide(node: cst.CSTNode, what: str) -> None:
+        start = keys.positions[node].start
+        decisions.add(Decision(start.line, start.column + 1, what))
+
+    rewriter = Rewriter(uses, decide)
+    module = wrapper.module.visit(rewriter)
+    wrapper.module.visit(Places(uses, decide))
     if rewriter.sleeps:
         context = CodemodContext()
         AddImportsVisitor.add_needed_import(context, "time")
         module = AddImportsVisitor(context).transform_module(module)
-    return Migrated(module.code, tuple(sorted(set(rewriter.decisions))))
+    return Migrated(module.code, tuple(sorted(decisions)))

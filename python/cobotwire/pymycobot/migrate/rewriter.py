@@ -3,75 +3,58 @@
 from __future__ import annotations
 
 import libcst as cst
-from libcst.helpers import get_full_name_for_node
-from libcst.metadata import PositionProvider
 
 from cobotwire.pymycobot.migrate import imports
 from cobotwire.pymycobot.migrate.arguments import (
+    HIDDEN,
+    QUIET,
     code,
     given,
+    is_about_motion,
     ours,
     serial_arguments,
     socket_arguments,
 )
-from cobotwire.pymycobot.migrate.calls import Call, LibraryClass, library
+from cobotwire.pymycobot.migrate.calls import Call, LibraryClass, are_alike, library
 from cobotwire.pymycobot.migrate.decisions import (
+    HIDDEN_NAME,
     HOME,
-    NEVER_FAILED,
-    NO_COUNTERPART,
+    MIXED,
     OTHER_ROBOT,
     RESULTS,
     SEVERAL,
     TIMEOUT,
     UNKNOWN,
-    Decision,
+    Decide,
+    why_left,
+    why_other,
 )
-from cobotwire.pymycobot.migrate.names import LIBRARY, Names
+from cobotwire.pymycobot.migrate.names import is_of_library
+from cobotwire.pymycobot.migrate.uses import Uses
+from cobotwire.pymycobot.migrate.values import Arm, Kind
 
-# Methods that nothing but an arm has.
-_TELLING = {"send_angle", "send_angles", "send_coord", "send_coords", "sync_send_angles"}
-_TELLING |= {"get_angles", "get_coords", "sync_send_coords", "release_all_servos"}
+# How a result of ours becomes the library's, and the functions of Python that this needs.
+_FORMS = {"int": ("int",), "list": ("list",), "ints": ("list", "map", "int")}
 
 
 class Rewriter(cst.CSTTransformer):
     """Rewrites one program; notes what to decide, and whether it calls ``time.sleep`` now."""
 
-    METADATA_DEPENDENCIES = (PositionProvider,)
-
-    def __init__(self, names: Names) -> None:
+    def __init__(self, uses: Uses, decide: Decide) -> None:
         super().__init__()
-        self.names = names
-        self.decisions: list[Decision] = []
+        self.decide = decide
+        self.uses = uses
+        self.names = uses.names
         self.sleeps = False
-        # The calls whose result is not used.
-        self._statements: set[cst.CSTNode] = set()
-
-    def visit_Expr(self, node: cst.Expr) -> None:
-        self._statements.add(node.value)
-
-    def decide(self, node: cst.CSTNode, what: str) -> None:
-        """Note what a person must decide at a node of the program."""
-        start = self.get_metadata(PositionProvider, node).start
-        self.decisions.append(Decision(start.line, start.column + 1, what))
-
-    def visit_Import(self, node: cst.Import) -> None:
-        for alias in node.names:
-            if alias.evaluated_name.partition(".")[0] == LIBRARY:
-                what = f"write `from {LIBRARY} import ...`, and run this again"
-                self.decide(
-                    node, f"names of `import {alias.evaluated_name}` are not rewritten; {what}"
-                )
 
     def leave_SimpleStatementLine(
         self, original_node: cst.SimpleStatementLine, updated_node: cst.SimpleStatementLine
     ) -> cst.SimpleStatementLine | cst.FlattenSentinel[cst.SimpleStatementLine]:
         # The names of the line as it was; those of classes are others by now.
         [first, *others] = original_node.body
-        if others or not isinstance(first, cst.ImportFrom) or not imports.is_of_library(first):
+        if others or not isinstance(first, cst.ImportFrom) or not is_of_library(first):
             return updated_node
-        # The names as they were: others were renamed before their line.
-        [before] = original_node.body
-        lines, left = imports.rewritten(cst.ensure_type(before, cst.ImportFrom))
+        lines, left = imports.rewritten(first)
         for name in left:
             self.decide(original_node, f"cobotwire has no counterpart of {name}")
         made = [updated_node.with_changes(body=[line]) for line in lines]
@@ -79,89 +62,89 @@ class Rewriter(cst.CSTTransformer):
 
     def leave_Name(self, original_node: cst.Name, updated_node: cst.Name) -> cst.Name:
         # A class that is renamed: MyCobot280Socket is MyCobot280 on another port.
-        found = self.names.classes.get(updated_node.value)
-        if found != updated_node.value:
+        inside = self.names.keys.parents[original_node]
+        names_part = isinstance(inside, cst.Attribute) and inside.attr is original_node
+        names_argument = isinstance(inside, cst.Arg) and inside.keyword is original_node
+        if names_part or names_argument:
             return updated_node
-        return updated_node.with_changes(value=library()[found].native)
-
-    def leave_Comparison(
-        self, original_node: cst.Comparison, updated_node: cst.Comparison
-    ) -> cst.Comparison:
-        sides = [original_node.left, *(each.comparator for each in original_node.comparisons)]
-        if any(map(_is_failure, sides)) and any(map(self._is_result, sides)):
-            self.decide(original_node, NEVER_FAILED)
-        return updated_node
-
-    def _is_result(self, node: cst.BaseExpression) -> bool:
-        if isinstance(node, cst.Call):
-            name = get_full_name_for_node(node.func) or ""
-            return name.rpartition(".")[0] in self.names.arms
-        return get_full_name_for_node(node) in self.names.results
-
-    def leave_Assign(self, original_node: cst.Assign, updated_node: cst.Assign) -> cst.Assign:
-        # A tuple stays what it is, but the program changes the list.
-        names = {get_full_name_for_node(target.target) for target in original_node.targets}
-        call = self._called(original_node.value)
-        if call is None or not call.row or not names & self.names.lists:
+        if Kind(original_node.value) not in self.names.values(original_node):
             return updated_node
-        as_list = cst.Call(cst.Name("list"), [cst.Arg(updated_node.value)])
-        return updated_node.with_changes(value=as_list)
-
-    def _called(self, node: cst.CSTNode) -> Call | None:
-        """Return the method of the library that a node calls."""
-        name = get_full_name_for_node(node.func) if isinstance(node, cst.Call) else None
-        arm, _, method = (name or "").rpartition(".")
-        kind = self.names.arms.get(arm)
-        return kind.methods.get(method) if kind else None
+        return updated_node.with_changes(value=library()[original_node.value].native)
 
     def leave_Call(self, original_node: cst.Call, updated_node: cst.Call) -> cst.BaseExpression:
-        name = get_full_name_for_node(original_node.func) or ""
-        if name in self.names.several:
-            self.decide(original_node, SEVERAL.format(name))
+        kinds = self.names.kinds(original_node.func)
+        if kinds:
+            if len(kinds) == 1 and self.names.is_only(original_node.func, Kind):
+                return self._constructed(original_node, updated_node, kinds[0])
+            self.decide(original_node, SEVERAL.format(code(original_node.func)))
+        if kinds or not isinstance(original_node.func, cst.Attribute):
             return updated_node
-        if name in self.names.classes:
-            return self._constructed(original_node, updated_node, self.names.classes[name])
-        arm, _, method = name.rpartition(".")
-        kind = self.names.arms.get(arm)
-        if kind is None:
-            if _looks_like_arm(arm, method):
-                self.decide(original_node, UNKNOWN.format(name=arm))
+        arm, method = original_node.func.value, original_node.func.attr.value
+        arms = [library()[each] for each in self.names.arms(arm)]
+        if not arms:
+            if self.uses.may_be_arm(arm, method):
+                self.decide(original_node, UNKNOWN.format(name=code(arm)))
             return updated_node
-        if method in _WRITTEN:
-            return _WRITTEN[method](self, original_node, updated_node, kind)
-        call = kind.methods.get(method)
+        if not self.names.is_only(arm, Arm) or not are_alike(arms, method):
+            self.decide(original_node, MIXED.format(code(arm)))
+            return updated_node
+        return self._of_arm(original_node, updated_node, arms[0], method)
+
+    def _of_arm(
+        self, original: cst.Call, updated: cst.Call, kind: LibraryClass, method: str
+    ) -> cst.BaseExpression:
+        if method in _WRITTEN and kind.has(method):
+            return _WRITTEN[method](self, original, updated, kind)
+        call = kind.call(method)
         if call is None:
-            self.decide(original_node, _why_left(kind, method))
-            return updated_node
-        return self._method(original_node, updated_node, call, kind)
+            self.decide(original, why_left(kind, method))
+            return updated
+        return self._method(original, updated, call, kind)
 
     def _method(
         self, original: cst.Call, updated: cst.Call, call: Call, kind: LibraryClass
     ) -> cst.BaseExpression:
         arguments = ours(call, updated.args)
-        if arguments is None:
-            self.decide(original, "the arguments are not known here; compare them by hand")
+        if isinstance(arguments, str):
+            self.decide(original, arguments)
             return updated
-        if call.result in RESULTS:
+        known = given(updated.args, list(call.parameters)) or {}
+        if is_about_motion(call, known, kind):
             self.decide(original, RESULTS[call.result])
         made = _renamed(updated, call.calls).with_changes(args=arguments)
-        known = given(updated.args, list(call.parameters)) or {}
-        if call.address not in known:
+        if call.address in known:
+            made = _of_device(made, kind, known[call.address])
+        return self._with_result(original, made, call)
+
+    def _with_result(self, original: cst.Call, made: cst.Call, call: Call) -> cst.BaseExpression:
+        """Return a call with the library's result, as far as the program uses it."""
+        uses = self.uses.of(original)
+        if call.gives == "same" or not uses:
             return made
-        return _of_device(made, kind, known[call.address])
+        if call.gives not in _FORMS:
+            self.decide(original, why_other(call))
+            return made
+        if call.gives != "ints" and all(self.uses.is_proven(use, call.gives) for use in uses):
+            return made
+        for name in filter(self.uses.is_hidden, _FORMS[call.gives]):
+            self.decide(original, HIDDEN_NAME.format(name))
+            return made
+        made = _called("map", cst.Name("int"), made) if call.gives == "ints" else made
+        return _called(_FORMS[call.gives][0], made)
 
     def _constructed(self, original: cst.Call, updated: cst.Call, name: str) -> cst.BaseExpression:
         kind = library()[name]
         known = given(updated.args, kind.constructor)
         if known is None:
-            self.decide(original, "the arguments are not known here; compare them by hand")
+            self.decide(original, HIDDEN)
             return updated
-        if kind.on_ports:
+        place, speed = (_or_default(known, kind, each) for each in kind.constructor[:2])
+        is_known = isinstance(place, cst.SimpleString) and place.evaluated_value
+        if kind.on_ports and (not is_known or is_known in kind.on_ports):
             there, *ports = kind.on_ports
             self.decide(original, OTHER_ROBOT.format(kind.native, there, " or ".join(ports)))
         if "timeout" in known:
             self.decide(original, TIMEOUT)
-        place, speed = (known.get(each) for each in kind.constructor[:2])
         if place is None:
             self.decide(original, f"{kind.native} needs the port")
             return updated
@@ -173,31 +156,47 @@ class Rewriter(cst.CSTTransformer):
         self, original: cst.Call, updated: cst.Call, kind: LibraryClass
     ) -> cst.BaseExpression:
         """Return ``time.sleep`` instead of ``wait``."""
-        if len(updated.args) != 1 or original not in self._statements:
+        if len(updated.args) != 1 or updated.args[0].star or self.uses.of(original):
             self.decide(original, "write time.sleep(seconds) in a line of its own")
+            return updated
+        if self.uses.is_hidden("time"):
+            self.decide(original, HIDDEN_NAME.format("time"))
             return updated
         self.sleeps = True
         seconds = updated.args[0].with_changes(keyword=None, equal=cst.MaybeSentinel.DEFAULT)
-        return cst.Call(cst.parse_expression("time.sleep"), [seconds])
+        return _called("time.sleep", seconds.value)
 
     def home(self, original: cst.Call, updated: cst.Call, kind: LibraryClass) -> cst.BaseExpression:
         """Return the call that does what ``go_home`` does."""
         if not kind.home:
             self.decide(original, HOME)
             return updated
-        return _in_place_of(updated, kind.home)
+        return self._instead(original, updated, kind.home, "nothing")
 
     def gripper_kind(
         self, original: cst.Call, updated: cst.Call, kind: LibraryClass
     ) -> cst.BaseExpression:
         """Return the query that ``is_torque_gripper`` sends."""
-        return _in_place_of(updated, "get_servo_data(7, 1)")
+        return self._instead(original, updated, "get_servo_data(7, 1)", "same")
 
     def stop_gripper(
         self, original: cst.Call, updated: cst.Call, kind: LibraryClass
     ) -> cst.BaseExpression:
         """Return the order that ``gripper_stop`` sends."""
-        return _in_place_of(updated, "set_gripper_value(0, 0, 1, 1)")
+        return self._instead(original, updated, "set_gripper_value(0, 0, 1, 1)", "nothing")
+
+    def _instead(
+        self, original: cst.Call, updated: cst.Call, text: str, gives: str
+    ) -> cst.BaseExpression:
+        """Return another call of the same arm."""
+        if any(each.keyword is None or each.keyword.value != QUIET for each in updated.args):
+            self.decide(original, HIDDEN)
+            return updated
+        made = cst.ensure_type(cst.parse_expression(f"arm.{text}"), cst.Call)
+        name = cst.ensure_type(made.func, cst.Attribute).attr.value
+        return self._with_result(
+            original, _renamed(made, name, updated), Call(name, {}, {}, gives=gives)
+        )
 
 
 # The methods that the rewriter writes itself.
@@ -209,29 +208,18 @@ _WRITTEN = {
 }
 
 
-def _is_failure(node: cst.BaseExpression) -> bool:
-    return code(node) in ("-1", "None")
+def _or_default(
+    known: dict[str, cst.BaseExpression], kind: LibraryClass, parameter: str
+) -> cst.BaseExpression | None:
+    """Return an argument of a constructor, or the library's default if ours may be another."""
+    default = kind.default(parameter)
+    if parameter in known or str(default) in ("None", str(kind.usual)):
+        return known.get(parameter)
+    return cst.parse_expression(f'"{default}"' if isinstance(default, str) else f"{default}")
 
 
-def _looks_like_arm(name: str, method: str) -> bool:
-    return bool(name) and method in _TELLING
-
-
-def _in_place_of(called: cst.Call, text: str) -> cst.BaseExpression:
-    """Return another call of the same arm."""
-    made = cst.parse_expression(f"arm.{text}")
-    assert isinstance(made, cst.Call), "it is written here"
-    return _renamed(made, cst.ensure_type(made.func, cst.Attribute).attr.value, called)
-
-
-def _why_left(kind: LibraryClass, method: str) -> str:
-    """Return why a call is left as it is."""
-    # A class that opens a socket would drive the pins of the robot's computer.
-    local = method not in kind.absent or kind.opens == "serial"
-    if local and method in NO_COUNTERPART:
-        return NO_COUNTERPART[method]
-    why = kind.absent.get(method)
-    return f"{kind.native} has no counterpart of {method}" + (f": {why}" if why else "")
+def _called(name: str, *arguments: cst.BaseExpression) -> cst.Call:
+    return cst.Call(cst.parse_expression(name), [cst.Arg(each) for each in arguments])
 
 
 def _of_device(made: cst.Call, kind: LibraryClass, address: cst.BaseExpression) -> cst.Call:

@@ -1,0 +1,40 @@
+"""What an expression of a program may be, as far as a rewritten call depends on it."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+
+class Kind(NamedTuple):
+    """A class of the library."""
+
+    name: str
+
+
+class Arm(NamedTuple):
+    """An object of a class of the library."""
+
+    kind: str
+
+
+class Result(NamedTuple):
+    """The result of a query of an arm; ``form`` is that of ``Call.gives``."""
+
+    form: str
+
+
+class Instance(NamedTuple):
+    """An object of a class of the program, by the key of the class."""
+
+    key: tuple[object, ...]
+
+
+class Other(NamedTuple):
+    """``None``, or anything else that is not known here."""
+
+    is_none: bool
+
+
+NONE, UNKNOWN = Other(True), Other(False)
+Value = Kind | Arm | Result | Instance | Other
+Values = frozenset[Value]

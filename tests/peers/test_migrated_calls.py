@@ -1,0 +1,18 @@
+"""A rewritten call does the same as before, or ``cobotwire migrate`` lists it for a decision."""
+
+from __future__ import annotations
+
+import pytest
+
+from cobotwire.pymycobot.migrate.calls import library
+from migrated_calls import compare_migrated
+
+# One of so many methods; `make layer` compares all of them.
+STRIDE = 5
+
+
+@pytest.mark.parametrize("name", sorted(library()))
+def test_rewritten_call_does_the_same_or_is_listed(name: str) -> None:
+    equal, _listed, wrong = compare_migrated(name, STRIDE)
+    assert wrong == []
+    assert equal
