@@ -243,7 +243,7 @@ class MyBuddySocket(Limbs):
 
         Calls ``at(id).get_servo_status()``.
         """
-        return self._ask(results.plain, self.arm.at(id).get_servo_status)
+        return self._ask(results.bit_numbers, self.arm.at(id).get_servo_status)
 
     @naming(address="id")
     def get_servo_temps(self, id: int) -> Any:
