@@ -33,10 +33,7 @@ FRAMES = {
     "sync_send_coords": _ASKS_ONCE,
 }
 # By class and method, where the frames may differ.
-_FOUR = "the library sends three angles to four joints, or rejects its own call"
 OTHER_FRAMES = {
-    ("MyPalletizer260", "go_home"): _FOUR,
-    ("MyPalletizerSocket", "go_home"): _FOUR,
     ("MyBuddy", "set_encoders"): _ROWS,
     ("MyBuddySocket", "set_encoders"): _ROWS,
     **_also_by_tcp(
@@ -132,34 +129,8 @@ _SIZES += ["get_dynamic_parameters", "get_digital_inputs", "tool_serial_read_dat
 _SIZES_630 = ["get_comm_error_counts", "get_solution_angles", "get_max_speed", "get_max_acc"]
 _SIZES_630 += ["get_fusion_parameters", "get_pos_over_shoot", "get_joint_min_angle"]
 _SIZES_630 += ["get_joint_max_angle"]
-_FAULTS = (
-    "the library takes the faults of seven servos for codes of errors: 16, the angle, becomes 1"
-)
-_JOINT = "no source shows a reply that names the joint; the library mixes it with the position"
-_RANGE = "no joint has this angle, so the reply is damaged; the library returns it"
-_ONE_JOINT = "a register of one joint: its reply does not name the joint, so the call must"
-_HAND = ["angle", "torque", "default_speed", "p", "d", "i", "min_pressure"]
-_HAND += ["clockwise", "counterclockwise"]
 # By robot and method, where results of the same reply may differ.
 REPLIES = {
-    **{(robot, "get_robot_error_status"): _SIGN for robot in ("MyArmM", "MyArmC")},
-    **{(robot, "get_servo_status"): _FAULTS for robot in ("MyArm", "MyArmSocket")},
-    **{
-        (robot, f"get_hand_gripper_{what}"): _JOINT
-        for robot in ("MyCobot320", "MyCobot320Socket", "Mercury (A1)", "Mercury (B1, X1)")
-        for what in _HAND
-    },
-    **{(robot, "get_pro_gripper"): _ONE_JOINT for robot in ("MyCobot320", "MyCobot320Socket")},
-    **{
-        (robot, method): _RANGE
-        for robot in (
-            *("MyCobot", "MyCobotSocket", "MyCobot280", "MyCobot280Socket", "MyCobot280RDKX5"),
-            *("MyCobot280RDKX5Socket", "MyCobot320", "MyCobot320Socket", "MechArm", "MechArm270"),
-            *("MechArmSocket", "MyArm", "MyArmSocket", "MyBuddy", "MyBuddySocket"),
-            *("MyPalletizer260", "MyPalletizerSocket"),
-        )
-        for method in ("get_angles", "get_radians")
-    },
     **{
         (robot, method): _SIGN
         for robot in ("Mercury (A1)", "Mercury (B1, X1)", "Pro630")

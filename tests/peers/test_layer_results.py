@@ -9,9 +9,7 @@ import pytest
 
 from cobotwire.pymycobot.layer.registers import OF_A_JOINT
 from layer_comparison import FAILED, REJECTED, Called, call_ours, call_theirs
-from layer_replies import _kinds
 from layer_robots import CLOSED_LOOP, LAYER_ROBOTS
-from layer_rulings import REPLIES
 from pymycobot_classes import CLASSES
 from robots.robot import Call, Robot
 
@@ -50,6 +48,11 @@ def _sum(command: int, data: bytes) -> bytes:
     return bytes([command + sum(data) & 0xFF])
 
 
+def kinds(result: Any) -> Any:
+    """Return the types of a result and of its parts."""
+    return [kinds(each) for each in result] if isinstance(result, list) else type(result)
+
+
 def both(name: str, method: str, given: Sequence[Any], reply: bytes | None) -> list[Called]:
     """Return what the maker's method and ours wrote and returned."""
     robot = {**LAYER_ROBOTS, **CLOSED_LOOP}[name]
@@ -83,6 +86,7 @@ STATUS = bytes([0, 1, 2, 5, 48, 255])
         ),
         *((n, "get_joint_angle", (2,), 0x1C, words(-1234)) for n in ("MyArmM", "MyArmC")),
         *(("MyBuddy", "get_servo_status", (side,), 0xE4, STATUS) for side in (1, 2)),
+        ("MyBuddy", "get_radians", (1,), 0x20, words(1234, -17999, 9050, 1, 0, 99)),
         ("MyArm", "get_servo_status", (), 0xE4, bytes([0, 1, 2, 5, 8, 15, 4])),
         *((name, "is_power_on", (), 0x12, bytes([state])) for name in POWER for state in range(3)),
     ],
@@ -92,14 +96,16 @@ def test_result_of_reply_equals_that_of_the_maker(
 ) -> None:
     theirs, mine = replied(name, method, given, command, data)
     assert theirs not in (None, -1)
-    assert (mine, _kinds(mine)) == (theirs, _kinds(theirs))
+    assert (mine, kinds(mine)) == (theirs, kinds(theirs))
 
 
 @pytest.mark.parametrize(
     ("name", "method", "given", "command", "data", "theirs", "mine"),
     [
+        # A read that failed is an error.
         ("MyCobot320", "get_servo_data", (1, 21), 0x53, b"\xff", -1, FAILED),
-        # The position 50 becomes 3: the library takes seven bytes for an error register.
+        # No source shows a reply that names the joint; the library mixes it with the position. 50
+        # becomes 3, as if seven bytes were an error register.
         *(
             ("MyCobot320", method, (3,), 0xE9, tool(register, 3, 50), [3, 3], FAILED)
             for register, method in HAND.items()
@@ -108,13 +114,16 @@ def test_result_of_reply_equals_that_of_the_maker(
             (name, "get_hand_gripper_angle", (3,), 0xD9, tool(12, 3, 50), [3, 0, 50], FAILED)
             for name in MERCURY
         ),
+        # The library takes the faults of seven servos for error codes: 16, the angle, becomes 1.
         ("MyArm", "get_servo_status", (), 0xE4, bytes([16, 23, 32, 0, 1, 2, 5]),
          [1, 2, 3, 0, 1, 2, 5], [16, 23, 32, 0, 1, 2, 5]),
+        # The library reads the highest bit as a sign, and lists other bits then.
         *(
             (name, "get_robot_error_status", (), 0x15, words(-0x7FFF, *[0] * 7),
              [[*range(16)], *[0] * 7], [[0, 15], *[0] * 7])
             for name in ("MyArmM", "MyArmC")
         ),
+        # No joint has this angle, so the reply is damaged.
         *(
             (name, "get_angles", (), 0x20, words(*[18101] * joints), [181.01] * joints, FAILED)
             for name, joints in (
@@ -125,7 +134,7 @@ def test_result_of_reply_equals_that_of_the_maker(
         ("MyBuddy", "get_angles", (1,), 0x20, words(*[18101] * 6), [181.01] * 6, FAILED),
     ],
 )  # fmt: skip
-def test_result_that_differs_has_a_ruling(
+def test_result_differs_from_that_of_the_maker_for_the_reason_given(
     name: str,
     method: str,
     given: tuple[int, ...],
@@ -135,8 +144,6 @@ def test_result_that_differs_has_a_ruling(
     mine: Any,
 ) -> None:
     assert replied(name, method, given, command, data) == [theirs, mine]
-    # A call that fails returns -1 in the library, and raises an error here.
-    assert theirs == -1 or (name, method) in REPLIES
 
 
 @pytest.mark.parametrize("register", range(46))
@@ -144,8 +151,8 @@ def test_register_of_320_is_read_as_by_the_maker(register: int) -> None:
     reply = frame(LAYER_ROBOTS["MyCobot320"], 0xE9, tool(register, 2), 0)
     theirs, mine = both("MyCobot320", "get_pro_gripper", (register,), reply)
     if register in OF_A_JOINT:
+        # The reply would not name the joint.
         assert (theirs.result, mine) == (2, Called(b"", REJECTED))
-        assert ("MyCobot320", "get_pro_gripper") in REPLIES
     else:
         assert (mine, type(mine.result)) == (theirs, type(theirs.result))
 

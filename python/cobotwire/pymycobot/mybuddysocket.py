@@ -211,7 +211,7 @@ class MyBuddySocket(Limbs):
 
         Calls ``at(id).get_radians()``.
         """
-        return self._ask(results.plain, self.arm.at(id).get_radians)
+        return self._ask(results.radians, self.arm.at(id).get_radians)
 
     @naming(address="id")
     def get_reference_frame(self, id: int) -> Any:
