@@ -90,6 +90,17 @@ def test_doctor_names_the_command_that_switches_a_mercury_on() -> None:
     assert "cobotwire call URL power_on switches it on" in human.stdout
 
 
+def test_motion_is_not_sent_while_the_emergency_stop_is_pressed() -> None:
+    state = bytes.fromhex("FE FE 04 12 02 9C F0")
+    with ScriptedPeer([state], [state]) as peer:
+        motion = ("call", peer.url, "send_angles", "10,0,0,0,0,0,0", "30", "--timeout", "0.1")
+        result = run_program("--edition", "mercury_a1", *motion)
+        received = peer.received
+    assert result.returncode == 7
+    assert "the arm has no power: it reports EMERGENCY_STOP; end that state first" in result.stderr
+    assert bytes.fromhex("FE FE 12 22") not in received
+
+
 def test_motion_that_the_arm_rejects_is_reported_after_it_was_sent() -> None:
     with PtyServer(SimulatedArm(mycobot280.TABLE, powered=True)) as server:
         result = run_program("call", server.url, "send_coords", "281,281,281,0,0,0", "30")

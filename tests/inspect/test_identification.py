@@ -76,7 +76,7 @@ def test_connect_async_returns_an_open_asyncio_client(arm: tuple[str, str]) -> N
 
     async def use() -> tuple[str, bool]:
         async with await cobotwire.connect_async(url, timeout=0.3) as client:
-            return type(client).__name__, await client.is_power_on()
+            return type(client).__name__, bool(await client.is_power_on())
 
     assert asyncio.run(use()) == (load(edition).ASYNC_CLIENT.__name__, False)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+from contextlib import nullcontext
 from functools import partial
 from typing import Any
 
@@ -11,6 +12,7 @@ import pytest
 import cobotwire.pymycobot as layer
 from cobotwire.editions.mycobot280 import TABLE
 from cobotwire.protocol.errors import MotionTimeout, ReplyTimeout, UsageError
+from cobotwire.protocol.roles import row_index
 from cobotwire.simulator import MemoryTransport, SimulatedArm
 from cobotwire.simulator.clock import SteppedClock
 
@@ -71,6 +73,41 @@ def test_motion_that_does_not_arrive_raises_or_returns_one_as_the_library(
     with pytest.raises(MotionTimeout):
         made("raise", unpowered, clock).sync_send_angles([20] * 6, 50, timeout=1)
     assert made("return", unpowered, clock).sync_send_angles([20] * 6, 50, timeout=1) == 1
+
+
+SYNC = [name for name in layer.__all__ if hasattr(getattr(layer, name), "sync_send_angles")]
+
+
+class Counting(MemoryTransport):
+    """A line to a simulated arm that keeps the ids of what is written."""
+
+    def __init__(self, arm: SimulatedArm, clock: SteppedClock) -> None:
+        super().__init__(arm, clock)
+        self.sent: list[int] = []
+        self._at = 4 if arm.table.addresses else 3
+
+    def write(self, data: bytes) -> None:
+        self.sent.append(data[self._at])
+        super().write(data)
+
+
+@pytest.mark.parametrize("errors", ["raise", "return"])
+@pytest.mark.parametrize("name", SYNC)
+def test_motion_that_is_late_is_stopped_once_whatever_errors_do(
+    name: str, errors: Any, clock: SteppedClock
+) -> None:
+    kind = getattr(layer, name)
+    table = kind.NATIVE.table
+    motion, stop = table.in_role("joint targets"), table.in_role("stop")
+    numbers = motion.request[0].fields[row_index(motion.request[0])].cases[0].numbers
+    target = [each.minimum / 2 / each.divide for each in numbers]
+    address = (1,) if table.addresses else ()
+    transport = Counting(SimulatedArm(table, clock=clock, powered=True), clock)
+    found = object.__new__(kind)
+    found._open(partial(kind.NATIVE, transport), False, errors)
+    with pytest.raises(MotionTimeout) if errors == "raise" else nullcontext():
+        found.sync_send_angles(*address, target, 1, timeout=0.3)
+    assert (transport.sent.count(motion.id), transport.sent.count(stop.id)) == (1, 1)
 
 
 def test_closed_arm_opens_again(arm: SimulatedArm, clock: SteppedClock) -> None:

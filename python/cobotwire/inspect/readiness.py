@@ -7,7 +7,7 @@ from typing import Any
 
 from cobotwire.client import Client
 from cobotwire.inspect.advice import Problem
-from cobotwire.protocol.errors import ArmNotReady, ReplyTimeout, with_meaning
+from cobotwire.protocol.errors import ArmNotReady, ReplyTimeout, no_power, with_meaning
 from cobotwire.protocol.table import Command, Role, Table
 from cobotwire.session.motion import error_meaning
 
@@ -21,9 +21,12 @@ def problems(table: Table, states: Mapping[Role, Any]) -> list[Problem]:
     A state that is missing or None is not known, and is not a problem.
     """
     found = []
-    if states.get("powered") is False:
+    powered = states.get("powered")
+    if powered is not None and not powered:
         advice = _use(table, "powered", 1, "switches it on; keep clear of the arm")
-        found.append(Problem("no-power", "the arm has no power", advice))
+        if powered != 0:
+            advice = f"end that state first; then {advice}"
+        found.append(Problem("no-power", f"the arm has {no_power(powered)}", advice))
     if states.get("paused"):
         stop = table.find_role("stop")
         discard = f"; {_call(stop)} discards it" if stop else ""

@@ -223,14 +223,14 @@ class ArmState(NamedTuple):
 
     Attributes:
         position: its angles or coordinates, of the same kind as the target.
-        powered: whether it has power.
+        powered: whether it has power; in some editions a member of ``PowerState``.
         paused: whether its motion is paused.
         error: its error register.
         error_meaning: what the number in the error register means; empty if that is not known.
     """
 
     position: tuple[float, ...] | None = None
-    powered: bool | None = None
+    powered: int | None = None
     paused: bool | None = None
     error: int | None = None
     error_meaning: str = ""
@@ -240,13 +240,19 @@ class ArmState(NamedTuple):
         found = []
         if self.position is not None:
             found.append(f"it is at {list(self.position)}")
-        if self.powered is False:
-            found.append("it has no power")
+        if self.powered is not None and not self.powered:
+            found.append(f"it has {no_power(self.powered)}")
         if self.paused:
             found.append("its motion is paused")
         if self.error:
             found.append(f"its error register is {with_meaning(self.error, self.error_meaning)}")
         return found
+
+
+def no_power(powered: int) -> str:
+    """Return in words that an arm has no power; ``powered`` is what it reports, which is false."""
+    name = getattr(powered, "name", "") if powered != 0 else ""
+    return f"no power: it reports {name}" if name else "no power"
 
 
 def with_meaning(number: int, meaning: str) -> str:

@@ -155,7 +155,7 @@ class MyArm(Homing, WaitingWithMode, TwoPositions, Pins):
 
     def get_servo_status(self) -> Any:
         """Read the faults of the servos."""
-        return self._ask(results.bit_numbers, self.arm.get_servo_status)
+        return self._ask(results.plain, self.arm.get_servo_status)
 
     def get_servo_temps(self) -> Any:
         """Read the temperatures of the servos."""

@@ -71,7 +71,7 @@ class MyArmC(CompatibleClient):
 
     def get_robot_error_status(self) -> Any:
         """Read the servos' errors."""
-        return self._ask(results.plain, self.arm.get_robot_error_status)
+        return self._ask(results.bit_numbers, self.arm.get_robot_error_status)
 
     def get_robot_firmware_version(self) -> Any:
         """Read the firmware's version (the maker's name)."""
@@ -167,7 +167,7 @@ class MyArmC(CompatibleClient):
 
     def get_servos_status(self) -> Any:
         """Read the faults of the servos."""
-        return self._ask(results.plain, self.arm.get_servos_status)
+        return self._ask(results.bit_numbers, self.arm.get_servos_status)
 
     def get_servos_temp(self) -> Any:
         """Read the temperatures of the servos."""
@@ -183,7 +183,7 @@ class MyArmC(CompatibleClient):
 
     def is_all_servos_enabled(self) -> Any:
         """Check which servos are connected."""
-        return self._ask(results.plain, self.arm.is_all_servos_enabled)
+        return self._ask(results.listed, self.arm.is_all_servos_enabled)
 
     @naming(button="mode")
     def is_tool_btn_clicked(self, mode: int = 1) -> Any:

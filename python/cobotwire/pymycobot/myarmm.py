@@ -94,7 +94,7 @@ class MyArmM(CompatibleClient):
 
     def get_robot_error_status(self) -> Any:
         """Read the servos' errors."""
-        return self._ask(results.plain, self.arm.get_robot_error_status)
+        return self._ask(results.bit_numbers, self.arm.get_robot_error_status)
 
     def get_robot_firmware_version(self) -> Any:
         """Read the firmware's version (the maker's name)."""
@@ -194,7 +194,7 @@ class MyArmM(CompatibleClient):
 
     def get_servos_status(self) -> Any:
         """Read the faults of the servos."""
-        return self._ask(results.plain, self.arm.get_servos_status)
+        return self._ask(results.bit_numbers, self.arm.get_servos_status)
 
     def get_servos_temp(self) -> Any:
         """Read the temperatures of the servos."""
@@ -210,7 +210,7 @@ class MyArmM(CompatibleClient):
 
     def is_all_servos_enabled(self) -> Any:
         """Check which servos are connected."""
-        return self._ask(results.plain, self.arm.is_all_servos_enabled)
+        return self._ask(results.listed, self.arm.is_all_servos_enabled)
 
     def is_robot_moving(self) -> Any:
         """Check whether the arm moves (the maker's name)."""

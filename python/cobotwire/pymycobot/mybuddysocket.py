@@ -211,7 +211,7 @@ class MyBuddySocket(Limbs):
 
         Calls ``at(id).get_radians()``.
         """
-        return self._ask(results.plain, self.arm.at(id).get_radians)
+        return self._ask(results.radians, self.arm.at(id).get_radians)
 
     @naming(address="id")
     def get_reference_frame(self, id: int) -> Any:
@@ -243,7 +243,7 @@ class MyBuddySocket(Limbs):
 
         Calls ``at(id).get_servo_status()``.
         """
-        return self._ask(results.plain, self.arm.at(id).get_servo_status)
+        return self._ask(results.bit_numbers, self.arm.at(id).get_servo_status)
 
     @naming(address="id")
     def get_servo_temps(self, id: int) -> Any:

@@ -10,12 +10,13 @@ from cobotwire.pymycobot.layer import results
 from cobotwire.pymycobot.layer.client import OnFailure
 from cobotwire.pymycobot.layer.helpers import Homing, Pins, WaitingWithMode
 from cobotwire.pymycobot.layer.naming import naming
+from cobotwire.pymycobot.layer.registers import Registers
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
 
-class MyCobot320(Homing, WaitingWithMode, Pins):
+class MyCobot320(Homing, WaitingWithMode, Registers, Pins):
     """A myCobot 320 on a serial port."""
 
     NATIVE = mycobot320.CLIENT
@@ -248,10 +249,6 @@ class MyCobot320(Homing, WaitingWithMode, Pins):
         """Read the path to coordinates."""
         return self._ask(results.plain, self.arm.get_movement_type)
 
-    def get_pro_gripper(self, address: int, gripper_id: int = 14) -> Any:
-        """Read a register of the gripper."""
-        return self._ask(results.plain, self.arm.get_pro_gripper, address, gripper_id)
-
     def get_pro_gripper_angle(self, gripper_id: int = 14) -> Any:
         """Read the gripper's opening."""
         return self._ask(results.plain, self.arm.get_pro_gripper_angle, gripper_id)
@@ -282,7 +279,7 @@ class MyCobot320(Homing, WaitingWithMode, Pins):
 
     def get_robot_status(self) -> Any:
         """Check the servos."""
-        return self._ask(results.plain, self.arm.get_robot_status)
+        return self._ask(results.bit_numbers, self.arm.get_robot_status)
 
     def get_servo_currents(self) -> Any:
         """Read the currents of the servos."""
@@ -294,7 +291,7 @@ class MyCobot320(Homing, WaitingWithMode, Pins):
 
         Calls ``get_servo_data(joint, register, mode)``.
         """
-        return self._ask(results.plain, self.arm.get_servo_data, servo_id, data_id, mode)
+        return self._ask(results.servo_register, self.arm.get_servo_data, servo_id, data_id, mode)
 
     def get_servo_speeds(self) -> Any:
         """Read the speeds of the servos."""
@@ -739,10 +736,6 @@ class MyCobot320(Homing, WaitingWithMode, Pins):
         Calls ``set_movement_type(mode)``.
         """
         return self._order(self.arm.set_movement_type, move_type)
-
-    def set_pro_gripper(self, address: int, value: int, gripper_id: int = 14) -> Any:
-        """Write a register of the gripper."""
-        return self._order(self.arm.set_pro_gripper, address, value, gripper_id)
 
     @naming(value="gripper_angle")
     def set_pro_gripper_abs_angle(self, gripper_angle: int, gripper_id: int = 14) -> Any:

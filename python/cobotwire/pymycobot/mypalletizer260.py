@@ -8,14 +8,14 @@ from typing import TYPE_CHECKING, Any
 from cobotwire.editions import mypalletizer260
 from cobotwire.pymycobot.layer import results
 from cobotwire.pymycobot.layer.client import OnFailure
-from cobotwire.pymycobot.layer.helpers import Homing, Pins, WaitingWithoutMode
+from cobotwire.pymycobot.layer.helpers import HomingWithoutResult, Pins, WaitingWithoutMode
 from cobotwire.pymycobot.layer.naming import naming
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
 
-class MyPalletizer260(Homing, WaitingWithoutMode, Pins):
+class MyPalletizer260(HomingWithoutResult, WaitingWithoutMode, Pins):
     """A myPalletizer 260 on a serial port."""
 
     NATIVE = mypalletizer260.CLIENT

@@ -5,11 +5,10 @@ from __future__ import annotations
 
 from cobotwire.editions import mypalletizer260
 from cobotwire.pymycobot.layer.client import OnFailure
-from cobotwire.pymycobot.layer.helpers import HomingWithoutResult
 from cobotwire.pymycobot.mypalletizer260 import MyPalletizer260
 
 
-class MyPalletizerSocket(HomingWithoutResult, MyPalletizer260):
+class MyPalletizerSocket(MyPalletizer260):
     """A myPalletizer 260 behind a TCP server."""
 
     NATIVE = mypalletizer260.CLIENT

@@ -178,7 +178,9 @@ class Types:
     def _member(self, enum: str, name: str, place: Place, node: Node) -> Member:
         spec = language.Member
         reader = Reader(node, spec, f"the member {name} of {enum}", self._problems)
-        return Member(place, name, reader.get(spec.value), reader.get(spec.doc))
+        return Member(
+            place, name, reader.get(spec.value), reader.get(spec.doc), reader.get(spec.falsy)
+        )
 
     def _value(self, name: str, place: Place, node: Node) -> Value:
         spec = language.Value

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 
 from cobotwire_codegen.errors import Problem
-from cobotwire_codegen.model import Command, Edition, Field, Quantity, Variant
+from cobotwire_codegen.model import Command, Edition, Enum, Field, Quantity, Variant
 
 KINDS = {"ANGLES", "COORDS"}
 GRIPS = {"OPEN", "CLOSE"}
@@ -59,6 +59,18 @@ def _replies_with_flag(variants: tuple[Variant, ...]) -> bool:
 
 def _reads_flag(command: Command) -> bool:
     return command.requests == ((),) and _replies_with_flag(command.replies)
+
+
+def _reads_power(command: Command) -> bool:
+    if _reads_flag(command):
+        return True
+    # 1 is what find_setter looks for; every other value is false in a condition.
+    return command.requests == ((),) and all(
+        len(variant) == 1
+        and isinstance(variant[0].type, Enum)
+        and [m.value for m in variant[0].type.members if m.value and not m.falsy] == [1]
+        for variant in command.replies
+    )
 
 
 def _reads_number(command: Command) -> bool:
@@ -142,7 +154,10 @@ def _needs(edition: Edition) -> dict[str, tuple[str, Callable[[Command], bool]]]
             _reached(edition.joints),
         ),
         "moving": ("it must take no arguments and reply with a flag", _reads_flag),
-        "powered": ("it must take no arguments and reply with a flag", _reads_flag),
+        "powered": (
+            "it must take no arguments and reply with a flag, or an enum of which only 1 is true",
+            _reads_power,
+        ),
         "paused": ("it must take no arguments and reply with a flag", _reads_flag),
         "error": (
             "it must take no arguments, and the last of its replies must be a number",

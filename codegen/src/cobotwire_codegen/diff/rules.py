@@ -81,6 +81,7 @@ _API = {
     "edition-removed": "the edition {old} was removed",
     "edition-renamed": "the edition {old} is now {new}: it is imported by another name",
     "enum-member-renamed": "the member {old} is now {new}; its raw value stays the same",
+    "enum-member-truth-changed": "it was {old} in a condition, is {new}: callers branch otherwise",
     "item-renamed": "the part {old} is now {new}; its position stays the same",
     "radians-changed": "callers used {old}, use {new}: the same number is another angle",
     "result-now-optional": "was always present, may be missing",

@@ -180,6 +180,9 @@ def members(where: str, old: Sequence[Member], new: Sequence[Member]) -> Iterato
         if before.value != after.value:
             shown = words.member(before), words.member(after)
             yield finding("enum-member-renumbered", at, *shown)
+        if before.value == after.value and before.falsy != after.falsy:
+            shown = words.truth(before), words.truth(after)
+            yield finding("enum-member-truth-changed", at, *shown)
         yield from prose.doc(at, before.doc, after.doc)
     yield from order(where, matched, lambda member: member.name)
 

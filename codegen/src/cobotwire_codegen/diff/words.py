@@ -102,6 +102,11 @@ def member(found: Member | Address) -> str:
     return f"{found.name} = {found.value}"
 
 
+def truth(found: Member) -> str:
+    """Return what a member is in a condition."""
+    return "true" if found.value and not found.falsy else "false"
+
+
 def variant(found: Variant) -> str:
     """Return the fields of a variant."""
     return names(

@@ -93,6 +93,9 @@ class Member(Record):
     HEADING = "Enum member"
     value = required(Whole(), "The raw value.")
     doc = required(Text(), "What the value stands for.")
+    falsy = optional(
+        YesNo(), "Whether Python counts the value as false in a condition, as it does 0.", False
+    )
     EXAMPLE = "{value: 1, doc: On and off in turn.}"
 
 

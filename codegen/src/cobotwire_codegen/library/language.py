@@ -9,7 +9,7 @@ from cobotwire_codegen.language.shapes import Names, Text, Texts, Word
 # How a result is given. The package has a function of each name.
 RESULTS = {
     "plain": "Lists instead of tuples; numbers instead of flags and enums.",
-    "listed": "A list of one number.",
+    "listed": "A list, also of one number.",
     "nothing": "None; for orders with an acknowledgement.",
     "done": "1 when the order is sent; for orders without an acknowledgement.",
     "ended": "The status with which the motion ended, which is waited for; 0 is success.",
@@ -29,10 +29,11 @@ RESULTS = {
     "robot_status_of_450": "As `robot_status`, with the lowest bits first.",
     "flat": "All numbers in one list.",
     "in_thousandths": "Whole numbers of thousandths.",
+    "servo_register": "The number; 255 is a read that failed.",
     "listed_hundredths": "A list of one whole number of hundredths.",
     "joined": "The parts of all named tuples in one list.",
     "radians": "Radians, rounded to thousandths.",
-    "bit_numbers": "For each byte the list of the bits that are set, or 0.",
+    "bit_numbers": "For each number the list of the bits that are set, lowest first, or 0.",
     "error_classes": "For each of seven bytes the bits of its class; six bytes as three words.",
     "points": "Every second number in one list, the others in another; -1 if all are 0.",
     "words_of_text": "The first word of the first text, and the last word of the last.",

@@ -179,6 +179,7 @@ class Member:
     name: str
     value: int
     doc: str
+    falsy: bool = False
 
 
 @dataclass(frozen=True, slots=True)

@@ -4,6 +4,21 @@
 from enum import IntEnum
 
 
+class PowerState(IntEnum):
+    """Whether the arm has power. Only ON counts as true in a condition."""
+
+    OFF = 0
+    """The arm has no power."""
+    ON = 1
+    """The arm has power."""
+    EMERGENCY_STOP = 2
+    """The emergency stop is pressed, so the motors have no power."""
+
+    def __bool__(self) -> bool:
+        """Return False for 0 and EMERGENCY_STOP."""
+        return self.value not in (0, PowerState.EMERGENCY_STOP)
+
+
 class LimitCheck(IntEnum):
     """A check that can be turned on and off."""
 

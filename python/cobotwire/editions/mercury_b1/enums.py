@@ -18,6 +18,7 @@ from cobotwire.editions.mercury_a1.enums import GripperState as GripperState
 from cobotwire.editions.mercury_a1.enums import LimitCheck as LimitCheck
 from cobotwire.editions.mercury_a1.enums import MovementType as MovementType
 from cobotwire.editions.mercury_a1.enums import Planned as Planned
+from cobotwire.editions.mercury_a1.enums import PowerState as PowerState
 from cobotwire.editions.mercury_a1.enums import ReferenceFrame as ReferenceFrame
 from cobotwire.editions.mercury_a1.enums import RotationAxis as RotationAxis
 

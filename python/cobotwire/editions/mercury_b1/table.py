@@ -3,4 +3,4 @@
 
 from cobotwire.protocol.loading import load_table
 
-TABLE = load_table(__package__, checksum="96847f9f")
+TABLE = load_table(__package__, checksum="f4f6e43d")

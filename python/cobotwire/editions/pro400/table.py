@@ -3,4 +3,4 @@
 
 from cobotwire.protocol.loading import load_table
 
-TABLE = load_table(__package__, checksum="b30232ba")
+TABLE = load_table(__package__, checksum="9523a006")

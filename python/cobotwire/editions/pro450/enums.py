@@ -12,6 +12,7 @@ from cobotwire.editions.mercury_a1.enums import FusionParameter as FusionParamet
 from cobotwire.editions.mercury_a1.enums import FusionSetting as FusionSetting
 from cobotwire.editions.mercury_a1.enums import MovementType as MovementType
 from cobotwire.editions.mercury_a1.enums import Planned as Planned
+from cobotwire.editions.mercury_a1.enums import PowerState as PowerState
 from cobotwire.editions.mercury_a1.enums import ReferenceFrame as ReferenceFrame
 from cobotwire.editions.mercury_a1.enums import RotationAxis as RotationAxis
 from cobotwire.editions.mercury_a1.enums import TargetKind as TargetKind

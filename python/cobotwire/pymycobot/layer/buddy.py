@@ -76,7 +76,8 @@ class Limbs(CompatibleClient):
         """Move all joints of an arm to angles, and wait until they are there: ``move_angles``.
 
         Raises:
-            MotionTimeout: the arm is not there in time; not with ``errors="return"``.
+            MotionTimeout: the arm is not there in time, and is sent ``stop``; with
+                ``errors="return"`` it is stopped, but nothing is raised.
         """
         return self._reached(self.arm.at(id).move_angles, degrees, speed, timeout=timeout)
 

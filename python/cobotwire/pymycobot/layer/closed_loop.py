@@ -13,6 +13,7 @@ from cobotwire.protocol.errors import (
     ReplyTimeout,
     RequestRefused,
     UsageError,
+    no_power,
 )
 from cobotwire.pymycobot.layer.client import DONE, CompatibleClient
 from cobotwire.pymycobot.layer.naming import naming
@@ -143,8 +144,10 @@ class Reporting(ClosedLoop):
         Raises:
             ArmNotReady: the arm has no power; with ``errors="return"`` the result is -1.
         """
-        if not self.arm.is_power_on():
-            return self._not_ready("set_limit_switch", "the arm has no power; call power_on()")
+        powered = self.arm.is_power_on()
+        if not powered:
+            why = f"the arm has {no_power(powered)}; call power_on()"
+            return self._not_ready("set_limit_switch", why)
         result = self._order(self.arm.set_limit_switch, limit_mode, state)
         if limit_mode == REPORTS_ENDS:
             self._waits = bool(state)
@@ -191,8 +194,8 @@ class Reporting(ClosedLoop):
         """Move all joints to angles, and wait until they are there: ``move_angles``.
 
         Raises:
-            MotionTimeout: the arm is not there in time; with ``errors="return"`` the result is 0,
-                as it is in the library.
+            MotionTimeout: the arm is not there in time, and is sent ``stop``; with
+                ``errors="return"`` it is stopped, and the result is 0, as it is in the library.
             RequestRefused: the motion failed; with ``errors="return"`` the result is 0.
         """
         try:

@@ -30,8 +30,9 @@ class Waiting(CompatibleClient):
         """Move all joints to angles, and wait until they are there: ``move_angles``.
 
         Raises:
-            MotionTimeout: the arm is not there in time; with ``errors="return"`` the result is 1,
-                as it is in the library, and 0 in its older classes.
+            MotionTimeout: the arm is not there in time, and is sent ``stop``; with
+                ``errors="return"`` it is stopped, and the result is the library's: 1, and 0 in its
+                older classes.
         """
         return self._reached(self.arm.move_angles, degrees, speed, timeout=timeout)
 
@@ -73,7 +74,8 @@ class WaitingLonger(WaitingForResult):
         """Move all joints to angles, and wait until they are there: ``move_angles``.
 
         Raises:
-            MotionTimeout: the arm is not there in time; with ``errors="return"`` the result is 0.
+            MotionTimeout: the arm is not there in time, and is sent ``stop``; with
+                ``errors="return"`` it is stopped, and the result is 0.
         """
         return self._reached(self.arm.move_angles, degrees, speed, timeout=timeout)
 
@@ -100,7 +102,8 @@ class WaitingInChain(Waiting):
         """Move all joints to angles, and wait until they are there: ``move_angles``.
 
         Raises:
-            MotionTimeout: the arm is not there in time; not with ``errors="return"``.
+            MotionTimeout: the arm is not there in time, and is sent ``stop``; with
+                ``errors="return"`` it is stopped, but nothing is raised.
         """
         self._reached(self.arm.move_angles, degrees, speed, timeout=timeout)
         return self
@@ -142,7 +145,7 @@ class HomingWithoutResult(CompatibleClient):
 
     def go_home(self) -> None:
         """Send all joints to 0 degrees, at a fifth of the fastest speed."""
-        self._order(self.arm.send_angles, [0] * self.arm.table.joints, 20)
+        self._send(self.arm.send_angles, [0] * self.arm.table.joints, 20)
 
 
 class HomingAndWaiting(Waiting):

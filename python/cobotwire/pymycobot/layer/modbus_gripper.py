@@ -66,8 +66,8 @@ class ModbusGripper(CompatibleClient):
         data = bytes(
             [gripper_id, function, *register.to_bytes(2, "big"), *value.to_bytes(2, "big")]
         )
-        # A frame of the gripper's own kind has the check's high byte first.
-        check = check_of(data).to_bytes(2, "big" if head else "little")
+        # In a frame of the gripper's own kind the check covers the head; its high byte comes first.
+        check = check_of(head + data).to_bytes(2, "big" if head else "little")
         reply: Any = self._ask(bytes, self.arm.tool_serial_write_data, head + data + check)
         if isinstance(reply, int):
             return reply

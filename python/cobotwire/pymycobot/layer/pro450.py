@@ -6,6 +6,7 @@ from collections.abc import Callable, Sequence
 from struct import unpack_from
 from typing import Any
 
+from cobotwire import codec
 from cobotwire.protocol.errors import ProtocolError, ReplyTimeout
 from cobotwire.pymycobot.layer.client import DONE
 from cobotwire.pymycobot.layer.closed_loop import HOME_SPEED, REPORTS_ENDS, ClosedLoop
@@ -13,6 +14,7 @@ from cobotwire.pymycobot.layer.modbus_gripper import GRIPPER, OWN_HEAD, ModbusGr
 from cobotwire.pymycobot.layer.naming import naming
 from cobotwire.pymycobot.layer.ranges import check_range
 from cobotwire.pymycobot.layer.results import plain
+from cobotwire.session.request import RequestEncoder
 
 # A trajectory is over if the arm stands still twice.
 STILL_TIMES = 2
@@ -159,12 +161,17 @@ class MethodsOfPro450(ClosedLoop, Gripper450):
         """Move as other robots; jog only if targets are queued, as the library does.
 
         Raises:
+            UsageError: an argument is not allowed; nothing was sent, not even the query.
             ArmNotReady: a new target replaces the present one; with ``errors="return"`` the result
                 is -1.
         """
         name = call.__name__
-        if name.startswith("jog_") and self.arm.get_fresh_mode():
-            return self._not_ready(name, "jogging needs queued targets; call set_fresh_mode(0)")
+        if name.startswith("jog_"):
+            table = self.arm.table
+            encoder = RequestEncoder(codec.load(table))
+            encoder.encode_request(table.command(name).request_type(*arguments))
+            if self.arm.get_fresh_mode():
+                return self._not_ready(name, "jogging needs queued targets; call set_fresh_mode(0)")
         return super()._move(call, *arguments, quiet=quiet)
 
     def power_on(self, mode: int = 1) -> Any:

@@ -8,11 +8,16 @@ from __future__ import annotations
 import math
 from typing import Any
 
+from cobotwire.protocol.errors import ProtocolError
+
 # An error register of seven bytes: the first and the last code of each class of the library.
 _CLASSES = ((1, 16, 22), (2, 23, 28), (3, 32, 111))
 
 # What the library returns where an arm sends minus ten radians, in thousandths or hundredths.
 NO_SOLUTION, NO_ANGLES = "No solution for conversion", {-572.957, -572.95}
+
+# What a 320 reports for a register of a servo that could not be read.
+NO_REGISTER = 255
 
 
 def plain(value: Any) -> Any:
@@ -23,8 +28,9 @@ def plain(value: Any) -> Any:
 
 
 def listed(value: Any) -> Any:
-    """Return a list of one number."""
-    return [plain(value)]
+    """Return a list, also of one number."""
+    found = plain(value)
+    return found if isinstance(found, list) else [found]
 
 
 def nothing(value: Any) -> None:
@@ -42,8 +48,8 @@ def radians(value: Any) -> Any:
 
 
 def bit_numbers(value: Any) -> Any:
-    """Return for each byte the numbers of the bits that are set, or 0."""
-    return [[bit for bit in range(8) if byte >> bit & 1] or 0 for byte in value]
+    """Return for each number the numbers of the bits that are set, lowest first, or 0."""
+    return [[bit for bit in range(16) if word >> bit & 1] or 0 for word in plain(value)]
 
 
 def error_classes(value: Any) -> Any:
@@ -99,7 +105,7 @@ def calibrated(value: Any) -> Any:
 
 def bits_from_the_highest(value: Any) -> Any:
     """Return for each number the numbers of the bits that are set, highest first, or 0."""
-    return [[bit for bit in reversed(range(16)) if word >> bit & 1] or 0 for word in plain(value)]
+    return [bits and bits[::-1] for bits in bit_numbers(value)]
 
 
 def robot_status(value: Any) -> Any:
@@ -145,14 +151,25 @@ def calibrated_joints(value: Any) -> Any:
 def robot_status_of_450(value: Any) -> Any:
     """Return all parts in one list; the last two with the bits that are set, lowest first."""
     *flags, limits, motors, software = plain(value)
-    words = bits_from_the_highest([*motors, *software])
-    return [*flags, *limits, *(bits and bits[::-1] for bits in words)]
+    return [*flags, *limits, *bit_numbers((*motors, *software))]
 
 
 def flat(value: Any) -> Any:
     """Return all parts in one list."""
     parts = plain(value)
     return [each for part in parts for each in (part if isinstance(part, list) else [part])]
+
+
+def servo_register(value: Any) -> Any:
+    """Return the number in a register of a servo.
+
+    Raises:
+        ProtocolError: it is 255, which the library takes for a read that failed.
+    """
+    if value == NO_REGISTER:
+        text = "the register of the servo could not be read: the arm reports 255"
+        raise ProtocolError("bad-value", 0, bytes([NO_REGISTER]), text)
+    return plain(value)
 
 
 def in_thousandths(value: Any) -> Any:

@@ -46,7 +46,8 @@ RESULTS = {
         "the library waits for the end of this motion, ours does not; if the program needs that, "
         "use move_angles or move_coords"
     ),
-    **dict.fromkeys(["robot_status", "robot_status_of_450", "bits_from_the_highest"], _BITS),
+    **dict.fromkeys(["robot_status", "robot_status_of_450"], _BITS),
+    **dict.fromkeys(["bit_numbers", "bits_from_the_highest"], _BITS),
     **dict.fromkeys(["in_hundredths", "in_thousandths", "listed_hundredths"], _UNITS),
     **dict.fromkeys(["calibrated", "calibrated_joints", "flat", "pairs", "quick_move_info"], _FORM),
     **dict.fromkeys(["bytes_listed", "numbers"], _BYTES),
@@ -55,10 +56,10 @@ RESULTS = {
     "signed": "our result has no sign",
     "solved": "our result is a row of angles where the library's is a text: there is no solution",
     "one_speed": "if this speed is a row with a number for each servo, call our argument speeds",
-    "listed": "our result is a number, not a list of one",
+    "listed": "our result is a number where the library's is a list of one",
     "joined": "our result has one named tuple for each part, not one list of all numbers",
     "radians": "our result is not rounded to thousandths",
-    "bit_numbers": "our result has the bytes as they come, not lists of bit numbers",
+    "servo_register": "our result is 255 where the library's is -1: the read failed",
     "error_classes": "our result has the bytes as they come",
     "points": "our result has the numbers in one tuple; it is never -1",
     "words_of_text": "our result has both texts whole, not their first and last words",

@@ -5,6 +5,8 @@ from __future__ import annotations
 
 from cobotwire.protocol.messages import Reply, Request
 
+from ..enums import PowerState
+
 
 class PowerOn(Request[int], command="power_on"):
     """Power on."""
@@ -28,14 +30,14 @@ class PowerOffReply(Reply[None], to=PowerOff, wire=(255, "status")):
     status: int | None = None
 
 
-class IsPowerOn(Request[bool], command="is_power_on"):
+class IsPowerOn(Request[PowerState], command="is_power_on"):
     """Check whether the arm has power."""
 
 
-class IsPowerOnReply(Reply[bool], to=IsPowerOn):
+class IsPowerOnReply(Reply[PowerState], to=IsPowerOn):
     """Reply to is_power_on."""
 
-    powered: bool
+    state: PowerState
 
 
 class ReleaseAllServos(Request[None], command="release_all_servos"):

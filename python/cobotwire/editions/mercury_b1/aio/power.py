@@ -4,8 +4,12 @@
 from __future__ import annotations
 
 from cobotwire.client.aio import AsyncClient
+from cobotwire.protocol.light import TYPE_CHECKING
 
 from .. import messages
+
+if TYPE_CHECKING:
+    from ..enums import PowerState
 
 
 class AsyncPowerCommands(AsyncClient):
@@ -19,7 +23,7 @@ class AsyncPowerCommands(AsyncClient):
         """Power off."""
         await self._send(messages.power.PowerOff(), ack_within)
 
-    async def is_power_on(self) -> bool:
+    async def is_power_on(self) -> PowerState:
         """Check whether the arm has power."""
         return await self._call(messages.power.IsPowerOn())
 

@@ -4,8 +4,12 @@
 from __future__ import annotations
 
 from cobotwire.client import Client
+from cobotwire.protocol.light import TYPE_CHECKING
 
 from .. import messages
+
+if TYPE_CHECKING:
+    from ..enums import PowerState
 
 
 class PowerCommands(Client):
@@ -36,12 +40,13 @@ class PowerCommands(Client):
         """
         self._send(messages.power.PowerOff(), ack_within)
 
-    def is_power_on(self) -> bool:
+    def is_power_on(self) -> PowerState:
         """Check whether the arm has power.
 
-        Reports whether the arm is powered on.
+        Reports whether the arm has power, and whether its emergency stop is pressed.
 
-        Returns: True if the arm is powered on.
+        Returns: Whether the arm has power. Only ON counts as true in a condition (one of OFF (0),
+            ON (1), EMERGENCY_STOP (2)).
         Safety: query. Command id 0x12.
         """
         return self._call(messages.power.IsPowerOn())

@@ -1,0 +1,198 @@
+"""Replies and registers that both classes read: results are equal, or a ruling says why not."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import pytest
+
+from cobotwire.pymycobot.layer.registers import OF_A_JOINT
+from layer_comparison import FAILED, REJECTED, Called, call_ours, call_theirs
+from layer_robots import CLOSED_LOOP, LAYER_ROBOTS
+from pymycobot_classes import CLASSES
+from robots.robot import Call, Robot
+
+# It reads the language of the system in a way that Python deprecates.
+pytestmark = pytest.mark.filterwarnings("ignore:.*getdefaultlocale:DeprecationWarning")
+# The registers of a joint of the hand.
+HAND = {12: "get_hand_gripper_angle", 28: "get_hand_gripper_torque", **OF_A_JOINT}
+HAND |= {33: "get_hand_gripper_default_speed"}
+MERCURY = ("Mercury (A1)", "Mercury (B1, X1)", "MercurySocket")
+POWER = (*MERCURY, "Pro400", "Pro400Client", "Pro630", "Pro630Client", "Pro450Client")
+
+
+def words(*numbers: int) -> bytes:
+    """Return numbers as words with their high bytes first."""
+    return b"".join((number & 0xFFFF).to_bytes(2, "big") for number in numbers)
+
+
+def tool(*numbers: int) -> bytes:
+    """Return the data of a reply of a gripper: its number, and words."""
+    return b"\x0e" + words(*numbers)
+
+
+def frame(robot: Robot, command: int, data: bytes, address: int) -> bytes:
+    """Return a frame of a robot with any data, also with data that no edition allows."""
+    head = b"\xfe\xfe"
+    if robot.peer in CLOSED_LOOP:
+        body = head + bytes([len(data) + 3, command]) + data
+        check = CLASSES[robot.peer].crc_check(body)
+        return body + bytes(check)
+    if robot.peer.startswith("MyBuddy"):
+        return head + bytes([address, len(data) + 2, command]) + data + _sum(command, data)
+    return head + bytes([len(data) + 2, command]) + data + b"\xfa"
+
+
+def _sum(command: int, data: bytes) -> bytes:
+    return bytes([command + sum(data) & 0xFF])
+
+
+def kinds(result: Any) -> Any:
+    """Return the types of a result and of its parts."""
+    return [kinds(each) for each in result] if isinstance(result, list) else type(result)
+
+
+def both(name: str, method: str, given: Sequence[Any], reply: bytes | None) -> list[Called]:
+    """Return what the maker's method and ours wrote and returned."""
+    robot = {**LAYER_ROBOTS, **CLOSED_LOOP}[name]
+    call = Call(method, tuple(given), method, tuple(given), None)
+    return [call_theirs(robot, call, reply), call_ours(robot, call, reply)]
+
+
+def replied(name: str, method: str, given: Sequence[Any], command: int, data: bytes) -> list[Any]:
+    """Return the results of both for a reply."""
+    robot = {**LAYER_ROBOTS, **CLOSED_LOOP}[name]
+    reply = frame(robot, command, data, given[0] if given else 0)
+    return [each.result for each in both(name, method, given, reply)]
+
+
+BITS = words(0, 1, 2, 5, 0x4001, 0x7FFF)
+STATUS = bytes([0, 1, 2, 5, 48, 255])
+
+
+@pytest.mark.parametrize(
+    ("name", "method", "given", "command", "data"),
+    [
+        ("MyCobot320", "get_robot_status", (), 0x19, BITS),
+        ("MyCobot320", "get_robot_status", (), 0x19, words(0, 0x8001, 0, 0, 0, 0)),
+        ("MyCobot320", "get_servo_data", (1, 21), 0x53, b"\x20"),
+        ("MyCobot320", "get_hand_gripper_angle", (3,), 0xE9, tool(12, 50)),
+        *((n, "get_robot_error_status", (), 0x15, BITS + bytes(4)) for n in ("MyArmM", "MyArmC")),
+        *((n, "get_servos_status", (), 0xE4, STATUS + b"\0\4") for n in ("MyArmM", "MyArmC")),
+        *(
+            (n, "is_all_servos_enabled", (), 0x51, bytes([1] * 7 + [0]))
+            for n in ("MyArmM", "MyArmC")
+        ),
+        *((n, "get_joint_angle", (2,), 0x1C, words(-1234)) for n in ("MyArmM", "MyArmC")),
+        *(("MyBuddy", "get_servo_status", (side,), 0xE4, STATUS) for side in (1, 2)),
+        ("MyBuddy", "get_radians", (1,), 0x20, words(1234, -17999, 9050, 1, 0, 99)),
+        ("MyArm", "get_servo_status", (), 0xE4, bytes([0, 1, 2, 5, 8, 15, 4])),
+        *((name, "is_power_on", (), 0x12, bytes([state])) for name in POWER for state in range(3)),
+    ],
+)
+def test_result_of_reply_equals_that_of_the_maker(
+    name: str, method: str, given: tuple[int, ...], command: int, data: bytes
+) -> None:
+    theirs, mine = replied(name, method, given, command, data)
+    assert theirs not in (None, -1)
+    assert (mine, kinds(mine)) == (theirs, kinds(theirs))
+
+
+@pytest.mark.parametrize(
+    ("name", "method", "given", "command", "data", "theirs", "mine"),
+    [
+        # A read that failed is an error.
+        ("MyCobot320", "get_servo_data", (1, 21), 0x53, b"\xff", -1, FAILED),
+        # No source shows a reply that names the joint; the library mixes it with the position. 50
+        # becomes 3, as if seven bytes were an error register.
+        *(
+            ("MyCobot320", method, (3,), 0xE9, tool(register, 3, 50), [3, 3], FAILED)
+            for register, method in HAND.items()
+        ),
+        *(
+            (name, "get_hand_gripper_angle", (3,), 0xD9, tool(12, 3, 50), [3, 0, 50], FAILED)
+            for name in MERCURY
+        ),
+        # The library takes the faults of seven servos for error codes: 16, the angle, becomes 1.
+        ("MyArm", "get_servo_status", (), 0xE4, bytes([16, 23, 32, 0, 1, 2, 5]),
+         [1, 2, 3, 0, 1, 2, 5], [16, 23, 32, 0, 1, 2, 5]),
+        # The library reads the highest bit as a sign, and lists other bits then.
+        *(
+            (name, "get_robot_error_status", (), 0x15, words(-0x7FFF, *[0] * 7),
+             [[*range(16)], *[0] * 7], [[0, 15], *[0] * 7])
+            for name in ("MyArmM", "MyArmC")
+        ),
+        # No joint has this angle, so the reply is damaged.
+        *(
+            (name, "get_angles", (), 0x20, words(*[18101] * joints), [181.01] * joints, FAILED)
+            for name, joints in (
+                *(("MyCobot280", 6), ("MyCobot280RDKX5", 6), ("MyCobot320", 6), ("MyCobot", 6)),
+                *(("MechArm270", 6), ("MechArm", 6), ("MyArm", 7), ("MyPalletizer260", 4)),
+            )
+        ),
+        ("MyBuddy", "get_angles", (1,), 0x20, words(*[18101] * 6), [181.01] * 6, FAILED),
+    ],
+)  # fmt: skip
+def test_result_differs_from_that_of_the_maker_for_the_reason_given(
+    name: str,
+    method: str,
+    given: tuple[int, ...],
+    command: int,
+    data: bytes,
+    theirs: Any,
+    mine: Any,
+) -> None:
+    assert replied(name, method, given, command, data) == [theirs, mine]
+
+
+@pytest.mark.parametrize("register", range(46))
+def test_register_of_320_is_read_as_by_the_maker(register: int) -> None:
+    reply = frame(LAYER_ROBOTS["MyCobot320"], 0xE9, tool(register, 2), 0)
+    theirs, mine = both("MyCobot320", "get_pro_gripper", (register,), reply)
+    if register in OF_A_JOINT:
+        # The reply would not name the joint.
+        assert (theirs.result, mine) == (2, Called(b"", REJECTED))
+    else:
+        assert (mine, type(mine.result)) == (theirs, type(theirs.result))
+
+
+@pytest.mark.parametrize("value", [0, 1, 100, 101])
+def test_registers_of_320_are_written_as_by_the_maker_or_rejected(value: int) -> None:
+    reply = frame(LAYER_ROBOTS["MyCobot320"], 0xE8, b"\1", 0)
+    # The library checks no value of these, which move the gripper or give it force.
+    unchecked = {11, 27, 32, 36} if value > 100 else {32} if value == 0 else set()
+    unchecked |= {13, 37, 38, 39} if value else set()
+    for register in range(46):
+        theirs, mine = both("MyCobot320", "set_pro_gripper", (register, value), reply)
+        wanted = Called(b"", REJECTED) if register in unchecked else theirs
+        assert (register, mine) == (register, wanted)
+        assert register not in unchecked or theirs.result == 1
+
+
+@pytest.mark.parametrize("name", ["MyPalletizer260", "MyPalletizerSocket"])
+def test_palletizer_goes_home_with_all_four_joints(name: str) -> None:
+    _, mine = both(name, "go_home", (), None)
+    _, sent = both(name, "send_angles", ([0] * 4, 20), None)
+    assert mine == Called(sent.written, None)
+
+
+@pytest.mark.parametrize("state", [0, 1])
+@pytest.mark.parametrize("own", [False, True])
+@pytest.mark.parametrize("gripper", [1, 14, 254])
+def test_gripper_of_450_is_switched_by_the_makers_frame(
+    state: int, own: bool, gripper: int
+) -> None:
+    theirs, mine = both("Pro450Client", "set_pro_gripper_modbus", (state, own, gripper), b"")
+    assert mine.written[:20] == theirs.written[:20] != b""
+
+
+JOGS = ("jog_angle", "jog_coord", "jog_rpy", "jog_increment_angle", "jog_increment_coord")
+
+
+@pytest.mark.parametrize("method", JOGS)
+@pytest.mark.parametrize("given", [(9, 1, 50), (1, 1, 101), (0, 1, 50), (1, "1", 50)])
+def test_jog_of_450_with_wrong_argument_sends_nothing(method: str, given: tuple[Any, ...]) -> None:
+    assert both("Pro450Client", method, given, None)[1] == Called(b"", REJECTED)
+    if isinstance(given[1], int):
+        assert both("Pro450Client", method, given, None)[0].written == b""
