@@ -9,6 +9,7 @@ from ..values import (
     ConnectedServos,
     Encoders,
     GetServosEncoderDragResult,
+    IsAllServosEnabledResult,
     ServoCurrents,
     ServoSpeeds,
     ServoStatuses,
@@ -52,14 +53,21 @@ class GetServosEncoderDragReply(
     speeds: ServoSpeeds
 
 
-class IsAllServosEnabled(Request[ConnectedServos], command="is_all_servos_enabled"):
+class IsAllServosEnabled(Request[IsAllServosEnabledResult], command="is_all_servos_enabled"):
     """Check which servos are connected."""
 
 
-class IsAllServosEnabledReply(Reply[ConnectedServos], to=IsAllServosEnabled):
+class IsAllServosEnabledReply(
+    Reply[IsAllServosEnabledResult],
+    to=IsAllServosEnabled,
+    result=IsAllServosEnabledResult,
+    results=("connected", "all_connected"),
+    variants=(("connected",), ("all_connected",)),
+):
     """Reply to is_all_servos_enabled."""
 
-    connected: ConnectedServos
+    connected: ConnectedServos | None = None
+    all_connected: bool | None = None
 
 
 class SetServoCalibration(Request[None], command="set_servo_calibration"):
@@ -132,3 +140,10 @@ class GetServosProtectCurrentReply(Reply[ServoCurrents], to=GetServosProtectCurr
     """Reply to get_servos_protect_current."""
 
     currents: ServoCurrents
+
+
+class SetServoEnabled(Request[None], command="set_servo_enabled"):
+    """Switch a servo on or off."""
+
+    servo: int
+    enabled: bool
