@@ -12,10 +12,10 @@ import pytest
 import vectors
 from cobotwire import codec as codecs
 from cobotwire.editions import load
-from cobotwire.protocol.errors import ProtocolError
+from cobotwire.protocol.errors import ProtocolError, UsageError
 from cobotwire.protocol.frame_index import FrameIndex
 from cobotwire.protocol.table import Direction, Table
-from cobotwire_codegen.model import Command
+from cobotwire_codegen.model import Command, Dispute, Quantity
 
 PAGES = Path(__file__).with_name("public_pages.txt")
 FRAME = re.compile(r"((?:[0-9A-F]{2} )+)([<>]) (\S+)(?: (.+))?")
@@ -40,7 +40,7 @@ class Fact(NamedTuple):
             of = None if self.command == "-" else self.command
             try:
                 codecs.load(table, "reference").decode(*self.frame, of=of)
-            except ProtocolError:
+            except (ProtocolError, UsageError):
                 return False
             return True
         assert self.sizes is not None
@@ -95,6 +95,55 @@ def _cites(fact: Fact) -> bool:
         for dispute in _command(fact).disputed
         for evidence in dispute.evidence
     )
+
+
+# What a page says beyond frames and sizes: of a command or a type, with how certain the reading is.
+M750 = "the maker's page on the myArm M750"
+B1 = "the maker's page on the Mercury B1"
+ARDUINO = "the maker's Arduino library"
+STATED = (
+    *(
+        (edition, name, M750, "high")
+        for edition in ("myarm_c650", "myarm_m750")
+        for name in (
+            *("get_angles", "get_robot_error_status", "get_servos_current"),
+            "get_servos_protect_current",
+        )
+    ),
+    ("myarm_m750", "limit_angle", M750, "low"),
+    ("mercury_b1", "gripper_type", B1, "medium"),
+    ("mercury_a1", "motion_status", B1, "medium"),
+    ("mercury_b1", "solve_inv_kinematics", B1, "medium"),
+    ("mycobot280", "error_code", ARDUINO, "medium"),
+    ("pro400", "joint", "the maker's library 4.0.7", "medium"),
+    *(
+        ("pro450", f"j{joint}_angle", "another version of that page", how)
+        for joint, how in zip(range(1, 7), ("high", "medium", *["high"] * 4), strict=True)
+    ),
+)
+
+
+def _disputes(edition: str, name: str) -> tuple[Dispute, ...]:
+    model = vectors.edition(edition)
+    types = [type for type in model.types if isinstance(type, Quantity)]
+    return next(each for each in (*model.commands, *types) if each.name == name).disputed
+
+
+@pytest.mark.parametrize(("edition", "name", "source", "confidence"), STATED)
+def test_reading_that_a_page_confirms_or_contradicts_cites_it(
+    edition: str, name: str, source: str, confidence: str
+) -> None:
+    assert any(
+        dispute.confidence == confidence
+        and source in [evidence.source for evidence in dispute.evidence]
+        for dispute in _disputes(edition, name)
+    )
+
+
+def test_gripper_of_the_page_on_the_mercury_b1_is_accepted() -> None:
+    codec = codecs.load(load("mercury_b1").TABLE, "reference")
+    frame = codec.encode("set_gripper_state", "request", (0, 50, 2))
+    assert codec.decode("request", frame).values == (0, 50, 2)
 
 
 def test_table_contains_every_fact_that_was_compared() -> None:
