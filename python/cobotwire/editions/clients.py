@@ -10,7 +10,6 @@ from cobotwire.editions.mercury_a1 import AsyncMercuryA1, MercuryA1
 from cobotwire.editions.mercury_b1 import AsyncMercuryB1, MercuryB1
 from cobotwire.editions.mercury_x1 import AsyncMercuryX1, MercuryX1
 from cobotwire.editions.myarm300 import AsyncMyArm300, MyArm300
-from cobotwire.editions.myarm_c650 import AsyncMyArmC650, MyArmC650
 from cobotwire.editions.myarm_m750 import AsyncMyArmM750, MyArmM750
 from cobotwire.editions.mybuddy import AsyncMyBuddy, MyBuddy
 from cobotwire.editions.mycobot import AsyncMyCobot, MyCobot
@@ -28,7 +27,6 @@ AnyClient: TypeAlias = (
     | MercuryB1
     | MercuryX1
     | MyArm300
-    | MyArmC650
     | MyArmM750
     | MyBuddy
     | MyCobot
@@ -46,7 +44,6 @@ AnyAsyncClient: TypeAlias = (
     | AsyncMercuryB1
     | AsyncMercuryX1
     | AsyncMyArm300
-    | AsyncMyArmC650
     | AsyncMyArmM750
     | AsyncMyBuddy
     | AsyncMyCobot
