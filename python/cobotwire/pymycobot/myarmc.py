@@ -33,10 +33,6 @@ class MyArmC(CompatibleClient):
         """Clear the queue."""
         return self._send(self.arm.clear_recv_queue)
 
-    def clear_robot_err(self) -> Any:
-        """Clear the error."""
-        return self._send(self.arm.clear_robot_err)
-
     @naming(joint="joint_id")
     def get_joint_angle(self, joint_id: int) -> Any:
         """Read the angle of one joint.
@@ -52,14 +48,6 @@ class MyArmC(CompatibleClient):
     def get_joints_coord(self) -> Any:
         """Read the coordinates (the maker's name)."""
         return self._ask(results.plain, self.arm.get_joints_coord)
-
-    def get_joints_max(self) -> Any:
-        """Read the largest angles of the joints."""
-        return self._ask(results.plain, self.arm.get_joints_max)
-
-    def get_joints_min(self) -> Any:
-        """Read the smallest angles of the joints."""
-        return self._ask(results.plain, self.arm.get_joints_min)
 
     @naming(pin="pin_number")
     def get_master_in_io_state(self, pin_number: int) -> Any:
@@ -197,10 +185,6 @@ class MyArmC(CompatibleClient):
         """Check which servos are connected."""
         return self._ask(results.plain, self.arm.is_all_servos_enabled)
 
-    def is_power_on(self) -> Any:
-        """Check whether the arm has power."""
-        return self._ask(results.plain, self.arm.is_power_on)
-
     @naming(button="mode")
     def is_tool_btn_clicked(self, mode: int = 1) -> Any:
         """Check whether a button is pressed.
@@ -208,14 +192,6 @@ class MyArmC(CompatibleClient):
         Calls ``is_tool_btn_clicked(button)``.
         """
         return self._ask(results.plain, self.arm.is_tool_btn_clicked, mode)
-
-    def power_off(self) -> Any:
-        """Power off."""
-        return self._order(self.arm.power_off)
-
-    def power_on(self) -> Any:
-        """Power on."""
-        return self._order(self.arm.power_on)
 
     @naming(servo="servo_id")
     def restore_servo_system_param(self, servo_id: int) -> Any:
@@ -232,14 +208,6 @@ class MyArmC(CompatibleClient):
         Calls ``set_master_out_io_state(pin, high)``.
         """
         return self._send(self.arm.set_master_out_io_state, pin_number, status)
-
-    @naming(pin="pin_no", mode="pin_mode")
-    def set_pin_mode(self, pin_no: int, pin_mode: int) -> Any:
-        """Set what a pin of the Atom is used for.
-
-        Calls ``set_pin_mode(pin, mode)``.
-        """
-        return self._send(self.arm.set_pin_mode, pin_no, pin_mode)
 
     @naming(size="max_len")
     def set_recv_queue_max_len(self, max_len: int) -> Any:
@@ -288,10 +256,6 @@ class MyArmC(CompatibleClient):
         Calls ``set_servo_d(servo, value)``.
         """
         return self._send(self.arm.set_servo_d, servo_id, data)
-
-    def set_servo_enabled(self, servo: int, enabled: int) -> Any:
-        """Switch a servo on or off."""
-        return self._send(self.arm.set_servo_enabled, servo, enabled)
 
     @naming(servo="servo_id", value="data")
     def set_servo_i(self, servo_id: int, data: int) -> Any:

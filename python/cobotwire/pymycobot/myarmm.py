@@ -260,14 +260,6 @@ class MyArmM(CompatibleClient):
         """
         return self._send(self.arm.set_master_out_io_state, pin_number, status)
 
-    @naming(pin="pin_no", mode="pin_mode")
-    def set_pin_mode(self, pin_no: int, pin_mode: int) -> Any:
-        """Set what a pin of the Atom is used for.
-
-        Calls ``set_pin_mode(pin, mode)``.
-        """
-        return self._send(self.arm.set_pin_mode, pin_no, pin_mode)
-
     @naming(size="max_len")
     def set_recv_queue_max_len(self, max_len: int) -> Any:
         """Set the size of the queue.

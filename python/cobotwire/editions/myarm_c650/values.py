@@ -185,15 +185,6 @@ class GetServosEncoderDragResult(NamedTuple):
     """The speeds of the eight servos, base first."""
 
 
-class IsAllServosEnabledResult(NamedTuple):
-    """The result of is_all_servos_enabled."""
-
-    connected: ConnectedServos | None
-    """Whether each of the eight servos is connected."""
-    all_connected: bool | None
-    """True if every servo is connected."""
-
-
 class IsToolBtnClickedResult(NamedTuple):
     """The result of is_tool_btn_clicked."""
 

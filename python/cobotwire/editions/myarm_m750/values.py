@@ -8,9 +8,6 @@ from cobotwire.editions.myarm_c650.values import Encoders as Encoders
 from cobotwire.editions.myarm_c650.values import (
     GetServosEncoderDragResult as GetServosEncoderDragResult,
 )
-from cobotwire.editions.myarm_c650.values import (
-    IsAllServosEnabledResult as IsAllServosEnabledResult,
-)
 from cobotwire.editions.myarm_c650.values import ServoCurrents as ServoCurrents
 from cobotwire.editions.myarm_c650.values import ServoErrors as ServoErrors
 from cobotwire.editions.myarm_c650.values import ServoSpeeds as ServoSpeeds

@@ -12,7 +12,6 @@ if TYPE_CHECKING:
     from ..values import (
         Encoders,
         GetServosEncoderDragResult,
-        IsAllServosEnabledResult,
         ServoCurrents,
         ServoSpeeds,
         ServoStatuses,
@@ -36,7 +35,7 @@ class AsyncServoCommands(AsyncClient):
         """Read positions and speeds of all servos."""
         return await self._call(messages.servo.GetServosEncoderDrag())
 
-    async def is_all_servos_enabled(self) -> IsAllServosEnabledResult:
+    async def is_all_servos_enabled(self) -> tuple[int, ...]:
         """Check which servos are connected."""
         return await self._call(messages.servo.IsAllServosEnabled())
 

@@ -12,7 +12,6 @@ if TYPE_CHECKING:
     from ..values import (
         Encoders,
         GetServosEncoderDragResult,
-        IsAllServosEnabledResult,
         ServoCurrents,
         ServoSpeeds,
         ServoStatuses,
@@ -60,13 +59,13 @@ class ServoCommands(Client):
         """
         return self._call(messages.servo.GetServosEncoderDrag())
 
-    def is_all_servos_enabled(self) -> IsAllServosEnabledResult:
+    def is_all_servos_enabled(self) -> tuple[int, ...]:
         """Check which servos are connected.
 
         Reports for each of the eight servos whether it is connected; 1 is connected.
 
-        Returns: Whether each of the eight servos is connected (s1, s2, s3, s4, s5, s6, s7, s8
-            0..1); True if every servo is connected.
+        Returns: Whether each of the eight servos is connected (8 numbers (s1, s2, s3, s4, s5, s6,
+            s7, s8 0..1) or 1 elements: 0..1).
         Safety: query. Command id 0x51.
         """
         return self._call(messages.servo.IsAllServosEnabled())

@@ -6,10 +6,8 @@ from __future__ import annotations
 from cobotwire.protocol.messages import Reply, Request
 
 from ..values import (
-    ConnectedServos,
     Encoders,
     GetServosEncoderDragResult,
-    IsAllServosEnabledResult,
     ServoCurrents,
     ServoSpeeds,
     ServoStatuses,
@@ -53,21 +51,14 @@ class GetServosEncoderDragReply(
     speeds: ServoSpeeds
 
 
-class IsAllServosEnabled(Request[IsAllServosEnabledResult], command="is_all_servos_enabled"):
+class IsAllServosEnabled(Request[tuple[int, ...]], command="is_all_servos_enabled"):
     """Check which servos are connected."""
 
 
-class IsAllServosEnabledReply(
-    Reply[IsAllServosEnabledResult],
-    to=IsAllServosEnabled,
-    result=IsAllServosEnabledResult,
-    results=("connected", "all_connected"),
-    variants=(("connected",), ("all_connected",)),
-):
+class IsAllServosEnabledReply(Reply[tuple[int, ...]], to=IsAllServosEnabled):
     """Reply to is_all_servos_enabled."""
 
-    connected: ConnectedServos | None = None
-    all_connected: bool | None = None
+    connected: tuple[int, ...]
 
 
 class SetServoCalibration(Request[None], command="set_servo_calibration"):

@@ -14,7 +14,6 @@ if TYPE_CHECKING:
     from ..values import (
         Encoders,
         GetServosEncoderDragResult,
-        IsAllServosEnabledResult,
         ServoCurrents,
         ServoSpeeds,
         ServoStatuses,
@@ -38,7 +37,7 @@ class AsyncServoCommands(AsyncClient):
         """Read positions and speeds of all servos."""
         return await self._call(messages.servo.GetServosEncoderDrag())
 
-    async def is_all_servos_enabled(self) -> IsAllServosEnabledResult:
+    async def is_all_servos_enabled(self) -> tuple[int, ...]:
         """Check which servos are connected."""
         return await self._call(messages.servo.IsAllServosEnabled())
 
