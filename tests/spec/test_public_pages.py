@@ -126,7 +126,9 @@ STATED = (
 def _disputes(edition: str, name: str) -> tuple[Dispute, ...]:
     model = vectors.edition(edition)
     types = [type for type in model.types if isinstance(type, Quantity)]
-    return next(each for each in (*model.commands, *types) if each.name == name).disputed
+    found = {type.name: type.disputed for type in types}
+    found |= {command.name: command.disputed for command in model.commands}
+    return found[name]
 
 
 @pytest.mark.parametrize(("edition", "name", "source", "confidence"), STATED)
