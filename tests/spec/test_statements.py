@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import re
+
 import pytest
+from pymycobot.robot_info import RobotLimit
 
 import vectors
 from cobotwire_codegen.load import Mapping, Node, Scalar, Sequence, load
@@ -52,3 +55,23 @@ def test_limits_of_the_makers_library_are_its_own() -> None:
                 assert sends(commands[vector.command], values) == legal, (vector.name, values)
                 compared += 1
     assert compared > 300
+
+
+# Sentences of evidence that name a class of the library and its joints.
+LIMIT = re.compile(r"(\w+): joint (\d) from (-?\d+) to (-?\d+) degrees")
+JOINTS = re.compile(r"tables? of (\w+)(?: and (\w+))?: joints 1 to (\d)")
+
+
+def test_tables_that_evidence_quotes_are_those_of_the_library() -> None:
+    tables = RobotLimit.robot_limit
+    spec = "\n".join(p.read_text() for p in sorted((vectors.ROOT / "spec").rglob("*.yaml")))
+    limits, joints = set(LIMIT.findall(spec)), set(JOINTS.findall(spec))
+    assert len(limits) == 6
+    assert joints == {("Pro630", "Pro450Client", "6")}
+    for name, joint, lowest, highest in limits:
+        ends = [tables[name][key][int(joint) - 1] for key in ("angles_min", "angles_max")]
+        assert ends == [int(lowest), int(highest)], (name, joint)
+    for *names, last in joints:
+        assert all(tables[n]["joint_id"] == [*range(1, int(last) + 1)] for n in names if n)
+    # Evidence for the Pro 400 says that there is none.
+    assert "Pro400" not in tables

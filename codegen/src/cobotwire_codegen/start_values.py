@@ -9,9 +9,12 @@ from cobotwire_codegen.wire import raw_values
 
 
 def reported_fields(command: Command) -> dict[str, Field | None]:
-    """Return the fields of a reply that report something: no constants, counts or echoes."""
+    """Return the fields of a reply that report something: no constants, counts or echoes.
+
+    If variants have a field of the same name, it is that of the first one, which is the full one.
+    """
     text = command.text.fields if command.text is not None else ()
-    fields = (field for variant in command.replies for field in variant)
+    fields = (field for variant in reversed(command.replies) for field in variant)
     return {name: None for name, _ in text} | {
         field.name: field
         for field in fields

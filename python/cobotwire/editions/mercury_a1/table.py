@@ -3,4 +3,4 @@
 
 from cobotwire.protocol.loading import load_table
 
-TABLE = load_table(__package__, checksum="18f75a34")
+TABLE = load_table(__package__, checksum="91535920")

@@ -6,7 +6,6 @@ from __future__ import annotations
 from cobotwire.client.aio_moving import AsyncMovingClient
 from cobotwire.editions.mercury_a1.aio.drag import AsyncDragCommands
 from cobotwire.editions.mercury_a1.aio.frames import AsyncFramesCommands
-from cobotwire.editions.mercury_a1.aio.gripper import AsyncGripperCommands
 from cobotwire.editions.mercury_a1.aio.io import AsyncIoCommands
 from cobotwire.editions.mercury_a1.aio.planning import AsyncPlanningCommands
 from cobotwire.editions.mercury_a1.aio.serial import AsyncSerialCommands
@@ -15,6 +14,7 @@ from cobotwire.protocol.light import TYPE_CHECKING, later_table
 from .aio.base import AsyncBaseCommands
 from .aio.body import AsyncBodyCommands
 from .aio.coords import AsyncCoordsCommands
+from .aio.gripper import AsyncGripperCommands
 from .aio.jog import AsyncJogCommands
 from .aio.motion import AsyncMotionCommands
 from .aio.power import AsyncPowerCommands

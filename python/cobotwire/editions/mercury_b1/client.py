@@ -6,7 +6,6 @@ from __future__ import annotations
 from cobotwire.client.moving import MovingClient
 from cobotwire.editions.mercury_a1.commands.drag import DragCommands
 from cobotwire.editions.mercury_a1.commands.frames import FramesCommands
-from cobotwire.editions.mercury_a1.commands.gripper import GripperCommands
 from cobotwire.editions.mercury_a1.commands.io import IoCommands
 from cobotwire.editions.mercury_a1.commands.planning import PlanningCommands
 from cobotwire.editions.mercury_a1.commands.serial import SerialCommands
@@ -15,6 +14,7 @@ from cobotwire.protocol.light import TYPE_CHECKING, later_table
 from .commands.base import BaseCommands
 from .commands.body import BodyCommands
 from .commands.coords import CoordsCommands
+from .commands.gripper import GripperCommands
 from .commands.jog import JogCommands
 from .commands.motion import MotionCommands
 from .commands.power import PowerCommands

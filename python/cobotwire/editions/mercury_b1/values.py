@@ -11,7 +11,6 @@ from cobotwire.editions.mercury_a1.values import FurtherBytes as FurtherBytes
 from cobotwire.editions.mercury_a1.values import GetDigitalInputsResult as GetDigitalInputsResult
 from cobotwire.editions.mercury_a1.values import GetLimitSwitchResult as GetLimitSwitchResult
 from cobotwire.editions.mercury_a1.values import GetQuickMoveInfoResult as GetQuickMoveInfoResult
-from cobotwire.editions.mercury_a1.values import IsInitCalibrationResult as IsInitCalibrationResult
 from cobotwire.editions.mercury_a1.values import JointFlags as JointFlags
 from cobotwire.editions.mercury_a1.values import JointPercents as JointPercents
 from cobotwire.editions.mercury_a1.values import MotorCurrents as MotorCurrents
@@ -87,3 +86,12 @@ class GetRobotStatusResult(NamedTuple):
     """The errors of each motor; a bit each."""
     software_errors: tuple[int, ...]
     """The errors that the controller found at each motor; a bit each."""
+
+
+class IsInitCalibrationResult(NamedTuple):
+    """The result of is_init_calibration."""
+
+    all: bool
+    """True if all joints are calibrated."""
+    joints: tuple[int, ...]
+    """1 for each joint that is calibrated."""

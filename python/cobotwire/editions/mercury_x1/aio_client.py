@@ -6,13 +6,13 @@ from __future__ import annotations
 from cobotwire.client.aio_moving import AsyncMovingClient
 from cobotwire.editions.mercury_a1.aio.drag import AsyncDragCommands
 from cobotwire.editions.mercury_a1.aio.frames import AsyncFramesCommands
-from cobotwire.editions.mercury_a1.aio.gripper import AsyncGripperCommands
 from cobotwire.editions.mercury_a1.aio.io import AsyncIoCommands
 from cobotwire.editions.mercury_a1.aio.planning import AsyncPlanningCommands
 from cobotwire.editions.mercury_a1.aio.serial import AsyncSerialCommands
 from cobotwire.editions.mercury_b1.aio.base import AsyncBaseCommands
 from cobotwire.editions.mercury_b1.aio.body import AsyncBodyCommands
 from cobotwire.editions.mercury_b1.aio.coords import AsyncCoordsCommands
+from cobotwire.editions.mercury_b1.aio.gripper import AsyncGripperCommands
 from cobotwire.editions.mercury_b1.aio.jog import AsyncJogCommands
 from cobotwire.editions.mercury_b1.aio.motion import AsyncMotionCommands
 from cobotwire.editions.mercury_b1.aio.power import AsyncPowerCommands

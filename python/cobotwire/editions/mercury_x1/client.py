@@ -6,13 +6,13 @@ from __future__ import annotations
 from cobotwire.client.moving import MovingClient
 from cobotwire.editions.mercury_a1.commands.drag import DragCommands
 from cobotwire.editions.mercury_a1.commands.frames import FramesCommands
-from cobotwire.editions.mercury_a1.commands.gripper import GripperCommands
 from cobotwire.editions.mercury_a1.commands.io import IoCommands
 from cobotwire.editions.mercury_a1.commands.planning import PlanningCommands
 from cobotwire.editions.mercury_a1.commands.serial import SerialCommands
 from cobotwire.editions.mercury_b1.commands.base import BaseCommands
 from cobotwire.editions.mercury_b1.commands.body import BodyCommands
 from cobotwire.editions.mercury_b1.commands.coords import CoordsCommands
+from cobotwire.editions.mercury_b1.commands.gripper import GripperCommands
 from cobotwire.editions.mercury_b1.commands.jog import JogCommands
 from cobotwire.editions.mercury_b1.commands.motion import MotionCommands
 from cobotwire.editions.mercury_b1.commands.power import PowerCommands

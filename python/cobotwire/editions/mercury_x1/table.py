@@ -3,4 +3,4 @@
 
 from cobotwire.protocol.loading import load_table
 
-TABLE = load_table(__package__, checksum="74e29197")
+TABLE = load_table(__package__, checksum="51360553")

@@ -8,6 +8,7 @@ from cobotwire.protocol.light import TYPE_CHECKING, later_table
 from .aio.io import AsyncIoCommands
 from .aio.motion import AsyncMotionCommands
 from .aio.parameters import AsyncParametersCommands
+from .aio.power import AsyncPowerCommands
 from .aio.servo import AsyncServoCommands
 from .aio.system import AsyncSystemCommands
 
@@ -19,6 +20,7 @@ if TYPE_CHECKING:
 
 class AsyncMyArmC650(
     AsyncSystemCommands,
+    AsyncPowerCommands,
     AsyncMotionCommands,
     AsyncServoCommands,
     AsyncParametersCommands,

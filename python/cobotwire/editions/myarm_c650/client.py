@@ -8,6 +8,7 @@ from cobotwire.protocol.light import TYPE_CHECKING, later_table
 from .commands.io import IoCommands
 from .commands.motion import MotionCommands
 from .commands.parameters import ParametersCommands
+from .commands.power import PowerCommands
 from .commands.servo import ServoCommands
 from .commands.system import SystemCommands
 
@@ -19,6 +20,7 @@ if TYPE_CHECKING:
 
 class MyArmC650(
     SystemCommands,
+    PowerCommands,
     MotionCommands,
     ServoCommands,
     ParametersCommands,

@@ -13,6 +13,15 @@ class ServoDataMode(IntEnum):
     """Two bytes."""
 
 
+class PinMode(IntEnum):
+    """What a pin is used for."""
+
+    INPUT = 0
+    """The pin is read."""
+    OUTPUT = 1
+    """The pin is driven."""
+
+
 class ToolButton(IntEnum):
     """A button at the end of the arm."""
 

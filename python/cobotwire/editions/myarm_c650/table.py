@@ -3,4 +3,4 @@
 
 from cobotwire.protocol.loading import load_table
 
-TABLE = load_table(__package__, checksum="2d3e02a4")
+TABLE = load_table(__package__, checksum="dc3bb639")

@@ -22,11 +22,11 @@ if TYPE_CHECKING:
 class AsyncMyArmM750(
     AsyncMovingClient,
     AsyncSystemCommands,
+    AsyncPowerCommands,
     AsyncMotionCommands,
     AsyncServoCommands,
     AsyncParametersCommands,
     AsyncIoCommands,
-    AsyncPowerCommands,
 ):
     """myArm M750.
 

@@ -22,11 +22,11 @@ if TYPE_CHECKING:
 class MyArmM750(
     MovingClient,
     SystemCommands,
+    PowerCommands,
     MotionCommands,
     ServoCommands,
     ParametersCommands,
     IoCommands,
-    PowerCommands,
 ):
     """myArm M750.
 

@@ -3,4 +3,4 @@
 
 from cobotwire.protocol.loading import load_table
 
-TABLE = load_table(__package__, checksum="20c0e272")
+TABLE = load_table(__package__, checksum="cc974a32")

@@ -3,4 +3,4 @@
 
 from cobotwire.protocol.loading import load_table
 
-TABLE = load_table(__package__, checksum="79ab9c48")
+TABLE = load_table(__package__, checksum="65d196d4")

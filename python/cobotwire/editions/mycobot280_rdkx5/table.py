@@ -3,4 +3,4 @@
 
 from cobotwire.protocol.loading import load_table
 
-TABLE = load_table(__package__, checksum="ccf4c329")
+TABLE = load_table(__package__, checksum="9443c16d")

@@ -3,4 +3,4 @@
 
 from cobotwire.protocol.loading import load_table
 
-TABLE = load_table(__package__, checksum="5ea150c2")
+TABLE = load_table(__package__, checksum="0af39fed")

@@ -3,4 +3,4 @@
 
 from cobotwire.protocol.loading import load_table
 
-TABLE = load_table(__package__, checksum="9523a006")
+TABLE = load_table(__package__, checksum="08f009e4")

@@ -3,4 +3,4 @@
 
 from cobotwire.protocol.loading import load_table
 
-TABLE = load_table(__package__, checksum="8294558e")
+TABLE = load_table(__package__, checksum="abb884ac")

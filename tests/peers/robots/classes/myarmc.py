@@ -11,11 +11,20 @@ METHODS = {
     "set_servo_calibration": "set_servo_calibrate",
     "set_color": "set_tool_led_color",
 }
+PIN_MODE = {"set_pin_mode": "only the maker's pages have it"}
 ROBOT = Robot(
     "MyArmC",
     "myarm_c650",
     methods=METHODS,
     local=LOCAL - {"open", "close", "wait"},
+    lacking=PIN_MODE
+    | dict.fromkeys(
+        (
+            *("power_on", "power_off", "is_power_on", "set_servo_enabled", "clear_robot_err"),
+            *("get_joints_min", "get_joints_max"),
+        ),
+        "only the maker's page has it",
+    ),
     driven={},
     unanswered={"get_joints_coord": GEOMETRY},
 )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from robots.classes.myarmc import METHODS
+from robots.classes.myarmc import METHODS, PIN_MODE
 from robots.robot import GEOMETRY, LOCAL, Call, Robot, Ruling
 
 _MIRRORED = Ruling(
@@ -24,6 +24,7 @@ ROBOT = Robot(
         "is_moving": "is_robot_moving",
     },
     local=LOCAL - {"open", "close", "wait"},
+    lacking=PIN_MODE,
     calls=[
         Call("set_servos_encoder", (_ENCODERS, 50), "set_servos_encoder", (_ENCODERS, 50)),
         Call(

@@ -146,8 +146,8 @@ class ServoCommands(Client):
 
         Reports whether all joints are calibrated, and which.
 
-        Returns: True if all joints are calibrated; 1 for each joint that is calibrated (j1, j2, j3,
-            j4, j5, j6, j7 0..1).
+        Returns: True if all joints are calibrated; 1 for each joint that is calibrated (7 numbers
+            (j1, j2, j3, j4, j5, j6, j7 0..1) or 8 numbers (j1, j2, j3, j4, j5, j6, j7, j13 0..1)).
         Safety: query. Command id 0x5A.
         """
         return self._call(messages.servo.IsInitCalibration())

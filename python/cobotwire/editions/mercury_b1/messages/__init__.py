@@ -14,7 +14,6 @@ if TYPE_CHECKING:
     from cobotwire.editions.mercury_a1.messages import planning as planning
     from cobotwire.editions.mercury_a1.messages import power as power
     from cobotwire.editions.mercury_a1.messages import serial as serial
-    from cobotwire.editions.mercury_a1.messages import servo as servo
     from cobotwire.editions.mercury_a1.messages.coords import *  # noqa: F403
     from cobotwire.editions.mercury_a1.messages.drag import *  # noqa: F403
     from cobotwire.editions.mercury_a1.messages.frames import *  # noqa: F403
@@ -25,13 +24,14 @@ if TYPE_CHECKING:
     from cobotwire.editions.mercury_a1.messages.planning import *  # noqa: F403
     from cobotwire.editions.mercury_a1.messages.power import *  # noqa: F403
     from cobotwire.editions.mercury_a1.messages.serial import *  # noqa: F403
-    from cobotwire.editions.mercury_a1.messages.servo import *  # noqa: F403
 
     from . import base as base
     from . import body as body
+    from . import servo as servo
     from . import system as system
     from .base import *  # noqa: F403
     from .body import *  # noqa: F403
+    from .servo import *  # noqa: F403
     from .system import *  # noqa: F403
 else:
     from cobotwire.protocol.lazy import lazy_names
@@ -42,6 +42,7 @@ else:
         [
             ".base",
             ".body",
+            ".servo",
             ".system",
             "cobotwire.editions.mercury_a1.messages.coords",
             "cobotwire.editions.mercury_a1.messages.drag",
@@ -53,6 +54,5 @@ else:
             "cobotwire.editions.mercury_a1.messages.planning",
             "cobotwire.editions.mercury_a1.messages.power",
             "cobotwire.editions.mercury_a1.messages.serial",
-            "cobotwire.editions.mercury_a1.messages.servo",
         ],
     )

@@ -14,7 +14,6 @@ if TYPE_CHECKING:
     from cobotwire.editions.mercury_a1.messages import planning as planning
     from cobotwire.editions.mercury_a1.messages import power as power
     from cobotwire.editions.mercury_a1.messages import serial as serial
-    from cobotwire.editions.mercury_a1.messages import servo as servo
     from cobotwire.editions.mercury_a1.messages.coords import *  # noqa: F403
     from cobotwire.editions.mercury_a1.messages.drag import *  # noqa: F403
     from cobotwire.editions.mercury_a1.messages.frames import *  # noqa: F403
@@ -25,12 +24,13 @@ if TYPE_CHECKING:
     from cobotwire.editions.mercury_a1.messages.planning import *  # noqa: F403
     from cobotwire.editions.mercury_a1.messages.power import *  # noqa: F403
     from cobotwire.editions.mercury_a1.messages.serial import *  # noqa: F403
-    from cobotwire.editions.mercury_a1.messages.servo import *  # noqa: F403
     from cobotwire.editions.mercury_b1.messages import base as base
     from cobotwire.editions.mercury_b1.messages import body as body
+    from cobotwire.editions.mercury_b1.messages import servo as servo
     from cobotwire.editions.mercury_b1.messages import system as system
     from cobotwire.editions.mercury_b1.messages.base import *  # noqa: F403
     from cobotwire.editions.mercury_b1.messages.body import *  # noqa: F403
+    from cobotwire.editions.mercury_b1.messages.servo import *  # noqa: F403
     from cobotwire.editions.mercury_b1.messages.system import *  # noqa: F403
 else:
     from cobotwire.protocol.lazy import lazy_names
@@ -49,9 +49,9 @@ else:
             "cobotwire.editions.mercury_a1.messages.planning",
             "cobotwire.editions.mercury_a1.messages.power",
             "cobotwire.editions.mercury_a1.messages.serial",
-            "cobotwire.editions.mercury_a1.messages.servo",
             "cobotwire.editions.mercury_b1.messages.base",
             "cobotwire.editions.mercury_b1.messages.body",
+            "cobotwire.editions.mercury_b1.messages.servo",
             "cobotwire.editions.mercury_b1.messages.system",
         ],
     )

@@ -9,7 +9,7 @@ from cobotwire.protocol.light import TYPE_CHECKING
 from .. import messages
 
 if TYPE_CHECKING:
-    from ..enums import ToolButton
+    from ..enums import PinMode, ToolButton
     from ..values import IsToolBtnClickedResult
 
 
@@ -43,3 +43,7 @@ class AsyncIoCommands(AsyncClient):
     async def is_tool_btn_clicked(self, button: ToolButton | int = 1) -> IsToolBtnClickedResult:
         """Check whether a button is pressed."""
         return await self._call(messages.io.IsToolBtnClicked(button))
+
+    async def set_pin_mode(self, pin: int, mode: PinMode | int) -> None:
+        """Set what a pin of the Atom is used for."""
+        await self._send(messages.io.SetPinMode(pin, mode))

@@ -34,3 +34,11 @@ class AsyncMotionCommands(AsyncClient):
     async def get_joints_coord(self) -> Coords:
         """Read the coordinates (the maker's name)."""
         return await self._call(messages.motion.GetJointsCoord())
+
+    async def get_joints_min(self) -> Angles:
+        """Read the smallest angles of the joints."""
+        return await self._call(messages.motion.GetJointsMin())
+
+    async def get_joints_max(self) -> Angles:
+        """Read the largest angles of the joints."""
+        return await self._call(messages.motion.GetJointsMax())

@@ -10,7 +10,6 @@ from .. import messages
 
 if TYPE_CHECKING:
     from ..values import (
-        ConnectedServos,
         Encoders,
         GetServosEncoderDragResult,
         ServoCurrents,
@@ -36,7 +35,7 @@ class AsyncServoCommands(AsyncClient):
         """Read positions and speeds of all servos."""
         return await self._call(messages.servo.GetServosEncoderDrag())
 
-    async def is_all_servos_enabled(self) -> ConnectedServos:
+    async def is_all_servos_enabled(self) -> tuple[int, ...]:
         """Check which servos are connected."""
         return await self._call(messages.servo.IsAllServosEnabled())
 
@@ -71,3 +70,7 @@ class AsyncServoCommands(AsyncClient):
     async def get_servos_protect_current(self) -> ServoCurrents:
         """Read the protective currents."""
         return await self._call(messages.servo.GetServosProtectCurrent())
+
+    async def set_servo_enabled(self, servo: int, enabled: bool) -> None:
+        """Switch a servo on or off."""
+        await self._send(messages.servo.SetServoEnabled(servo, enabled))

@@ -62,3 +62,7 @@ class AsyncSystemCommands(AsyncClient):
     async def clear_recv_queue(self) -> None:
         """Clear the queue."""
         await self._send(messages.system.ClearRecvQueue())
+
+    async def clear_robot_err(self) -> None:
+        """Clear the error."""
+        await self._send(messages.system.ClearRobotErr())

@@ -9,7 +9,7 @@ from cobotwire.protocol.light import TYPE_CHECKING
 from .. import messages
 
 if TYPE_CHECKING:
-    from ..enums import ToolButton
+    from ..enums import PinMode, ToolButton
     from ..values import IsToolBtnClickedResult
 
 
@@ -110,3 +110,16 @@ class IoCommands(Client):
         Safety: query. Command id 0x6B.
         """
         return self._call(messages.io.IsToolBtnClicked(button))
+
+    def set_pin_mode(self, pin: int, mode: PinMode | int) -> None:
+        """Set what a pin of the Atom is used for.
+
+        Makes a pin of the Atom an input or an output.
+
+        Args:
+            pin: Pin number of the Atom (0..255).
+            mode: What a pin is used for (one of INPUT (0), OUTPUT (1)).
+
+        Safety: setting. Command id 0x60.
+        """
+        self._send(messages.io.SetPinMode(pin, mode))

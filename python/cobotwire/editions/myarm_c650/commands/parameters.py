@@ -182,7 +182,8 @@ class ParametersCommands(Client):
             register: Address of a servo register, in decimal (0..255).
             mode: The width of a servo register (one of BYTE (1), WORD (2)).
 
-        Returns: Value of a servo register as the arm reports it (0..255 or -32768..32767).
+        Returns: Value of a servo register of two bytes as the arm reports it (-32768..32767 or
+            0..255).
         Safety: query. Command id 0x53.
         """
         return self._call(messages.parameters.GetServoSystemData(servo, register, mode))

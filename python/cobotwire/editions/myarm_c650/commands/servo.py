@@ -10,7 +10,6 @@ from .. import messages
 
 if TYPE_CHECKING:
     from ..values import (
-        ConnectedServos,
         Encoders,
         GetServosEncoderDragResult,
         ServoCurrents,
@@ -60,13 +59,13 @@ class ServoCommands(Client):
         """
         return self._call(messages.servo.GetServosEncoderDrag())
 
-    def is_all_servos_enabled(self) -> ConnectedServos:
+    def is_all_servos_enabled(self) -> tuple[int, ...]:
         """Check which servos are connected.
 
         Reports for each of the eight servos whether it is connected; 1 is connected.
 
-        Returns: Whether each of the eight servos is connected (s1, s2, s3, s4, s5, s6, s7, s8
-            0..1).
+        Returns: Whether each of the eight servos is connected (8 numbers (s1, s2, s3, s4, s5, s6,
+            s7, s8 0..1) or 1 elements: 0..1).
         Safety: query. Command id 0x51.
         """
         return self._call(messages.servo.IsAllServosEnabled())
@@ -163,3 +162,17 @@ class ServoCommands(Client):
         Safety: query. Command id 0xE6.
         """
         return self._call(messages.servo.GetServosProtectCurrent())
+
+    def set_servo_enabled(self, servo: int, enabled: bool) -> None:
+        """Switch a servo on or off.
+
+        Switches one servo on, or releases it. A released servo drops what it carries; support the
+        arm first. The maker's description has 254 for all servos, but the library rejects it.
+
+        Args:
+            servo: Servo number, 1 to 8; 8 is the gripper (1..8).
+            enabled: True switches the servo on (True or False).
+
+        Safety: power. Command id 0x13.
+        """
+        self._send(messages.servo.SetServoEnabled(servo, enabled))

@@ -133,3 +133,12 @@ class SystemCommands(Client):
         Safety: motion. Command id 0x19.
         """
         self._send(messages.system.ClearRecvQueue())
+
+    def clear_robot_err(self) -> None:
+        """Clear the error.
+
+        Clears the error, so that the arm moves without the joint that has it.
+
+        Safety: setting. Command id 0x16.
+        """
+        self._send(messages.system.ClearRobotErr())

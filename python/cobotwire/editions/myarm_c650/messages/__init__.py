@@ -7,11 +7,13 @@ if TYPE_CHECKING:
     from . import io as io
     from . import motion as motion
     from . import parameters as parameters
+    from . import power as power
     from . import servo as servo
     from . import system as system
     from .io import *  # noqa: F403
     from .motion import *  # noqa: F403
     from .parameters import *  # noqa: F403
+    from .power import *  # noqa: F403
     from .servo import *  # noqa: F403
     from .system import *  # noqa: F403
 else:
@@ -24,6 +26,7 @@ else:
             ".io",
             ".motion",
             ".parameters",
+            ".power",
             ".servo",
             ".system",
         ],

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from cobotwire.protocol.messages import Reply, Request
 
-from ..enums import ToolButton
+from ..enums import PinMode, ToolButton
 from ..values import IsToolBtnClickedResult
 
 
@@ -84,3 +84,10 @@ class IsToolBtnClickedReply(
     red: bool | None = None
     blue: bool | None = None
     pressed: bool | None = None
+
+
+class SetPinMode(Request[None], command="set_pin_mode"):
+    """Set what a pin of the Atom is used for."""
+
+    pin: int
+    mode: PinMode | int

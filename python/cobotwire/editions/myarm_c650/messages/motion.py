@@ -34,10 +34,11 @@ class GetJointAngle(Request[float], command="get_joint_angle"):
     joint: int
 
 
-class GetJointAngleReply(Reply[float], to=GetJointAngle):
+class GetJointAngleReply(Reply[float], to=GetJointAngle, wire=("joint", "angle")):
     """Reply to get_joint_angle."""
 
     angle: float
+    joint: int | None = None
 
 
 class GetCoords(Request[Coords], command="get_coords"):
@@ -58,3 +59,23 @@ class GetJointsCoordReply(Reply[Coords], to=GetJointsCoord):
     """Reply to get_joints_coord."""
 
     coords: Coords
+
+
+class GetJointsMin(Request[Angles], command="get_joints_min"):
+    """Read the smallest angles of the joints."""
+
+
+class GetJointsMinReply(Reply[Angles], to=GetJointsMin):
+    """Reply to get_joints_min."""
+
+    angles: Angles
+
+
+class GetJointsMax(Request[Angles], command="get_joints_max"):
+    """Read the largest angles of the joints."""
+
+
+class GetJointsMaxReply(Reply[Angles], to=GetJointsMax):
+    """Reply to get_joints_max."""
+
+    angles: Angles

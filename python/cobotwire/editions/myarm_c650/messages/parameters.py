@@ -21,10 +21,11 @@ class GetServoP(Request[int], command="get_servo_p"):
     servo: int
 
 
-class GetServoPReply(Reply[int], to=GetServoP):
+class GetServoPReply(Reply[int], to=GetServoP, wire=("servo", "value")):
     """Reply to get_servo_p."""
 
     value: int
+    servo: int | None = None
 
 
 class SetServoD(Request[None], command="set_servo_d"):
@@ -40,10 +41,11 @@ class GetServoD(Request[int], command="get_servo_d"):
     servo: int
 
 
-class GetServoDReply(Reply[int], to=GetServoD):
+class GetServoDReply(Reply[int], to=GetServoD, wire=("servo", "value")):
     """Reply to get_servo_d."""
 
     value: int
+    servo: int | None = None
 
 
 class SetServoI(Request[None], command="set_servo_i"):
@@ -59,10 +61,11 @@ class GetServoI(Request[int], command="get_servo_i"):
     servo: int
 
 
-class GetServoIReply(Reply[int], to=GetServoI):
+class GetServoIReply(Reply[int], to=GetServoI, wire=("servo", "value")):
     """Reply to get_servo_i."""
 
     value: int
+    servo: int | None = None
 
 
 class SetServoCw(Request[None], command="set_servo_cw"):
@@ -78,10 +81,11 @@ class GetServoCw(Request[int], command="get_servo_cw"):
     servo: int
 
 
-class GetServoCwReply(Reply[int], to=GetServoCw):
+class GetServoCwReply(Reply[int], to=GetServoCw, wire=("servo", "value")):
     """Reply to get_servo_cw."""
 
     value: int
+    servo: int | None = None
 
 
 class SetServoCww(Request[None], command="set_servo_cww"):
@@ -97,10 +101,11 @@ class GetServoCww(Request[int], command="get_servo_cww"):
     servo: int
 
 
-class GetServoCwwReply(Reply[int], to=GetServoCww):
+class GetServoCwwReply(Reply[int], to=GetServoCww, wire=("servo", "value")):
     """Reply to get_servo_cww."""
 
     value: int
+    servo: int | None = None
 
 
 class SetServoSystemData(Request[None], command="set_servo_system_data"):
@@ -120,10 +125,11 @@ class GetServoSystemData(Request[int], command="get_servo_system_data"):
     mode: ServoDataMode | int
 
 
-class GetServoSystemDataReply(Reply[int], to=GetServoSystemData):
+class GetServoSystemDataReply(Reply[int], to=GetServoSystemData, wire=("register", "value")):
     """Reply to get_servo_system_data."""
 
     value: int
+    register: int | None = None
 
 
 class RestoreServoSystemParam(Request[None], command="restore_servo_system_param"):

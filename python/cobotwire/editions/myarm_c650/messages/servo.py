@@ -6,7 +6,6 @@ from __future__ import annotations
 from cobotwire.protocol.messages import Reply, Request
 
 from ..values import (
-    ConnectedServos,
     Encoders,
     GetServosEncoderDragResult,
     ServoCurrents,
@@ -52,14 +51,14 @@ class GetServosEncoderDragReply(
     speeds: ServoSpeeds
 
 
-class IsAllServosEnabled(Request[ConnectedServos], command="is_all_servos_enabled"):
+class IsAllServosEnabled(Request[tuple[int, ...]], command="is_all_servos_enabled"):
     """Check which servos are connected."""
 
 
-class IsAllServosEnabledReply(Reply[ConnectedServos], to=IsAllServosEnabled):
+class IsAllServosEnabledReply(Reply[tuple[int, ...]], to=IsAllServosEnabled):
     """Reply to is_all_servos_enabled."""
 
-    connected: ConnectedServos
+    connected: tuple[int, ...]
 
 
 class SetServoCalibration(Request[None], command="set_servo_calibration"):
@@ -132,3 +131,10 @@ class GetServosProtectCurrentReply(Reply[ServoCurrents], to=GetServosProtectCurr
     """Reply to get_servos_protect_current."""
 
     currents: ServoCurrents
+
+
+class SetServoEnabled(Request[None], command="set_servo_enabled"):
+    """Switch a servo on or off."""
+
+    servo: int
+    enabled: bool

@@ -112,3 +112,7 @@ class SetRecvQueueMaxLen(Request[None], command="set_recv_queue_max_len"):
 
 class ClearRecvQueue(Request[None], command="clear_recv_queue"):
     """Clear the queue."""
+
+
+class ClearRobotErr(Request[None], command="clear_robot_err"):
+    """Clear the error."""

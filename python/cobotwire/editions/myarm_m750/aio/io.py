@@ -4,8 +4,12 @@
 from __future__ import annotations
 
 from cobotwire.client.aio import AsyncClient
+from cobotwire.protocol.light import TYPE_CHECKING
 
 from .. import messages
+
+if TYPE_CHECKING:
+    from ..enums import PinMode
 
 
 class AsyncIoCommands(AsyncClient):
@@ -38,6 +42,10 @@ class AsyncIoCommands(AsyncClient):
     async def is_tool_btn_clicked(self) -> bool:
         """Check whether a button is pressed."""
         return await self._call(messages.io.IsToolBtnClicked())
+
+    async def set_pin_mode(self, pin: int, mode: PinMode | int) -> None:
+        """Set what a pin of the Atom is used for."""
+        await self._send(messages.io.SetPinMode(pin, mode))
 
     async def set_assist_out_io_state(self, pin: int, high: bool = True) -> None:
         """Set a pin of the auxiliary connector."""

@@ -37,6 +37,14 @@ class AsyncMotionCommands(AsyncClient):
         """Read the coordinates (the maker's name)."""
         return await self._call(messages.motion.GetJointsCoord())
 
+    async def get_joints_min(self) -> Angles:
+        """Read the smallest angles of the joints."""
+        return await self._call(messages.motion.GetJointsMin())
+
+    async def get_joints_max(self) -> Angles:
+        """Read the largest angles of the joints."""
+        return await self._call(messages.motion.GetJointsMax())
+
     async def send_angle(self, joint: int, angle: float, speed: int) -> None:
         """Send one joint to an angle."""
         await self._send(messages.motion.SendAngle(joint, angle, speed))
@@ -68,11 +76,3 @@ class AsyncMotionCommands(AsyncClient):
     async def is_robot_moving(self) -> bool:
         """Check whether the arm moves (the maker's name)."""
         return await self._call(messages.motion.IsRobotMoving())
-
-    async def get_joints_min(self) -> Angles:
-        """Read the smallest angles of the joints."""
-        return await self._call(messages.motion.GetJointsMin())
-
-    async def get_joints_max(self) -> Angles:
-        """Read the largest angles of the joints."""
-        return await self._call(messages.motion.GetJointsMax())

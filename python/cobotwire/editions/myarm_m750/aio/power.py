@@ -15,21 +15,21 @@ class AsyncPowerCommands(AsyncClient):
         """Power on."""
         await self._send(messages.power.PowerOn(), ack_within)
 
-    async def set_robot_power_on(self, *, ack_within: float | None = None) -> None:
-        """Power on (the maker's name)."""
-        await self._send(messages.power.SetRobotPowerOn(), ack_within)
-
     async def power_off(self, *, ack_within: float | None = None) -> None:
         """Power off."""
         await self._send(messages.power.PowerOff(), ack_within)
 
-    async def set_robot_power_off(self, *, ack_within: float | None = None) -> None:
-        """Power off (the maker's name)."""
-        await self._send(messages.power.SetRobotPowerOff(), ack_within)
-
     async def is_power_on(self) -> bool:
         """Check whether the arm has power."""
         return await self._call(messages.power.IsPowerOn())
+
+    async def set_robot_power_on(self, *, ack_within: float | None = None) -> None:
+        """Power on (the maker's name)."""
+        await self._send(messages.power.SetRobotPowerOn(), ack_within)
+
+    async def set_robot_power_off(self, *, ack_within: float | None = None) -> None:
+        """Power off (the maker's name)."""
+        await self._send(messages.power.SetRobotPowerOff(), ack_within)
 
     async def get_robot_power_status(self) -> bool:
         """Check whether the arm has power (the maker's name)."""

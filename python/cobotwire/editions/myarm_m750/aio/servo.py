@@ -12,7 +12,6 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from ..values import (
-        ConnectedServos,
         Encoders,
         GetServosEncoderDragResult,
         ServoCurrents,
@@ -38,7 +37,7 @@ class AsyncServoCommands(AsyncClient):
         """Read positions and speeds of all servos."""
         return await self._call(messages.servo.GetServosEncoderDrag())
 
-    async def is_all_servos_enabled(self) -> ConnectedServos:
+    async def is_all_servos_enabled(self) -> tuple[int, ...]:
         """Check which servos are connected."""
         return await self._call(messages.servo.IsAllServosEnabled())
 
@@ -74,6 +73,10 @@ class AsyncServoCommands(AsyncClient):
         """Read the protective currents."""
         return await self._call(messages.servo.GetServosProtectCurrent())
 
+    async def set_servo_enabled(self, servo: int, enabled: bool) -> None:
+        """Switch a servo on or off."""
+        await self._send(messages.servo.SetServoEnabled(servo, enabled))
+
     async def set_servo_encoder(self, servo: int, encoder: int, speed: int) -> None:
         """Send one servo to an encoder position."""
         await self._send(messages.servo.SetServoEncoder(servo, encoder, speed))
@@ -85,7 +88,3 @@ class AsyncServoCommands(AsyncClient):
     async def set_servos_encoder_drag(self, encoders: Sequence[int], speeds: Sequence[int]) -> None:
         """Send all servos to encoder positions at individual speeds."""
         await self._send(messages.servo.SetServosEncoderDrag(encoders, speeds))
-
-    async def set_servo_enabled(self, servo: int, enabled: bool) -> None:
-        """Switch a servo on or off."""
-        await self._send(messages.servo.SetServoEnabled(servo, enabled))

@@ -4,8 +4,12 @@
 from __future__ import annotations
 
 from cobotwire.client import Client
+from cobotwire.protocol.light import TYPE_CHECKING
 
 from .. import messages
+
+if TYPE_CHECKING:
+    from ..enums import PinMode
 
 
 class IoCommands(Client):
@@ -100,6 +104,19 @@ class IoCommands(Client):
         Safety: query. Command id 0x6B.
         """
         return self._call(messages.io.IsToolBtnClicked())
+
+    def set_pin_mode(self, pin: int, mode: PinMode | int) -> None:
+        """Set what a pin of the Atom is used for.
+
+        Makes a pin of the Atom an input or an output.
+
+        Args:
+            pin: Pin number of the Atom (0..255).
+            mode: What a pin is used for (one of INPUT (0), OUTPUT (1)).
+
+        Safety: setting. Command id 0x60.
+        """
+        self._send(messages.io.SetPinMode(pin, mode))
 
     def set_assist_out_io_state(self, pin: int, high: bool = True) -> None:
         """Set a pin of the auxiliary connector.

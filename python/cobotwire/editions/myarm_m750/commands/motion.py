@@ -75,6 +75,28 @@ class MotionCommands(Client):
         """
         return self._call(messages.motion.GetJointsCoord())
 
+    def get_joints_min(self) -> Angles:
+        """Read the smallest angles of the joints.
+
+        Reads the smallest allowed angle of each joint, in degrees.
+
+        Returns: The seven joint angles, base first; the last is that of the gripper (j1, j2, j3,
+            j4, j5, j6, j7 -327.68..327.67 degree).
+        Safety: query. Command id 0x4A.
+        """
+        return self._call(messages.motion.GetJointsMin())
+
+    def get_joints_max(self) -> Angles:
+        """Read the largest angles of the joints.
+
+        Reads the largest allowed angle of each joint, in degrees.
+
+        Returns: The seven joint angles, base first; the last is that of the gripper (j1, j2, j3,
+            j4, j5, j6, j7 -327.68..327.67 degree).
+        Safety: query. Command id 0x4B.
+        """
+        return self._call(messages.motion.GetJointsMax())
+
     def send_angle(self, joint: int, angle: float, speed: int) -> None:
         """Send one joint to an angle.
 
@@ -181,25 +203,3 @@ class MotionCommands(Client):
         Safety: query. Command id 0x2B.
         """
         return self._call(messages.motion.IsRobotMoving())
-
-    def get_joints_min(self) -> Angles:
-        """Read the smallest angles of the joints.
-
-        Reads the smallest allowed angle of each joint, in degrees.
-
-        Returns: The seven joint angles, base first; the last is that of the gripper (j1, j2, j3,
-            j4, j5, j6, j7 -327.68..327.67 degree).
-        Safety: query. Command id 0x4A.
-        """
-        return self._call(messages.motion.GetJointsMin())
-
-    def get_joints_max(self) -> Angles:
-        """Read the largest angles of the joints.
-
-        Reads the largest allowed angle of each joint, in degrees.
-
-        Returns: The seven joint angles, base first; the last is that of the gripper (j1, j2, j3,
-            j4, j5, j6, j7 -327.68..327.67 degree).
-        Safety: query. Command id 0x4B.
-        """
-        return self._call(messages.motion.GetJointsMax())

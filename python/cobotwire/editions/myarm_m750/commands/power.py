@@ -20,15 +20,6 @@ class PowerCommands(Client):
         """
         self._send(messages.power.PowerOn(), ack_within)
 
-    def set_robot_power_on(self, *, ack_within: float | None = None) -> None:
-        """Power on (the maker's name).
-
-        Switches the arm on. The maker's name for power_on.
-
-        Safety: power. Command id 0x10.
-        """
-        self._send(messages.power.SetRobotPowerOn(), ack_within)
-
     def power_off(self, *, ack_within: float | None = None) -> None:
         """Power off.
 
@@ -37,15 +28,6 @@ class PowerCommands(Client):
         Safety: power. Command id 0x11.
         """
         self._send(messages.power.PowerOff(), ack_within)
-
-    def set_robot_power_off(self, *, ack_within: float | None = None) -> None:
-        """Power off (the maker's name).
-
-        Switches the arm off. The maker's name for power_off.
-
-        Safety: power. Command id 0x11.
-        """
-        self._send(messages.power.SetRobotPowerOff(), ack_within)
 
     def is_power_on(self) -> bool:
         """Check whether the arm has power.
@@ -56,6 +38,24 @@ class PowerCommands(Client):
         Safety: query. Command id 0x12.
         """
         return self._call(messages.power.IsPowerOn())
+
+    def set_robot_power_on(self, *, ack_within: float | None = None) -> None:
+        """Power on (the maker's name).
+
+        Switches the arm on. The maker's name for power_on.
+
+        Safety: power. Command id 0x10.
+        """
+        self._send(messages.power.SetRobotPowerOn(), ack_within)
+
+    def set_robot_power_off(self, *, ack_within: float | None = None) -> None:
+        """Power off (the maker's name).
+
+        Switches the arm off. The maker's name for power_off.
+
+        Safety: power. Command id 0x11.
+        """
+        self._send(messages.power.SetRobotPowerOff(), ack_within)
 
     def get_robot_power_status(self) -> bool:
         """Check whether the arm has power (the maker's name).

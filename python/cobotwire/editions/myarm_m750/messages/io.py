@@ -11,6 +11,7 @@ from ...myarm_c650.messages.io import GetToolInIoState as GetToolInIoState
 from ...myarm_c650.messages.io import GetToolInIoStateReply as GetToolInIoStateReply
 from ...myarm_c650.messages.io import SetColor as SetColor
 from ...myarm_c650.messages.io import SetMasterOutIoState as SetMasterOutIoState
+from ...myarm_c650.messages.io import SetPinMode as SetPinMode
 from ...myarm_c650.messages.io import SetToolLedColor as SetToolLedColor
 from ...myarm_c650.messages.io import SetToolOutIoState as SetToolOutIoState
 

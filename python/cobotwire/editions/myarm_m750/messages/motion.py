@@ -17,7 +17,10 @@ from ...myarm_c650.messages.motion import GetJointsAngle as GetJointsAngle
 from ...myarm_c650.messages.motion import GetJointsAngleReply as GetJointsAngleReply
 from ...myarm_c650.messages.motion import GetJointsCoord as GetJointsCoord
 from ...myarm_c650.messages.motion import GetJointsCoordReply as GetJointsCoordReply
-from ..values import Angles
+from ...myarm_c650.messages.motion import GetJointsMax as GetJointsMax
+from ...myarm_c650.messages.motion import GetJointsMaxReply as GetJointsMaxReply
+from ...myarm_c650.messages.motion import GetJointsMin as GetJointsMin
+from ...myarm_c650.messages.motion import GetJointsMinReply as GetJointsMinReply
 
 
 class SendAngle(Request[None], command="send_angle"):
@@ -76,23 +79,3 @@ class IsRobotMovingReply(Reply[bool], to=IsRobotMoving):
     """Reply to is_robot_moving."""
 
     moving: bool
-
-
-class GetJointsMin(Request[Angles], command="get_joints_min"):
-    """Read the smallest angles of the joints."""
-
-
-class GetJointsMinReply(Reply[Angles], to=GetJointsMin):
-    """Reply to get_joints_min."""
-
-    angles: Angles
-
-
-class GetJointsMax(Request[Angles], command="get_joints_max"):
-    """Read the largest angles of the joints."""
-
-
-class GetJointsMaxReply(Reply[Angles], to=GetJointsMax):
-    """Reply to get_joints_max."""
-
-    angles: Angles

@@ -5,15 +5,12 @@ from __future__ import annotations
 
 from cobotwire.protocol.messages import Reply, Request
 
-
-class PowerOn(Request[None], command="power_on"):
-    """Power on."""
-
-
-class PowerOnReply(Reply[None], to=PowerOn):
-    """Acknowledgement of power_on."""
-
-    done: int | None = None
+from ...myarm_c650.messages.power import IsPowerOn as IsPowerOn
+from ...myarm_c650.messages.power import IsPowerOnReply as IsPowerOnReply
+from ...myarm_c650.messages.power import PowerOff as PowerOff
+from ...myarm_c650.messages.power import PowerOffReply as PowerOffReply
+from ...myarm_c650.messages.power import PowerOn as PowerOn
+from ...myarm_c650.messages.power import PowerOnReply as PowerOnReply
 
 
 class SetRobotPowerOn(Request[None], command="set_robot_power_on"):
@@ -26,16 +23,6 @@ class SetRobotPowerOnReply(Reply[None], to=SetRobotPowerOn):
     done: int | None = None
 
 
-class PowerOff(Request[None], command="power_off"):
-    """Power off."""
-
-
-class PowerOffReply(Reply[None], to=PowerOff):
-    """Acknowledgement of power_off."""
-
-    done: int | None = None
-
-
 class SetRobotPowerOff(Request[None], command="set_robot_power_off"):
     """Power off (the maker's name)."""
 
@@ -44,16 +31,6 @@ class SetRobotPowerOffReply(Reply[None], to=SetRobotPowerOff):
     """Acknowledgement of set_robot_power_off."""
 
     done: int | None = None
-
-
-class IsPowerOn(Request[bool], command="is_power_on"):
-    """Check whether the arm has power."""
-
-
-class IsPowerOnReply(Reply[bool], to=IsPowerOn):
-    """Reply to is_power_on."""
-
-    powered: bool
 
 
 class GetRobotPowerStatus(Request[bool], command="get_robot_power_status"):

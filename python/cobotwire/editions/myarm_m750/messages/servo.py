@@ -31,6 +31,7 @@ from ...myarm_c650.messages.servo import IsAllServosEnabled as IsAllServosEnable
 from ...myarm_c650.messages.servo import IsAllServosEnabledReply as IsAllServosEnabledReply
 from ...myarm_c650.messages.servo import SetServoCalibrate as SetServoCalibrate
 from ...myarm_c650.messages.servo import SetServoCalibration as SetServoCalibration
+from ...myarm_c650.messages.servo import SetServoEnabled as SetServoEnabled
 
 
 class SetServoEncoder(Request[None], command="set_servo_encoder"):
@@ -53,10 +54,3 @@ class SetServosEncoderDrag(Request[None], command="set_servos_encoder_drag"):
 
     encoders: Sequence[int]
     speeds: Sequence[int]
-
-
-class SetServoEnabled(Request[None], command="set_servo_enabled"):
-    """Switch a servo on or off."""
-
-    servo: int
-    enabled: bool

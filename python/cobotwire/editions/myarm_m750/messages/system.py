@@ -6,6 +6,7 @@ from __future__ import annotations
 from cobotwire.protocol.messages import Reply, Request
 
 from ...myarm_c650.messages.system import ClearRecvQueue as ClearRecvQueue
+from ...myarm_c650.messages.system import ClearRobotErr as ClearRobotErr
 from ...myarm_c650.messages.system import GetRecvQueueLen as GetRecvQueueLen
 from ...myarm_c650.messages.system import GetRecvQueueLenReply as GetRecvQueueLenReply
 from ...myarm_c650.messages.system import GetRecvQueueMaxLen as GetRecvQueueMaxLen
@@ -34,10 +35,6 @@ from ...myarm_c650.messages.system import GetSystemVersion as GetSystemVersion
 from ...myarm_c650.messages.system import GetSystemVersionReply as GetSystemVersionReply
 from ...myarm_c650.messages.system import SetRecvQueueMaxLen as SetRecvQueueMaxLen
 from ...myarm_c650.messages.system import SetRobotErrCheckState as SetRobotErrCheckState
-
-
-class ClearRobotErr(Request[None], command="clear_robot_err"):
-    """Clear the error."""
 
 
 class IsSdInsert(Request[bool], command="is_sd_insert"):
