@@ -41,7 +41,7 @@ def rulings() -> dict[Difference, list[Ruled]]:
             why = line.removeprefix(SECTION)
         elif line and not line.startswith("#"):
             method, part, shows, names = line.split("\t")
-            ruled = Ruled(why, frozenset(names.split(", ")))
+            ruled = Ruled(why, frozenset(names.split("; ")))
             found.setdefault(Difference(method, part, shows), []).append(ruled)
     return found
 

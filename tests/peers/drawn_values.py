@@ -22,10 +22,11 @@ from robots.robot import Call, Robot
 EDGES: tuple[int, ...] = (-32769, -32768, -129, -128, -1, 0, 1, 127, 128, 254, 255, 256)
 EDGES += (4095, 4096, 4097, 32767, 32768, 65535, 65536)
 OFF_STEP = (0.29, 12.37, -0.5)
-# Registers, pins and modes are small numbers, of which the library often allows some.
+# Registers and pins are small numbers, of which the library often allows some.
 SMALL = range(61)
+_LISTED = re.compile("address|data_id|pin")
 # A method has at most so many bases: calls in which one argument is replaced.
-MOST_BASES = 3
+MOST_BASES = 2
 _NUMBER = re.compile(r"-?\d+(?:\.\d+)?")
 # Names of checks that compare a number with the table of limits.
 _LIMITED = re.compile("angle|coord|degree|increment")
@@ -73,16 +74,18 @@ def _variations(
     peer: Any, method: str, name: str, given: Any, *, wide: bool
 ) -> Iterator[tuple[Any, Any]]:
     """Return values for one argument, each with its label."""
+    kind: Any = type(peer)
     if isinstance(given, list):
         if not wide:
             return
         yield from (("[shorter]", given[:-1]), ("[longer]", [*given, *given[-1:]]))
-        for index in range(len(given)):
-            for value in sorted({*_stated(type(peer), method, name, index), *EDGES, *OFF_STEP}):
+        for index in sorted({0, len(given) // 2, len(given) - 1} - {-1}):
+            for value in sorted({*_stated(kind, method, name, index), *EDGES, *OFF_STEP}):
                 yield f"[{index}]={value}", [*given[:index], value, *given[index + 1 :]]
     elif not isinstance(given, str):
-        stated = _stated(type(peer), method, name)
-        for value in sorted({*stated, *EDGES, *SMALL, *OFF_STEP} if wide else stated):
+        stated = _stated(kind, method, name)
+        small = SMALL if _LISTED.search(name) else ()
+        for value in sorted({*stated, *EDGES, *small, *OFF_STEP} if wide else stated):
             yield value, value
         if wide:
             yield None, None

@@ -32,8 +32,8 @@ ENDLESS = "waits for ever"
 FAILED, MISTAKE = "fails", "fails by mistake"
 
 
-# Of processor time, for a call of the maker's class.
-MOST_SECONDS = 0.2
+# Of processor time, for a call of the maker's class: on a simulated arm, and with one reply.
+MOST_SECONDS, MOST_FOR_REPLY = 10.0, 0.5
 
 
 class Recorded(MemoryTransport):
@@ -100,7 +100,7 @@ def call_theirs(robot: Robot, call: Call, reply: bytes | None = None) -> Called:
     with stepped() as clock:
         port = RecordedPort(_arm(robot, clock.time, reply), clock)
         peer, start = robot.on(port), clock.now
-        with limited():
+        with limited(MOST_SECONDS if reply is None else MOST_FOR_REPLY):
             result = result_of_theirs(peer, call)
         if result is REJECTED and port.written:
             result = MISTAKE
@@ -122,7 +122,7 @@ def result_of_theirs(peer: Any, call: Call) -> Any:
 
 
 @contextmanager
-def limited() -> Iterator[None]:
+def limited(seconds: float) -> Iterator[None]:
     """Raise TimeoutError in a call that computes for too long: some parsers never end."""
 
     def stop(*given: object) -> None:
@@ -130,7 +130,7 @@ def limited() -> Iterator[None]:
 
     before = signal.signal(signal.SIGVTALRM, stop)
     # Again and again: some of the maker's functions catch every exception.
-    signal.setitimer(signal.ITIMER_VIRTUAL, MOST_SECONDS, MOST_SECONDS)
+    signal.setitimer(signal.ITIMER_VIRTUAL, seconds, seconds)
     try:
         yield
     finally:

@@ -45,6 +45,7 @@ MOST_CALLS = 3
 LARGEST = 64
 # Each byte of data of any size; the sizes that are compared for orders, too.
 FILLINGS = (0x01, 0x82)
+DONE = b"\x01"
 SMALLEST = frozenset({0, 1, 2, 3})
 # In which a documented number comes: in bytes, or in words with their scale.
 SCALES = (1, 10, 100)
@@ -101,7 +102,9 @@ def _shown(
     both_fail = ours.result is FAILED and theirs.result in (None, -1, MISTAKE, ENDLESS)
     if both_fail or _same(theirs.result, ours.result):
         return ""
-    if _command(codec, call).ack and _is_done(theirs.result, ours.result):
+    # No source says what another number than 1 in an acknowledgement means: ours returns 1.
+    acknowledges = _command(codec, call).ack and reply.data != DONE
+    if acknowledges and (numbers_of(ours.result) == [1] or ours.result is FAILED):
         return ""
     if reply.kind == ANY and ours.result is FAILED and not _is_legal(codec, call, frame):
         # What no source describes is an error in ours. The library returns what it happens to read.
@@ -110,16 +113,6 @@ def _shown(
         # The library reads another number than the one that is documented.
         return ""
     return relation(theirs.result, ours.result)
-
-
-def _is_done(theirs: Any, ours: Any) -> bool:
-    """Return whether results of an order differ only as they always do.
-
-    The library returns the number that acknowledges an order, and ours 1, since no source says
-    what another number means. What is no acknowledgement is an error in ours.
-    """
-    acknowledged = numbers_of(theirs) not in ([], [1]) and numbers_of(ours) == [1]
-    return acknowledged or (ours is FAILED and numbers_of(theirs) != [1])
 
 
 def _same(theirs: Any, ours: Any) -> bool:
@@ -187,9 +180,10 @@ def _replies(robot: Robot, codec: Codec, call: Call) -> Iterator[Reply]:
 
 def _all_replies(robot: Robot, codec: Codec, call: Call) -> Iterator[Reply]:
     legal, command = list(_legal(codec, call)), _command(codec, call)
+    kind: Any = CLASSES[robot.peer]
     yield from (Reply(EDITION, data) for data in legal)
     sizes = {variant.size for variant in command.reply if variant.size <= LARGEST}
-    for number in () if command.ack else _documented(CLASSES[robot.peer], call.method):
+    for number in () if command.ack else _documented(kind, call.method):
         for size in sizes:
             yield Reply(DOCUMENTED, bytes([number & 0xFF] * size), number)
             for scale in SCALES:
@@ -204,6 +198,9 @@ def _all_replies(robot: Robot, codec: Codec, call: Call) -> Iterator[Reply]:
     near = {size + step for size in sizes for step in (-1, 0, 1)} - {-1}
     # What our class does with data of any size depends on the robot only.
     further = _distinguished() if not command.ack and robot.peer in ROBOTS else SMALLEST
+    if command.name in DATA:
+        # It passes on bytes of any number.
+        return
     for size in sorted(near | further):
         fillings = FILLINGS if size in sizes else FILLINGS[-1:]
         yield from (Reply(ANY, bytes([filling] * size)) for filling in fillings)

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import socket
 import time
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from typing import Any
 
 import cobotwire.pymycobot as ours
@@ -108,8 +109,12 @@ def _served(robot: Robot, kind: Any) -> Iterator[tuple[Any, Kept]]:
             if hasattr(opened, "arm"):
                 opened.arm.close()
             else:
-                opened.sock, socket = Ending(), opened.sock
-                socket.close()
+                opened.sock, used = Ending(), opened.sock
+                with suppress(OSError):
+                    used.shutdown(socket.SHUT_RDWR)
+                used.close()
+                if hasattr(opened, "read_threading"):
+                    opened.read_threading.join(ARRIVES)
 
 
 def _called(kept: Kept, result: Any, stepped: Called) -> Called:

@@ -11,15 +11,12 @@ from cobotwire.protocol.errors import UsageError
 from differences import Difference
 from drawn_values import Drawn, drawn
 from layer_comparison import Compared, chosen, class_of, is_missing
-from layer_robots import SOCKETS
 from pymycobot_classes import REJECTIONS
 from pymycobot_ports import RecordingPort, RecordingTransport, Written
 from robots.comparison import is_truncated, raised
 from robots.driving import stepped
 from robots.robot import Robot
 
-# Of a class that another one of the robot has the methods of, one of so many methods is drawn for.
-FEWER_BY_TCP = 4
 # A longer list of values is counted.
 LONGEST = 60
 ONLY_OURS, ONLY_THEIRS, OTHER_BYTES = "only ours", "only theirs", "other bytes"
@@ -38,9 +35,6 @@ def compare_values(robot: Robot, which: int | str = 1) -> Compared:
     """Compare drawn calls of methods of a class."""
     kind = class_of(robot)
     methods = [m for m in robot.public if callable(getattr(kind, m, None))]
-    if robot.peer in SOCKETS and which == 1:
-        # What a class sends does not depend on how it reaches the robot, but for mistakes.
-        which = FEWER_BY_TCP
     methods = chosen(robot, methods, which)
     peer = robot.on(RecordingPort())
     found: dict[tuple[str, str, str], list[tuple[Any, str]]] = {}

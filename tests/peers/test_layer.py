@@ -23,6 +23,7 @@ CLASSES = [name for name in ours.__all__ if name in ours._MODULES]
 # `make layer` compares all methods; here one of so many.
 EVERY = {"calls": 12, "values": 45, "replies": 30}
 EVERY_BY_TCP = 40
+FAILURES = (REJECTED, FAILED)
 # By class and method: where our parameters are others.
 PARAMETERS = {
     ("MyArmSocket", "sync_send_coords"): "mode has the default of the serial class",
@@ -83,9 +84,12 @@ deprecated = pytest.mark.filterwarnings("ignore:.*getdefaultlocale:DeprecationWa
 def test_sample_differs_from_the_makers_class_exactly_as_ruled(name: str, part: str) -> None:
     compared = COMPARISONS[part](ALL_ROBOTS[name], EVERY[part])
     assert unruled(name, compared.found, compared.methods, part) == []
-    assert compared.compared > 0
+    # Some methods have no argument to draw.
+    assert compared.compared > 0 or (part == "values" and compared.methods)
 
 
+# The threads of the maker's classes end by SystemExit here; by themselves they never end.
+@pytest.mark.filterwarnings("ignore::pytest.PytestUnhandledThreadExceptionWarning")
 @deprecated
 @pytest.mark.parametrize("name", SOCKETS)
 def test_calls_over_tcp_differ_from_the_makers_class_only_as_ruled(name: str) -> None:
@@ -141,7 +145,7 @@ def test_each_call_of_the_makers_palletizer_fails_and_ours_succeeds() -> None:
     calls = {call.method: call for call in calls_of(PALLETIZER) if not call.why}
     assert len(calls) >= 40
     results = {name: call_ours(PALLETIZER, call).result for name, call in calls.items()}
-    rejected = {name for name, result in results.items() if result in (REJECTED, FAILED)}
+    rejected = {name for name, result in results.items() if str(result).startswith(FAILURES)}
     # No source gives the geometry, so the simulated arm does not reply to the first; the call of
     # the second lacks the mode that this class wants.
     assert rejected == {"get_coords", "sync_send_coords"}
