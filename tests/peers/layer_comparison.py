@@ -5,28 +5,22 @@ Both arms are in this process, and time is stepped, so nothing waits.
 
 from __future__ import annotations
 
+import signal
+from collections import Counter
 from collections.abc import Iterator
+from contextlib import contextmanager
 from functools import partial
 from typing import Any, NamedTuple
 
 import cobotwire.pymycobot as ours
 from cobotwire.editions import load
-from cobotwire.protocol.errors import ArmNotReady, ProtocolError
+from cobotwire.protocol.errors import ArmNotReady, ProtocolError, UsageError
 from cobotwire.simulator import MemoryTransport, SimulatedArm
 from cobotwire.simulator.clock import SteppedClock
-from layer_rulings import (
-    FRAMES,
-    LATE,
-    MISTAKES,
-    MOTIONS,
-    OTHER_FRAMES,
-    REPLIES,
-    RESULTS,
-    UNANSWERED,
-)
+from differences import Difference, relation
 from pymycobot_classes import REJECTIONS
-from robots.comparison import calls_of, raised
-from robots.driving import ArmPort, driven
+from robots.comparison import calls_of, is_truncated, raised
+from robots.driving import ArmPort, stepped
 from robots.robot import Call, Robot
 
 REJECTED = "rejected"
@@ -35,7 +29,11 @@ ITSELF = "the arm itself"
 # The result of a call that waits for bytes that never come.
 ENDLESS = "waits for ever"
 # Our call raised an error after it wrote; the library fails by a mistake of its own.
-FAILED, MISTAKE = "failed", "fails by mistake"
+FAILED, MISTAKE = "fails", "fails by mistake"
+
+
+# Of processor time, for a call of the maker's class: on a simulated arm, and with one reply.
+MOST_SECONDS, MOST_FOR_REPLY = 10.0, 0.5
 
 
 class Recorded(MemoryTransport):
@@ -63,6 +61,7 @@ class Called(NamedTuple):
 
     written: bytes
     result: Any
+    seconds: float = 0.0
 
 
 def class_of(robot: Robot) -> Any:
@@ -98,97 +97,169 @@ class Fixed:
 
 def call_theirs(robot: Robot, call: Call, reply: bytes | None = None) -> Called:
     """Call the maker's class on a simulated arm, or one that sends a reply to everything."""
-    with driven(robot) as drive:
-        arm: Any = drive.arm if reply is None else Fixed(reply)
-        port = RecordedPort(arm, drive.clock)
-        peer = robot.on(port)
-        try:
-            result = getattr(peer, call.method)(*call.theirs)
-        except TimeoutError:
-            return Called(port.written, ENDLESS)
-        except (*REJECTIONS, *raised(), AttributeError, LookupError, NotImplementedError):
-            return Called(port.written, MISTAKE if port.written else REJECTED)
-        return Called(port.written, ITSELF if result is peer else result)
+    with stepped() as clock:
+        port = RecordedPort(_arm(robot, clock.time, reply), clock)
+        peer, start = robot.on(port), clock.now
+        with limited(MOST_SECONDS if reply is None else MOST_FOR_REPLY):
+            result = result_of_theirs(peer, call)
+        if result is REJECTED and port.written:
+            result = MISTAKE
+        return Called(port.written, result, clock.now - start)
+
+
+def result_of_theirs(peer: Any, call: Call) -> Any:
+    """Return the result of a method of the maker's class, or how it failed."""
+    try:
+        result = getattr(peer, call.method)(*call.theirs)
+    except TimeoutError:
+        return ENDLESS
+    except (
+        *(*REJECTIONS, *raised(), AttributeError, LookupError, NotImplementedError),
+        *(AssertionError, UnboundLocalError),
+    ):
+        return REJECTED
+    return ITSELF if result is peer else result
+
+
+@contextmanager
+def limited(seconds: float) -> Iterator[None]:
+    """Raise TimeoutError in a call that computes for too long: some parsers never end."""
+
+    def stop(*given: object) -> None:
+        raise TimeoutError
+
+    before = signal.signal(signal.SIGVTALRM, stop)
+    # Again and again: some of the maker's functions catch every exception.
+    signal.setitimer(signal.ITIMER_VIRTUAL, seconds, seconds)
+    try:
+        yield
+    finally:
+        signal.setitimer(signal.ITIMER_VIRTUAL, 0)
+        signal.signal(signal.SIGVTALRM, before)
 
 
 def call_ours(robot: Robot, call: Call, reply: bytes | None = None) -> Called:
     """Call our class of the same name on an arm of the same kind."""
+    with stepped():
+        return _call_ours(robot, call, reply)
+
+
+def _call_ours(robot: Robot, call: Call, reply: bytes | None) -> Called:
     clock = SteppedClock(1000.0)
-    simulated = SimulatedArm(robot.table, clock=clock, powered=True)
-    arm: Any = simulated if reply is None else Fixed(reply)
-    transport = Recorded(arm, clock)
+    transport = Recorded(_arm(robot, clock, reply), clock)
     layer = layer_on(class_of(robot).__name__, transport, load(robot.edition).CLIENT)
     # What the constructor writes is not a part of the call, and neither is what it reads.
     transport.written, layer._waits = b"", True
+    start = clock()
+    result = result_of_ours(layer, call)
+    return Called(transport.written, result, clock() - start)
+
+
+def result_of_ours(layer: Any, call: Call) -> Any:
+    """Return the result of a method of our class, or how it failed."""
     try:
         result = getattr(layer, call.method)(*call.theirs)
-    except (ValueError, TypeError, NotImplementedError):
+    except (UsageError, NotImplementedError):
         result = REJECTED
     except (TimeoutError, ProtocolError, ArmNotReady):
         result = FAILED
-    return Called(transport.written, ITSELF if result is layer else result)
+    except Exception as error:
+        result = REJECTED if is_missing(error) else f"fails by {type(error).__name__}: {error}"
+    return ITSELF if result is layer else result
+
+
+def is_missing(error: Exception) -> bool:
+    """Return whether our method rejects a call, because a request needs another argument."""
+    return isinstance(error, TypeError) and "missing its argument" in str(error)
+
+
+def _arm(robot: Robot, clock: Any, reply: bytes | None) -> Any:
+    if reply is not None:
+        return Fixed(reply)
+    return SimulatedArm(robot.table, clock=clock, powered=True)
 
 
 class Compared(NamedTuple):
-    """What the calls of a class showed: how many are equal and ruled, the rest in words.
+    """What the calls of a class showed: how many were compared, and what differs."""
 
-    ``needed`` are the rulings that a call needs.
-    """
-
-    equal: int
-    ruled: int
-    open: list[str]
-    needed: set[str]
+    compared: int
+    methods: set[str]
+    found: set[Difference]
 
 
-def compare(robot: Robot, stride: int = 1, every: int = 1) -> Compared:
-    """Compare the calls of a class: of every ``every``-th method each ``stride``-th call."""
-    equal, ruled, left, needed = 0, 0, [], set()
-    for call in _sample(robot, stride, every):
+def compare(robot: Robot, which: int | str = 1) -> Compared:
+    """Compare the calls of methods of a class on simulated arms."""
+    count, methods, found = 0, set(), set()
+    for call in sample(robot, which):
+        count += 1
+        methods.add(call.method)
         theirs, mine = call_theirs(robot, call), call_ours(robot, call)
-        if REJECTED in (theirs.result, mine.result):
-            # `make robots` compares and rules which values are allowed.
-            continue
-        if mine.result is FAILED and theirs.result in (None, -1):
-            # Both have no reply; the library may have asked again.
-            ruled += 1
-        elif (mine, type(mine.result)) == (theirs, type(theirs.result)):
-            equal += 1
-        elif _is_ruled(robot, call, theirs, mine):
-            ruled += 1
-            needed.add(call.method)
-        else:
-            left.append(f"{call.method}{call.theirs}: {mine}, not {theirs}")
-    return Compared(equal, ruled, left, needed)
+        if shows := conversation(robot, theirs, mine):
+            found.add(Difference(call.method, "conversation", shows))
+    return Compared(count, methods, found)
 
 
-def _is_ruled(robot: Robot, call: Call, theirs: Called, mine: Called) -> bool:
-    key = robot.peer, call.method
-    if mine.result is FAILED and call.method in LATE:
-        return True
-    if key in UNANSWERED or (key in MISTAKES and theirs.result is MISTAKE):
-        return True
-    if mine.result == theirs.result and (call.method in FRAMES or key in OTHER_FRAMES):
-        return True
-    if robot.table.find_role("motion ended") is not None and call.method in MOTIONS:
-        return _ended_alike(theirs.result, mine.result)
-    return mine.written == theirs.written and (key in RESULTS or key in REPLIES)
+def conversation(robot: Robot, theirs: Called, mine: Called) -> str:
+    """Return how two calls differ: in their frames, then in their results."""
+    if REJECTED in (theirs.result, mine.result):
+        # `layer_values` compares which values are rejected; neither side writes before it rejects.
+        late = [each for each in (theirs, mine) if each.result is REJECTED and each.written]
+        return "rejected after it wrote" if late else ""
+    if mine.result is FAILED and theirs.result in (None, -1):
+        # Both have no reply; how often a request is repeated is a matter of the client.
+        return ""
+    shows = [_frames(robot, theirs.written, mine.written)]
+    if (mine.result, type(mine.result)) != (theirs.result, type(theirs.result)):
+        shows.append(relation(theirs.result, mine.result))
+    return "; ".join(each for each in shows if each)
 
 
-def _ended_alike(theirs: Any, mine: Any) -> bool:
-    """Return whether both report the same end of a motion; ours raises if the motion failed."""
-    return bool(theirs == mine if mine is not FAILED else theirs != 0)
+def _frames(robot: Robot, theirs: bytes, ours: bytes) -> str:
+    """Return how the frames differ in more than what the library truncates."""
+    pairs = [_cut(robot, theirs), _cut(robot, ours)]
+    ids = [_ids(robot, frames) for frames in pairs]
+    if ids[0] != ids[1]:
+        return f"sends {ids[1]}, not {ids[0]}"
+    different = {
+        (a, b) for a, b in zip(*pairs, strict=False) if a != b and not is_truncated(robot, a, b)
+    }
+    return f"other bytes in {_ids(robot, [b for _, b in different])}" if different else ""
 
 
-def _sample(robot: Robot, stride: int, every: int) -> Iterator[Call]:
-    """Return calls of a robot: of a method at least one for each part that it can address."""
+def _cut(robot: Robot, written: bytes) -> list[bytes]:
+    """Return the frames of what was written; a text after them counts as one."""
+    frame, found = robot.table.frame, []
+    while written.startswith(frame.header) and len(written) > frame.head_size:
+        size = frame.read_length(written) + frame.overhead
+        found.append(written[:size])
+        written = written[size:]
+    return [*found, written] if written else found
+
+
+def _ids(robot: Robot, frames: list[bytes]) -> str:
+    """Return the command ids of frames, each once; ``+`` marks one that was repeated."""
+    frame = robot.table.frame
+    framed = [each.startswith(frame.header) for each in frames]
+    ids = [
+        f"{frame.read_id(each):02x}" if whole else "text"
+        for each, whole in zip(frames, framed, strict=True)
+    ]
+    return " ".join(each + "+" * (n > 1) for each, n in Counter(ids).items()) or "no frame"
+
+
+def sample(robot: Robot, which: int | str) -> Iterator[Call]:
+    """Return the calls of chosen methods that our class offers."""
     offered = set(dir(class_of(robot)))
-    methods: dict[str, int] = {}
-    counts: dict[tuple[str, str | None], int] = {}
+    methods: dict[str, list[Call]] = {}
     for call in calls_of(robot):
-        index = methods.setdefault(call.method, len(methods) + 1)
-        place = (call.method, call.address)
-        count = counts[place] = counts.get(place, -1) + 1
-        chosen = count % stride == 0 and index % every == 0
-        if call.method in offered and chosen and not call.why:
-            yield call
+        if call.method in offered:
+            methods.setdefault(call.method, []).append(call)
+    for method in chosen(robot, list(methods), which):
+        yield from methods[method]
+
+
+def chosen(robot: Robot, methods: list[str], which: int | str) -> list[str]:
+    """Return the method of a name, or of so many methods one: others for other classes."""
+    if isinstance(which, str):
+        return [which]
+    return methods[len(robot.peer) % which :: which]

@@ -1,27 +1,63 @@
-"""Compare what the maker's class and ours return for the same reply: type, shape and rounding."""
+"""Compare what the maker's class and ours return for the same reply: type, shape and value.
+
+Replies are those of the edition, the values that the library documents, one that names the
+request's first argument, and data of every size that the library's parser distinguishes.
+"""
 
 from __future__ import annotations
 
+import ast
+import inspect
+import re
 from collections.abc import Iterator
+from functools import cache
 from struct import pack
-from typing import Any
+from typing import Any, NamedTuple
 
 from cobotwire import codec as codecs
 from cobotwire.codec.interface import Codec
+from cobotwire.protocol.errors import ProtocolError
 from cobotwire.protocol.table import Command, Variant
-from cobotwire.pymycobot.migrate.calls import library
-from layer_comparison import FAILED, REJECTED, Called, call_ours, call_theirs, class_of
-from layer_rulings import REPLIES
+from differences import Difference, numbers_of, relation
+from layer_comparison import (
+    ENDLESS,
+    FAILED,
+    MISTAKE,
+    REJECTED,
+    Called,
+    Compared,
+    call_ours,
+    call_theirs,
+    chosen,
+    class_of,
+)
+from pymycobot_classes import CLASSES
 from robots.arguments import corners, inside
+from robots.classes import ROBOTS
 from robots.comparison import calls_of
 from robots.robot import Call, Robot
 
 # Of variants of many sizes, the smallest ones.
 MOST_VARIANTS = 3
 # Of a method, so many calls are tried until the library accepts one.
-MOST_CALLS = 6
-# A reply of this size and with this byte looks like an acknowledgement.
-ACK_SIZE, ACK_MARK = 8, 0xFF
+MOST_CALLS = 3
+# Larger data are not drawn: the library reads LEN as a signed byte, and no more than 30.
+LARGEST = 64
+# Each byte of data of any size; the sizes that are compared for orders, too.
+FILLINGS = (0x01, 0x82)
+DONE = b"\x01"
+SMALLEST = frozenset({0, 1, 2, 3})
+# In which a documented number comes: in bytes, or in words with their scale.
+SCALES = (1, 10, 100)
+_NUMBER = re.compile(r"-?\b\d+\b")
+
+
+class Reply(NamedTuple):
+    """A reply as an arm sends it, and what it shows: a kind of replies, for the ruling."""
+
+    kind: str
+    data: bytes
+    number: int | None = None
 
 
 def _tool_replies(request: bytes) -> list[bytes]:
@@ -40,95 +76,177 @@ DATA: dict[str, Any] = {
 }
 
 
-def compare_replies(robot: Robot, stride: int = 1) -> tuple[int, set[str], list[str]]:
-    """Return how many results are equal, which methods need a ruling, and the others in words.
-
-    Called are every ``stride``-th method, and those that give their result in a form of its own.
-    """
-    equal, needed, left = 0, set(), []
-    for call, reply in _cases(robot, stride):
-        theirs, ours = call_theirs(robot, call, reply), call_ours(robot, call, reply)
-        if theirs.result is REJECTED and ours.result is REJECTED:
-            continue
-        failed = ours.result is FAILED and theirs.result in (None, -1)
-        if failed or _same(theirs, ours):
-            equal += 1
-        elif (robot.peer, call.method) in REPLIES:
-            needed.add(call.method)
-        else:
-            left.append(f"{call.method}, {reply.hex(' ')}: {ours.result}, not {theirs.result}")
-    return equal, needed, left
-
-
-def _same(theirs: Called, ours: Called) -> bool:
-    return (theirs.result, _kinds(theirs.result)) == (ours.result, _kinds(ours.result))
-
-
-def _kinds(result: Any) -> Any:
-    """Return the types of a result and of its parts."""
-    return [_kinds(each) for each in result] if isinstance(result, list) else type(result)
-
-
-def _cases(robot: Robot, stride: int) -> Iterator[tuple[Call, bytes]]:
-    """Return a call of each method with each reply."""
+def compare_replies(robot: Robot, which: int | str = 1) -> Compared:
+    """Compare the results of methods of a class for each of its replies."""
     codec = codecs.load(robot.table, "reference")
-    special = {
-        name
-        for name, call in library()[class_of(robot).__name__].methods.items()
-        if call.result != "plain"
-    }
-    for at, (method, calls) in enumerate(_by_method(robot).items()):
-        if at % stride and method not in special:
+    count, methods, found = 0, set(), set()
+    by_method = _by_method(robot)
+    for method in chosen(robot, list(by_method), which):
+        calls = by_method[method]
+        call = next((c for c in calls[:MOST_CALLS] if _is_accepted(robot, codec, c)), None)
+        if call is None:
             continue
-        found = None
-        for index, values in _replies(robot.table.command(calls[0].command), calls[0]):
-            for call in [found] if found else calls[:MOST_CALLS]:
-                reply = _reply(codec, call, index, values)
-                if reply is None or call_theirs(robot, call, reply).result is not REJECTED:
-                    break
-            else:
-                continue
-            found = call
-            if reply is not None:
-                yield call, reply
+        methods.add(method)
+        for reply in _replies(robot, codec, call):
+            frame = _frame(robot, call, reply.data)
+            theirs, ours = call_theirs(robot, call, frame), call_ours(robot, call, frame)
+            count += 1
+            if shows := _shown(codec, call, reply, frame, theirs, ours):
+                found.add(Difference(method, "reply", f"{reply.kind}: {shows}"))
+    return Compared(count, methods, found)
+
+
+def _shown(
+    codec: Codec, call: Call, reply: Reply, frame: bytes, theirs: Called, ours: Called
+) -> str:
+    both_fail = ours.result is FAILED and theirs.result in (None, -1, MISTAKE, ENDLESS)
+    if both_fail or _same(theirs.result, ours.result):
+        return ""
+    # No source says what another number than 1 in an acknowledgement means: ours returns 1.
+    acknowledges = _command(codec, call).ack and reply.data != DONE
+    if acknowledges and (numbers_of(ours.result) == [1] or ours.result is FAILED):
+        return ""
+    if reply.kind == ANY and ours.result is FAILED and not _is_legal(codec, call, frame):
+        # What no source describes is an error in ours. The library returns what it happens to read.
+        return ""
+    if reply.kind == DOCUMENTED and set(numbers_of(theirs.result)) != {reply.number}:
+        # The library reads another number than the one that is documented.
+        return ""
+    return relation(theirs.result, ours.result)
+
+
+def _same(theirs: Any, ours: Any) -> bool:
+    if theirs != ours or type(theirs) is not type(ours):
+        return False
+    return not isinstance(theirs, list) or all(map(_same, theirs, ours))
+
+
+def _is_legal(codec: Codec, call: Call, frame: bytes) -> bool:
+    """Return whether the edition has a reply."""
+    try:
+        codec.decode("reply", frame, of=call.command)
+    except ProtocolError:
+        return False
+    return True
+
+
+def _command(codec: Codec, call: Call) -> Command:
+    return codec.table.command(call.command)
+
+
+def _frame(robot: Robot, call: Call, data: bytes) -> bytes:
+    device = robot.device(call.address)
+    address = device.value if device else None
+    return robot.table.frame.enclose(robot.table.command(call.command).id, data, address, "reply")
+
+
+def _is_accepted(robot: Robot, codec: Codec, call: Call) -> bool:
+    """Return whether both sides send a call when they get a reply of the edition."""
+    reply = next(_legal(codec, call), None)
+    if reply is None:
+        return False
+    frame = _frame(robot, call, reply)
+    results = [each(robot, call, frame).result for each in (call_theirs, call_ours)]
+    return REJECTED not in results
 
 
 def _by_method(robot: Robot) -> dict[str, list[Call]]:
-    """Return the calls of queries that our class offers."""
+    """Return the calls with a reply that our class offers."""
     offered = set(dir(class_of(robot)))
     found: dict[str, list[Call]] = {}
-    queries = {c.name for c in robot.table.commands if c.reply and not c.ack and not c.event}
+    # A robot that reports the end of motions answers an order when it ends, minutes later.
+    waits = robot.table.find_role("motion ended") is not None
+    replied = {
+        c.name for c in robot.table.commands if c.reply and not (c.event or (c.ack and waits))
+    }
     for call in calls_of(robot):
-        if call.method in offered and call.command in queries and not call.why:
+        # The methods that wait for the end of a motion ask something else.
+        if call.method in offered and call.command in replied and "sync_" not in call.method:
             found.setdefault(call.method, []).append(call)
     return found
 
 
-def _replies(command: Command, call: Call) -> Iterator[tuple[int, tuple[Any, ...]]]:
+EDITION, DOCUMENTED, NAMED, ANY = "of the edition", "documented", "with its number", "any"
+
+
+def _replies(robot: Robot, codec: Codec, call: Call) -> Iterator[Reply]:
+    """Return replies; data that one kind has are not in a later one."""
+    seen: set[bytes] = set()
+    for reply in _all_replies(robot, codec, call):
+        if reply.data not in seen and len(reply.data) <= LARGEST:
+            seen.add(reply.data)
+            yield reply
+
+
+def _all_replies(robot: Robot, codec: Codec, call: Call) -> Iterator[Reply]:
+    legal, command = list(_legal(codec, call)), _command(codec, call)
+    kind: Any = CLASSES[robot.peer]
+    yield from (Reply(EDITION, data) for data in legal)
+    sizes = {variant.size for variant in command.reply if variant.size <= LARGEST}
+    for number in () if command.ack else _documented(kind, call.method):
+        for size in sizes:
+            yield Reply(DOCUMENTED, bytes([number & 0xFF] * size), number)
+            for scale in SCALES:
+                word = (number * scale & 0xFFFF).to_bytes(2, "big")
+                yield Reply(DOCUMENTED, (word * size)[:size], number)
+    if not command.ack and call.theirs and isinstance(call.theirs[0], int):
+        first = bytes([call.theirs[0] & 0xFF])
+        for data in legal:
+            read = [call_theirs(robot, call, _frame(robot, call, d)) for d in (data, first + data)]
+            if _same(read[0].result, read[1].result):
+                yield Reply(NAMED, first + data)
+    near = {size + step for size in sizes for step in (-1, 0, 1)} - {-1}
+    # What our class does with data of any size depends on the robot only.
+    further = _distinguished() if not command.ack and robot.peer in ROBOTS else SMALLEST
+    if command.name in DATA:
+        # It passes on bytes of any number.
+        return
+    for size in sorted(near | further):
+        fillings = FILLINGS if size in sizes else FILLINGS[-1:]
+        yield from (Reply(ANY, bytes([filling] * size)) for filling in fillings)
+
+
+@cache
+def _documented(kind: Any, method: str) -> tuple[int, ...]:
+    """Return the numbers in what a docstring of the library says about the result."""
+    text = inspect.getdoc(getattr(kind, method)) or ""
+    after = re.split(r"(?i)returns?:", text)[1:]
+    return tuple(sorted({int(each) for part in after for each in _NUMBER.findall(part)}))
+
+
+@cache
+def _distinguished() -> frozenset[int]:
+    """Return the sizes of data that the library's parsers compare with, and the smallest ones."""
+    from pymycobot import close_loop, common, mybuddy, pro630common
+
+    found = {*SMALLEST}
+    for module in (common, close_loop, mybuddy, pro630common):
+        for node in ast.walk(ast.parse(inspect.getsource(module))):
+            if isinstance(node, ast.Compare) and "len" in ast.unparse(node.left):
+                parts = [n for part in node.comparators for n in ast.walk(part)]
+                constants = [n.value for n in parts if isinstance(n, ast.Constant)]
+                found |= {n for n in constants if isinstance(n, int) and 0 <= n <= LARGEST}
+    return frozenset(found)
+
+
+def _legal(codec: Codec, call: Call) -> Iterator[bytes]:
+    """Return data of replies of the edition."""
+    command, frame = _command(codec, call), codec.table.frame
     if command.name in DATA and command.reply[0].fields[0].kind == "bytes":
-        for data in DATA[command.name](bytes(call.ours[0])):
-            sizes = [variant.fields[0].cases[0].numbers for variant in command.reply]
-            yield [len(numbers) for numbers in sizes].index(len(data)), (data,)
+        yield from DATA[command.name](bytes(call.ours[0]))
         return
     for index, variant in enumerate(command.reply[:MOST_VARIANTS]):
-        *_, highest = corners(variant)
-        for values in (highest, *inside(variant)):
-            yield index, values
-
-
-def _reply(codec: Codec, call: Call, index: int, values: tuple[Any, ...]) -> bytes | None:
-    """Return a reply to a call; None if the library takes it for an acknowledgement."""
-    command = codec.table.command(call.command)
-    variant = command.reply[index]
-    reply = codec.encode(
-        command.name, "reply", _with_arguments(command, variant, values, call), variant=index
-    )
-    return None if len(reply) == ACK_SIZE and reply[4] == ACK_MARK else reply
+        for values in (*corners(variant), *inside(variant)):
+            given = _with_arguments(command, variant, values, call)
+            reply = codec.encode(command.name, "reply", given, variant=index)
+            yield frame.data(reply, "reply")
 
 
 def _with_arguments(
     command: Command, variant: Variant, values: tuple[Any, ...], call: Call
 ) -> tuple[Any, ...]:
+    if not any(field.echo for field in variant.fields):
+        return values
     request = command.request_type(*call.ours)
     pairs = zip(variant.fields, values, strict=True)
     return tuple(getattr(request, f.name) if f.echo else value for f, value in pairs)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import sys
 import threading
 from dataclasses import replace
+from functools import partial
 from typing import Any
 
 from pymycobot_classes import CLASSES
@@ -37,6 +38,7 @@ class ArmSocket:
 
 def on_socket(peer_class: str, port: Any) -> Any:
     """Return an object of a class that opens a TCP connection, on a port in this process."""
+    from pymycobot.common import read, write
     from pymycobot.generate import CommandGenerator
 
     kind = CLASSES[peer_class]
@@ -44,6 +46,11 @@ def on_socket(peer_class: str, port: Any) -> Any:
     CommandGenerator.__init__(peer)
     peer.calibration_parameters = sys.modules[kind.__module__].calibration_parameters
     peer.lock, peer.sock = threading.Lock(), ArmSocket(port)
+    if not hasattr(kind, "_write"):
+        # Its constructor sets them.
+        peer.thread_lock = True
+        peer._write = partial(write, peer, method="socket")
+        peer._read = partial(read, peer, method="socket")
     return peer
 
 
@@ -61,6 +68,11 @@ SAME_ROBOT: dict[str, Robot] = {
     "MyBuddySocket": _another("MyBuddySocket", "MyBuddy", opened=on_socket),
     "MyCobot": _another("MyCobot", "MyCobot280"),
     "MyCobotSocket": _another("MyCobotSocket", "MyCobot280", opened=on_socket),
+    "MechArmSocket": _another("MechArmSocket", "MechArm270", opened=on_socket),
+    "MyArmSocket": _another("MyArmSocket", "MyArm", opened=on_socket),
+    "MyCobot280RDKX5Socket": _another("MyCobot280RDKX5Socket", "MyCobot280RDKX5", opened=on_socket),
+    "MyCobot280Socket": _another("MyCobot280Socket", "MyCobot280", opened=on_socket),
+    "MyCobot320Socket": _another("MyCobot320Socket", "MyCobot320", opened=on_socket),
     "MyPalletizerSocket": _another("MyPalletizerSocket", "MyPalletizer260", opened=on_socket),
 }
 # Robots that report the end of motions, and the classes that reach them by TCP.
@@ -74,5 +86,8 @@ CLOSED_LOOP: dict[str, Robot] = {
     "Pro630Client": _another("Pro630Client", "Pro630", opened=opened_by_client),
 }
 LAYER_ROBOTS: dict[str, Robot] = {**ROBOTS, **SAME_ROBOT}
+ALL_ROBOTS = {**LAYER_ROBOTS, **CLOSED_LOOP}
+# The classes that open a TCP connection.
+SOCKETS = [name for name in ALL_ROBOTS if name.endswith(("Socket", "Client"))]
 # It cannot be compared: each call of the maker's class fails.
 PALLETIZER = _another("MyPalletizer", "MyPalletizer260")

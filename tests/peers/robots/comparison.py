@@ -105,7 +105,7 @@ def _reason(robot: Robot, call: Call, theirs: bytes | str, ours: bytes | str) ->
     for ruling in robot.rulings.get(call.method, ()):
         if ruling.shows in shown(theirs):
             return ruling.why
-    if isinstance(theirs, bytes) and isinstance(ours, bytes) and _truncated(robot, theirs, ours):
+    if isinstance(theirs, bytes) and isinstance(ours, bytes) and is_truncated(robot, theirs, ours):
         return "the nearest step; the maker truncates"
     return ""
 
@@ -174,7 +174,7 @@ def raised() -> tuple[type[Exception], ...]:
     return tuple(kind for name, kind in vars(error).items() if name.endswith("DataException"))
 
 
-def _truncated(robot: Robot, theirs: bytes, ours: bytes) -> bool:
+def is_truncated(robot: Robot, theirs: bytes, ours: bytes) -> bool:
     """Return whether frames differ only in numbers that the maker cut off by one step."""
     for edition in (robot.edition, *robot.further):
         read = [_numbers(_codec(edition), each) for each in (theirs, ours)]

@@ -10,6 +10,7 @@ import sys
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
+from functools import lru_cache
 from typing import Any
 
 import pytest
@@ -41,6 +42,8 @@ class SteppedTime:
 
     def time(self) -> float:
         return self.now
+
+    monotonic = perf_counter = time
 
     def sleep(self, seconds: float) -> None:
         self.now += seconds
@@ -109,16 +112,31 @@ class Drive:
 
 
 @contextmanager
+def stepped() -> Iterator[SteppedTime]:
+    """Step the time of the maker's library, and of our layer."""
+    clock, modules = SteppedTime(), _timed(len(sys.modules))
+    for module in modules:
+        module.time = clock
+    try:
+        yield clock
+    finally:
+        for module in modules:
+            module.time = time
+
+
+@lru_cache(maxsize=1)
+def _timed(loaded: int) -> list[Any]:
+    """Return the modules of the library and of our layer that use the time."""
+    names = ("pymycobot", "cobotwire.pymycobot")
+    found = [module for name, module in sys.modules.items() if name.startswith(names)]
+    return [each for each in found if isinstance(getattr(each, "time", None), type(time))]
+
+
+@contextmanager
 def driven(robot: Robot) -> Iterator[Drive]:
     """Drive a simulated robot with the maker's class, in stepped time."""
-    clock, patch = SteppedTime(), pytest.MonkeyPatch()
-    for name, module in list(sys.modules.items()):
-        if name.partition(".")[0] == "pymycobot" and getattr(module, "time", None) is time:
-            patch.setattr(module, "time", clock)
-    try:
+    with stepped() as clock:
         yield Drive(robot, clock)
-    finally:
-        patch.undo()
 
 
 def wrong_replies(robot: Robot) -> tuple[int, list[str]]:
