@@ -80,6 +80,7 @@ VALUES: dict[str, Any] = {
     "Any": HOSTILE,
     "int": 1,
     "int | None": 1,
+    "WaitedFor | None": "turn",
     "float": 1.0,
     "bool": False,
     "bytes": HOSTILE.encode("utf-8", "surrogatepass"),

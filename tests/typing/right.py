@@ -15,6 +15,7 @@ from cobotwire import (
     connect,
     connect_async,
 )
+from cobotwire.editions.mercury_a1 import PowerState
 from cobotwire.editions.mycobot import (
     Angles,
     Axis,
@@ -88,7 +89,7 @@ async def drive_async(port: str) -> float:
 async def find(port: str) -> float:
     """Use the client of whatever edition an arm speaks."""
     async with await connect_async(port) as found:
-        powered: bool = await found.is_power_on()
+        powered: bool | PowerState = await found.is_power_on()
     with connect(port, timeout=1.0) as arm:
         arm.stop()
         print(powered, arm.get_angles()[0])

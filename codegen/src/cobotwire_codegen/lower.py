@@ -237,7 +237,7 @@ def _field(field: Field, variant: tuple[Field, ...]) -> dict[str, Any]:
             {"when": list(when), "numbers": list(numbers(type))} for when, type in cases(field)
         ],
         "doc": field.doc,
-        "many": isinstance(field.type, Value),
+        "many": isinstance(field.type, Value | Listed),
         "choices": list(field_choices(field)),
         "labels": list(labels(field.type)) if field.const is None else [],
         "selector": selector(field, variant),
