@@ -183,6 +183,7 @@ def test_name_of_the_port_says_which_robot_it_is() -> None:
         ("Pro450Client", "base_external_can_control", (0, [1]), "can_id is 0"),
         ("Pro450Client", "set_limit_switch", (3, 1), "limit_mode is 3"),
         ("Pro630", "set_basic_output", (7, 1), "pin_no is 7"),
+        *(("Pro630", "power_on", (delay,), f"delay is {delay!r}") for delay in (None, "2", -1)),
     ],
 )
 def test_wrong_argument_is_named_as_in_the_library(

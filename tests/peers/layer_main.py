@@ -49,7 +49,7 @@ def main(arguments: list[str]) -> int:
                 compared = compare_sockets(ALL_ROBOTS[name])
             lacking = unruled(name, compared.found, (), "calls")
             left += _shown(name, "tcp", compared, lacking, start)
-    for name in arguments or sorted(library()):
+    for name in [each for each in arguments or sorted(library()) if each in library()]:
         with redirect_stdout(StringIO()):
             equal, listed, wrong = compare_migrated(name)
         print(f"{name:22}rewritten {equal:9} equal, {listed} to decide", flush=True)

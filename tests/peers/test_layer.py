@@ -11,7 +11,7 @@ import cobotwire.pymycobot as ours
 from cobotwire.protocol.errors import UsageError
 from cobotwire.pymycobot.layer.absent import why_absent
 from differences import rulings, unruled
-from layer_comparison import FAILED, REJECTED, call_ours, layer_on
+from layer_comparison import FAILED, REJECTED, Called, call_ours, layer_on
 from layer_main import COMPARISONS
 from layer_robots import ALL_ROBOTS, PALLETIZER, SOCKETS
 from layer_sockets import compare_sockets
@@ -172,3 +172,16 @@ def test_address_that_the_robot_lacks_is_rejected() -> None:
     buddy = layer_on("MyBuddy", RecordingTransport())
     with pytest.raises(ValueError, match="id is 7; allowed: ALL"):
         buddy.get_angles(7)
+
+
+@pytest.mark.parametrize("name", ["MyBuddy", "MyBuddySocket"])
+def test_none_as_the_address_is_rejected_before_anything_is_sent(name: str) -> None:
+    robot, methods = ALL_ROBOTS[name], set()
+    for call in calls_of(robot):
+        names = [*inspect.signature(getattr(library(name), call.method)).parameters][1:]
+        at = next((n for n, each in enumerate(names) if each in ("id", "ids")), None)
+        if at is not None and hasattr(getattr(ours, name), call.method):
+            given = (*call.theirs[:at], None, *call.theirs[at + 1 :])
+            assert call_ours(robot, call._replace(theirs=given)) == Called(b"", REJECTED), call
+            methods.add(call.method)
+    assert len(methods) > 60

@@ -156,11 +156,11 @@ class Client:
         """
         from copy import copy
 
-        from cobotwire.protocol.addresses import find_address
+        from cobotwire.protocol.addresses import named_address
         from cobotwire.session.request import RequestEncoder
 
-        wanted = find_address(self.table, address)
-        if wanted is None or wanted == self._address:
+        wanted = named_address(self.table, address)
+        if wanted == self._address:
             return self
         found = self._views.get(wanted.value)
         if found is None:

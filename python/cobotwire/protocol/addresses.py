@@ -55,9 +55,18 @@ def find_address(table: Table, given: int | str | None) -> Address | None:
     Raises:
         UsageError: the edition has no such address.
     """
-    known = addresses_of(table)
     if given is None:
-        return known[0] if known else None
+        return next(iter(addresses_of(table)), None)
+    return named_address(table, given)
+
+
+def named_address(table: Table, given: int | str) -> Address:
+    """Return an address by its byte or its name; None is no address.
+
+    Raises:
+        UsageError: the edition has no such address.
+    """
+    known = addresses_of(table)
     for address in known:
         if isinstance(given, str):
             if given.upper() == address.name.upper():

@@ -38,6 +38,8 @@ class PinsOfPro630(MethodsOfPro630):
 
     def power_on(self, delay: float = 2) -> Any:
         """Switch the power on, wait some seconds, and power the arm."""
+        if not isinstance(delay, int | float) or not delay >= 0:
+            raise UsageError("delay", delay, "seconds, 0 or more")
         self.power_on_only()
         time.sleep(delay)
         return super().power_on()
