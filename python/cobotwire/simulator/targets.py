@@ -18,8 +18,8 @@ from cobotwire.simulator.state import ArmState
 
 # A straight line is solved at points that are at most this far apart.
 STEP_MILLIMETRES, STEP_DEGREES = 7.0, 3.0
-# A joint that would turn more than this between two such points cannot follow, in degrees. The elbow
-# of a straight arm of the 280 turns by 30 degrees in the first step towards the base.
+# A joint that would turn more than this between two such points cannot follow, in degrees. The
+# elbow of a straight arm of the 280 turns by 30 degrees in the first step towards the base.
 LARGEST_TURN = 35.0
 # One turn in steps of three degrees; in steps of seven millimetres, beyond any reach.
 JOG_STEPS = 121
