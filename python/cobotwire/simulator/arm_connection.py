@@ -153,9 +153,10 @@ class ArmConnection:
             if command.safety == "query":
                 self._arm.note(command, f"no reply: {why}")
                 return refusal(why)
-            # It is replied to or acknowledged, as everything that the arm rejects.
+            # It is acknowledged, as everything that the arm rejects; a text before that would keep
+            # the maker's library from reading the acknowledgement.
             self._arm.note(command, f"rejected: {why}")
-            return refusal(why) + self._encode_reply(command, given, None, address)
+            return self._encode_reply(command, given, None, address)
         return self._encode_reply(command, given, reply, address)
 
     def _encode_reply(
