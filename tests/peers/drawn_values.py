@@ -25,7 +25,7 @@ OFF_STEP = (0.29, 12.37, -0.5)
 # Registers and pins are small numbers, of which the library often allows some.
 SMALL = range(61)
 _LISTED = re.compile("address|data_id|pin")
-# A method has at most so many bases: calls in which one argument is replaced.
+# How many calls of a method are varied at most, by replacing one argument.
 MOST_BASES = 2
 _NUMBER = re.compile(r"-?\d+(?:\.\d+)?")
 # Names of checks that compare a number with the table of limits.

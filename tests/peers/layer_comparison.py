@@ -259,7 +259,7 @@ def sample(robot: Robot, which: int | str) -> Iterator[Call]:
 
 
 def chosen(robot: Robot, methods: list[str], which: int | str) -> list[str]:
-    """Return the method of a name, or of so many methods one: others for other classes."""
+    """Return one method by its name, or every n-th method; each class starts elsewhere."""
     if isinstance(which, str):
         return [which]
     return methods[len(robot.peer) % which :: which]

@@ -63,7 +63,7 @@ def _layer(robot: Robot) -> Any:
 
 
 def _sent(who: Any, call: Drawn) -> bytes | str:
-    """Return the first bytes of a call, or why there are none."""
+    """Return the first bytes that a call sends, or why it sends nothing."""
     theirs = not type(who).__module__.startswith("cobotwire")
     rejections = (AssertionError, *REJECTIONS, *raised()) if theirs else (UsageError,)
     try:

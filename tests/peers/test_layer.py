@@ -20,7 +20,7 @@ from pymycobot_ports import RecordingPort, RecordingTransport
 from robots.comparison import calls_of
 
 CLASSES = [name for name in ours.__all__ if name in ours._MODULES]
-# `make layer` compares all methods; here one of so many.
+# `make layer` compares all methods; here every n-th one.
 EVERY = {"calls": 12, "values": 45, "replies": 30}
 EVERY_BY_TCP = 40
 FAILURES = (REJECTED, FAILED)

@@ -7,7 +7,7 @@ import pytest
 from cobotwire.pymycobot.migrate.calls import library
 from migrated_calls import compare_migrated
 
-# One of so many methods; `make layer` compares all of them.
+# Every n-th method is compared here; `make layer` compares all of them.
 STRIDE = 5
 
 

@@ -73,5 +73,5 @@ def test_tables_that_evidence_quotes_are_those_of_the_library() -> None:
         assert ends == [int(lowest), int(highest)], (name, joint)
     for *names, last in joints:
         assert all(tables[n]["joint_id"] == [*range(1, int(last) + 1)] for n in names if n)
-    # Evidence for the Pro 400 says that there is none.
+    # The evidence for the Pro 400 says that the library has no table for it.
     assert "Pro400" not in tables

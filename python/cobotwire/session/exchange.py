@@ -95,7 +95,7 @@ class Exchange:
     def unsent(self, request: EncodedRequest, waited: float) -> ReplyTimeout:
         """Return the error of a one-way request that its caller's deadline keeps from being sent.
 
-        It waited so many seconds for the line to take bytes.
+        ``waited`` is for how many seconds the line took no bytes.
         """
         call = as_call(request, self._codec)
         return ReplyTimeout(request.command.name, waited, (), 0, call, "line")

@@ -94,7 +94,7 @@ class LibraryClass:
         return bool(getattr(self.layer, method).__module__.startswith(_LAYER))
 
     def default(self, parameter: str) -> object:
-        """Return the default of a parameter of the constructor; None if there is none."""
+        """Return the default of a parameter of the constructor; None without a default."""
         found = signature(self.layer).parameters[parameter].default
         return None if found is Parameter.empty else found
 

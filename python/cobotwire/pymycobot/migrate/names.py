@@ -103,7 +103,7 @@ class Names:
     def parameters(self, argument: cst.Arg) -> list[cst.Param]:
         """Return the parameters that take an argument, in each function that may be called.
 
-        Nothing is returned if the function is none of this program, or hides the argument.
+        The list is empty if the function is not defined in this program, or hides the argument.
         """
         call = self.keys.parents.get(argument)
         functions = self._called(call) if isinstance(call, cst.Call) and not argument.star else []
