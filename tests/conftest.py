@@ -5,12 +5,15 @@ from __future__ import annotations
 import gc
 import os
 import signal
+import tempfile
 from collections.abc import Iterator
+from contextlib import suppress
 
 import pytest
 from hypothesis import HealthCheck, settings
 
 from cobotwire import codec as codecs
+from cobotwire.client import port_memory, port_notes
 from cobotwire.codec.interface import Codec
 from cobotwire.editions.mycobot import TABLE, MyCobot
 from cobotwire.simulator import PtyServer, SimulatedArm
@@ -41,9 +44,18 @@ settings.register_profile(
 settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "quick"))
 
 
-def pytest_configure() -> None:
-    """Restore Ctrl-C in tests and their subprocesses; a background shell may have disabled it."""
+TEMPORARY = pytest.StashKey[tempfile.TemporaryDirectory[str]]()
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    """Restore Ctrl-C in tests and their subprocesses; give them temporary files of their own.
+
+    A background shell may have disabled Ctrl-C. The notes on ports are temporary files: a test in
+    another process may have left one on a TCP port that this process uses next.
+    """
     signal.signal(signal.SIGINT, signal.default_int_handler)
+    config.stash[TEMPORARY] = tempfile.TemporaryDirectory(prefix="cobotwire-tests-")
+    os.environ["TMPDIR"] = tempfile.tempdir = config.stash[TEMPORARY].name
 
 
 def pytest_collection_finish() -> None:
@@ -53,9 +65,22 @@ def pytest_collection_finish() -> None:
     gc.set_threshold(20_000, 20, 20)
 
 
-def pytest_unconfigure() -> None:
+def pytest_unconfigure(config: pytest.Config) -> None:
     """Let objects be freed when the interpreter ends; some libraries report those that are not."""
     gc.unfreeze()
+    config.stash[TEMPORARY].cleanup()
+
+
+@pytest.fixture(autouse=True)
+def _ports_without_notes() -> None:
+    """Forget the notes on ports: the system gives a TCP port again to a server of another test.
+
+    Such a note makes a client send what ends half a request, which that server never received.
+    """
+    port_memory._here.clear()
+    with suppress(FileNotFoundError):
+        for note in os.scandir(port_notes._folder(create=False)):
+            os.unlink(note.path)
 
 
 @pytest.fixture(params=["reference", "native"])
