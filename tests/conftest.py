@@ -54,7 +54,7 @@ def pytest_configure(config: pytest.Config) -> None:
     another process may have left one on a TCP port that this process uses next.
     """
     signal.signal(signal.SIGINT, signal.default_int_handler)
-    config.stash[TEMPORARY] = tempfile.TemporaryDirectory(prefix="cobotwire-tests-")
+    config.stash[TEMPORARY] = tempfile.TemporaryDirectory(prefix="cw-")
     os.environ["TMPDIR"] = tempfile.tempdir = config.stash[TEMPORARY].name
 
 

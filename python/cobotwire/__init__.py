@@ -102,7 +102,7 @@ if TYPE_CHECKING:
     )
     from cobotwire.protocol.joints import Joint
     from cobotwire.protocol.limits import Limits
-    from cobotwire.session.policy import RetryPolicy
+    from cobotwire.session.pending import RetryPolicy
     from cobotwire.session.sample import Sample, StreamReport
 else:
     # Each name is imported when it is first used. So a program that uses another edition, or only
@@ -143,7 +143,7 @@ else:
         "MyCobot280RDKX5": "editions.mycobot280_rdkx5",
         "MyCobot320": "editions.mycobot320",
         "MyPalletizer260": "editions.mypalletizer260",
-        "RetryPolicy": "session.policy",
+        "RetryPolicy": "session.pending",
         "Sample": "session.sample",
         "StreamReport": "session.sample",
         "TwoArms": "client.two_arms",

@@ -4,47 +4,33 @@ It reads a table's objects once, when a codec is made. ``rust/core`` decides wha
 ``cobotwire.protocol.rejection`` makes the sentences of the errors.
 """
 
-from asyncio import Future
 from collections.abc import Callable, Sequence
-from types import TracebackType
 from typing import Any, Literal, final
 
 from typing_extensions import Buffer
 
-from cobotwire.client.aio_lending import Slots
-from cobotwire.client.native_call import NativeCall
-from cobotwire.client.steps import Steps
 from cobotwire.codec.columns import Columns, Scan
 from cobotwire.codec.interface import (
     Counters,
     Data,
     DecodedMessage,
     Event,
-    Frame,
     Listening,
     Noise,
 )
 from cobotwire.diagnose.servo_bus import Vocabulary
 from cobotwire.diagnose.survey import Rest
 from cobotwire.protocol.table import Command, Direction, Table
-from cobotwire.session import Answer, EncodedRequest, RetryPolicy
-from cobotwire.session.alone import Alone
-from cobotwire.transport.interface import LendingTransport
 
 __all__ = [
     "AlarmClock",
-    "LineLock",
-    "LoneCalls",
     "Memory",
-    "MomentWriter",
     "NativeCaptureReader",
     "NativeCodec",
     "NativeColumnReader",
     "NativeFrame",
     "NativeFramer",
     "NativeSurvey",
-    "StreamLine",
-    "StreamSlot",
     "__version__",
     "read_within",
     "write_now",
@@ -163,29 +149,6 @@ class NativeFramer:
     def flush(self) -> list[Event]:
         """Refute what still waits, because the line is idle; return it and what follows it."""
 
-    def send(
-        self, descriptor: int, alarm: int, request: bytes, of: str, /
-    ) -> tuple[Frame, dict[str, Any]] | list[Event] | int | None:
-        """Send a request if nothing has come, and read what has come then; wait for nothing.
-
-        Returns:
-            As :meth:`read_reply`, but no events if nothing has come. How many bytes of the request
-            were taken, if these are not all. None if nothing was sent: the line is not free, takes
-            no bytes, or is gone, which its next use reports. ``alarm`` is not used.
-        """
-
-    def read_reply(
-        self, descriptor: int, alarm: int, request: bytes, of: str, /
-    ) -> tuple[Frame, dict[str, Any]] | list[Event] | None:
-        """Read what has come, without waiting, and feed it; the caller feeds nothing meanwhile.
-
-        Returns:
-            The reply and its fields by name, if all that came is one frame that the command ``of``
-            allows as its reply, and no copy of ``request``, which was sent earlier. Otherwise the
-            events. None if nothing has come, or the data has ended or cannot be read, which the
-            next read reports.
-        """
-
     @property
     def pending(self) -> int:
         """How many fed bytes no event covers yet; fewer than the longest frame has."""
@@ -218,177 +181,6 @@ class AlarmClock:
         Raises:
             OSError: the moment is beyond what the system can count.
         """
-
-@final
-class LoneCalls:
-    """Makes the blocking calls of one connection that are alone on its line."""
-
-    def __new__(
-        cls,
-        framer: NativeFramer,
-        transport: LendingTransport,
-        steps: Steps,
-        alone: Alone,
-        longest: float,
-        /,
-    ) -> LoneCalls:
-        """Take the framer of received bytes, the locks of ``steps``, and the state in ``alone``.
-
-        A call waits at most ``longest`` seconds itself.
-        """
-
-    def call(
-        self,
-        caller: NativeCall,
-        request: EncodedRequest,
-        policy: RetryPolicy,
-        wait: float | None,
-        at: float,
-        /,
-    ) -> Answer | None:
-        """Send a plain request, and return its answer: the whole call, if it is alone.
-
-        Other threads run from before the request is written until bytes have come.
-
-        Args:
-            caller: goes on if anything but the reply comes, or an exception does; writes the rest
-                of a request of which the system took only a part.
-            request: what to send.
-            policy: how often it may be sent.
-            wait: its deadline in seconds; None: that of its command.
-            at: when to send it, in seconds of ``time.monotonic()``; at once if that has passed.
-
-        Returns:
-            The answer, if all that came is one frame that the command allows as its reply, and no
-            copy of a request; otherwise what ``caller`` returns. None if nothing was sent, because
-            the request is not alone, or the line not free: bytes have come, a thread writes or has
-            written since the call, or the system takes no bytes; or because the alarm came first.
-        """
-
-@final
-class StreamLine:
-    """Sends requests of asyncio streams and takes their replies, in the thread of one loop.
-
-    It does so while the session is lent to it: nothing else is under way on the line.
-    """
-
-    def __new__(
-        cls, framer: NativeFramer, transport: Any, listeners: Any, steps: Any, /
-    ) -> StreamLine:
-        """Take the framer of received bytes, a transport that is lent, and its traffic listeners.
-
-        Methods of ``steps`` are called: ``lend_session``, to have the session; ``turn``, to take
-        what has come, and ``received``, with events that are not the reply; ``take_back``, if only
-        a part of a request was written; ``watch_until``, with when a wait ends.
-        """
-
-    def __call__(self, /, *args: Any, **kwargs: Any) -> None:
-        """Take what has come: the loop calls it when the line can be read."""
-
-    def give_back(
-        self,
-    ) -> tuple[tuple[bytes, int] | None, tuple[Slots, float, int, int] | None] | None:
-        """Use the session no longer.
-
-        Returns:
-            None if it was not lent. Otherwise the last request, and how many bytes had been
-            received before it, if one was sent; and if it has no reply yet, whose it is, when it
-            was sent, that number of bytes, and how many bytes of it were written.
-        """
-
-    def seconds_left(self) -> float | None:
-        """Return for how long a reply is still waited for; 0: that has passed; None: none is.
-
-        If seconds are left, the caller looks again then.
-        """
-
-    def withdraw(self) -> None:
-        """Withdraw what a thread is to write: the transport closes. Any thread may call it."""
-
-    def leave_to_parent(self) -> None:
-        """Let go of what a forked child has a copy of."""
-
-@final
-class MomentWriter:
-    """A thread that writes requests at their moments, without the interpreter's lock.
-
-    It ends with this object.
-    """
-
-    def __new__(cls) -> MomentWriter:
-        """Start it.
-
-        Raises:
-            OSError: the process has too many threads.
-        """
-
-@final
-class StreamSlot:
-    """Sends the requests of one stream, each at a moment at which it is called."""
-
-    def __new__(cls, line: StreamLine, slots: Slots, /) -> StreamSlot:
-        """Take the line, and what has the session send a request: its method ``send``."""
-
-    def __call__(self, /, *args: Any, **kwargs: Any) -> None:
-        """Send what was planned; if that is not possible now, have the session send it."""
-
-    def plan(
-        self, frame: bytes, command: str, wait: float, over: Future[Any], at: float, /
-    ) -> bool:
-        """Plan what the next call sends: a plain request.
-
-        Args:
-            frame: its bytes.
-            command: the name of its command.
-            wait: for how many seconds its reply is waited for.
-            over: gets the answer as its result.
-            at: when the call will come, in seconds of ``time.monotonic()``; inf: at once.
-
-        Returns:
-            Whether the loop has been late lately, so that a thread should send it.
-        """
-
-    def hand_over(self, writer: MomentWriter, /) -> None:
-        """Have a thread send what was planned, unless something happens on the line before.
-
-        The call at the moment is needed all the same.
-        """
-
-    def forget(self) -> None:
-        """Forget what was planned: the next call has the session send it."""
-
-@final
-class LineLock:
-    """The lock that is held while a thread writes to a line; used like a ``threading.Lock``.
-
-    A native call can take it while other threads run, and notices whether it was taken meanwhile.
-    """
-
-    def __new__(cls) -> LineLock: ...
-    def acquire(self, blocking: bool = True) -> bool:
-        """Take it, as soon as it is free; return False if it is not, and ``blocking`` is False."""
-
-    def release(self) -> None:
-        """Free it.
-
-        Raises:
-            RuntimeError: it is free.
-        """
-
-    def locked(self) -> bool:
-        """Whether it is held."""
-
-    def __enter__(self) -> bool: ...
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        traceback: TracebackType | None,
-        /,
-    ) -> None: ...
-    @property
-    def taken(self) -> int:
-        """How often it was taken."""
 
 @final
 class NativeFrame:

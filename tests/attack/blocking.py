@@ -13,7 +13,7 @@ from types import FrameType
 from typing import Any
 
 from attack.calls import Drawn
-from attack.record import observe_native_calls, open_observed
+from attack.record import open_observed
 from attack.setting import Setting
 from cobotwire import CobotwireError, LinkError
 
@@ -63,7 +63,6 @@ class Shared:
         small = setting.plan.profile.stalls
         self._transport = open_observed(setting.url, setting.baudrate, setting.record, small=small)
         self.client = setting.client(self._transport, **setting.options)
-        observe_native_calls(setting.record, self.client)
 
 
 class Interrupts:

@@ -11,7 +11,7 @@ from attack.line import Delivered
 from attack.record import Call, Record
 from cobotwire.codec.interface import Codec
 from cobotwire.protocol.errors import ProtocolError
-from cobotwire.session.policy import GRACE_SECONDS
+from cobotwire.session.pending import GRACE_SECONDS
 
 # The limits, by the names that the table's page explains.
 DAMAGE = "damage"

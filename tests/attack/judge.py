@@ -14,7 +14,7 @@ from attack.setting import Setting
 from attack.tally import Tally
 from cobotwire.codec.interface import Codec
 from cobotwire.protocol.errors import ProtocolError
-from cobotwire.session.turns import DRAIN_SECONDS
+from cobotwire.session.exchange import DRAIN_SECONDS
 from cobotwire.transport.descriptor import WRITE_SECONDS
 
 # How much later than its deadline a call may end.

@@ -6,9 +6,6 @@ import itertools
 import socket
 import threading
 import time
-from bisect import insort
-from collections.abc import Callable
-from functools import partial
 from typing import Any, Literal, NamedTuple
 
 from cobotwire.transport import OpenedTransport, open_transport
@@ -96,8 +93,7 @@ class Record:
 def open_observed(url: str, baudrate: int, record: Record, *, small: bool) -> OpenedTransport:
     """Open a real transport whose writes are recorded as they are handed to the system.
 
-    ``small``: give a socket the smallest buffer, so that a peer that reads nothing stalls it; and
-    let native calls send nothing, because the line must not be filled between parts of a request.
+    ``small``: give a socket the smallest buffer, so that a peer that reads nothing stalls it.
     """
     transport = open_transport(url, baudrate)
     assert isinstance(transport, DescriptorTransport), "ports and sockets are"
@@ -120,84 +116,9 @@ def open_observed(url: str, baudrate: int, record: Record, *, small: bool) -> Op
     own = vars(transport)
     own["_write_now"] = observed
     if small:
-        own["lend"] = lambda: None
-    own["lend_now"] = partial(_send_observed, record, not small, transport.lend_now)
-    if small:
         own["_connect"] = connected
         _shrink(transport, transport.fileno() or -1)
     return transport
-
-
-def observe_native_calls(record: Record, client: Any) -> None:
-    """Record the requests that a blocking client sends in native calls.
-
-    The instance is patched: its native module uses these methods.
-    """
-    native = client._connection._native
-    if native is None:
-        return
-    lock, lone, finish_write = (
-        client._connection._steps.writer.lock,
-        native.lone,
-        native.finish_write,
-    )
-    # The threads whose request was not taken at once.
-    parts: set[int] = set()
-
-    def observed_finish(data: bytes, written: int) -> object:
-        # The rest is sent as any other bytes are.
-        parts.add(threading.get_ident())
-        record.bytes_taken += written
-        return finish_write(data, written)
-
-    def observed(caller: Any, request: Any, *arguments: Any) -> Any:
-        me, before = threading.get_ident(), lock.taken
-        parts.discard(me)
-        handed = (time.monotonic(), request.frame)
-        record.handed.append(handed)
-        sent = False
-        try:
-            answer = lone(caller, request, *arguments)
-            sent = answer is not None
-            return answer
-        except BaseException:
-            sent = lock.taken != before
-            raise
-        finally:
-            if not sent:
-                record.handed.remove(handed)
-            elif me not in parts:
-                record.bytes_taken += len(request.frame)
-                # Other threads may have written while this one waited.
-                insort(record.taken, handed)
-
-    native.lone, native.finish_write = observed, observed_finish
-
-
-def _send_observed(
-    record: Record,
-    may_send: bool,
-    lend_now: Callable[..., Any],
-    call: Callable[..., Any],
-    *arguments: Any,
-) -> Any:
-    """Lend the descriptor; record the request if the native call sends one."""
-    if call.__name__ != "send":
-        return lend_now(call, *arguments)
-    if not may_send:
-        return None  # not sent: the client sends it in steps
-    request, _ = arguments
-    handed = (time.monotonic(), request)
-    found = lend_now(call, *arguments)
-    if found is not None:
-        record.handed.append(handed)
-        if isinstance(found, int):
-            # The rest is sent as any other bytes are.
-            record.bytes_taken += found
-        else:
-            record.bytes_taken += len(request)
-            record.taken.append(handed)
-    return found
 
 
 def _shrink(transport: OpenedTransport, descriptor: int) -> None:

@@ -14,7 +14,7 @@ from attack.profiles import PROFILES
 from attack.running import attack
 from attack.tally import FORBIDDEN, Tally
 from cobotwire.client import port_notes
-from cobotwire.session import turns
+from cobotwire.session.outstanding import OutstandingReplies
 from cobotwire.simulator.faults import Corrupted
 
 
@@ -65,7 +65,7 @@ def test_value_of_another_request_is_silently_wrong() -> None:
 def test_late_reply_that_is_not_waited_for_is_silently_wrong(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr(turns.Turns, "free_at", lambda self, pending, now: now)
+    monkeypatch.setattr(OutstandingReplies, "held_until", lambda self, request: None)
     tally = attack(chosen("late", users=3, timeout=0.08, attempts=1, seconds=1.5))
     assert "wrong" in counts(tally)
 

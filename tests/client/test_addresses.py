@@ -19,6 +19,7 @@ from cobotwire.protocol.addresses import find_address
 from cobotwire.session import AckReceived, Exchange, LateReply, ReplyMatched, RetryPolicy
 from cobotwire.session.request import RequestEncoder
 from cobotwire.simulator import MemoryTransport, PtyServer, SimulatedArm, SteppedClock
+from session.one_caller import submit
 from trial_specs import HEAD, edition_of, package_of
 
 DUO = f"""
@@ -215,7 +216,7 @@ def test_reply_belongs_to_a_request_only_if_its_address_does(duo: Any, talk: Any
     exchange, policy, now = Exchange(codec), RetryPolicy(attempts=1), 0.0
     for target, repliers in talk:
         request = RequestEncoder(codec, find_address(duo.TABLE, target)).encode("get_angles", [])
-        pending = exchange.submit(request, now, policy)
+        pending = submit(exchange, request, now, policy)
         # Beyond every late reply.
         now += 5.0
         assert exchange.outgoing(now, drained=True) == request.frame

@@ -12,7 +12,7 @@ import cobotwire
 from cobotwire.editions.mycobot280 import MyCobot280
 
 PACKAGE = str(Path(cobotwire.__file__).parent)
-MOST_FILES = 12
+MOST_FILES = 17
 # Runs in a separate process, so that its code is not counted.
 SIMULATOR = """
 import sys
@@ -24,7 +24,7 @@ with PtyServer(SimulatedArm(TABLE)) as server:
 """
 
 
-def test_get_angles_runs_code_of_at_most_12_files() -> None:
+def test_get_angles_runs_code_of_at_most_17_files() -> None:
     files: set[str] = set()
 
     def note(frame: FrameType, event: str, argument: Any) -> None:

@@ -27,6 +27,7 @@ from cobotwire.session.request import RequestEncoder
 from cobotwire.simulator import PtyServer, SimulatedArm, TcpServer
 from cobotwire.simulator.faults import Echo, Fault, Late, Scenario
 from scripted_peer import ScriptedPeer
+from session.one_caller import submit
 from slow_arm import SlowArm
 from stalls import unstalled
 from stuck_pty import ANGLES, MOTION, STOP, StuckPty
@@ -142,18 +143,18 @@ def test_no_call_takes_longer_than_the_deadline_and_errors_say_truly_what_was_se
 
 def test_error_says_what_the_call_waited_for() -> None:
     exchange, encode = Exchange(CODEC), RequestEncoder(CODEC).encode
-    first = exchange.submit(encode("get_encoder", (1,)), 0.0, ONCE, 0.2, 0.5)
+    first = submit(exchange, encode("get_encoder", (1,)), 0.0, ONCE, 0.2, 0.5)
     assert exchange.outgoing(0.0, drained=True)
-    turn = exchange.submit(encode("get_angles", ()), 0.0, ONCE, 0.2, 0.1)
+    turn = submit(exchange, encode("get_angles", ()), 0.0, ONCE, 0.2, 0.1)
     exchange.wake(0.1)
     exchange.wake(0.2)
-    hold = exchange.submit(encode("get_encoder", (2,)), 0.3, ONCE, 0.2, 0.8)
-    reply = exchange.submit(encode("is_power_on", ()), 0.7, ONCE, 0.2, 0.8)
+    hold = submit(exchange, encode("get_encoder", (2,)), 0.3, ONCE, 0.2, 0.8)
+    reply = submit(exchange, encode("is_power_on", ()), 0.7, ONCE, 0.2, 0.8)
     assert exchange.outgoing(0.7, drained=True)
     exchange.advance(b"", 0.8)
-    late = exchange.submit(encode("get_angles", ()), 0.8, ONCE, 0.2, 0.8)
+    late = submit(exchange, encode("get_angles", ()), 0.8, ONCE, 0.2, 0.8)
     assert not exchange.outgoing(0.8, drained=True), "its caller no longer waits"
-    exchange.submit(encode("is_power_on", ()), 0.8, ONCE, 0.2, 1.0)
+    submit(exchange, encode("is_power_on", ()), 0.8, ONCE, 0.2, 1.0)
     assert not exchange.outgoing(0.8, drained=True), "a late reply could pass for its own"
     exchange.note_full(True)
     exchange.advance(b"", 0.9)

@@ -23,7 +23,7 @@ from cobotwire.editions.mycobot import AsyncMyCobot
 from cobotwire.editions.mycobot280 import MyCobot280
 from cobotwire.session import Exchange
 from cobotwire.session.alignment import Part
-from cobotwire.session.leftover import LateFrame, Leftover
+from cobotwire.session.outstanding import LateFrame, PersistedState
 from cobotwire.session.request import RequestEncoder
 from cobotwire.transport import open_transport
 from command_line import run_program
@@ -128,7 +128,7 @@ def memory(monkeypatch: pytest.MonkeyPatch) -> Iterator[PortMemory]:
 
 def test_note_is_read_once(memory: PortMemory, folder: Path) -> None:
     until = time.monotonic() + 5
-    note = Leftover((LateFrame(GET_ENCODER, until),), (Part(MOTION, 8),))
+    note = PersistedState((LateFrame(GET_ENCODER, until),), (Part(MOTION, 8),))
     memory.leave(note)
     port_memory._here.clear()
     assert memory.recall() == note
@@ -138,7 +138,7 @@ def test_note_is_read_once(memory: PortMemory, folder: Path) -> None:
 
 @pytest.mark.parametrize("until", [-1.0, 1e9, float("nan"), float("inf")])
 def test_note_of_another_time_expects_no_reply(memory: PortMemory, until: float) -> None:
-    memory.leave(Leftover((LateFrame(GET_ENCODER, time.monotonic() + until),)))
+    memory.leave(PersistedState((LateFrame(GET_ENCODER, time.monotonic() + until),)))
     port_memory._here.clear()
     assert memory.recall().empty
 
@@ -152,7 +152,7 @@ def test_note_of_another_boot_expects_no_reply(
     monkeypatch.setattr(port_notes, "BOOT_ID", str(this_boot))
     # The clock of this boot shows more than that of the other one did.
     _damage(memory, folder, boot=boot)
-    assert memory.recall() == Leftover((), (Part(MOTION, 8),)), "the arm may hold the part"
+    assert memory.recall() == PersistedState((), (Part(MOTION, 8),)), "the arm may hold the part"
 
 
 @pytest.mark.parametrize("passed", [0.0, 5.0, 20.0])
@@ -177,7 +177,7 @@ def test_clock_that_shows_less_than_the_note_is_of_another_boot(
 def _damage(memory: PortMemory, folder: Path, **values: object) -> None:
     """Leave a note with these values in the place of its own."""
     until = time.monotonic() + 10
-    memory.leave(Leftover((LateFrame(GET_ENCODER, until),), (Part(MOTION, 8),)))
+    memory.leave(PersistedState((LateFrame(GET_ENCODER, until),), (Part(MOTION, 8),)))
     port_memory._here.clear()
     [path] = folder.iterdir()
     path.write_text(json.dumps(json.loads(path.read_text()) | values))
@@ -222,7 +222,9 @@ def test_whatever_a_note_holds_a_port_is_opened_and_holds_no_request_for_longer_
     content: bytes | dict[str, Any],
 ) -> None:
     caplog.clear()
-    memory.leave(Leftover((LateFrame(GET_ENCODER, time.monotonic() + 5),), (Part(MOTION, 8),)))
+    memory.leave(
+        PersistedState((LateFrame(GET_ENCODER, time.monotonic() + 5),), (Part(MOTION, 8),))
+    )
     port_memory._here.clear()
     [path] = folder.iterdir()
     if isinstance(content, bytes):
@@ -235,15 +237,15 @@ def test_whatever_a_note_holds_a_port_is_opened_and_holds_no_request_for_longer_
     assert bool(caplog.records) or isinstance(content, dict), "bytes are no note"
     assert not list(folder.iterdir())
     exchange = Exchange(CODEC)
-    exchange.take_over(found)
-    assert exchange.leave(0.0).parts == found.parts
+    exchange.restore(found)
+    assert exchange.persist(0.0).parts == found.parts
 
 
 def test_note_of_a_session_that_lost_its_port_is_read(memory: PortMemory, folder: Path) -> None:
     exchange = Exchange(CODEC)
     exchange.send_one_way(RequestEncoder(CODEC).encode("send_angles", [ANGLES, 50]), 0.0)
     exchange.fail(LinkError("/dev/arm", "it is gone"), 0.0)
-    left = exchange.leave(0.0)
+    left = exchange.persist(0.0)
     memory.leave(left)
     port_memory._here.clear()
     assert set(memory.recall().parts) == set(left.parts) != set()
@@ -257,7 +259,7 @@ def test_what_is_in_the_place_of_a_note_is_not_read(
     monkeypatch: pytest.MonkeyPatch,
     kind: str,
 ) -> None:
-    memory.leave(Leftover((), (Part(MOTION, 8),)))
+    memory.leave(PersistedState((), (Part(MOTION, 8),)))
     port_memory._here.clear()
     [path] = folder.iterdir()
     note = path.rename(folder.parent / "note")
@@ -296,13 +298,13 @@ def test_client_opens_a_port_whose_note_is_a_pipe(memory: PortMemory, folder: Pa
 def test_folder_that_others_can_write_is_not_used(memory: PortMemory, folder: Path) -> None:
     folder.mkdir()
     folder.chmod(0o777)
-    memory.leave(Leftover((), (Part(MOTION, 8),)))
+    memory.leave(PersistedState((), (Part(MOTION, 8),)))
     assert not list(folder.iterdir())
     assert memory.recall().parts, "this process remembers"
 
 
 def test_folder_is_in_the_temporary_folder(folder: Path, memory: PortMemory) -> None:
-    memory.leave(Leftover((), (Part(MOTION, 8),)))
+    memory.leave(PersistedState((), (Part(MOTION, 8),)))
     assert folder.parent == Path(os.environ["TMPDIR"])
     assert folder.stat().st_mode & 0o777 == 0o700
 
@@ -312,5 +314,5 @@ def test_link_that_is_no_folder_is_not_followed(
 ) -> None:
     (tmp_path / "elsewhere").mkdir()
     folder.symlink_to(tmp_path / "elsewhere")
-    memory.leave(Leftover((), (Part(MOTION, 8),)))
+    memory.leave(PersistedState((), (Part(MOTION, 8),)))
     assert not list((tmp_path / "elsewhere").iterdir())

@@ -1,66 +1,185 @@
-"""When a stream begins the call of a slot."""
+"""Slots of asyncio streams that are closed, cancelled, or share the arm."""
 
 from __future__ import annotations
 
 import asyncio
+import os
+import time
+from collections.abc import Awaitable, Callable
+from typing import Any
 
 import pytest
 
-from cobotwire import AsyncMyCobot
-from cobotwire.client.slots import EARLIEST_SECONDS, Slots
-from cobotwire.codec import load
-from cobotwire.editions.mycobot import TABLE, GetAngles
-from cobotwire.session import Answer, EncodedRequest, RetryPolicy
-from cobotwire.session.request import RequestEncoder
-from cobotwire.session.sampling import Poll
+from cobotwire import AsyncMyCobot, LinkError, RetryPolicy
+from cobotwire.client.aio_streaming import AsyncStream
+from cobotwire.editions.mycobot import GetAngles, IsPowerOn
 from scripted_peer import ScriptedPeer
 
 REQUEST = bytes.fromhex("FE FE 02 20 FA")
-REPLY = bytes.fromhex("FE FE 0E 20 00 8C 00 3D FF E6 FF 3F 00 AF FF 51 FA")
-FIELDS = {"angles": (0.0,) * 6}
+ANGLES = bytes.fromhex("FE FE 0E 20 00 8C 00 3D FF E6 FF 3F 00 AF FF 51 FA")
+OTHERS = bytes.fromhex("FE FE 0E 20 01 8C 00 3D FF E6 FF 3F 00 AF FF 51 FA")
+ASK_POWER = bytes.fromhex("FE FE 02 12 FA")
+POWER = bytes.fromhex("FE FE 03 12 01 FA")
+NO_GRACE = RetryPolicy(attempts=1, grace=0.0)
+# Far longer than a test takes.
+LONG = RetryPolicy(attempts=1, grace=60.0)
+# A reply that comes so late leaves time to act before it.
+SLOW = 0.2
+# A test that takes longer hangs, in seconds.
+LONGEST = 15
 
 
-class HeldUp:
-    """A connection in simulated time, whose thread gets each turn ``turn`` seconds late."""
+def run(peer: Any, drive: Callable[[AsyncMyCobot], Awaitable[Any]], **options: Any) -> Any:
+    """Return what ``drive`` returns for an arm at the peer, and the requests of the peer."""
 
-    def __init__(self, turn: float) -> None:
-        self.time, self.turn = 0.0, turn
-        self.begun: list[float] = []
+    async def main() -> Any:
+        async with AsyncMyCobot(peer.url, **options) as arm, asyncio.timeout(LONGEST):
+            return await drive(arm)
 
-    def now(self) -> float:
-        return self.time
-
-    def sleep(self, seconds: float) -> None:
-        self.time += seconds + self.turn
-
-    def answer(
-        self, request: EncodedRequest, policy: RetryPolicy, wait: float | None, at: float
-    ) -> Answer:
-        self.begun.append(at - self.time)
-        requested_at = max(self.time, at)
-        self.time = requested_at + 0.0001 + self.turn
-        return FIELDS, requested_at, requested_at + 0.0001
+    with peer:
+        result = asyncio.run(main())
+    return result, peer.received
 
 
-@pytest.mark.parametrize("turn", [0.0, 0.005])
-def test_stream_begins_calls_early_only_beside_a_busy_thread(turn: float) -> None:
-    request = GetAngles()
-    encoded = RequestEncoder(load(TABLE)).encode_request(request)
-    line = HeldUp(turn)
-    slots = Slots(line.now, line.sleep, line.answer, lambda: False)
-    off = []
-    for slot in range(1, 6):
-        reading = slots.reading(Poll(request, encoded, RetryPolicy(), None), slot * 0.1)
-        assert reading is not None
-        off.append(reading.requested_at - slot * 0.1)
-    if turn:
-        # The first one shows that turns are late; the others are sent at their moments.
-        assert off[0] == pytest.approx(turn)
-        assert off[1:] == pytest.approx([0.0] * 4)
-        assert all(0 < early <= EARLIEST_SECONDS for early in line.begun[1:])
-    else:
-        assert off == pytest.approx([0.0] * 5)
-        assert line.begun == pytest.approx([0.0] * 5)
+async def begun(stream: AsyncStream, peer: Any) -> asyncio.Task[Any]:
+    """Return the task that waits for the next sample, after its request has come to the peer."""
+    known = len(peer.received)
+    task = asyncio.create_task(anext(stream))
+    while len(peer.received) == known:
+        await asyncio.sleep(0.002)
+    return task
+
+
+def test_call_of_another_task_waits_for_the_reply_that_is_under_way() -> None:
+    peer = ScriptedPeer([SLOW, ANGLES], [POWER])
+
+    async def drive(arm: AsyncMyCobot) -> Any:
+        task = await begun(arm.stream(GetAngles(), rate=10), peer)
+        powered = await arm.is_power_on()
+        return (await task).values[0][0], powered
+
+    assert run(peer, drive, timeout=20) == ((1.4, True), REQUEST + ASK_POWER)
+
+
+def test_stream_and_calls_on_one_arm_share_it() -> None:
+    # Calls and slots take turns; each gets the reply to its own request.
+    async def drive(arm: AsyncMyCobot) -> Any:
+        stream, other = arm.stream(GetAngles(), rate=100), arm.stream(IsPowerOn(), rate=100)
+        values: list[Any] = []
+        for _ in range(10):
+            values += [*(await anext(stream)).values, *(await anext(other)).values]
+            values.append(await arm.is_power_on())
+        return values
+
+    angles = (1.4, 0.61, -0.26, -1.93, 1.75, -1.75)
+    peer = ScriptedPeer(*[[ANGLES], [POWER], [POWER]] * 10)
+    values, received = run(peer, drive, timeout=20)
+    assert values == [angles, True, True] * 10
+    assert received == (REQUEST + ASK_POWER + ASK_POWER) * 10
+
+
+def test_second_stream_waits_for_the_reply_that_is_under_way() -> None:
+    peer = ScriptedPeer([SLOW, ANGLES], [POWER])
+
+    async def drive(arm: AsyncMyCobot) -> Any:
+        task = await begun(arm.stream(GetAngles(), rate=10), peer)
+        other = await anext(arm.stream(IsPowerOn(), rate=10))
+        return (await task).values[0][0], other.values
+
+    assert run(peer, drive, timeout=20) == ((1.4, (True,)), REQUEST + ASK_POWER)
+
+
+def test_late_reply_to_a_cancelled_slot_is_not_taken_by_the_next_call() -> None:
+    peer = ScriptedPeer([SLOW, ANGLES], [OTHERS])
+
+    async def drive(arm: AsyncMyCobot) -> Any:
+        task = await begun(arm.stream(GetAngles(), rate=10), peer)
+        task.cancel()
+        with pytest.raises(asyncio.CancelledError):
+            await task
+        return (await arm.get_angles())[0]
+
+    retry = RetryPolicy(attempts=1, grace=2 * SLOW)
+    assert run(peer, drive, timeout=20, retry=retry) == (3.96, REQUEST * 2)
+
+
+def test_silence_after_a_cancelled_slot_holds_the_next_call_for_the_grace_time_only() -> None:
+    peer = ScriptedPeer([], [ANGLES])
+
+    async def drive(arm: AsyncMyCobot) -> Any:
+        task = await begun(arm.stream(GetAngles(), rate=10), peer)
+        task.cancel()
+        with pytest.raises(asyncio.CancelledError):
+            await task
+        return (await arm.get_angles())[0]
+
+    retry = RetryPolicy(attempts=1, grace=SLOW)
+    assert run(peer, drive, timeout=2 * LONGEST, retry=retry) == (1.4, REQUEST * 2)
+
+
+def test_slot_that_is_cancelled_before_its_moment_sends_nothing() -> None:
+    async def drive(arm: AsyncMyCobot) -> Any:
+        stream = arm.stream(GetAngles(), rate=25)
+        await anext(stream)
+        task = asyncio.create_task(anext(stream))
+        await asyncio.sleep(0)
+        task.cancel()
+        await asyncio.sleep(0.1)
+        # The stream goes on.
+        return task.cancelled(), (await anext(stream)).number
+
+    assert run(ScriptedPeer(*[[ANGLES]] * 3), drive) == ((True, 1), REQUEST * 2)
+
+
+def test_request_that_is_under_way_is_left_to_the_next_session() -> None:
+    peer = ScriptedPeer()
+
+    async def drive(arm: AsyncMyCobot) -> Any:
+        task = await begun(arm.stream(GetAngles(), rate=10), peer)
+        left = arm._connection._exchange.persist(time.monotonic())
+        await arm.close()
+        with pytest.raises(LinkError):
+            await task
+        return [late.request for late in left.late]
+
+    assert run(peer, drive, timeout=20, retry=LONG) == ([REQUEST], REQUEST)
+
+
+def test_silent_arm_costs_each_slot_its_deadline_and_no_more() -> None:
+    async def drive(arm: AsyncMyCobot) -> Any:
+        stream = arm.stream(GetAngles(), rate=20)
+        samples = [await anext(stream) for _ in range(3)]
+        return [sample.number for sample in samples], stream.report.unanswered
+
+    peer = ScriptedPeer([ANGLES], [], [], [ANGLES], [], [ANGLES])
+    result = run(peer, drive, timeout=0.3, retry=NO_GRACE)
+    assert result == (([0, 1, 2], 3), REQUEST * 6)
+
+
+def test_unplugged_port_ends_the_slot_that_waits() -> None:
+    async def drive(arm: AsyncMyCobot) -> None:
+        with pytest.raises(LinkError):
+            await anext(arm.stream(GetAngles(), rate=20))
+
+    run(ScriptedPeer([0.02, None]), drive, timeout=20)
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="this system has no fork")
+def test_forked_child_neither_reads_nor_writes_the_line_of_a_stream() -> None:
+    peer = ScriptedPeer([SLOW, ANGLES])
+
+    async def drive(arm: AsyncMyCobot) -> Any:
+        task = await begun(arm.stream(GetAngles(), rate=10), peer)
+        child = os.fork()
+        if not child:
+            steps = arm._connection._steps
+            assert steps is not None
+            steps.turn()
+            os._exit(steps.lost is None)
+        _, status = await asyncio.to_thread(os.waitpid, child, 0)
+        return status, (await task).values[0][0]
+
+    assert run(peer, drive, timeout=20) == ((0, 1.4), REQUEST)
 
 
 def test_asyncio_stream_that_is_closed_before_its_slot_sends_nothing() -> None:
@@ -70,7 +189,7 @@ def test_asyncio_stream_that_is_closed_before_its_slot_sends_nothing() -> None:
             asyncio.get_running_loop().call_later(0.1, stream.close)
             return len([sample async for sample in stream])
 
-    with ScriptedPeer([REPLY]) as peer:
+    with ScriptedPeer([ANGLES]) as peer:
         assert asyncio.run(drive(peer.url)) == 1
         assert peer.received == REQUEST
 
@@ -86,6 +205,6 @@ def test_asyncio_stream_that_is_closed_just_before_its_slot_sends_nothing() -> N
                 asyncio.get_running_loop().call_soon(stream.close)
             return count
 
-    with ScriptedPeer([REPLY]) as peer:
+    with ScriptedPeer([ANGLES]) as peer:
         assert asyncio.run(drive(peer.url)) == 1
         assert peer.received == REQUEST

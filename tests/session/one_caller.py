@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from math import inf
 from typing import Any
 
 from cobotwire.codec.interface import Codec
@@ -15,6 +16,20 @@ from cobotwire.session import (
 from cobotwire.session.request import RequestEncoder
 
 ONCE = RetryPolicy(attempts=1)
+
+
+def submit(
+    exchange: Exchange,
+    request: EncodedRequest,
+    now: float,
+    policy: RetryPolicy,
+    wait: float | None = None,
+    ends_by: float = inf,
+) -> PendingRequest:
+    """Queue a request; the arm has ``wait`` seconds to reply, None: those of the edition."""
+    pending = PendingRequest(request, wait, policy, now, ends_by)
+    exchange.enqueue(pending)
+    return pending
 
 
 class OneCaller:
@@ -37,7 +52,7 @@ class OneCaller:
         request = self.encode(name, values)
         if not request.command.requires_reply:
             return self.exchange.send_one_way(request, now)[0]
-        self.pending = self.exchange.submit(request, now, ONCE, timeout)
+        self.pending = submit(self.exchange, request, now, ONCE, timeout)
         return self.exchange.outgoing(now, drained=True)
 
     @property
@@ -57,7 +72,7 @@ class OneCaller:
 
     def free_at(self, name: str, *values: Any, now: float) -> float:
         """Return the time at which a request submitted now could be sent; send nothing."""
-        probe = self.exchange.submit(self.encode(name, values), now, ONCE)
+        probe = submit(self.exchange, self.encode(name, values), now, ONCE)
         seconds = self.exchange.idle_seconds(now)
         self.exchange.give_up(probe)
         assert seconds is not None, "a queued request has a time at which it can be sent"

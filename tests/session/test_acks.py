@@ -12,7 +12,7 @@ from cobotwire.codec.interface import Codec
 from cobotwire.editions.mycobot280 import TABLE
 from cobotwire.session import Exchange, PendingAck
 from cobotwire.session.acks import MOTION_SECONDS
-from cobotwire.session.policy import GRACE_SECONDS
+from cobotwire.session.pending import GRACE_SECONDS
 from cobotwire.session.request import RequestEncoder
 
 SETTING = ("set_color", (1, 2, 3))

@@ -109,7 +109,7 @@ def test_lost_transport_is_aligned_whatever_part_of_the_longest_request_got_thro
         codec.encode("stop", "request", []),
     )
     alignment = Alignment(codec)
-    alignment.last_request = last
+    alignment.sent(last)
     alignment.lose()
     written = alignment.align + stop
     for request in (longest, last):

@@ -41,7 +41,9 @@ def encode_280(name: str, values: tuple[int, ...]) -> EncodedRequest:
 
 def submit(exchange: Exchange, name: str, *values: int, now: float = 0.0) -> PendingRequest:
     """Submit a request that both editions have."""
-    return exchange.submit(encode(name, values), now, THREE)
+    pending = PendingRequest(encode(name, values), None, THREE, now)
+    exchange.enqueue(pending)
+    return pending
 
 
 def test_requests_take_turns_in_the_order_of_submission(exchange: Exchange) -> None:
@@ -158,7 +160,8 @@ def test_outstanding_reply_of_a_repeated_request_holds_the_next_one(
 
 def test_grace_of_the_policy_ends_the_hold(exchange: Exchange) -> None:
     for attempt in range(2):
-        exchange.submit(encode("get_angles", ()), 0.0, RetryPolicy(attempts=2, grace=0.1), 0.4)
+        policy = RetryPolicy(attempts=2, grace=0.1)
+        exchange.enqueue(PendingRequest(encode("get_angles", ()), 0.4, policy, 0.0))
         assert attempt or exchange.outgoing(0.0, drained=True)
     exchange.outgoing(0.2, drained=True)
     exchange.receive(ANGLES, 0.21)

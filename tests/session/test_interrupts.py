@@ -14,6 +14,7 @@ from cobotwire.codec.interface import Codec
 from cobotwire.editions.mycobot280 import TABLE
 from cobotwire.session import Exchange, PendingRequest, RetryPolicy
 from cobotwire.session.request import RequestEncoder
+from session.one_caller import submit
 
 POLICY = RetryPolicy(attempts=2, grace=0.5)
 WAIT = 0.3
@@ -64,11 +65,11 @@ def scenario(
     exchange: Exchange, encoder: RequestEncoder, step: str
 ) -> tuple[Callable[[], object], list[PendingRequest]]:
     """Prepare an exchange for a step; return the step, and the requests that must end."""
-    one = exchange.submit(encoder.encode("get_encoder", (1,)), 0.0, POLICY, WAIT)
+    one = submit(exchange, encoder.encode("get_encoder", (1,)), 0.0, POLICY, WAIT)
     if step == "first sending":
         return lambda: exchange.outgoing(0.0, drained=True), [one]
     exchange.outgoing(0.0, drained=True)
-    two = exchange.submit(encoder.encode("get_encoder", (2,)), 0.0, POLICY, WAIT)
+    two = submit(exchange, encoder.encode("get_encoder", (2,)), 0.0, POLICY, WAIT)
     steps: dict[str, Callable[[], object]] = {
         "second sending": lambda: exchange.outgoing(0.2, drained=True),
         "reply": lambda: exchange.receive(ENCODERS[1], 0.1),
@@ -103,7 +104,7 @@ def test_interrupt_at_any_point_of_a_step_leaves_the_exchange_usable(
             exchange.wake(now)
             exchange.outgoing(now, drained=True)
             assert now < 9, f"a request does not end after point {number}"
-        own = exchange.submit(encoder.encode("get_encoder", (3,)), now, POLICY, WAIT)
+        own = submit(exchange, encoder.encode("get_encoder", (3,)), now, POLICY, WAIT)
         while not exchange.outgoing(now, drained=True):
             idle = exchange.idle_seconds(now)
             assert idle is not None

@@ -12,7 +12,7 @@ from hypothesis.stateful import RuleBasedStateMachine, initialize, invariant, pr
 from cobotwire import codec as codecs
 from cobotwire.editions.mycobot import TABLE
 from cobotwire.session import ReplyMatched, SessionEvent
-from cobotwire.session.policy import GRACE_SECONDS
+from cobotwire.session.pending import GRACE_SECONDS
 from session.one_caller import OneCaller
 from session.transit import Reply, arrive, bytes_until
 

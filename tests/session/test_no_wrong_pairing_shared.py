@@ -22,8 +22,9 @@ from cobotwire import ReplyTimeout
 from cobotwire import codec as codecs
 from cobotwire.editions.mycobot280 import TABLE
 from cobotwire.session import Exchange, Pending, PendingAck, PendingRequest, RetryPolicy
-from cobotwire.session.policy import GRACE_SECONDS
+from cobotwire.session.pending import GRACE_SECONDS
 from cobotwire.session.request import RequestEncoder
+from session.one_caller import submit
 from session.transit import Reply, arrive, bytes_until
 
 REFERENCE = codecs.load(TABLE, "reference")
@@ -65,13 +66,13 @@ class Sharing(RuleBasedStateMachine):
         self.count = 0
         self.known: list[Known] = []
 
-    @precondition(lambda self: len(self.exchange._turns.queue) < 3)
+    @precondition(lambda self: len(self.exchange._queue) < 3)
     @rule(name=st.sampled_from(REQUESTS), joint=st.integers(1, 2), deadline=DEADLINES)
     def submit(self, name: str, joint: int, deadline: float) -> None:
         """Submit a request of another caller."""
         values = () if name == "get_angles_plan" else (joint,)
         request, ends_by = self.encode(name, values), self.now + deadline
-        self.known.append(Known(self.exchange.submit(request, self.now, POLICY, 0.2, ends_by)))
+        self.known.append(Known(submit(self.exchange, request, self.now, POLICY, 0.2, ends_by)))
 
     @rule(
         delay=st.floats(0.0, GRACE_SECONDS - 0.001),

@@ -13,9 +13,9 @@ from cobotwire.session import (
     RetryPolicy,
     UnexpectedFrame,
 )
-from cobotwire.session.policy import GRACE_SECONDS
+from cobotwire.session.pending import GRACE_SECONDS
 from cobotwire.session.request import RequestEncoder
-from session.one_caller import OneCaller
+from session.one_caller import OneCaller, submit
 
 ENCODER = bytes.fromhex("FE FE 04 3B 08 00 FA")
 MINIMUM_OF_1 = bytes.fromhex("FE FE 05 4A 01 F9 F2 FA")
@@ -58,14 +58,14 @@ def test_late_reply_does_not_end_the_hold_since_it_may_come_twice(session: OneCa
 def test_copy_of_a_late_reply_does_not_count_for_another_attempt(codec: Codec) -> None:
     exchange, encoder = Exchange(codec), RequestEncoder(codec)
     policy = RetryPolicy(attempts=2)
-    first = exchange.submit(encoder.encode("get_encoder", (1,)), 0.0, policy, 0.4)
+    first = submit(exchange, encoder.encode("get_encoder", (1,)), 0.0, policy, 0.4)
     for now in (0.0, 0.2):
         assert exchange.outgoing(now, drained=True)
     assert [type(e) for e in exchange.receive(ENCODER, 0.9)] == [ReplyMatched]
     assert first.done
     # The line doubles replies: this is a copy, and the reply to the second attempt is to come.
     assert [type(e) for e in exchange.receive(ENCODER, 0.91)] == [LateReply]
-    exchange.submit(encoder.encode("get_encoder", (2,)), 0.92, policy, 0.4)
+    submit(exchange, encoder.encode("get_encoder", (2,)), 0.92, policy, 0.4)
     assert exchange.outgoing(0.92, drained=True) == b""
     assert [type(e) for e in exchange.receive(ENCODER, 1.1)] == [LateReply]
     assert exchange.outgoing(0.2 + GRACE_SECONDS, drained=True)
@@ -120,12 +120,12 @@ def test_illegal_frame_that_may_be_a_late_reply_ends_no_request(session: OneCall
 @pytest.mark.parametrize("ended", [False, True])
 def test_grace_begins_when_a_blocked_write_has_ended(codec: Codec, ended: bool) -> None:
     exchange, encoder = Exchange(codec), RequestEncoder(codec)
-    pending = exchange.submit(encoder.encode("get_encoder", (1,)), 0.0, RetryPolicy(1), 0.4)
+    pending = submit(exchange, encoder.encode("get_encoder", (1,)), 0.0, RetryPolicy(1), 0.4)
     assert exchange.outgoing(0.0, drained=True)
     if ended:
         exchange.give_up(pending)
     exchange.written(pending, 0.9)
     exchange.give_up(pending)
-    exchange.submit(encoder.encode("get_encoder", (2,)), 1.0, RetryPolicy(1), 0.4)
+    submit(exchange, encoder.encode("get_encoder", (2,)), 1.0, RetryPolicy(1), 0.4)
     assert exchange.outgoing(0.89 + GRACE_SECONDS, drained=True) == b""
     assert exchange.outgoing(0.91 + GRACE_SECONDS, drained=True)

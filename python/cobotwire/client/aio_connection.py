@@ -79,7 +79,7 @@ class AsyncConnection:
             raise
         transport = self._port.transport
         self._memory = PortMemory(transport)
-        self._exchange.take_over(self._memory.recall())
+        self._exchange.restore(self._memory.recall())
         self._steps = AsyncSteps(transport, self._exchange, self.listeners, self._deadline)
 
     async def send(
@@ -159,7 +159,7 @@ class AsyncConnection:
             try:
                 self._steps.transport.close()
             finally:
-                self._memory.leave(self._steps.exchange.leave(self.now()))
+                self._memory.leave(self._exchange.persist(self.now()))
                 self._steps.lose(LinkError(self.url, "it is closed"))
                 self._port.close_recording()
 

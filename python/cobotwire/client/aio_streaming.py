@@ -56,7 +56,6 @@ class AsyncStream:
         """End the loop and the report, from any task. Closing twice is harmless."""
         if self._closed_at is None:
             self._closed_at = self._connection.now()
-            self._slots.close()
 
     def __aiter__(self) -> Self:
         return self

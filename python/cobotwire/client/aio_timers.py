@@ -22,8 +22,6 @@ from cobotwire.transport.alarm_clock import AlarmClock, new_alarm_clock
 # At least so many seconds pass between two rounds of calls, for each call that waits, up to the
 # longest. So a large fleet does not wake the loop for each arm.
 SECONDS_FOR_EACH, LONGEST_SECONDS = 2e-6, 1e-3
-# A loop with more waiting calls may be late because of its own work.
-FEW = 16
 
 
 class Timed:
@@ -63,11 +61,6 @@ class LoopTimers:
         heappush(self._waiting, (moment, next(self._numbers), timed))
         if moment < self._wakes_at:
             self._wake_at(moment)
-
-    @property
-    def few(self) -> bool:
-        """Whether only a few calls wait."""
-        return len(self._waiting) <= FEW
 
     def _wake_at(self, moment: float) -> None:
         self._wakes_at = moment

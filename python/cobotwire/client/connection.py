@@ -8,14 +8,13 @@ from math import inf
 from typing import TYPE_CHECKING, Any
 
 from cobotwire.client.leading import CHECK_SECONDS
-from cobotwire.client.native_call import native_call
 from cobotwire.client.opening import PortOpener
 from cobotwire.client.port_memory import PortMemory
 from cobotwire.client.steps import SLICE_SECONDS, TURN_SECONDS, Steps
 from cobotwire.client.traffic import TrafficListener, TrafficListeners
 from cobotwire.protocol.lazy import import_aside
-from cobotwire.session import Answer, EncodedRequest, Exchange, PendingRequest, RetryPolicy
-from cobotwire.session.turns import DRAIN_SECONDS
+from cobotwire.session import EncodedRequest, Exchange, PendingRequest, RetryPolicy
+from cobotwire.session.exchange import DRAIN_SECONDS
 from cobotwire.transport import forks
 from cobotwire.transport.timing import times_of
 
@@ -49,9 +48,8 @@ class Connection:
         self._exchange = exchange
         self._deadline = deadline
         self._steps = Steps(self._transport, exchange, self.listeners, self.now, deadline)
-        self._native = native_call(self._steps, self._transport, deadline)
         self._memory = PortMemory(self._transport)
-        exchange.take_over(self._memory.recall())
+        exchange.restore(self._memory.recall())
         forks.watch(self)
 
     def send(
@@ -94,20 +92,7 @@ class Connection:
         Raises:
             CobotwireError: the reason why there is no reply.
         """
-        answer = self._lone(request, policy, wait, 0.0)
-        return self.request(request, policy, wait).result() if answer is None else answer[0]
-
-    def _lone(
-        self, request: EncodedRequest, policy: RetryPolicy, wait: float | None, at: float
-    ) -> Answer | None:
-        """Make a native call of a request; return None if it was not sent so."""
-        native = self._native
-        if native is None or not request.plain or not self.listeners.silent:
-            return None
-        # The rest of a request that is taken in part is waited for.
-        if self._deadline < inf and not self._steps.writer.is_free():
-            return None
-        return native.lone(native, request, policy, wait, at)
+        return self.request(request, policy, wait).result()
 
     def request(
         self, request: EncodedRequest, policy: RetryPolicy, wait: float | None
@@ -127,27 +112,12 @@ class Connection:
             steps.leave(pending)
         return pending
 
-    def answer(
-        self, request: EncodedRequest, policy: RetryPolicy, wait: float | None, at: float
-    ) -> Answer:
-        """Send a request at a moment of :attr:`now`; return the reply, and when both passed.
-
-        Raises:
-            CobotwireError: the reason why there is no reply.
-        """
-        answer = self._lone(request, policy, wait, at)
-        if answer is not None:
-            return answer
-        while (left := at - self.now()) > 0:
-            self.sleep(left)
-        return self.request(request, policy, wait).answer()
-
     def slots(self, closed: Callable[[], bool]) -> Slots:
         """Return what sends the requests of a stream until ``closed`` returns True."""
         import_aside("cobotwire.client.slots")
         from cobotwire.client.slots import Slots
 
-        return Slots(self.now, self.sleep, self.answer, closed)
+        return Slots(self.now, self.sleep, self.request, closed)
 
     def listen(self, seconds: float, done: Callable[[], bool] | None = None) -> None:
         """Read what comes without a request, and report it to the traffic listeners.
@@ -179,13 +149,11 @@ class Connection:
             self._transport.close()
         finally:
             with self._steps.state:
-                leftover = self._exchange.leave(self.now())
-            self._memory.leave(leftover)
+                state = self._exchange.persist(self.now())
+            self._memory.leave(state)
             self._port.close_recording()
 
     def leave_to_parent(self) -> None:
         """Free what other threads of the parent held; in a forked child the transport is closed."""
         self._steps.leave_to_parent()
-        # It has the locks of the parent.
-        self._native = None
         self._memory.leave_to_parent()

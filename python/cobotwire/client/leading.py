@@ -21,8 +21,7 @@ class Leading:
 
     Attributes:
         leader: which thread leads; None: no thread does.
-        turns: how often leaders have read; a leader that does not count on is gone. A native call
-            is one turn, and ends long before the others conclude that.
+        turns: how often leaders have read; a leader that does not count on is gone.
         followers: what wakes the threads that wait for the leader.
     """
 
@@ -41,6 +40,10 @@ class Leading:
                 if self.leader is None:
                     self.leader = me
         return self.leader == me
+
+    def count_turn(self) -> None:
+        """Note that this thread, which leads, reads now."""
+        self.turns += 1
 
     def resign(self) -> None:
         """Let another thread lead, if this one does."""

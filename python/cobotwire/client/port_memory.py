@@ -14,7 +14,7 @@ import time
 from contextlib import suppress
 
 from cobotwire.client.port_notes import LONGEST, MOST_ENTRIES, take_note, write_note
-from cobotwire.session.leftover import Leftover
+from cobotwire.session.outstanding import PersistedState
 from cobotwire.transport import Transport
 from cobotwire.transport.interface import OpenedTransport
 from cobotwire.transport.timing import times_of
@@ -39,33 +39,32 @@ class PortMemory:
         )
         self._keys = _keys(transport.url) if same_again else ()
 
-    def recall(self) -> Leftover:
+    def recall(self) -> PersistedState:
         """Return the notes on the port, and remove them."""
-        found = [
-            note for key in self._keys for note in (_here.pop(key, Leftover()), take_note(key))
-        ]
+        nothing = PersistedState()
+        found = [note for key in self._keys for note in (_here.pop(key, nothing), take_note(key))]
         now = time.monotonic()
         late = {late for note in found for late in note.late if now < late.until <= now + LONGEST}
         parts = {part for note in found for part in note.parts}
-        return Leftover(tuple(sorted(late, key=lambda late: late.until)), tuple(parts))
+        return PersistedState(tuple(sorted(late, key=lambda late: late.until)), tuple(parts))
 
-    def leave(self, leftover: Leftover) -> None:
+    def leave(self, state: PersistedState) -> None:
         """Leave a note on the port, unless the line is aligned and silent."""
-        if leftover.empty:
+        if state.empty:
             return
-        leftover = Leftover(leftover.late[-MOST_ENTRIES:], leftover.parts[-MOST_ENTRIES:])
+        state = PersistedState(state.late[-MOST_ENTRIES:], state.parts[-MOST_ENTRIES:])
         for key in self._keys:
-            _here[key] = leftover
+            _here[key] = state
             # Without a folder of its own, this process alone remembers.
             with suppress(OSError):
-                write_note(key, leftover)
+                write_note(key, state)
 
     def leave_to_parent(self) -> None:
         """Leave no note from now on: after a fork the session is the parent's."""
         self._keys = ()
 
 
-_here: dict[str, Leftover] = {}
+_here: dict[str, PersistedState] = {}
 
 
 def _keys(url: str) -> tuple[str, ...]:

@@ -17,7 +17,7 @@ from contextlib import suppress
 from typing import Any
 
 from cobotwire.session.alignment import Part
-from cobotwire.session.leftover import LateFrame, Leftover
+from cobotwire.session.outstanding import LateFrame, PersistedState
 from cobotwire.transport.log import Log
 
 # No reply is expected for longer: every grace is shorter (``RetryPolicy``).
@@ -35,7 +35,7 @@ READING = os.O_RDONLY | sum(
 _log = Log("cobotwire.client")
 
 
-def write_note(key: str, leftover: Leftover) -> None:
+def write_note(key: str, state: PersistedState) -> None:
     """Write the note on a port.
 
     Raises:
@@ -47,8 +47,8 @@ def write_note(key: str, leftover: Leftover) -> None:
         "port": key,
         "boot": _boot(),
         "clocks": [time.monotonic(), time.time()],
-        "late": [[late.request.hex(), late.until] for late in leftover.late],
-        "parts": [[part.request.hex(), part.written] for part in leftover.parts],
+        "late": [[late.request.hex(), late.until] for late in state.late],
+        "parts": [[part.request.hex(), part.written] for part in state.parts],
     }
     path = _path(key, create=True)
     new = f"{path}.{os.getpid()}.{threading.get_ident()}"
@@ -59,13 +59,13 @@ def write_note(key: str, leftover: Leftover) -> None:
     os.replace(new, path)
 
 
-def take_note(key: str) -> Leftover:
+def take_note(key: str) -> PersistedState:
     """Return the note on a port, and remove it; warn if there is one that cannot be used."""
     try:
         path = _path(key)
         text = _take(path)
     except FileNotFoundError:
-        return Leftover()
+        return PersistedState()
     except (OSError, ValueError) as error:
         return _unusable(error)
     import json
@@ -77,10 +77,10 @@ def take_note(key: str) -> Leftover:
         return _unusable(ValueError(f"{path} is not a note of a session: {error!r:.200}"))
 
 
-def _unusable(error: Exception) -> Leftover:
+def _unusable(error: Exception) -> PersistedState:
     message = "%s; a late reply to an earlier session on this port may not be recognized"
     _log.load().warning(message, error)
-    return Leftover()
+    return PersistedState()
 
 
 def _take(path: str) -> bytes:
@@ -107,11 +107,11 @@ def _take(path: str) -> bytes:
             os.unlink(path)
 
 
-def _read(note: dict[str, Any], key: str) -> Leftover:
+def _read(note: dict[str, Any], key: str) -> PersistedState:
     """Return what a note says; raise anything if it is damaged."""
     if note["port"] != key:
         # Two ports have the same name of a file.
-        return Leftover()
+        return PersistedState()
     written_at, wall = map(float, note["clocks"])
     late = [_late(_frame(frame), until, written_at) for frame, until in note["late"]]
     parts = [_part(_frame(frame), written) for frame, written in note["parts"]]
@@ -119,12 +119,12 @@ def _read(note: dict[str, Any], key: str) -> Leftover:
     if note["boot"] != _boot() or passed < 0:
         # The machine was started again since: no reply comes any more. The arm, which was not,
         # may still hold the parts.
-        return Leftover((), tuple(parts))
+        return PersistedState((), tuple(parts))
     if not note["boot"]:
         # Nothing identifies a boot here, so the clock decides by which more time has passed.
         hidden = max(0.0, time.time() - wall - passed)
         late = [reply._replace(until=reply.until - hidden) for reply in late]
-    return Leftover(tuple(late), tuple(parts))
+    return PersistedState(tuple(late), tuple(parts))
 
 
 def _boot() -> str:

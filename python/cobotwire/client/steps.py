@@ -21,11 +21,10 @@ from cobotwire.client.writing import Writer
 from cobotwire.protocol.errors import LinkError
 from cobotwire.session import Exchange, Pending, PendingRequest
 from cobotwire.transport.interface import Transport
-from cobotwire.transport.waiting import line_lock
 
 # The longest that the reading thread waits before it checks whether others have queued a request.
 SLICE_SECONDS = 0.02
-# How long the leader leaves the line to a thread that writes, before it reads again.
+# How long the leader leaves the line to a thread that writes, before it goes on.
 TURN_SECONDS = 0.0005
 # The least time that a write has, if a deadline limits it.
 SHORTEST_WRITE = 0.02
@@ -65,35 +64,16 @@ class Steps:
 
     def leave_to_parent(self) -> None:
         """Free what other threads of the parent held when it forked."""
-        self.writer.lock = line_lock()
+        self.writer.leave_to_parent()
         self.state, self.reading = threading.Lock(), threading.RLock()
         self.leading = Leading(self.state)
 
     def start(self, pending: PendingRequest) -> None:
-        """Send a request at once if nothing else is under way; otherwise queue it.
-
-        What has come already is read first, without waiting.
-        """
-        exchange, writer = self.exchange, self.writer
-        if not self.leading.leads():
-            with self.state:
-                exchange.enqueue(pending)
-            return
-        with self.reading:
-            self.leading.turns += 1
-            data = self._read(0.0)
-            if data or not writer.is_free():
-                with self.state:
-                    exchange.enqueue(pending)
-                self._advance(data, pending.ends_by)
-                return
-            with writer.lock:
-                with self.state:
-                    now = self.now()
-                    frame = exchange.begin(pending, now)
-                align = self._write_request(pending, frame, now, inf) if frame else None
-            if align is not None:
-                self.listeners.sent(align, frame)
+        """Queue a request; send it at once if nothing else is under way, after what has come."""
+        with self.state:
+            self.exchange.enqueue(pending)
+        if self.leading.leads():
+            self.turn(0.0, pending.ends_by)
 
     def wait(self, pending: Pending) -> None:
         """Lead or follow until a request is done."""
@@ -121,10 +101,12 @@ class Steps:
         Its caller waits no longer than until ``ends_by``.
         """
         with self.reading:
-            self.leading.turns += 1
-            with self.state:
-                idle = self.exchange.idle_seconds(self.now())
-            self._advance(self._read(longest if idle is None else min(idle, longest)), ends_by)
+            self.leading.count_turn()
+            if longest > 0:
+                with self.state:
+                    idle = self.exchange.idle_seconds(self.now())
+                longest = longest if idle is None else min(idle, longest)
+            self._advance(self._read(longest), ends_by)
 
     def drain(self, until: float) -> None:
         """Read what has come, so that no buffer overflows while only one-way requests are sent."""
@@ -148,15 +130,16 @@ class Steps:
         """Take what was read, let time pass, and send the request that is next."""
         exchange, now = self.exchange, self.now()
         with self.state:
-            events, outgoing = exchange.advance(data, now)
-        if outgoing:
+            events = exchange.advance(data, now)
+            has_next = exchange.has_next(now)
+        if has_next:
+            if not self.writer.is_free():
+                # The line is full, or another thread writes. Deadlines go on meanwhile.
+                time.sleep(TURN_SECONDS)
             free = self.writer.is_free()
             exchange.note_full(not free)
             if free:
                 self._send_request(not data, ends_by)
-            else:
-                # The line is full, or another thread writes. Deadlines go on meanwhile.
-                time.sleep(TURN_SECONDS)
         if events:
             self.leading.wake_followers()
             self.listeners.received(events, now)

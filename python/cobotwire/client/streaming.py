@@ -57,7 +57,6 @@ class Stream:
         """End the loop and the report, from any thread. Closing twice is harmless."""
         if self._closed_at is None:
             self._closed_at = self._connection.now()
-            self._slots.close()
 
     def __iter__(self) -> Self:
         return self

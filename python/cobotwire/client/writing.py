@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import threading
 import time
 from math import inf
 
 from cobotwire.protocol.errors import LinkError
 from cobotwire.session.alignment import Alignment
-from cobotwire.transport.interface import LendingTransport, PollableTransport, Transport
-from cobotwire.transport.waiting import has_room, line_lock
+from cobotwire.transport.interface import PollableTransport, Transport
+from cobotwire.transport.waiting import has_room
 
 # How often a write is tried again that must end in time.
 TRY_SECONDS = 0.001
@@ -28,7 +29,11 @@ class Writer:
         self._pollable = transport if isinstance(transport, PollableTransport) else None
         self._alignment = alignment
         self._deadline = deadline
-        self.lock = line_lock()
+        self.lock = threading.Lock()
+
+    def leave_to_parent(self) -> None:
+        """Free the lock, which another thread of the parent may have held when it forked."""
+        self.lock = threading.Lock()
 
     def is_free(self) -> bool:
         """Return whether a request may be written now: no thread writes.
@@ -81,23 +86,8 @@ class Writer:
             self._alignment.end()
         return align
 
-    def finish_write(self, request: bytes, written: int) -> None:
-        """Write the rest of a request of which ``written`` bytes were taken."""
-        assert isinstance(self._transport, LendingTransport), "it has lent its descriptor"
-        try:
-            if self._deadline == inf:
-                self._transport.finish_write(request, written)
-            else:
-                self._write_within(self._deadline, request, written)
-        except LinkError as error:
-            error.written = self._alignment.cut(b"", request, error.written)
-            raise
-        except BaseException:
-            self._alignment.cut(b"", request, None)
-            raise
-
-    def _write_within(self, seconds: float, data: bytes, written: int = 0) -> None:
-        transport = self._pollable
+    def _write_within(self, seconds: float, data: bytes) -> None:
+        transport, written = self._pollable, 0
         if transport is None:
             self._transport.write(data)
             return

@@ -28,7 +28,7 @@ from cobotwire.inspect.evidence import (
 from cobotwire.inspect.frame_families import Probes, families, with_same_frames
 from cobotwire.protocol.errors import EditionUnknown
 from cobotwire.protocol.table import Command, Table
-from cobotwire.session.leftover import merged
+from cobotwire.session.outstanding import merged
 from cobotwire.transport import Transport
 from cobotwire.transport.tapped import borrowed
 

@@ -20,8 +20,7 @@ from cobotwire.session.events import (
     UnexpectedFrame,
 )
 from cobotwire.session.exchange import Exchange
-from cobotwire.session.pending import Answer, Pending, PendingRequest
-from cobotwire.session.policy import RetryPolicy
+from cobotwire.session.pending import Answer, Pending, PendingRequest, RetryPolicy
 from cobotwire.session.request import EncodedRequest
 
 __all__ = [

@@ -20,8 +20,7 @@ from cobotwire.protocol.addresses import ANYBODY
 from cobotwire.protocol.errors import LinkError, ProtocolError, RequestRefused
 from cobotwire.session.events import FrameEvent
 from cobotwire.session.matching import can_come_from, repeats_arguments, replies_differ
-from cobotwire.session.pending import Pending
-from cobotwire.session.policy import GRACE_SECONDS
+from cobotwire.session.pending import GRACE_SECONDS, Pending
 from cobotwire.session.request import EncodedRequest, as_call
 
 # Some firmware acknowledges a motion only when it ends.
@@ -51,6 +50,18 @@ class ExpectedAck:
         self.doubts: list[float] = []
         self.certain = False
 
+    def doubt(self, until: float) -> None:
+        """Note that the acknowledgement of another request, which looks alike, may come."""
+        insort(self.doubts, until)
+
+    def shorten(self, seconds: float) -> None:
+        """Expect it only that long after its request."""
+        self.until = min(self.until, self.sent_at + seconds)
+
+    def renew_doubts(self, doubts: list[float]) -> None:
+        """Replace its doubts."""
+        self.doubts = doubts
+
     def count(self, frame: Frame, began_at: float) -> None:
         """Count an acknowledgement of the command: of another request, as long as it can be."""
         self.doubts = [until for until in self.doubts if until > began_at]
@@ -73,10 +84,9 @@ class PendingAck(Pending):
     __slots__ = ("ack", "until")
 
     def __init__(self, ack: ExpectedAck, until: float, ends_by: float) -> None:
-        super().__init__(ack.request)
+        super().__init__(ack.request, ends_by)
         self.ack = ack
         self.until = until
-        self.ends_by = ends_by
 
 
 class Acknowledged(NamedTuple):
@@ -126,13 +136,42 @@ class _CommandAcks:
         self.copied: ExpectedAck | None = None
         self.began_at = 0.0
 
+    def add(self, ack: ExpectedAck, waited_for: bool) -> None:
+        """Expect an acknowledgement, for which a caller may wait."""
+        self.forget_expired(ack.sent_at)
+        if not self.expected:
+            self.began_at = ack.sent_at
+        for earlier in self.uncertain:
+            if not replies_differ(earlier.request, ack.request):
+                earlier.doubt(ack.until)
+        if waited_for:
+            ack.renew_doubts(self.doubts_of(ack.request))
+            self.uncertain.append(ack)
+        self.expected.append(ack)
+
     def shorten(self, seconds: float, now: float) -> None:
         """Expect each acknowledgement only that long after its request."""
         for ack in self.expected:
-            ack.until = min(ack.until, ack.sent_at + seconds)
+            ack.shorten(seconds)
         self.forget_expired(now)
         for ack in self.uncertain:
-            ack.doubts = self.doubts_of(ack.request, ack)
+            ack.renew_doubts(self.doubts_of(ack.request, ack))
+
+    def note_copy(self, frame: Frame) -> None:
+        """Note a copy of a request, if it is clear which of the expected ones was copied."""
+        sent = [ack for ack in self.expected if ack.request.frame == frame.data]
+        if len(sent) == 1 and not self.doubts_of(sent[0].request, sent[0]):
+            self.copied = sent[0]
+
+    def take(self, received: _Received, began_at: float) -> None:
+        """Settle the oldest acknowledgement that a frame can be; count it for all that wait."""
+        settled = self.oldest(received)
+        if settled is not None and settled.request.replier != ANYBODY:
+            # Several devices may acknowledge a broadcast: it stays until its time is over.
+            self.expected.remove(settled)
+        for ack in self.uncertain:
+            if received.of(ack.request):
+                ack.count(received.frame, began_at)
 
     def doubts_of(self, request: EncodedRequest, ack: ExpectedAck | None = None) -> list[float]:
         """Return the doubts of a request, by all that is expected except for its own ``ack``."""
@@ -187,20 +226,11 @@ class Acks:
         """
         slow = request.command.safety == "motion" and not self._motions_at_once
         usual = MOTION_SECONDS if slow else GRACE_SECONDS
-        acks = self._commands.setdefault(request.command.id, _CommandAcks())
-        acks.forget_expired(now)
-        if not acks.expected:
-            acks.began_at = now
         ack = ExpectedAck(request, now, now + max(within or 0.0, usual), offset)
-        for earlier in acks.uncertain:
-            if not replies_differ(earlier.request, request):
-                insort(earlier.doubts, ack.until)
+        acks = self._commands.setdefault(request.command.id, _CommandAcks())
+        acks.add(ack, within is not None)
         if within is None:
-            acks.expected.append(ack)
             return ack, None
-        ack.doubts = acks.doubts_of(request)
-        acks.expected.append(ack)
-        acks.uncertain.append(ack)
         pending = PendingAck(ack, now + within, ends_by)
         self.waiting.append(pending)
         return ack, pending
@@ -208,9 +238,8 @@ class Acks:
     def note_copy(self, frame: Frame) -> None:
         """Note a copy of a request, which is a bare acknowledgement unless the line echoes."""
         acks = self._commands.get(frame.command)
-        sent = [] if acks is None else [a for a in acks.expected if a.request.frame == frame.data]
-        if acks is not None and len(sent) == 1 and not acks.doubts_of(sent[0].request, sent[0]):
-            acks.copied = sent[0]
+        if acks is not None:
+            acks.note_copy(frame)
 
     def match(self, frame: Frame, now: float, began_at: float) -> Acknowledged | None:
         """Count a frame that is an acknowledgement; None: it is not one.
@@ -227,14 +256,8 @@ class Acks:
         if oldest is None or message is None or frame.offset < oldest.offset:
             return None
         self._learn(acks, received, now)
-        # Those that learning has shortened are over.
-        settled = acks.oldest(received)
-        if settled is not None and settled.request.replier != ANYBODY:
-            # Several devices may acknowledge a broadcast: it stays until its time is over.
-            acks.expected.remove(settled)
-        for ack in acks.uncertain:
-            if received.of(ack.request):
-                ack.count(frame, began_at)
+        # What learning has shortened may be over by now.
+        acks.take(received, began_at)
         self._end_certain(message)
         return Acknowledged(oldest.request, message)
 

@@ -52,7 +52,6 @@ class Alignment:
 
     Attributes:
         align: what must be written before the next request; empty on an aligned line.
-        last_request: the frame that was sent last; empty if none was since the transport was lost.
     """
 
     def __init__(self, codec: Codec) -> None:
@@ -61,12 +60,17 @@ class Alignment:
         # Every part that the peer may hold: one, or several if it is not known what was written.
         self._held: tuple[Part, ...] = ()
         self.align = b""
-        self.last_request = b""
+        # The frame that was sent last; empty if none was since the transport was lost.
+        self._last_request = b""
 
     @property
     def held(self) -> tuple[Part, ...]:
         """Every part that the peer may hold; empty on an aligned line."""
         return self._held
+
+    def sent(self, request: bytes) -> None:
+        """Note the frame that is sent now."""
+        self._last_request = request
 
     def end(self) -> None:
         """Note that ``align`` and a request after it were taken whole."""
@@ -98,7 +102,7 @@ class Alignment:
 
         The last request, and earlier ones that were still on their way, may be cut anywhere.
         """
-        last = self.last_request
+        last = self._last_request
         if not last:
             return
         longest = _longest(self._codec.table)
@@ -106,7 +110,7 @@ class Alignment:
         begun = last[: self._format.length_at] + longest.to_bytes(width, order)
         parts = Part(begun, len(begun)), *_all_parts(self._format, last)
         self.hold(self._held + parts)
-        self.last_request = b""
+        self._last_request = b""
 
     def hold(self, parts: tuple[Part, ...]) -> None:
         """Note every part that the peer may hold."""

@@ -9,7 +9,6 @@ counts, unless the line was ever seen to echo: to send back a request that canno
 from __future__ import annotations
 
 from cobotwire.codec.interface import Frame, Noise
-from cobotwire.session.request import EncodedRequest
 
 
 class _Sent:
@@ -22,6 +21,17 @@ class _Sent:
         self.offset = offset
         self.copies = 1
 
+    def repeat(self) -> None:
+        """Note that it was sent once more."""
+        self.copies += 1
+
+    def take(self, frame: Frame) -> bool:
+        """Take a frame if it is one of the copies; return whether it is."""
+        if not self.copies or frame.data != self.frame or frame.offset < self.offset:
+            return False
+        self.copies -= 1
+        return True
+
 
 class EchoDetector:
     """Looks for copies of the last request and of the last one-way request.
@@ -30,33 +40,29 @@ class EchoDetector:
 
     Attributes:
         proven: whether the line was seen to echo.
-        latest: the frame of the last request, and where its copy can begin, until it matters:
-            native calls set this alone.
-        one_way: the last one-way request.
     """
 
     def __init__(self) -> None:
         self.proven = False
-        self.latest: tuple[bytes, int] | None = None
         self._request: _Sent | None = None
-        self.one_way: _Sent | None = None
+        self._one_way: _Sent | None = None
         self._noise = b""
 
-    def sent(self, request: EncodedRequest, offset: int) -> None:
+    def sent(self, frame: bytes, offset: int) -> None:
         """Note a request that goes out; its copy can begin at ``offset`` of the stream."""
-        self.latest = request.frame, offset
+        self._request = _Sent(frame, offset)
+        self._noise = b""
 
-    def sent_one_way(self, request: EncodedRequest, offset: int) -> None:
+    def sent_one_way(self, frame: bytes, offset: int) -> None:
         """Note a one-way request that goes out, likewise."""
-        self.one_way = _Sent(request.frame, offset)
-        self._restart()
+        self._one_way = _Sent(frame, offset)
+        self._noise = b""
 
     def sent_again(self) -> None:
         """Note that the last request that waits for a reply goes out once more."""
-        self._note_latest()
         if self._request is not None:
-            self._request.copies += 1
-        self._restart()
+            self._request.repeat()
+        self._noise = b""
 
     def prove(self) -> None:
         """Note that the line echoes."""
@@ -64,11 +70,8 @@ class EchoDetector:
 
     def add_noise(self, noise: Noise) -> None:
         """Look for copies in noise: most requests are not legal replies, so they come as noise."""
-        self._note_latest()
-        if self.proven:
-            return
-        watched = [sent for sent in (self._request, self.one_way) if sent is not None]
-        if not watched:
+        watched = [sent for sent in (self._request, self._one_way) if sent is not None]
+        if self.proven or not watched:
             return
         offset = min(sent.offset for sent in watched)
         self._noise += noise.data[max(0, offset - noise.offset) :]
@@ -80,31 +83,6 @@ class EchoDetector:
 
         Each sending has one copy; one that comes beyond that is the arm's own frame.
         """
-        self._note_latest()
         self._noise = b""
-        data = frame.data
-        for sent in (self._request, self.one_way):
-            if (
-                sent is not None
-                and data == sent.frame
-                and sent.copies
-                and frame.offset >= sent.offset
-            ):
-                sent.copies -= 1
-                return True
-        return False
-
-    def sent_no_other(self, frame: Frame) -> bool:
-        """Return whether a frame, which is no copy of the last request, is no other copy either."""
-        self._noise = b""
-        return self.one_way is None or frame.data != self.one_way.frame
-
-    def _note_latest(self) -> None:
-        if self.latest is not None:
-            self._request = _Sent(*self.latest)
-            self._restart()
-            self.latest = None
-
-    def _restart(self) -> None:
-        if not self.proven:
-            self._noise = b""
+        both = (self._request, self._one_way)
+        return any(sent is not None and sent.take(frame) for sent in both)

@@ -1,7 +1,8 @@
 """The exchange of requests and replies over one transport, shared by many callers.
 
-This is the session's state machine. It has no clock, thread or port: bytes and times go in, bytes
-and events come out, and clients differ only in how they wait.
+This is the session's state machine: everything that decides a state stands in this file. It has no
+clock, thread or port: bytes and times go in, bytes and events come out, and clients differ only in
+how they wait. ``docs/exchange.md`` shows its states and what it promises.
 
 A request that has a reply passes through three states::
 
@@ -10,38 +11,55 @@ A request that has a reply passes through three states::
        │                      └─┘ outgoing(), for another attempt
        └───────────────── give_up(), fail() ───────────────────▶ done
 
-Only one request waits at a time, since the protocol has no sequence numbers: ``turns`` says which
-one. ``replies`` matches what is received to it. One-way requests (settings, motion: whatever has no
-reply) take no turns. They are sent at once, and only once, also while another request waits.
+Only one request waits at a time, since the protocol has no sequence numbers. The others queue in
+the order of submission; one that is held for an outstanding reply is overtaken. The time to reply
+runs from the first sending, so that it measures the arm's silence and not the queue. A caller's
+deadline runs from the call: a request that was not sent by then is never sent. One-way requests
+(settings, motion: whatever has no reply) are sent at once, and only once, also while another
+request waits.
 
 Ctrl-C can interrupt any step in a client's thread. So each step commits with a single assignment:
-``done`` ends a request, ``last`` makes it the one that waits. What an interrupt leaves in the lists
-besides is skipped.
+``done`` ends a request, ``_last`` makes it the one that waits. What an interrupt leaves in the
+lists besides is skipped.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from math import inf
 from typing import Any
 
-from cobotwire.codec.interface import Codec, Event, Frame
-from cobotwire.protocol.addresses import NOBODY
-from cobotwire.protocol.errors import LinkError, ReplyTimeout
+from cobotwire.codec.interface import Codec, Event, Frame, Noise
+from cobotwire.protocol.addresses import ANYBODY, NOBODY
+from cobotwire.protocol.errors import LinkError, ProtocolError, ReplyTimeout, WaitedFor
 from cobotwire.protocol.shared import once_per_table
 from cobotwire.protocol.table import Table
 from cobotwire.session.acks import Acks, PendingAck
 from cobotwire.session.alignment import Alignment
-from cobotwire.session.alone import Alone
 from cobotwire.session.echo import EchoDetector
-from cobotwire.session.events import SessionEvent
-from cobotwire.session.leftover import LateFrame, Leftover
-from cobotwire.session.outstanding import OutstandingReplies, late_replies
+from cobotwire.session.events import (
+    AckReceived,
+    EchoReceived,
+    FrameEvent,
+    LateReply,
+    ReplyMatched,
+    ReplyRejected,
+    RequestExpired,
+    SessionEvent,
+    UnexpectedFrame,
+)
+from cobotwire.session.matching import as_event, as_reply, repeats_arguments
+from cobotwire.session.outstanding import (
+    LateFrame,
+    OutstandingReplies,
+    PersistedState,
+    late_replies,
+)
 from cobotwire.session.pending import Pending, PendingRequest
-from cobotwire.session.policy import RetryPolicy
-from cobotwire.session.replies import Replies
 from cobotwire.session.request import EncodedRequest, as_call, request_of
-from cobotwire.session.turns import Turns
+
+# For how long received bytes are read before a request is sent, if they do not end.
+DRAIN_SECONDS = 0.05
+NOT_SENT = "more than can be read; a late reply may be among it"
 
 
 @once_per_table
@@ -53,52 +71,29 @@ class Exchange:
     """Requests that take turns, one-way requests, and the frames that come back.
 
     Attributes:
-        framer: what received bytes are fed to.
         alignment: what the peer may hold of a request that was cut.
-        alone: the request for which the client writes and reads in one native call.
     """
 
     def __init__(self, codec: Codec) -> None:
         self._codec = codec
         self._replying_ids = _replying_ids(codec.table)
-        self.framer = framer = codec.framer("reply")
-        self.alignment = alignment = Alignment(codec)
-        self._outstanding = outstanding = OutstandingReplies()
-        self._acks = acks = Acks(codec)
-        self._echo = echo = EchoDetector()
-        self._turns = turns = Turns(codec, framer, alignment, outstanding, echo)
-        self._replies = replies = Replies(codec, framer, turns, outstanding, acks, echo)
-        self.alone = Alone(framer, alignment, turns, replies, outstanding, acks, echo)
+        self._framer = codec.framer("reply")
+        self.alignment = Alignment(codec)
+        self._outstanding = OutstandingReplies()
+        self._acks = Acks(codec)
+        self._echo = EchoDetector()
+        # What waits for its turn, oldest first; an interrupt may leave in it what is done, or sent.
+        self._queue: list[PendingRequest] = []
+        # The request that was sent last; it waits for its reply unless it is done.
+        self._last: PendingRequest | None = None
+        # Whether the line took no bytes when the next request was to be sent.
+        self._line_is_full = False
 
     # What callers want.
 
-    def submit(
-        self,
-        request: EncodedRequest,
-        now: float,
-        policy: RetryPolicy,
-        wait: float | None = None,
-        ends_by: float = inf,
-    ) -> PendingRequest:
-        """Queue a request; the arm has ``wait`` seconds to reply, None: those of the edition.
-
-        Its caller waits until ``ends_by``.
-        """
-        pending = PendingRequest(request, wait, policy, now, ends_by)
-        self.enqueue(pending)
-        return pending
-
     def enqueue(self, pending: PendingRequest) -> None:
         """Queue a request whose caller already holds it, and gives it up in any case."""
-        self._turns.queue.append(pending)
-
-    def unsent(self, request: EncodedRequest, waited: float) -> ReplyTimeout:
-        """Return the error of a one-way request that its caller's deadline keeps from being sent.
-
-        ``waited`` is for how many seconds the line took no bytes.
-        """
-        call = as_call(request, self._codec)
-        return ReplyTimeout(request.command.name, waited, (), 0, call, "line")
+        self._queue.append(pending)
 
     def send_one_way(
         self,
@@ -112,14 +107,23 @@ class Exchange:
         The second is there if ``ack_within`` says how many seconds its acknowledgement is waited
         for, and the edition has one. Its caller waits until ``ends_by``.
         """
-        self._echo.sent_one_way(request, self.framer.fed)
-        self.alignment.last_request = request.frame
+        offset = self._framer.fed
+        self._echo.sent_one_way(request.frame, offset)
+        self.alignment.sent(request.frame)
         if not request.command.ack or request.replier == NOBODY:
             return request.frame + request.text, None
-        ack, pending = self._acks.expect(request, now, self.framer.fed, ack_within, ends_by)
+        ack, pending = self._acks.expect(request, now, offset, ack_within, ends_by)
         if request.command.id in self._replying_ids:
             self._outstanding.expect(request, ack.until)
         return request.frame + request.text, pending
+
+    def unsent(self, request: EncodedRequest, waited: float) -> ReplyTimeout:
+        """Return the error of a one-way request that its caller's deadline keeps from being sent.
+
+        ``waited`` is for how many seconds the line took no bytes.
+        """
+        call = as_call(request, self._codec)
+        return ReplyTimeout(request.command.name, waited, (), 0, call, "line")
 
     def give_up(self, pending: Pending) -> None:
         """End a request whose caller waits no longer. A reply that still comes is late."""
@@ -128,9 +132,7 @@ class Exchange:
         if isinstance(pending, PendingRequest):
             self._outstanding.expect_late(pending, 0)
         pending.cancel()
-        self._turns.drop_done()
-        if self._acks.waiting:
-            self._acks.drop_done()
+        self._drop_done()
 
     def fail(self, error: LinkError, now: float) -> list[SessionEvent]:
         """End every request: the transport is gone.
@@ -139,98 +141,116 @@ class Exchange:
             What the bytes are that still waited: what comes after the transport is open again does
             not complete them.
         """
-        events = self._replies.sort(self.framer.flush(), now)
+        events = self._sort(self._framer.flush(), now, self._framer.fed)
         self.alignment.lose()
-        self._turns.fail_waiting(error)
-        for pending in self._turns.queue:
+        self.fail_waiting(error)
+        for pending in self._queue:
             if not pending.done:
                 pending.fail(error)
-        self._turns.drop_done()
         self._acks.fail(error)
+        self._drop_done()
         return events
 
     def fail_waiting(self, error: LinkError) -> None:
-        """End the request that waits: the bytes that :meth:`outgoing` gave were not written."""
-        self._turns.fail_waiting(error)
+        """End the request that waits: its bytes were not written, or not all of them."""
+        waiting = self._waiting()
+        if waiting is not None:
+            self._outstanding.expect_late(waiting, 0)
+            waiting.fail(error)
 
     # What one session leaves to the next one on its port.
 
-    def leave(self, now: float) -> Leftover:
+    def persist(self, now: float) -> PersistedState:
         """Return what the next session on this port must respect."""
-        waiting = self._turns.waiting()
+        waiting = self._waiting()
         replies = [reply for reply in self._outstanding.replies if reply.until > now]
         if waiting is not None:
             replies += late_replies(waiting, 0)
-        replies += self.alone.outstanding()
         late = (LateFrame(reply.request.frame, reply.until) for reply in replies)
-        return Leftover(tuple(late), self.alignment.held)
+        return PersistedState(tuple(late), self.alignment.held)
 
-    def take_over(self, leftover: Leftover) -> None:
+    def restore(self, state: PersistedState) -> None:
         """Respect what an earlier session left on this port."""
-        for late in leftover.late:
+        for late in state.late:
             request = request_of(late.request, self._codec)
             if request is not None:
                 self._outstanding.expect(request, late.until)
-        if leftover.parts:
-            self.alignment.hold(leftover.parts)
+        if state.parts:
+            self.alignment.hold(state.parts)
 
     # What the client's loop does.
 
-    def advance(self, data: bytes, now: float) -> tuple[list[SessionEvent], bool]:
+    def advance(self, data: bytes, now: float) -> list[SessionEvent]:
         """Take received bytes, then let time pass: :meth:`receive` and :meth:`wake`.
 
         What has come is received before time passes, or it would count as late.
-
-        Returns:
-            What happened, and whether :meth:`outgoing` may have something to send now.
         """
-        events = self.receive(data, now) if data else []
-        last = self._turns.last
-        if last is None or last.done:
-            # So it is after each reply.
-            if self._acks.waiting:
-                self._acks.wake(now, self._echo.proven)
-            if self._turns.queue:
-                self._turns.end_overdue(now)
-            return events, bool(self._turns.queue)
-        events += self.wake(now)
-        return events, self._turns.has_next(now)
+        return self.receive(data, now) + self.wake(now) if data else self.wake(now)
 
     def receive(self, data: bytes, now: float) -> list[SessionEvent]:
         """Take received bytes; return what they are."""
-        self._replies.chunk_at = self.framer.fed
-        events = self.framer.feed(data)
-        return self._replies.sort(events, now) if events else []
+        chunk_at = self._framer.fed
+        return self._sort(self._framer.feed(data), now, chunk_at)
 
     def wake(self, now: float) -> list[SessionEvent]:
         """Let time pass; return what ends by it. Receive first what has come by now."""
-        waiting = self._turns.waiting()
-        events = []
+        waiting = self._waiting()
         if waiting is not None and waiting.ends_at <= now:
-            events = self._replies.end_wait(waiting, now)
-        return events + self.end_overdue(now)
+            return self._end_wait(waiting, now) + self.end_overdue(now)
+        return self.end_overdue(now)
 
     def end_overdue(self, now: float) -> list[SessionEvent]:
         """End the requests of callers that wait no longer; return what happened to a sent one."""
         if self._acks.waiting:
             self._acks.wake(now, self._echo.proven)
-        return self._turns.end_overdue(now)
+        if self._queue and any(pending.ends_by <= now for pending in self._queue):
+            self._end_overdue_queued(now)
+        waiting = self._waiting()
+        if waiting is None or waiting.ends_by > now:
+            return []
+        # A copy of it does not count as its reply: that one still had time to come.
+        return self._expire(waiting, now, now - waiting.queued_at, "reply")
 
     def note_full(self, full: bool) -> None:
         """Note whether the line took no bytes when a request was to be sent."""
-        self._turns.line_is_full = full
+        self._line_is_full = full
 
-    def idle_seconds(self, now: float) -> float | None:
-        """Return for how long nothing is to be done unless bytes come; None: without end."""
-        soonest = self._turns.next_at(now)
-        if self._acks.waiting:
-            soonest = min(soonest, self._acks.next_end)
-        return None if soonest == inf else max(0.0, soonest - now)
+    def has_next(self, now: float) -> bool:
+        """Return whether :meth:`outgoing` may have something to send."""
+        waiting = self._waiting()
+        return bool(self._queue) if waiting is None else self._repeat_at(waiting) <= now
+
+    def outgoing(self, now: float, drained: bool) -> bytes:
+        """Return the bytes of the request to be sent now, for the first time or again.
+
+        ``drained``: whether everything that has come by now was received. A request is sent on a
+        drained line, so that earlier bytes cannot pass for its reply.
+        """
+        waiting = self._waiting()
+        if waiting is not None:
+            return self._next_attempt(waiting, now)
+        for pending, free_at in self._free_times(now):
+            if free_at <= now < pending.ends_by:
+                break
+        else:
+            return b""
+        if not drained:
+            # A line that brings more than can be read is never drained.
+            pending.note_undrained(now)
+            if now - pending.undrained_since < DRAIN_SECONDS:
+                return b""
+            if self._outstanding.held_until(pending.request) is not None:
+                self._refuse_to_send(pending, now)
+                return b""
+        if self._outstanding.replies:
+            self._outstanding.drop_expired(now)
+        self._begin(pending, now)
+        return pending.request.frame
 
     @property
     def sent_last(self) -> PendingRequest | None:
         """The request that :meth:`outgoing` gave last; it may be done by now."""
-        return self._turns.last
+        return self._last
 
     def written(self, pending: PendingRequest, now: float) -> None:
         """Note that writing a request ended only now: its reply may be late from now on."""
@@ -239,52 +259,207 @@ class Exchange:
         else:
             pending.written(now)
 
-    def outgoing(self, now: float, drained: bool) -> bytes:
-        """Return the bytes of the request to be sent now, for the first time or again.
-
-        ``drained``: whether everything that has come by now was received. A request is sent on a
-        drained line, so that earlier bytes cannot pass for its reply.
-        """
-        self.alone.settle()
-        return self._turns.next(now, drained)
-
-    def begin(self, pending: PendingRequest, now: float) -> bytes:
-        """Return the bytes of a request if nothing else is under way; otherwise queue it.
-
-        Everything that has come by now was received. This is :meth:`enqueue` and :meth:`outgoing`
-        in one step.
-        """
-        self.alone.settle()
-        return self._turns.begin(pending, now)
+    def idle_seconds(self, now: float) -> float | None:
+        """Return for how long nothing is to be done unless bytes come; None: without end."""
+        soonest = self._acks.next_end if self._acks.waiting else inf
+        waiting = self._waiting()
+        if waiting is not None:
+            soonest = min(soonest, waiting.ends_at, waiting.ends_by, self._repeat_at(waiting))
+        if self._queue:
+            soonest = min([soonest, *(pending.ends_by for pending in self._queued())])
+            if waiting is None:
+                soonest = min([soonest, *(free_at for _, free_at in self._free_times(now))])
+        return None if soonest == inf else max(0.0, soonest - now)
 
     @property
     def busy(self) -> bool:
         """Whether a request waits for its turn or its reply, or for its acknowledgement."""
-        turns = self._turns
-        last = turns.last
-        return bool(turns.queue or self._acks.waiting or not (last is None or last.done))
+        return bool(self._queue or self._acks.waiting or self._waiting() is not None)
 
-    # What a client does that reads and decodes in one native call.
+    # Whose turn it is.
 
-    @property
-    def waiting_plainly(self) -> EncodedRequest | None:
-        """The request that waits, if it is plain."""
-        last = self._turns.last
-        return None if last is None or last.done or not last.request.plain else last.request
+    def _waiting(self) -> PendingRequest | None:
+        """Return the request that waits for its reply."""
+        last = self._last
+        return None if last is None or last.done else last
 
-    def take_reply(self, frame: Frame, fields: dict[str, Any], now: float) -> bool:
-        """End the plain request that waits, with the only frame that came; return whether it did.
+    def _queued(self) -> list[PendingRequest]:
+        return [p for p in self._queue if not p.done and p is not self._last]
 
-        The codec has decoded the frame as the reply. If it may be a copy of another request, the
-        caller sorts it.
-        """
-        waiting = self._turns.last
-        if waiting is None or not self._echo.sent_no_other(frame):
-            return False
-        self._replies.end(waiting, fields, now)
-        return True
+    def _drop_done(self) -> None:
+        self._queue = [pending for pending in self._queue if not pending.done]
+        if self._acks.waiting:
+            self._acks.drop_done()
 
-    def sort(self, received: Sequence[Event], fed: int, now: float) -> list[SessionEvent]:
-        """Return what events are; the framer had been fed ``fed`` bytes before theirs."""
-        self._replies.chunk_at = fed
-        return self._replies.sort(received, now)
+    def _free_times(self, now: float) -> list[tuple[PendingRequest, float]]:
+        """Return each queued request, and from when on no late reply can be mistaken for its."""
+        queued = self._queued()
+        if not self._outstanding.replies:
+            return [(pending, now) for pending in queued]
+        # Many callers may want the same.
+        alike = {pending.request.frame: pending.request for pending in queued}
+        held = {frame: self._outstanding.held_until(request) for frame, request in alike.items()}
+        known = {frame: now if until is None else until for frame, until in held.items()}
+        return [(pending, known[pending.request.frame]) for pending in queued]
+
+    def _begin(self, pending: PendingRequest, now: float) -> None:
+        """Make a queued request the one that waits."""
+        frame, offset = pending.request.frame, self._framer.fed
+        self._echo.sent(frame, offset)
+        self.alignment.sent(frame)
+        pending.begin(now, offset)
+        self._last = pending
+        self._queue.remove(pending)
+
+    def _repeat_at(self, waiting: PendingRequest) -> float:
+        """Return when the request is to be sent again; not while its copy may be its reply."""
+        if waiting.candidate is not None and not self._echo.proven:
+            return inf
+        return waiting.repeat_at
+
+    def _next_attempt(self, waiting: PendingRequest, now: float) -> bytes:
+        if not self._repeat_at(waiting) <= now < waiting.ends_by:
+            return b""
+        self._echo.sent_again()
+        waiting.repeat(now)
+        return waiting.request.frame
+
+    def _refuse_to_send(self, pending: PendingRequest, now: float) -> None:
+        """End a request: the late reply that holds it may be among the bytes not read yet."""
+        request, waited = pending.request, now - pending.queued_at
+        call = as_call(request, self._codec)
+        pending.fail(ReplyTimeout(request.command.name, waited, (NOT_SENT,), 0, call))
+        self._drop_done()
+
+    def _end_overdue_queued(self, now: float) -> None:
+        for pending, free_at in self._free_times(now):
+            if pending.ends_by <= now:
+                full: WaitedFor = "line" if self._line_is_full else "turn"
+                waited_for = "hold" if free_at > now else full
+                pending.expire(self._codec, now - pending.queued_at, 0, waited_for)
+        self._drop_done()
+
+    # What received bytes are, and how the request that waits ends by them or by silence.
+
+    def _sort(self, received: list[Event], now: float, chunk_at: int) -> list[SessionEvent]:
+        """Return what the framer's events are; the bytes received last began at ``chunk_at``."""
+        return [
+            self._take_noise(event, now)
+            if isinstance(event, Noise)
+            else self._match(event, now, now if event.offset >= chunk_at else -inf)
+            for event in received
+        ]
+
+    def _take_noise(self, noise: Noise, now: float) -> Noise:
+        """Take noise, which may be the text that a request waits for."""
+        self._echo.add_noise(noise)
+        waiting = self._waiting()
+        if waiting is not None and waiting.text is not None:
+            # A text that began before the request was sent does not belong to it.
+            waiting.text.add(noise.data[max(0, waiting.offset - noise.offset) :], now)
+        self._note(noise)
+        return noise
+
+    def _match(self, frame: Frame, now: float, began_at: float) -> SessionEvent:
+        """Find out what a frame is, whose first byte came at ``began_at`` or earlier; act on it."""
+        is_copy = self._echo.take_copy(frame)
+        waiting = self._waiting()
+        if waiting is None or not waiting.accepts(frame):
+            return self._note(self._match_other(frame, now, began_at, is_copy))
+        reply = as_reply(frame, waiting.request, self._codec.table)
+        if isinstance(reply, ProtocolError):
+            return self._reject(frame, reply, waiting, is_copy)
+        if reply is None or not (is_copy or repeats_arguments(reply, waiting.request)):
+            return self._note(self._match_other(frame, now, began_at, is_copy))
+        if not is_copy:
+            self._end(waiting, reply.fields, now)
+            return ReplyMatched(waiting.request.command, reply.fields, reply, frame)
+        # A copy that can be the reply is kept; one that cannot proves that the line echoes.
+        if repeats_arguments(reply, waiting.request):
+            waiting.keep_candidate(reply)
+        else:
+            self._echo.prove()
+        return self._note(EchoReceived(frame))
+
+    def _match_other(self, frame: Frame, now: float, began_at: float, is_copy: bool) -> FrameEvent:
+        """Find out what a frame is that does not reply to the request that waits."""
+        late = self._outstanding.find(frame, now)
+        if late is not None:
+            if late.request.command.requires_reply:
+                # It stays outstanding: this may be a copy, with the reply itself still to come.
+                return LateReply(late.request.command, frame)
+            self._outstanding.settle(late)
+        if is_copy:
+            self._acks.note_copy(frame)
+            return EchoReceived(frame)
+        ack = self._acks.match(frame, now, began_at)
+        if ack is not None:
+            return AckReceived(ack.request.command, ack.message, frame)
+        return as_event(frame, self._codec.table) or UnexpectedFrame(frame)
+
+    def _reject(
+        self, frame: Frame, error: ProtocolError, waiting: PendingRequest, is_copy: bool
+    ) -> SessionEvent:
+        """End a request with a reply of illegal values, unless the frame is something else."""
+        if is_copy:
+            self._echo.prove()
+            return self._note(EchoReceived(frame))
+        if self._outstanding.has_command(frame):
+            return self._note(UnexpectedFrame(frame))
+        if waiting.repeated:
+            self._outstanding.expect_late(waiting, 1)
+        waiting.fail(error)
+        return ReplyRejected(waiting.request.command, error, frame)
+
+    def _end(self, waiting: PendingRequest, fields: dict[str, Any], now: float) -> None:
+        """End the request that waits with its reply."""
+        if waiting.request.replier == ANYBODY:
+            # Other devices may reply too.
+            self._outstanding.expect_late(waiting, 0)
+        elif waiting.repeated:
+            self._outstanding.expect_late(waiting, 1)
+        waiting.reply(fields, now)
+
+    def _end_wait(self, waiting: PendingRequest, now: float) -> list[SessionEvent]:
+        """End the wait by silence after a text, by a copy that counts as reply, or by timeout."""
+        request = waiting.request
+        if waiting.text is not None and waiting.text.is_over(now):
+            # What waits in the framer came after the text, and does not belong to it.
+            try:
+                fields = waiting.text.decode()
+            except ProtocolError as error:
+                waiting.fail(error)
+                return [ReplyRejected(request.command, error)]
+            waiting.reply(fields, now)
+            return [ReplyMatched(request.command, fields, None)]
+        # The framer gives up what waits in it, so that a frame hidden after it still counts.
+        events = self._sort(self._framer.flush(), now, self._framer.fed)
+        if waiting.done or now < waiting.ends_at:
+            return events
+        candidate = waiting.candidate
+        if candidate is not None and not self._echo.proven:
+            self._end(waiting, candidate.fields, now)
+            return [*events, ReplyMatched(request.command, candidate.fields, candidate)]
+        return events + self._expire(waiting, now, now - waiting.requested_at)
+
+    def _expire(
+        self,
+        waiting: PendingRequest,
+        now: float,
+        waited: float,
+        waited_for: WaitedFor | None = None,
+    ) -> list[SessionEvent]:
+        """End the request that waits with a ReplyTimeout; its reply may still come."""
+        attempts = len(waiting.attempt_times)
+        self._outstanding.expect_late(waiting, 0)
+        waiting.expire(self._codec, waited, attempts, waited_for)
+        return [RequestExpired(waiting.request.command, waiting.requested_at, attempts)]
+
+    def _note(self, event: FrameEvent | Noise) -> SessionEvent:
+        """Have everybody who waits remember an event, for the text of a timeout."""
+        waiting = self._waiting()
+        if waiting is not None:
+            waiting.note(event)
+        if self._acks.waiting:
+            self._acks.note(event)
+        return event

@@ -1,11 +1,15 @@
-"""Whether a reply belongs to a request. The protocol has no sequence numbers to tell."""
+"""What a received frame can be, by pure functions. The protocol has no sequence numbers to tell."""
 
 from __future__ import annotations
+
+from contextlib import suppress
 
 from cobotwire.codec.interface import DecodedMessage, Frame
 from cobotwire.protocol.addresses import ANYBODY, SOMEBODY
 from cobotwire.protocol.errors import ProtocolError
+from cobotwire.protocol.shared import once_per_table
 from cobotwire.protocol.table import Command, Table, Variant
+from cobotwire.session.events import EventReceived
 from cobotwire.session.request import EncodedRequest
 
 
@@ -29,6 +33,23 @@ def repeats_arguments(message: DecodedMessage, request: EncodedRequest) -> bool:
     return all(request.arguments.get(name, fields[name]) == fields[name] for name in repeated)
 
 
+def as_reply(
+    frame: Frame, request: EncodedRequest, table: Table
+) -> DecodedMessage | ProtocolError | None:
+    """Return a frame of the request's command as its reply, whichever arguments it repeats.
+
+    Returns:
+        The error if the frame replies to the request with values that the edition does not allow;
+        None if it replies to something else.
+    """
+    if request.replier is not None and not can_come_from(table.frame.address(frame.data), request):
+        return None
+    try:
+        return frame.decode("reply", of=request.command.name)
+    except ProtocolError as error:
+        return None if replies_elsewhere(frame, request.command, table) else error
+
+
 def can_reply_to(frame: Frame, request: EncodedRequest) -> bool:
     """Return whether a frame is a legal reply to a request that is no longer waited for."""
     if not request.can_have_reply(frame) or frame.data == request.frame:
@@ -39,6 +60,24 @@ def can_reply_to(frame: Frame, request: EncodedRequest) -> bool:
     except ProtocolError:
         return False
     return can_come_from(message.address, request) and repeats_arguments(message, request)
+
+
+@once_per_table
+def _events(table: Table) -> dict[int, list[Command]]:
+    """Return the commands that are events, by id."""
+    events: dict[int, list[Command]] = {}
+    for command in table.commands:
+        if command.event:
+            events.setdefault(command.id, []).append(command)
+    return events
+
+
+def as_event(frame: Frame, table: Table) -> EventReceived | None:
+    """Return a frame as a message that the device sends without a request; None: it is not one."""
+    for command in _events(table).get(frame.command, ()):
+        with suppress(ProtocolError):
+            return EventReceived(command, frame.decode("reply", of=command.name), frame)
+    return None
 
 
 def replies_elsewhere(frame: Frame, command: Command, table: Table) -> bool:

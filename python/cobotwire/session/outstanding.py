@@ -3,6 +3,8 @@
 A late reply looks like the reply to the next request of the same command. So that request is held
 until the late reply is too late to come at all. It is not sent earlier, even if a late reply has
 come: some lines double replies, so the one that came may be a copy of another attempt's.
+
+What an ended session leaves outstanding on its port is persisted, for the next session there.
 """
 
 from __future__ import annotations
@@ -11,6 +13,7 @@ from collections.abc import Iterable
 from typing import NamedTuple
 
 from cobotwire.codec.interface import Frame
+from cobotwire.session.alignment import Part
 from cobotwire.session.matching import can_reply_to, replies_differ
 from cobotwire.session.pending import PendingRequest
 from cobotwire.session.request import EncodedRequest
@@ -39,11 +42,7 @@ class OutstandingReplies:
 
     def expect_late(self, pending: PendingRequest, received: int) -> None:
         """Expect a late reply to each attempt, except for the first ``received`` ones."""
-        self.add(late_replies(pending, received))
-
-    def add(self, replies: Iterable[OutstandingReply]) -> None:
-        """Expect these replies too."""
-        self.replies = (*self.replies, *replies)
+        self.replies = (*self.replies, *late_replies(pending, received))
 
     def settle(self, reply: OutstandingReply) -> None:
         """Expect a reply no longer."""
@@ -76,3 +75,36 @@ def late_replies(pending: PendingRequest, received: int) -> list[OutstandingRepl
         OutstandingReply(pending.request, sent_at + pending.policy.grace)
         for sent_at in pending.attempt_times[received:]
     ]
+
+
+class LateFrame(NamedTuple):
+    """A request that was sent; its reply may still come before the second ``until``."""
+
+    request: bytes
+    until: float
+
+
+class PersistedState(NamedTuple):
+    """Replies that may still come, and what the peer may hold of a request that was cut.
+
+    Attributes:
+        late: the requests of which replies are outstanding; times are those of the port's clock.
+        parts: every part of a request that the peer may hold.
+    """
+
+    late: tuple[LateFrame, ...] = ()
+    parts: tuple[Part, ...] = ()
+
+    @property
+    def empty(self) -> bool:
+        """Whether the line is aligned and silent."""
+        return not self.late and not self.parts
+
+
+def merged(states: Iterable[PersistedState]) -> PersistedState:
+    """Return what several sessions left on the same port."""
+    found = list(states)
+    return PersistedState(
+        tuple(late for each in found for late in each.late),
+        tuple(part for each in found for part in each.parts),
+    )

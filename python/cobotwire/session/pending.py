@@ -1,4 +1,4 @@
-"""Requests in progress: what a caller holds until the reply or acknowledgement has come."""
+"""Requests in progress, and how often each is sent: the caller's choice."""
 
 from __future__ import annotations
 
@@ -7,15 +7,72 @@ from math import inf
 from typing import Any
 
 from cobotwire.codec.interface import Codec, DecodedMessage, Frame, Noise
-from cobotwire.protocol.errors import CobotwireError, LinkError, ReplyTimeout, WaitedFor
+from cobotwire.protocol.errors import (
+    CobotwireError,
+    LinkError,
+    ReplyTimeout,
+    UsageError,
+    WaitedFor,
+)
+from cobotwire.protocol.records import record
+from cobotwire.protocol.table import Command
 from cobotwire.session.events import FrameEvent
-from cobotwire.session.policy import RetryPolicy
 from cobotwire.session.received import ReceivedMeanwhile
 from cobotwire.session.request import EncodedRequest, as_call
 from cobotwire.session.text import TextCollector
 
+# The latest reply that was seen on a real line came 727 ms after its request.
+GRACE_SECONDS = 1.0
+MOST_ATTEMPTS = 100
+
 # The fields of a reply by name, the moment before its request was written, and when it was read.
 Answer = tuple[dict[str, Any], float, float]
+
+
+def _is_number(value: object) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool)
+
+
+@record(frozen=True, slots=True)
+class RetryPolicy:
+    """Splits the ``timeout`` of a query into attempts. Only queries are ever sent again.
+
+    On real lines a reply comes within some 30 ms or never, so sending again beats waiting longer.
+    The time to reply does not change: three attempts within 500 ms are one every 167 ms.
+
+    Attributes:
+        attempts: how often a query is sent at most, 1..100; 1 never repeats it.
+        shortest_attempt: seconds that each attempt gets at least, above 0; a short timeout has
+            fewer attempts.
+        grace: seconds after an attempt during which its late reply is still expected, 0 or more.
+            A later request whose reply would look the same is held until then, even if a late reply
+            has come: it may be a copy.
+    """
+
+    attempts: int = 3
+    shortest_attempt: float = 0.1
+    grace: float = GRACE_SECONDS
+
+    def __post_init__(self) -> None:
+        """Check the values."""
+        if not _is_number(self.attempts) or self.attempts not in range(1, MOST_ATTEMPTS + 1):
+            raise UsageError("retry.attempts", self.attempts, f"a whole number 1..{MOST_ATTEMPTS}")
+        if not _is_number(self.shortest_attempt) or not 0 < self.shortest_attempt < 3600:
+            allowed = "seconds above 0 and below 3600"
+            raise UsageError("retry.shortest_attempt", self.shortest_attempt, allowed)
+        if not _is_number(self.grace) or not 0 <= self.grace < 3600:
+            raise UsageError("retry.grace", self.grace, "seconds from 0 to below 3600")
+
+    def attempts_of(self, command: Command, wait: float) -> int:
+        """Return into how many attempts the ``wait`` of a request is split.
+
+        A command that is not a query gets one. So does a text reply: two that follow each other
+        look like one longer text.
+        """
+        if command.safety != "query" or command.text is not None:
+            return 1
+        # 0.3 s are three times 0.1 s, in spite of binary fractions.
+        return max(1, min(self.attempts, int(wait / self.shortest_attempt + 1e-9)))
 
 
 class Pending:
@@ -29,10 +86,10 @@ class Pending:
 
     __slots__ = ("_error", "_fields", "_on_done", "_received", "done", "ends_by", "request")
 
-    def __init__(self, request: EncodedRequest) -> None:
+    def __init__(self, request: EncodedRequest, ends_by: float = inf) -> None:
         self.request = request
         self.done = False
-        self.ends_by = inf
+        self.ends_by = ends_by
         self._fields: dict[str, Any] = {}
         self._error: CobotwireError | None = None
         self._on_done: Callable[[], object] | None = None
@@ -83,7 +140,7 @@ class Pending:
         self.fail(ReplyTimeout(command.name, waited, received, attempts, call, waited_for))
 
     def cancel(self) -> None:
-        """End it without a word: its caller does not wait any longer."""
+        """End it without a result: its caller does not wait any longer."""
         self.done = True
 
     def _end(self) -> None:
@@ -98,6 +155,7 @@ class PendingRequest(Pending):
     Attributes:
         policy: how often it is sent.
         queued_at: when it was submitted.
+        undrained_since: since when unread bytes have kept it from being sent; inf: they have not.
         attempt_times: when it was sent; empty while it waits for its turn.
         requested_at: the moment before it was first written.
         offset: where in the received stream its reply can begin at the earliest.
@@ -109,7 +167,6 @@ class PendingRequest(Pending):
     __slots__ = (
         "_attempts",
         "_deadline",
-        "_undrained_since",
         "_wait",
         "attempt_times",
         "candidate",
@@ -119,6 +176,7 @@ class PendingRequest(Pending):
         "replied_at",
         "requested_at",
         "text",
+        "undrained_since",
     )
 
     def __init__(
@@ -130,33 +188,20 @@ class PendingRequest(Pending):
         ends_by: float = inf,
     ) -> None:
         """Queue a request; the arm has ``wait`` seconds to reply, None: those of the edition."""
-        # As the base class does: a call of its constructor takes as long as all of this.
-        self.request = request
-        self.done = False
-        self.ends_by = ends_by
-        self._fields = {}
-        self._error = None
-        self._on_done = None
-        self._received = None
+        super().__init__(request, ends_by)
         command = request.command
         self._wait = command.deadline_ms / 1000 if wait is None else wait
-        # Counted when it is first needed, while the reply is on its way.
-        self._attempts = 0
-        self._deadline = 0.0
-        self._undrained_since: float | None = None
+        self._attempts = policy.attempts_of(command, self._wait)
+        self._deadline = inf
         self.policy = policy
         self.queued_at = now
+        self.undrained_since = inf
         self.attempt_times: tuple[float, ...] = ()
         self.requested_at = 0.0
         self.offset = 0
         self.candidate: DecodedMessage | None = None
         self.text = None if command.text is None else TextCollector(command.text)
         self.replied_at: float | None = None
-
-    @property
-    def shortest_attempt(self) -> float:
-        """The least number of seconds after which it is sent again, or its wait ends."""
-        return self._wait / self.policy.attempts
 
     @property
     def ends_at(self) -> float:
@@ -167,24 +212,25 @@ class PendingRequest(Pending):
         return min(self.text.ends_at, self._deadline + self.text.silence)
 
     @property
-    def repeat_at(self) -> float | None:
-        """When it is to be sent again; None: not again.
+    def repeat_at(self) -> float:
+        """When it is to be sent again; inf: not again.
 
         An attempt that was sent late still gets its full time.
         """
         times = self.attempt_times
-        if not self._attempts:
-            self._attempts = self.policy.attempts_of(self.request.command, self._wait)
         if len(times) >= self._attempts:
-            return None
+            return inf
         at = times[-1] + self._wait / self._attempts
-        return at if at < self._deadline else None
+        return at if at < self._deadline else inf
 
-    def undrained(self, now: float) -> float:
-        """Return for how many seconds unread bytes have kept it from being sent, up to now."""
-        if self._undrained_since is None:
-            self._undrained_since = now
-        return now - self._undrained_since
+    @property
+    def repeated(self) -> bool:
+        """Whether it was sent more than once."""
+        return len(self.attempt_times) > 1
+
+    def note_undrained(self, now: float) -> None:
+        """Note that unread bytes keep it from being sent."""
+        self.undrained_since = min(self.undrained_since, now)
 
     def begin(self, now: float, offset: int) -> None:
         """Note that it is sent for the first time; its reply can begin at ``offset``."""
@@ -193,31 +239,16 @@ class PendingRequest(Pending):
         self.requested_at = now
         self.attempt_times = (now,)
 
+    def repeat(self, now: float) -> None:
+        """Note that it is sent again."""
+        self.attempt_times = (*self.attempt_times, now)
+
     def written(self, now: float) -> None:
         """Note that the last attempt was written only now."""
         *earlier, _ = self.attempt_times
         if not earlier:
             self._deadline = now + self._wait
         self.attempt_times = (*earlier, now)
-
-    @property
-    def repeated(self) -> bool:
-        """Whether it was sent more than once."""
-        return len(self.attempt_times) > 1
-
-    def repeat(self, now: float) -> None:
-        """Note that it is sent again."""
-        self.attempt_times = (*self.attempt_times, now)
-
-    def answer(self) -> Answer:
-        """Return the reply and its times.
-
-        Raises:
-            CobotwireError: the reason why there is no reply.
-        """
-        fields, replied_at = self.result(), self.replied_at
-        assert replied_at is not None, "a request without a reply has raised"
-        return fields, self.requested_at, replied_at
 
     def accepts(self, frame: Frame) -> bool:
         """Return whether a frame has its command id and began after it was sent."""
@@ -232,8 +263,14 @@ class PendingRequest(Pending):
     def reply(self, fields: dict[str, Any], now: float) -> None:
         """End it with the reply that was received at ``now``."""
         self.replied_at = now
-        # As succeed() does, in one call.
-        self._fields = fields
-        self.done = True
-        if self._on_done is not None:
-            self._on_done()
+        self.succeed(fields)
+
+    def answer(self) -> Answer:
+        """Return the reply and its times.
+
+        Raises:
+            CobotwireError: the reason why there is no reply.
+        """
+        fields, replied_at = self.result(), self.replied_at
+        assert replied_at is not None, "a request without a reply has raised"
+        return fields, self.requested_at, replied_at

@@ -27,8 +27,7 @@ class EncodedRequest(NamedTuple):
     where no reply repeats any. ``text`` follows some requests outside the frame. ``replier`` is
     the address that its reply must have, or who replies to a broadcast (ANYBODY, SOMEBODY,
     NOBODY); None if frames have no address.
-    Without ``reply_has_id`` its reply is known only by address and size. The reply to a ``plain``
-    request is any legal frame with the command's id, whatever the arguments and addresses.
+    Without ``reply_has_id`` its reply is known only by address and size.
     """
 
     command: Command
@@ -37,7 +36,6 @@ class EncodedRequest(NamedTuple):
     arguments: dict[str, Any]
     replier: int | None = None
     reply_has_id: bool = True
-    plain: bool = False
 
     def can_have_reply(self, frame: Frame) -> bool:
         """Return whether a frame can be a reply of this command, whatever its values.
@@ -106,16 +104,7 @@ class RequestEncoder:
         # Decoding our own frame gives the arguments as a reply would repeat them.
         message = self._codec.decode("request", frame, of=name) if can_repeat else None
         arguments = message.fields if message is not None else {}
-        plain = not arguments and self._replier is None and self._reply_has_id
-        request = EncodedRequest(
-            command,
-            frame,
-            b"",
-            arguments,
-            self._replier,
-            self._reply_has_id,
-            plain and command.text is None and bool(command.reply),
-        )
+        request = EncodedRequest(command, frame, b"", arguments, self._replier, self._reply_has_id)
         if not values:
             self._known[name] = request
         return request

@@ -19,7 +19,7 @@ from typing import Any, NamedTuple
 from cobotwire.protocol.errors import UsageError
 from cobotwire.protocol.messages import Request
 from cobotwire.protocol.table import Table
-from cobotwire.session.policy import RetryPolicy
+from cobotwire.session.pending import RetryPolicy
 from cobotwire.session.request import EncodedRequest
 from cobotwire.session.sample import Reading, Sample, StreamReport
 

@@ -8,23 +8,13 @@ import threading
 from collections import deque
 from collections.abc import Callable
 from contextlib import suppress
-from contextvars import copy_context
 from functools import partial
-from typing import TYPE_CHECKING, Any
 
 from cobotwire.protocol.errors import LinkError
 from cobotwire.transport import forks
-from cobotwire.transport.interface import (
-    AsyncTransport,
-    LendingTransport,
-    PollableTransport,
-    Transport,
-)
+from cobotwire.transport.interface import AsyncTransport, PollableTransport, Transport
 from cobotwire.transport.loop_readers import readers_of
 from cobotwire.transport.waiting import has_room
-
-if TYPE_CHECKING:
-    from cobotwire._native import StreamLine, StreamSlot
 
 # A write fails when no byte of it was taken for this long.
 WRITE_TIMEOUT = 1.0
@@ -48,11 +38,7 @@ def attach(transport: Transport, ready: Callable[[], None]) -> AsyncTransport:
 
 
 class PolledTransport:
-    """An :class:`AsyncTransport` that the loop watches.
-
-    Attributes:
-        readers: the descriptors that the loop reads.
-    """
+    """An :class:`AsyncTransport` that the loop watches."""
 
     def __init__(
         self, transport: PollableTransport, descriptor: int, ready: Callable[[], None]
@@ -60,11 +46,10 @@ class PolledTransport:
         self._transport = transport
         self._descriptor = descriptor
         self._loop = asyncio.get_running_loop()
-        self.readers = readers_of(self._loop)
-        self.readers.add(descriptor, ready)
-        self._context = copy_context()
+        self._readers = readers_of(self._loop)
+        self._readers.add(descriptor, ready)
         # Writes that were not taken yet, oldest first, and how much of the first one was taken.
-        self.unwritten: deque[tuple[bytes, Done]] = deque()
+        self._unwritten: deque[tuple[bytes, Done]] = deque()
         self._taken = 0
         self._progress_at = 0.0
         self._timer: asyncio.TimerHandle | None = None
@@ -77,52 +62,29 @@ class PolledTransport:
 
     def write(self, data: bytes, done: Done) -> bool:
         """Send ``data`` after what was sent before."""
-        if not self.unwritten:
+        if not self._unwritten:
             taken = self._transport.write_some(data)
             if taken == len(data):
                 return True
-            self.write_rest(data, taken, done)
-            return False
-        self.unwritten.append((data, done))
+            self._taken = taken
+            self._progress_at = self._loop.time()
+            self._loop.add_writer(self._descriptor, self._write_on)
+            self._try_later()
+        self._unwritten.append((data, done))
         return False
 
     def is_free(self) -> bool:
         """Return whether everything that was written was taken, and more may be."""
-        return not self.unwritten and has_room(self._transport)
+        return not self._unwritten and has_room(self._transport)
 
     def end_writing(self) -> None:
         """Send no more of what was written and not taken yet."""
-        if self.unwritten:
-            taken = f"only {self._taken} of {len(self.unwritten[0][0])} bytes were taken in time"
+        if self._unwritten:
+            taken = f"only {self._taken} of {len(self._unwritten[0][0])} bytes were taken in time"
             self._end_writing(LinkError(self._transport.url, f"cannot be written: {taken}"))
 
-    def write_rest(self, data: bytes, taken: int, done: Done) -> None:
-        """Send what follows the first ``taken`` bytes of ``data``; nothing else is being sent."""
-        self._taken = taken
-        self._progress_at = self._loop.time()
-        self._loop.add_writer(self._descriptor, self._write_on)
-        self._try_later()
-        self.unwritten.append((data, done))
-
-    def call_when_ready(self, ready: Callable[[], object]) -> None:
-        """Call another function when data has come, from now on.
-
-        Raises:
-            LinkError: the transport is closed.
-        """
-        self._transport.fileno()
-        self.readers.remove(self._descriptor)
-        self._context.run(self.readers.add, self._descriptor, ready)
-
-    def native(self, framer: Any) -> NativePolled | None:
-        """Return native calls for this transport and a native framer; None: there are none."""
-        transport = self._transport
-        if isinstance(transport, LendingTransport) and transport.lends:
-            return NativePolled(self, transport, framer)
-        return None
-
     def _write_on(self) -> None:
-        data, done = self.unwritten[0]
+        data, done = self._unwritten[0]
         try:
             taken = self._transport.write_some(data[self._taken :])
         except LinkError as error:
@@ -133,10 +95,10 @@ class PolledTransport:
         self._taken += taken
         if self._taken < len(data):
             return
-        self.unwritten.popleft()
+        self._unwritten.popleft()
         self._taken = 0
         done(None)
-        if not self.unwritten:
+        if not self._unwritten:
             self._end_writing(None)
 
     def _try_later(self) -> None:
@@ -146,9 +108,9 @@ class PolledTransport:
         self._timer = self._loop.call_later(TRY_SECONDS, self._try)
 
     def _try(self) -> None:
-        if self.unwritten:
+        if self._unwritten:
             self._write_on()
-        if self.unwritten:
+        if self._unwritten:
             if self._loop.time() - self._progress_at < WRITE_TIMEOUT:
                 self._try_later()
             else:
@@ -160,8 +122,8 @@ class PolledTransport:
         self._loop.remove_writer(self._descriptor)
         if self._timer is not None:
             self._timer.cancel()
-        waiting = list(self.unwritten)
-        self.unwritten.clear()
+        waiting = list(self._unwritten)
+        self._unwritten.clear()
         taken, self._taken = self._taken, 0
         for _, done in waiting:
             # Each caller raises an error of its own.
@@ -172,56 +134,13 @@ class PolledTransport:
         """Stop watching and close the transport."""
         if not self._closed:
             self._closed = True
-            self.readers.remove(self._descriptor)
+            self._readers.remove(self._descriptor)
             self._end_writing(LinkError(self._transport.url, "was closed"))
             self._transport.close()
 
     def leave_to_parent(self) -> None:
         """Leave the loop alone, whose epoll a forked child shares with its parent."""
         self._closed = True
-
-
-class NativePolled:
-    """Native calls that send a request, or read and decode a reply; none of them waits.
-
-    :mod:`cobotwire._native` says what they return.
-
-    Attributes:
-        unwritten: what was written and not taken yet.
-        write_rest: writes the rest of a request.
-        send: called with a request and its command; sends it, and reads what has come then.
-        read_reply: called with a request that was sent, and its command; reads what has come since.
-    """
-
-    def __init__(self, polled: PolledTransport, transport: LendingTransport, framer: Any) -> None:
-        """Take a native framer, and the transport that lends it its descriptor."""
-        self.unwritten = polled.unwritten
-        self.write_rest = polled.write_rest
-        self._polled, self._transport, self._framer = polled, transport, framer
-        lend_now = transport.lend_now
-        self.send: Callable[[bytes, str], Any] = partial(lend_now, framer.send)
-        self.read_reply: Callable[[bytes, str], Any] = partial(lend_now, framer.read_reply)
-
-    def stream_line(self, listeners: object, lender: object) -> StreamLine:
-        """Return what sends requests of streams, and takes what comes from now on."""
-        from cobotwire import _native
-
-        line = _native.StreamLine(self._framer, self._transport, listeners, lender)
-        self._transport.lend(waits=False, recall=line.withdraw)
-        self._polled.call_when_ready(line)
-        return line
-
-    def hand_over(self, slot: Any) -> None:
-        """Have a thread send what a slot plans next, at its moment."""
-        writer = self._polled.readers.writer()
-        if writer is not None:
-            slot.hand_over(writer)
-
-    def stream_slot(self, line: StreamLine, slots: Any) -> StreamSlot:
-        """Return what sends the requests of one stream on that line."""
-        from cobotwire import _native
-
-        return _native.StreamSlot(line, slots)
 
 
 class ThreadedTransport:

@@ -7,12 +7,10 @@ import os
 import threading
 import time
 from abc import ABC, abstractmethod
-from collections.abc import Callable
-from typing import NoReturn, TypeVar
+from typing import NoReturn
 
 from cobotwire.protocol.errors import LinkError
 from cobotwire.transport import forks
-from cobotwire.transport.interface import Loan
 from cobotwire.transport.log import Log
 from cobotwire.transport.waiting import Waiter, native_calls
 
@@ -21,8 +19,6 @@ READ_SIZE = 4096
 WRITE_SECONDS = 1.0
 # Start bit, eight data bits, stop bit.
 BITS_A_BYTE = 10
-
-T = TypeVar("T")
 
 _log = Log("cobotwire.transport")
 
@@ -45,9 +41,6 @@ class DescriptorTransport(ABC):
         self._why_closed = "it is closed"
         # -1 while it is closed, which no wait takes.
         self._descriptor = -1
-        self.loan: Loan | None = None
-        self._lent = self._lent_to_wait = False
-        self._recall: Callable[[], object] | None = None
         self._waiter = Waiter()
         self._native = native_calls()
         # Reentrant, since a signal may close the transport in the very thread that waits for it.
@@ -83,28 +76,6 @@ class DescriptorTransport(ABC):
             self._must_be_open("cannot be read", "it was closed meanwhile")
             return b""
 
-    @property
-    def lends(self) -> bool:
-        """Whether native functions can wait for the descriptor."""
-        return self._native is not None
-
-    def lend(self, *, waits: bool = True, recall: Callable[[], object] | None = None) -> None:
-        """Set ``loan``, now and whenever it is opened again."""
-        with self._reading:
-            self._recall = recall or self._recall
-            self._lent = True
-            self._lent_to_wait |= waits
-            # The alarm takes a descriptor of its own.
-            alarm = self._waiter.alarm() if self._lent_to_wait else -1
-            if not self._closed and alarm is not None:
-                reading = self._reading
-                self.loan = Loan(reading.acquire, reading.release, self._descriptor, alarm)
-
-    def lend_now(self, call: Callable[..., T], *arguments: object) -> T | None:
-        """Return the result of ``call(descriptor, -1, *arguments)``; None if it is closed."""
-        with self._reading:
-            return None if self._closed else call(self._descriptor, -1, *arguments)
-
     def _read_within(self, timeout: float) -> bytes | None:
         """Return what has come; None: nothing has. Empty bytes are the end of the data."""
         deadline = time.monotonic() + timeout
@@ -123,11 +94,6 @@ class DescriptorTransport(ABC):
             written = self._write_now(data)
             if written < len(data):
                 self._write_rest(data, written)
-
-    def finish_write(self, data: bytes, written: int) -> None:
-        """Send what follows the first ``written`` bytes of ``data``, as :meth:`write` does."""
-        with self._writing:
-            self._write_rest(data, written)
 
     def _write_rest(self, data: bytes, written: int) -> None:
         limit = write_limit(len(data), self._baudrate)
@@ -181,13 +147,10 @@ class DescriptorTransport(ABC):
     def close(self) -> None:
         """Close it; a read or write in another thread ends at once."""
         self._closed = True
-        self.loan = None
         self._waiter.wake()
         # Only when no thread waits any longer: another file may get the number of a closed
         # descriptor a moment later.
         with self._reading, self._writing:
-            if self._recall is not None:
-                self._recall()
             self._waiter.close()
             self._descriptor = -1
             self._release()
@@ -199,15 +162,12 @@ class DescriptorTransport(ABC):
             self._descriptor = self._connect()
             self._waiter = Waiter()
             self._closed, self._why_closed = False, "it is closed"
-            if self._lent:
-                self.lend(waits=self._lent_to_wait)
         _log.info("%s: opened", self.url)
 
     def leave_to_parent(self) -> None:
         """Close a forked child's copies, which the parent does not notice."""
         # Another thread of the parent may have held the locks; it does not exist here.
         self._reading, self._writing = threading.RLock(), threading.RLock()
-        self.loan = None
         if not self._closed:
             self._closed, self._why_closed = True, forks.opened_by_parent()
             self._waiter.close()

@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import NamedTuple, Protocol, TypeVar, runtime_checkable
+from typing import Protocol, runtime_checkable
 
 from cobotwire.protocol.errors import LinkError
-
-T = TypeVar("T")
 
 
 @runtime_checkable
@@ -54,59 +52,6 @@ class PollableTransport(Transport, Protocol):
         Raises:
             LinkError: the transport is gone.
         """
-        ...
-
-
-class Loan(NamedTuple):
-    """What a native call needs to use a descriptor.
-
-    While it holds the lock, no other thread can read, and none can close the descriptor.
-
-    Attributes:
-        acquire: takes the lock.
-        release: frees it.
-        descriptor: what is read and written.
-        alarm: becomes readable to end a wait.
-    """
-
-    acquire: Callable[[bool], bool]
-    release: Callable[[], None]
-    descriptor: int
-    alarm: int
-
-
-@runtime_checkable
-class LendingTransport(PollableTransport, Protocol):
-    """A transport whose descriptor a function of the native module may read and write itself."""
-
-    @property
-    def lends(self) -> bool:
-        """Whether the descriptor can be used so on this system."""
-        ...
-
-    @property
-    def loan(self) -> Loan | None:
-        """What native calls use; None: it is closed, or :meth:`lend` was not called."""
-        ...
-
-    def lend(self, *, waits: bool = True, recall: Callable[[], object] | None = None) -> None:
-        """Set :attr:`loan`, now and whenever the transport is opened again.
-
-        Without ``waits``, its alarm may be -1: native calls do not wait. ``recall`` is called
-        before the descriptor is closed.
-        """
-        ...
-
-    def lend_now(self, call: Callable[..., T], *arguments: object) -> T | None:
-        """Return the result of ``call(descriptor, -1, *arguments)``; None if it is closed.
-
-        The call does not wait. Until it returns, no other thread can read, and none can close the
-        descriptor.
-        """
-        ...
-
-    def finish_write(self, data: bytes, written: int) -> None:
-        """Send what follows the first ``written`` bytes of ``data``, as :meth:`write` does."""
         ...
 
 

@@ -12,13 +12,7 @@ import sys
 from collections.abc import Callable
 from contextlib import suppress
 from contextvars import Context, copy_context
-from typing import TYPE_CHECKING
 from weakref import WeakValueDictionary
-
-from cobotwire.transport.waiting import moment_writer
-
-if TYPE_CHECKING:
-    from cobotwire._native import MomentWriter
 
 # The loop itself watches this many descriptors: with few, each turn serves one or two of them, and
 # a second epoll costs more than it saves.
@@ -36,13 +30,6 @@ class LoopReaders:
         self._few: set[int] = set()
         self._calls: dict[int, tuple[Context, Callable[[], object]]] = {}
         self._epoll: select.epoll | None = None
-        self._writer: MomentWriter | None = None
-
-    def writer(self) -> MomentWriter | None:
-        """Return the thread that writes at moments, for all lines; None: the system has none."""
-        if self._writer is None:
-            self._writer = moment_writer()
-        return self._writer
 
     def add(self, descriptor: int, call: Callable[[], object]) -> None:
         """Have ``call`` called whenever a descriptor can be read, or is gone.

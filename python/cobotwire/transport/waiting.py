@@ -4,17 +4,11 @@ from __future__ import annotations
 
 import select
 import sys
-import threading
 from collections.abc import Callable
-from contextlib import suppress
-from types import TracebackType
-from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
+from typing import NamedTuple
 
 from cobotwire import codec as codecs
 from cobotwire.transport.alarm import Alarm, new_alarm
-
-if TYPE_CHECKING:
-    from cobotwire._native import MomentWriter
 
 # macOS's poll() refuses terminals, and Windows has none. There select() waits, which fails for
 # descriptors from this number on.
@@ -23,33 +17,15 @@ POLLS = hasattr(select, "poll")
 POLLS_TERMINALS = POLLS and sys.platform != "darwin"
 
 
-class LineLock(Protocol):
-    """The part of ``threading.Lock`` that its users need."""
-
-    def locked(self) -> bool:
-        """Whether it is held."""
-        ...
-
-    def __enter__(self) -> bool: ...
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        traceback: TracebackType | None,
-        /,
-    ) -> None: ...
-
-
 class NativeCalls(NamedTuple):
     """Functions of the native module that do what :class:`DescriptorTransport` does in Python.
 
     ``read_within(descriptor, timeout, alarm)`` waits and reads. ``write_now(descriptor, data)``
-    writes what is taken at once. ``lone_calls`` is the class that makes whole blocking calls.
+    writes what is taken at once.
     """
 
     read_within: Callable[[int, float, int], bytes | None]
     write_now: Callable[[int, bytes], int]
-    lone_calls: Callable[..., Any]
 
 
 def native_calls() -> NativeCalls | None:
@@ -58,30 +34,7 @@ def native_calls() -> NativeCalls | None:
         return None
     from cobotwire import _native
 
-    if not hasattr(_native, "MomentWriter"):
-        # The binary is older than this file; build it again for speed.
-        return None
-    return NativeCalls(_native.read_within, _native.write_now, _native.LoneCalls)
-
-
-def line_lock() -> LineLock:
-    """Return a lock for writing to a line: one that native functions can take, if there are any."""
-    if native_calls() is None:
-        return threading.Lock()
-    from cobotwire import _native
-
-    return _native.LineLock()
-
-
-def moment_writer() -> MomentWriter | None:
-    """Return a new thread that writes requests at their moments, if the native module has one."""
-    if native_calls() is not None:
-        from cobotwire import _native
-
-        # The process may have too many threads.
-        with suppress(OSError):
-            return _native.MomentWriter()
-    return None
+    return NativeCalls(_native.read_within, _native.write_now)
 
 
 def has_room(transport: object) -> bool:

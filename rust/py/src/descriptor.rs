@@ -34,7 +34,7 @@ pub fn add_to(module: &Bound<'_, PyModule>) -> PyResult<()> {
 /// Write what the system takes at once; return how many bytes that was.
 #[pyfunction]
 #[pyo3(signature = (descriptor, data, /))]
-pub fn write_now(py: Python<'_>, descriptor: RawFd, data: &[u8]) -> PyResult<usize> {
+fn write_now(py: Python<'_>, descriptor: RawFd, data: &[u8]) -> PyResult<usize> {
     let descriptor = borrow(descriptor)?;
     loop {
         match write(descriptor, data) {
@@ -50,55 +50,27 @@ pub fn write_now(py: Python<'_>, descriptor: RawFd, data: &[u8]) -> PyResult<usi
 /// nothing came within `timeout` seconds, or before `alarm` became readable.
 #[pyfunction]
 #[pyo3(signature = (descriptor, timeout, alarm, /))]
-pub fn read_within<'py>(
+fn read_within<'py>(
     py: Python<'py>,
     descriptor: RawFd,
     timeout: f64,
     alarm: RawFd,
 ) -> PyResult<Option<Bound<'py, PyBytes>>> {
     let wait = Wait::new(timeout, alarm)?;
-    let data = receive(py, borrow(descriptor)?, wait.as_ref(), |data| {
-        PyBytes::new(py, data)
-    })?;
-    Ok(data)
+    Ok(receive(py, borrow(descriptor)?, wait.as_ref())?)
 }
 
-/// Write a request if nothing has come to be read; return how many bytes the system took. 0 means that
-/// the request was not sent, perhaps because the descriptor is gone, which the next use reports.
-pub fn write_if_free(descriptor: RawFd, request: &[u8]) -> PyResult<usize> {
-    let descriptor = borrow(descriptor)?;
-    Ok(match can_be_read(descriptor) {
-        Ok(false) => write(descriptor, request).unwrap_or(0),
-        _ => 0,
-    })
-}
-
-/// Return what `take` makes of what has come by now; None if nothing has, or the read failed.
-pub fn read_now<T>(
-    py: Python<'_>,
-    descriptor: RawFd,
-    take: impl FnOnce(&[u8]) -> T,
-) -> PyResult<Option<T>> {
-    match receive(py, borrow(descriptor)?, None, take) {
-        Ok(taken) => Ok(taken),
-        // The next read fails in the same way, and reports it.
-        Err(Fault::System(_)) => Ok(None),
-        Err(Fault::Handler(error)) => Err(error),
-    }
-}
-
-/// Return what `take` makes of what has come, as soon as there is something.
-fn receive<T>(
-    py: Python<'_>,
+/// Return what has come, as soon as there is something.
+fn receive<'py>(
+    py: Python<'py>,
     descriptor: BorrowedFd<'_>,
     wait: Option<&Wait<'_>>,
-    take: impl FnOnce(&[u8]) -> T,
-) -> Result<Option<T>, Fault> {
+) -> Result<Option<Bound<'py, PyBytes>>, Fault> {
     let mut space = [MaybeUninit::uninit(); READ_SIZE];
     // A terminal without data reads as if the data had ended, so it is read only when it is ready.
     while is_ready(py, descriptor, wait)? {
         match read(descriptor, &mut space) {
-            Ok((data, _)) => return Ok(Some(take(data))),
+            Ok((data, _)) => return Ok(Some(PyBytes::new(py, data))),
             // Another reader was faster.
             Err(Errno::AGAIN) if wait.is_some() => (),
             Err(Errno::AGAIN) => break,
@@ -157,13 +129,13 @@ fn is_ready(
 }
 
 /// Return whether a descriptor can be read now, or is gone.
-pub fn can_be_read(descriptor: BorrowedFd<'_>) -> Result<bool, Errno> {
+fn can_be_read(descriptor: BorrowedFd<'_>) -> Result<bool, Errno> {
     let mut polled = [PollFd::from_borrowed_fd(descriptor, PollFlags::IN)];
     poll(&mut polled, Some(&AT_ONCE)).map(|count| count > 0)
 }
 
 /// Return the descriptor with that number.
-pub fn borrow<'fd>(number: RawFd) -> PyResult<BorrowedFd<'fd>> {
+fn borrow<'fd>(number: RawFd) -> PyResult<BorrowedFd<'fd>> {
     if number < 0 {
         return Err(failed(Errno::BADF));
     }

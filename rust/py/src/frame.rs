@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use cobotwire_core::{DecodeError, Direction, Frame, Listening, OwnedFrame, Rules, VariantId};
 use pyo3::prelude::*;
-use pyo3::types::{PyBytes, PyDict, PyTuple};
+use pyo3::types::{PyBytes, PyTuple};
 
 use crate::edition::Edition;
 use crate::names::Names;
@@ -101,29 +101,6 @@ impl NativeFrame {
             values: objects(py, &decoded.values)?,
             address: decoded.address,
         }))
-    }
-
-    /// Return the fields of the reply of a command that it is; None if it is not a legal one.
-    pub fn fields_of<'py>(
-        &self,
-        py: Python<'py>,
-        of: &Bound<'py, PyAny>,
-    ) -> PyResult<Option<Bound<'py, PyDict>>> {
-        let Edition {
-            table,
-            core,
-            commands,
-            ..
-        } = &*self.origin.get().edition;
-        let of = commands.find(table, of)?;
-        let rules = core.rules(Listening::To(Direction::Reply));
-        match self.decoded(py, rules, Some(of))? {
-            Ok(message) => {
-                let edition = &self.origin.get().edition;
-                edition.fields(message.variant, &message.values).map(Some)
-            }
-            Err(_) => Ok(None),
-        }
     }
 
     /// Return the message, as Python's named tuple.

@@ -91,7 +91,7 @@ pub fn object<'py>(
 
 /// Return the frame that an object is; None if it is something else.
 #[inline]
-pub fn frame<'a>(object: &'a Bound<'_, PyAny>) -> Option<&'a NativeFrame> {
+fn frame<'a>(object: &'a Bound<'_, PyAny>) -> Option<&'a NativeFrame> {
     let class = CLASS.get(object.py())?;
     // The class has no subclasses.
     if !object

@@ -6,8 +6,6 @@ use cobotwire_core::{Framer, Reason, Tally};
 use pyo3::prelude::*;
 use pyo3::types::{PyByteArray, PyBytes, PyDict, PyList};
 
-#[cfg(unix)]
-use crate::descriptor::{read_now, write_if_free};
 use crate::events::Events;
 use crate::frame::{NativeFrame, Origin};
 use crate::frame_class;
@@ -81,53 +79,6 @@ impl NativeFramer {
         events.finish()
     }
 
-    /// Send a request if nothing has come, and read what has come then, without waiting. Return
-    /// None if nothing was sent, or how many bytes were taken if these are not all.
-    #[cfg(unix)]
-    #[pyo3(signature = (descriptor, alarm, request, of, /))]
-    fn send<'py>(
-        slf: &Bound<'py, Self>,
-        descriptor: i32,
-        alarm: i32,
-        request: &[u8],
-        of: &Bound<'py, PyAny>,
-    ) -> PyResult<Option<Bound<'py, PyAny>>> {
-        let py = slf.py();
-        let written = write_if_free(descriptor, request)?;
-        if written == 0 {
-            return Ok(None);
-        }
-        if written < request.len() {
-            return Ok(Some(written.into_pyobject(py)?.into_any()));
-        }
-        let found = Self::read_reply(slf, descriptor, alarm, request, of)?;
-        Ok(Some(found.unwrap_or_else(|| PyList::empty(py).into_any())))
-    }
-
-    /// Read what has come to a line, and feed it, in one call.
-    /// Return None if nothing has come, or the data has ended, which the next read reports.
-    #[cfg(unix)]
-    #[pyo3(signature = (descriptor, alarm, request, of, /))]
-    fn read_reply<'py>(
-        slf: &Bound<'py, Self>,
-        descriptor: i32,
-        alarm: i32,
-        request: &[u8],
-        of: &Bound<'py, PyAny>,
-    ) -> PyResult<Option<Bound<'py, PyAny>>> {
-        let _ = alarm;
-        let py = slf.py();
-        let take = |data: &[u8]| match data {
-            [] => Ok(None),
-            _ => slf
-                .get()
-                .take_reply(py, data, request, of)?
-                .into_pyobject(py)
-                .map(Some),
-        };
-        read_now(py, descriptor, take)?.unwrap_or(Ok(None))
-    }
-
     /// The number of bytes fed that no event covers yet.
     #[getter]
     fn pending(&self) -> usize {
@@ -136,7 +87,7 @@ impl NativeFramer {
 
     /// The number of bytes fed since the start of the stream.
     #[getter]
-    pub fn fed(&self) -> u64 {
+    fn fed(&self) -> u64 {
         self.core().tally().bytes
     }
 
@@ -145,52 +96,6 @@ impl NativeFramer {
     fn counters<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let tally = self.core().tally().clone();
         counters(py, &tally)
-    }
-}
-
-impl NativeFramer {
-    /// Feed what came after a request. Return the frame and its fields if all of it is one frame
-    /// that replies to the command `of` and is no copy of the request; otherwise the events.
-    pub fn take_reply<'py>(
-        &self,
-        py: Python<'py>,
-        data: &[u8],
-        request: &[u8],
-        of: &Bound<'py, PyAny>,
-    ) -> PyResult<Taken<'py>> {
-        let mut events = Events::new(py, &self.origin)?;
-        let whole = {
-            let mut core = self.core();
-            let empty = core.pending() == 0;
-            core.feed(data, |event| events.add(event));
-            empty && core.pending() == 0 && data != request
-        };
-        let events = events.finish()?;
-        if whole && events.len() == 1 {
-            let event = events.get_item(0)?;
-            if let Some(frame) = frame_class::frame(&event)
-                && let Some(fields) = frame.fields_of(py, of)?
-            {
-                return Ok(Taken::Reply(event, fields.into_any()));
-            }
-        }
-        Ok(Taken::Events(events))
-    }
-}
-
-/// What came after a request.
-pub enum Taken<'py> {
-    /// The reply alone, and its fields.
-    Reply(Bound<'py, PyAny>, Bound<'py, PyAny>),
-    Events(Bound<'py, PyList>),
-}
-
-impl<'py> Taken<'py> {
-    fn into_pyobject(self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        Ok(match self {
-            Self::Reply(frame, fields) => (frame, fields).into_pyobject(py)?.into_any(),
-            Self::Events(events) => events.into_any(),
-        })
     }
 }
 

@@ -23,26 +23,13 @@ mod frame_class;
 mod framer;
 mod given;
 mod interpreter;
-#[cfg(unix)]
-mod lone;
 mod memory;
-#[cfg(unix)]
-mod moments;
 mod names;
 mod objects;
 mod once;
 mod parts;
 mod plain;
-#[cfg(unix)]
-mod session;
-#[cfg(unix)]
-mod stream_exchange;
-mod stream_line;
-mod stream_plan;
-mod stream_slot;
 mod survey;
-#[cfg(unix)]
-mod swap;
 mod values;
 mod words;
 
@@ -62,14 +49,7 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<survey::NativeSurvey>()?;
     module.add_class::<framer::NativeFramer>()?;
     #[cfg(unix)]
-    {
-        descriptor::add_to(module)?;
-        module.add_class::<swap::LineLock>()?;
-        module.add_class::<lone::LoneCalls>()?;
-        module.add_class::<moments::MomentWriter>()?;
-        module.add_class::<stream_line::StreamLine>()?;
-        module.add_class::<stream_slot::StreamSlot>()?;
-    }
+    descriptor::add_to(module)?;
     #[cfg(target_os = "linux")]
     module.add_class::<alarm_clock::AlarmClock>()?;
     Ok(())
