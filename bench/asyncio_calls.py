@@ -39,7 +39,7 @@ while True:
 """
 TURNS, CALLS, WARM_UP = 8, 3000, 20
 # Of 10 arms against bare asyncio.
-LIMIT = 3.0
+LIMIT = 2.5
 
 
 class _Arm(Protocol):

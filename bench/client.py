@@ -52,6 +52,7 @@ Call = Callable[[], object]
 TURNS, CALLS, WARM_UP = 40, 50, 5
 SETTERS = 1000
 FASTEST_BAUD = 1_000_000
+# That of blocking calls holds where the floor takes more than 30 us.
 LIMITS = {"blocking": 1.35, "asyncio": 3.0, "simulated arm": 3.0}
 TIMES_FASTER = 5.0
 # The layer with the maker's names against the client that it calls.

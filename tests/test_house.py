@@ -141,6 +141,26 @@ def test_native_classes_are_never_borrowed_mutably() -> None:
         assert "try_borrow" not in text, path
 
 
+def test_native_module_knows_nothing_of_the_exchange() -> None:
+    # The Python session alone owns an exchange. A native call that reads or sets its attributes
+    # would be a second owner.
+    stub = (PACKAGE / "_native.pyi").read_text("utf-8")
+    assert set(re.findall(r"^from cobotwire\.(\w+)", stub, re.MULTILINE)) <= set(ROOMS[:3])
+    exchanging, others = (
+        {
+            name
+            for room in rooms
+            for path in (PACKAGE / room).rglob("*.py")
+            for name in re.findall(r"\b(?:self\.|def )(\w+)", path.read_text("utf-8"))
+        }
+        for rooms in (("transport", "session", "client"), ROOMS[:3])
+    )
+    named = re.compile(r"(?:intern!\(\w+, |attr\(|call_method[01]?\()\"(\w+)\"")
+    for path in (vectors.ROOT / "rust" / "py" / "src").rglob("*.rs"):
+        used = set(named.findall(path.read_text("utf-8")))
+        assert not used & (exchanging - others), path
+
+
 def test_importing_the_package_loads_no_extra() -> None:
     script = (
         "import sys, cobotwire\n"

@@ -32,10 +32,6 @@ LEFT_OUT = re.compile(
 # Texts that differ between the two clients; each is in exactly one file.
 PASSAGES = [
     (
-        "done = await self._connection.request(encoded, retry, wait)\n        return request.result_of(done.result())",
-        "return request.result_of(self._connection.call(encoded, retry, wait))",
-    ),
-    (
         '"""The asyncio client."""',
         '"""The blocking client."""',
     ),

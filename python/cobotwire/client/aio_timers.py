@@ -37,6 +37,10 @@ class Timed:
         self.call = call
         self.moment = inf
 
+    def plan(self, moment: float) -> None:
+        """Note when it is called, and at no other moment."""
+        self.moment = moment
+
     def cancel(self) -> None:
         """Do not call it, unless it was called."""
         self.moment = inf
@@ -57,7 +61,7 @@ class LoopTimers:
 
     def set(self, timed: Timed, moment: float) -> None:
         """Make a call at a moment, and at no other; soon if the moment has passed."""
-        timed.moment = moment
+        timed.plan(moment)
         heappush(self._waiting, (moment, next(self._numbers), timed))
         if moment < self._wakes_at:
             self._wake_at(moment)
@@ -82,7 +86,7 @@ class LoopTimers:
             while waiting and waiting[0][0] <= now:
                 moment, _, timed = heappop(waiting)
                 if timed.moment == moment:
-                    timed.moment = inf
+                    timed.cancel()
                     timed.call()
         finally:
             pause = min(SECONDS_FOR_EACH * len(waiting), LONGEST_SECONDS)

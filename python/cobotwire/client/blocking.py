@@ -348,7 +348,8 @@ class Client:
         _, wait, retry = self._settings
         if longest is not None:
             wait = self._settings.at_most(longest, encoded.command)
-        return request.result_of(self._connection.call(encoded, retry, wait))
+        done = self._connection.request(encoded, retry, wait)
+        return request.result_of(done.result())
 
     def _send(
         self,

@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 from math import inf
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from cobotwire.client.leading import CHECK_SECONDS
 from cobotwire.client.opening import PortOpener
@@ -79,20 +79,10 @@ class Connection:
             pending.result()
             return
         try:
-            if steps.leading.leads():
+            if steps.leading.take_lead():
                 steps.drain(now + DRAIN_SECONDS)
         finally:
             steps.leading.resign()
-
-    def call(
-        self, request: EncodedRequest, policy: RetryPolicy, wait: float | None
-    ) -> dict[str, Any]:
-        """Send a request, and return the fields of its reply.
-
-        Raises:
-            CobotwireError: the reason why there is no reply.
-        """
-        return self.request(request, policy, wait).result()
 
     def request(
         self, request: EncodedRequest, policy: RetryPolicy, wait: float | None
@@ -130,7 +120,7 @@ class Connection:
         steps, until = self._steps, self.now() + seconds
         while (left := until - self.now()) > 0 and not (done and done()):
             try:
-                leads = steps.leading.leads()
+                leads = steps.leading.take_lead()
                 if leads:
                     steps.turn(min(left, SLICE_SECONDS))
             finally:

@@ -32,7 +32,7 @@ class Leading:
         self.turns = 0
         self.followers: list[threading.Lock] = []
 
-    def leads(self) -> bool:
+    def take_lead(self) -> bool:
         """Return whether this thread leads; it does from now on if no other one does."""
         me = threading.get_ident()
         if self.leader != me:

@@ -72,13 +72,13 @@ class Steps:
         """Queue a request; send it at once if nothing else is under way, after what has come."""
         with self.state:
             self.exchange.enqueue(pending)
-        if self.leading.leads():
+        if self.leading.take_lead():
             self.turn(0.0, pending.ends_by)
 
     def wait(self, pending: Pending) -> None:
         """Lead or follow until a request is done."""
         while not pending.done:
-            if self.leading.leads():
+            if self.leading.take_lead():
                 self.turn(SLICE_SECONDS, pending.ends_by)
             elif (left := pending.ends_by - self.now()) > 0:
                 self.leading.follow(pending, left)
@@ -133,10 +133,11 @@ class Steps:
             events = exchange.advance(data, now)
             has_next = exchange.has_next(now)
         if has_next:
-            if not self.writer.is_free():
+            free = self.writer.is_free()
+            if not free:
                 # The line is full, or another thread writes. Deadlines go on meanwhile.
                 time.sleep(TURN_SECONDS)
-            free = self.writer.is_free()
+                free = self.writer.is_free()
             exchange.note_full(not free)
             if free:
                 self._send_request(not data, ends_by)

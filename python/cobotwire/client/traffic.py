@@ -60,14 +60,6 @@ class TrafficListeners:
         self._url = url
         self._now = now
 
-    @property
-    def silent(self) -> bool:
-        """Whether frames are reported to nobody: there is no listener, and no log of frames."""
-        if self.listeners:
-            return False
-        logger = self._logger or self._found()
-        return logger is None or not logger.isEnabledFor(DEBUG)
-
     def add(self, listener: TrafficListener) -> Callable[[], None]:
         """Call this listener too, until the function that is returned is called."""
         self.listeners = (*self.listeners, listener)

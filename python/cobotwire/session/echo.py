@@ -84,5 +84,7 @@ class EchoDetector:
         Each sending has one copy; one that comes beyond that is the arm's own frame.
         """
         self._noise = b""
-        both = (self._request, self._one_way)
-        return any(sent is not None and sent.take(frame) for sent in both)
+        request, one_way = self._request, self._one_way
+        if request is not None and request.take(frame):
+            return True
+        return one_way is not None and one_way.take(frame)

@@ -203,8 +203,10 @@ class Exchange:
         """End the requests of callers that wait no longer; return what happened to a sent one."""
         if self._acks.waiting:
             self._acks.wake(now, self._echo.proven)
-        if self._queue and any(pending.ends_by <= now for pending in self._queue):
-            self._end_overdue_queued(now)
+        for pending in self._queue:
+            if pending.ends_by <= now:
+                self._end_overdue_queued(now)
+                break
         waiting = self._waiting()
         if waiting is None or waiting.ends_by > now:
             return []
@@ -293,9 +295,9 @@ class Exchange:
 
     def _free_times(self, now: float) -> list[tuple[PendingRequest, float]]:
         """Return each queued request, and from when on no late reply can be mistaken for its."""
-        queued = self._queued()
         if not self._outstanding.replies:
-            return [(pending, now) for pending in queued]
+            return [(p, now) for p in self._queue if not p.done and p is not self._last]
+        queued = self._queued()
         # Many callers may want the same.
         alike = {pending.request.frame: pending.request for pending in queued}
         held = {frame: self._outstanding.held_until(request) for frame, request in alike.items()}
@@ -372,8 +374,9 @@ class Exchange:
         if reply is None or not (is_copy or repeats_arguments(reply, waiting.request)):
             return self._note(self._match_other(frame, now, began_at, is_copy))
         if not is_copy:
-            self._end(waiting, reply.fields, now)
-            return ReplyMatched(waiting.request.command, reply.fields, reply, frame)
+            fields = reply.fields
+            self._end(waiting, fields, now)
+            return ReplyMatched(waiting.request.command, fields, reply, frame)
         # A copy that can be the reply is kept; one that cannot proves that the line echoes.
         if repeats_arguments(reply, waiting.request):
             waiting.keep_candidate(reply)

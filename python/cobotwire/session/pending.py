@@ -72,7 +72,8 @@ class RetryPolicy:
         if command.safety != "query" or command.text is not None:
             return 1
         # 0.3 s are three times 0.1 s, in spite of binary fractions.
-        return max(1, min(self.attempts, int(wait / self.shortest_attempt + 1e-9)))
+        fitting = int(wait / self.shortest_attempt + 1e-9) or 1
+        return fitting if fitting < self.attempts else self.attempts
 
 
 class Pending:
