@@ -1,23 +1,27 @@
 //! Which interpreter the module may be loaded in.
 
-#![allow(unsafe_code)] // PyO3 has no safe function for the interpreter's id
-
 use pyo3::exceptions::PyImportError;
-use pyo3::ffi;
 use pyo3::prelude::*;
-
-/// The id that CPython gives to the interpreter that starts the process.
-const MAIN: i64 = 0;
 
 /// Fail in a subinterpreter. The classes here, and the Python objects of `Names`, exist once in a
 /// process: in another interpreter their errors would be of foreign classes, which no `except`
-/// there catches.
-pub fn check_main(_: Python<'_>) -> PyResult<()> {
-    // SAFETY: this thread is attached to an interpreter, which the argument proves.
-    let id = unsafe { ffi::PyInterpreterState_GetID(ffi::PyInterpreterState_Get()) };
-    if id == MAIN {
+/// there catches. PyO3 itself accepts the first interpreter that loads the module, whichever it is.
+pub fn check_main(py: Python<'_>) -> PyResult<()> {
+    if is_main(py)? {
         return Ok(());
     }
     let text = "cobotwire._native works only in the main interpreter";
     Err(PyImportError::new_err(text))
+}
+
+fn is_main(py: Python<'_>) -> PyResult<bool> {
+    let module = py.import("_interpreters");
+    // Its name before CPython 3.13.
+    let module = module.or_else(|_| py.import("_xxsubinterpreters"));
+    let Ok(interpreters) = module else {
+        // This Python has no function that makes subinterpreters.
+        return Ok(true);
+    };
+    let [main, current] = ["get_main", "get_current"].map(|name| interpreters.call_method0(name));
+    main?.eq(current?)
 }
