@@ -3,10 +3,7 @@
 //! Reading these runs no code of the caller's. So it may stop anywhere, and `given` may read the
 //! same values again, to convert others or to name the mistake.
 
-#![allow(unsafe_code)] // the items of a list are borrowed, which saves half of the calls
-
 use cobotwire_core::{Direction, Exact, LONGEST_PLAIN, Place, Table, encode_plain};
-use pyo3::ffi;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyFloat, PyInt, PyList, PyTuple};
 
@@ -22,28 +19,24 @@ pub fn encode<'py>(
         Some(index) if index.is_exact_instance_of::<PyInt>() => Some(index.extract().ok()?),
         Some(_) => return None,
     };
-    let values = Items::of(values.as_borrowed())?;
-    let mut row = values;
+    let mut row = None;
     let number = |place| match place {
-        Place::Alone(index) => exact(values.get(index)?),
+        Place::Alone(index) => exact(&item(values, index)?),
         Place::First(index, count) => {
-            row = Items::of(values.get(index)?)?;
-            if row.count == count {
-                exact(row.get(0)?)
-            } else {
-                None
-            }
+            let row = row.insert(item(values, index)?);
+            (length(row)? == count).then_some(())?;
+            exact(&item(row, 0)?)
         }
-        Place::Next(index) => exact(row.get(index)?),
+        Place::Next(index) => exact(&item(row.as_ref()?, index)?),
     };
     let mut space = [0; LONGEST_PLAIN];
-    let fields = (values.count, variant);
+    let fields = (length(values)?, variant);
     let frame = encode_plain(table, command, direction, fields, &mut space, number)?;
-    Some(PyBytes::new(values.owner.py(), frame))
+    Some(PyBytes::new(values.py(), frame))
 }
 
 #[inline]
-fn exact(value: Borrowed<'_, '_, PyAny>) -> Option<Exact> {
+fn exact(value: &Bound<'_, PyAny>) -> Option<Exact> {
     if value.is_exact_instance_of::<PyFloat>() {
         let float = value.cast_exact::<PyFloat>().ok()?;
         Some(Exact::Real(float.value()))
@@ -54,44 +47,21 @@ fn exact(value: Borrowed<'_, '_, PyAny>) -> Option<Exact> {
     }
 }
 
-/// The items of an exact tuple or list.
-#[derive(Clone, Copy)]
-struct Items<'a, 'py> {
-    owner: Borrowed<'a, 'py, PyAny>,
-    count: usize,
-    get: unsafe extern "C" fn(*mut ffi::PyObject, ffi::Py_ssize_t) -> *mut ffi::PyObject,
+/// Return the number of items of an exact tuple or list; None for other objects.
+fn length(items: &Bound<'_, PyAny>) -> Option<usize> {
+    if items.is_exact_instance_of::<PyTuple>() {
+        Some(items.cast_exact::<PyTuple>().ok()?.len())
+    } else {
+        Some(items.cast_exact::<PyList>().ok()?.len())
+    }
 }
 
-impl<'a, 'py> Items<'a, 'py> {
-    #[inline]
-    fn of(owner: Borrowed<'a, 'py, PyAny>) -> Option<Self> {
-        // SAFETY: each function is called with an object of its class.
-        let (size, get) = if owner.is_exact_instance_of::<PyList>() {
-            let size = unsafe { ffi::PyList_Size(owner.as_ptr()) };
-            (size, ffi::PyList_GetItem as _)
-        } else if owner.is_exact_instance_of::<PyTuple>() {
-            let size = unsafe { ffi::PyTuple_Size(owner.as_ptr()) };
-            (size, ffi::PyTuple_GetItem as _)
-        } else {
-            return None;
-        };
-        let count = usize::try_from(size).ok()?;
-        Some(Self { owner, count, get })
-    }
-
-    /// Return an item; None if there are fewer.
-    #[inline]
-    fn get(&self, index: usize) -> Option<Borrowed<'a, 'py, PyAny>> {
-        if index >= self.count {
-            return None; // without Python's error
-        }
-        // SAFETY: `get` is the function of the owner's class, and the index is within the size. The
-        // owner keeps the item alive as long as it does not change, and nothing changes it: the
-        // interpreter's lock is held, and `encode` runs no code of Python's, not even a destructor,
-        // before it has used all items.
-        unsafe {
-            let item = (self.get)(self.owner.as_ptr(), index as ffi::Py_ssize_t);
-            Borrowed::from_ptr_or_opt(self.owner.py(), item)
-        }
+/// Return an item of an exact tuple or list, if it has as many.
+#[inline]
+fn item<'py>(items: &Bound<'py, PyAny>, index: usize) -> Option<Bound<'py, PyAny>> {
+    if items.is_exact_instance_of::<PyTuple>() {
+        items.cast_exact::<PyTuple>().ok()?.get_item(index).ok()
+    } else {
+        items.cast_exact::<PyList>().ok()?.get_item(index).ok()
     }
 }
