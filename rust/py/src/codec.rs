@@ -150,7 +150,7 @@ impl NativeCodec {
             rules,
             direction,
         };
-        NativeFramer::new(listening.py(), origin)
+        Ok(NativeFramer::new(origin))
     }
 
     /// Return the positions of the frames of a whole stream.

@@ -1,95 +1,59 @@
 //! Converts the core's events to Python's `Frame` and `Noise`.
 
-use cobotwire_core::{Event, Frame, Reason};
+use std::sync::Arc;
+
+use cobotwire_core::{Event, OwnedFrame, Reason};
 use pyo3::prelude::*;
-use pyo3::types::{PyBytes, PyList, PyType};
+use pyo3::types::{PyBytes, PyList};
 
 use crate::frame::{NativeFrame, Origin};
-use crate::frame_class::{class, object};
 use crate::names::Names;
 
-/// Collects the events of one call.
+/// Events that are not yet Python's objects.
 ///
-/// The framer is locked while they come, so `add` runs no code of Python's. A frame is an object
-/// without a header for the garbage collector, and is made at once. Noise is a tuple: to make one can
-/// start a collection, which may run any code. So `finish` makes it.
-pub struct Events<'py, 'a> {
-    names: &'static Names,
-    origin: &'a Py<Origin>,
-    frames: &'py Bound<'py, PyType>,
-    list: Bound<'py, PyList>,
-    noise: Vec<Noise<'py>>,
-    failed: Option<PyErr>,
+/// The framer is locked while they come, and making an object can start a collection of garbage,
+/// which may run any code of Python's. So the objects are made afterwards.
+#[derive(Default)]
+pub struct Events(Vec<Found>);
+
+enum Found {
+    Frame(u64, OwnedFrame),
+    Noise(u64, Reason, Vec<u8>),
 }
 
-/// Noise that `finish` puts into the list.
-struct Noise<'py> {
-    place: usize,
-    offset: u64,
-    reason: Reason,
-    bytes: Bound<'py, PyBytes>,
-}
-
-impl<'py, 'a> Events<'py, 'a> {
-    pub fn new(py: Python<'py>, origin: &'a Py<Origin>) -> PyResult<Self> {
-        Ok(Self {
-            names: Names::get(py)?,
-            origin,
-            frames: class(py)?,
-            list: PyList::empty(py),
-            noise: Vec::new(),
-            failed: None,
-        })
-    }
-
-    /// Add an event. `finish` returns a failure, so that the framer always completes its call.
+impl Events {
+    #[inline]
     pub fn add(&mut self, event: Event<'_>) {
-        let added = match event {
-            Event::Frame { offset, frame } => self.add_frame(offset, frame),
+        self.0.push(match event {
+            Event::Frame { offset, frame } => Found::Frame(offset, frame.into()),
             Event::Noise {
                 offset,
                 reason,
                 data,
-            } => self.add_noise(offset, reason, data),
-        };
-        if let Err(error) = added {
-            self.failed.get_or_insert(error);
-        }
-    }
-
-    /// Return all events, or the first failure.
-    pub fn finish(self) -> PyResult<Bound<'py, PyList>> {
-        if let Some(error) = self.failed {
-            return Err(error);
-        }
-        let py = self.list.py();
-        for noise in self.noise {
-            let reason = self.names.reason(py, noise.reason);
-            let items = (noise.offset, noise.bytes, reason).into_pyobject(py)?;
-            let event = self.names.make(&self.names.noise, items)?;
-            self.list.set_item(noise.place, event)?;
-        }
-        Ok(self.list)
-    }
-
-    fn add_frame(&self, offset: u64, frame: Frame<'_>) -> PyResult<()> {
-        let origin = || self.origin.clone_ref(self.list.py());
-        let frame = object(self.frames, || NativeFrame::new(origin(), offset, frame))?;
-        self.list.append(frame)
-    }
-
-    fn add_noise(&mut self, offset: u64, reason: Reason, data: [&[u8]; 2]) -> PyResult<()> {
-        let py = self.list.py();
-        let bytes = match data {
-            [all, []] | [[], all] => PyBytes::new(py, all),
-            pieces => PyBytes::new(py, &pieces.concat()),
-        };
-        self.noise.push(Noise {
-            place: self.list.len(),
-            offset,
-            reason,
-            bytes,
+            } => Found::Noise(offset, reason, data.concat()),
         });
-        self.list.append(py.None())
+    }
+
+    /// Return a list of all events, as Python's objects.
+    pub fn into_list<'py>(
+        self,
+        py: Python<'py>,
+        origin: &Arc<Origin>,
+    ) -> PyResult<Bound<'py, PyList>> {
+        let list = PyList::empty(py);
+        for event in self.0 {
+            match event {
+                Found::Frame(offset, frame) => {
+                    let frame = NativeFrame::new(Arc::clone(origin), offset, frame);
+                    list.append(frame.into_object(py)?)?;
+                }
+                Found::Noise(offset, reason, data) => {
+                    let names = Names::get(py)?;
+                    let items = (offset, PyBytes::new(py, &data), names.reason(py, reason));
+                    list.append(names.make(&names.noise, items.into_pyobject(py)?)?)?;
+                }
+            }
+        }
+        Ok(list)
     }
 }

@@ -7,14 +7,12 @@ use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyTuple};
 
 use crate::edition::Edition;
+use crate::memory::untrack;
 use crate::names::Names;
-use crate::once::Once;
 use crate::values::{objects, plain_objects};
 use crate::words::one_way;
 
-/// The data that all frames of one framer share. Python counts its references, since that is faster
-/// than counting them for several threads at once.
-#[pyclass(frozen, module = "cobotwire._native")]
+/// The data that all frames of one framer share.
 pub struct Origin {
     pub edition: Arc<Edition>,
     pub rules: Rules,
@@ -22,14 +20,15 @@ pub struct Origin {
     pub direction: Direction,
 }
 
-/// A whole, legal frame; `frame_class` has its Python class.
+/// A whole, legal frame. It is decoded anew at each use: most programs use a frame once, and keeping
+/// its values takes longer than decoding them.
+#[pyclass(frozen, module = "cobotwire._native")]
 pub struct NativeFrame {
-    origin: Py<Origin>,
+    origin: Arc<Origin>,
     /// The position of its first byte in the stream.
-    pub offset: u64,
+    #[pyo3(get)]
+    offset: u64,
     frame: OwnedFrame,
-    /// Its values, if they were used more than once, or take long to decode.
-    values: Once,
 }
 
 /// What a frame says.
@@ -41,17 +40,24 @@ struct Message<'py> {
 
 impl NativeFrame {
     #[inline]
-    pub fn new(origin: Py<Origin>, offset: u64, frame: Frame<'_>) -> Self {
+    pub fn new(origin: Arc<Origin>, offset: u64, frame: OwnedFrame) -> Self {
         Self {
             origin,
             offset,
-            frame: frame.into(),
-            values: Once::new(),
+            frame,
         }
     }
 
+    /// Return it as a Python object that the garbage collector does not visit. A visit would find
+    /// nothing, since the class does not report what a frame refers to.
+    pub fn into_object(self, py: Python<'_>) -> PyResult<Bound<'_, Self>> {
+        let object = Bound::new(py, self)?;
+        untrack(&object);
+        Ok(object)
+    }
+
     fn frame(&self) -> Frame<'_> {
-        self.frame.get(self.origin.get().edition.core.frame())
+        self.frame.get(self.origin.edition.core.frame())
     }
 
     /// Decode it in one direction, or in those that the framer listens to. With `of`, only messages
@@ -62,10 +68,10 @@ impl NativeFrame {
         direction: Option<Direction>,
         of: Option<usize>,
     ) -> PyResult<Message<'py>> {
-        let Origin { edition, rules, .. } = self.origin.get();
+        let Origin { edition, rules, .. } = &*self.origin;
         let rules = direction.map_or(rules, |way| edition.core.rules(Listening::To(way)));
         self.decoded(py, rules, of)?.map_err(|error| {
-            let direction = direction.unwrap_or(self.origin.get().direction);
+            let direction = direction.unwrap_or(self.origin.direction);
             match Names::get(py) {
                 Ok(names) => {
                     let direction = names.direction(py, direction);
@@ -82,7 +88,7 @@ impl NativeFrame {
         rules: &Rules,
         of: Option<usize>,
     ) -> PyResult<Result<Message<'py>, DecodeError>> {
-        let (core, frame) = (&self.origin.get().edition.core, self.frame());
+        let (core, frame) = (&self.origin.edition.core, self.frame());
         if let Some(plain) = cobotwire_core::read_plain(core, rules, frame, of)
             && let Some(values) = plain_objects(py, plain.numbers)?
         {
@@ -110,32 +116,40 @@ impl NativeFrame {
             values,
             address,
         } = message;
-        let edition = &self.origin.get().edition;
+        let edition = &self.origin.edition;
         edition.message(values.py(), *variant, values, *address)
     }
 }
 
-/// What Python's class has.
+#[pymethods]
 impl NativeFrame {
     /// Its bytes, from header to check.
-    pub fn data<'py>(&self, py: Python<'py>) -> Bound<'py, PyBytes> {
+    #[getter]
+    fn data<'py>(&self, py: Python<'py>) -> Bound<'py, PyBytes> {
         PyBytes::new(py, self.frame.bytes())
     }
 
     /// Its command id.
-    pub fn command(&self) -> u16 {
+    #[getter]
+    fn command(&self) -> u16 {
         self.frame().id()
     }
 
     /// Its message: the first one that allows its values.
-    pub fn message<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        let read = self.read(py, None, None)?;
-        let values = self.values.set(read.values);
-        self.tuple_of(&Message { values, ..read })
+    #[getter]
+    fn message<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        self.tuple_of(&self.read(py, None, None)?)
+    }
+
+    /// The values of its message, one for each field.
+    #[getter]
+    fn values<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
+        Ok(self.read(py, None, None)?.values)
     }
 
     /// Return what `codec.decode(direction, frame.data, of=of)` returns, without judging it again.
-    pub fn decode<'py>(
+    #[pyo3(signature = (direction = None, *, of = None))]
+    fn decode<'py>(
         &self,
         py: Python<'py>,
         direction: Option<&Bound<'py, PyAny>>,
@@ -143,51 +157,25 @@ impl NativeFrame {
     ) -> PyResult<Bound<'py, PyAny>> {
         let Edition {
             table, commands, ..
-        } = &*self.origin.get().edition;
-        let of = of.filter(|name| !name.is_none());
+        } = &*self.origin.edition;
         let of = of.map(|name| commands.find(table, name)).transpose()?;
-        let direction = direction.filter(|word| !word.is_none());
         self.tuple_of(&self.read(py, direction.map(one_way).transpose()?, of)?)
     }
 
-    /// The values of its message, one for each field.
-    #[inline]
-    pub fn values<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
-        if let Some(values) = self.values.get(py) {
-            return Ok(values);
-        }
-        let Origin { edition, rules, .. } = self.origin.get();
-        let plain = cobotwire_core::read_plain(&edition.core, rules, self.frame(), None);
-        let plain = plain.map(|plain| plain_objects(py, plain.numbers));
-        match plain.transpose()?.flatten() {
-            // Most programs read a frame once: keeping its values then takes memory, and more time
-            // than decoding them.
-            Some(values) if self.values.is_first(py) => Ok(values),
-            Some(values) => Ok(self.values.set(values)),
-            None => Ok(self.values.set(self.read(py, None, None)?.values)),
-        }
-    }
-
-    /// Whether two frames are equal.
-    pub fn same(&self, other: &Self) -> bool {
+    fn __eq__(&self, other: &Self) -> bool {
         self.offset == other.offset && self.frame == other.frame
     }
 
     /// Return the hash of Python's own class of frames, because the two can be equal.
-    pub fn hash(&self, py: Python<'_>) -> PyResult<isize> {
+    fn __hash__(&self, py: Python<'_>) -> PyResult<isize> {
         (self.offset, self.command(), self.data(py))
             .into_pyobject(py)?
             .hash()
     }
 
-    pub fn repr(&self) -> String {
+    fn __repr__(&self) -> String {
         let bytes = self.frame.bytes().iter();
         let data: Vec<String> = bytes.map(|byte| format!("{byte:02X}")).collect();
         format!("<Frame {} at {}>", data.join(" "), self.offset)
-    }
-
-    /// Drop it in a thread that is attached, which saves asking whether it is.
-    pub fn drop_in(self, py: Python<'_>) {
-        self.origin.drop_ref(py);
     }
 }

@@ -1,6 +1,6 @@
 //! `NativeFramer`: implements `cobotwire.codec.interface.Framer` with the core.
 
-use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use cobotwire_core::{Framer, Reason, Tally};
 use pyo3::prelude::*;
@@ -8,7 +8,6 @@ use pyo3::types::{PyByteArray, PyBytes, PyDict, PyList};
 
 use crate::events::Events;
 use crate::frame::{NativeFrame, Origin};
-use crate::frame_class;
 use crate::names::Names;
 
 /// Cuts frames out of a byte stream.
@@ -18,15 +17,15 @@ use crate::names::Names;
 #[pyclass(frozen, module = "cobotwire._native")]
 pub struct NativeFramer {
     core: Mutex<Framer>,
-    origin: Py<Origin>,
+    origin: Arc<Origin>,
 }
 
 impl NativeFramer {
-    pub fn new(py: Python<'_>, origin: Origin) -> PyResult<Self> {
-        Ok(Self {
+    pub fn new(origin: Origin) -> Self {
+        Self {
             core: Mutex::new(Framer::new(origin.rules.clone())),
-            origin: Py::new(py, origin)?,
-        })
+            origin: Arc::new(origin),
+        }
     }
 
     fn core(&self) -> MutexGuard<'_, Framer> {
@@ -35,17 +34,11 @@ impl NativeFramer {
     }
 
     /// Feed bytes that are exactly one frame, while nothing waits; return this frame.
-    fn feed_frame<'py>(&self, data: &Bound<'py, PyBytes>) -> PyResult<Option<Bound<'py, PyAny>>> {
-        let py = data.py();
-        let class = frame_class::class(py)?;
+    fn feed_frame(&self, data: &Bound<'_, PyBytes>) -> Option<NativeFrame> {
+        let origin = Arc::clone(&self.origin);
         let mut core = self.core();
-        let Some((offset, frame)) = core.feed_frame(data.as_bytes()) else {
-            return Ok(None);
-        };
-        frame_class::object(class, || {
-            NativeFrame::new(self.origin.clone_ref(py), offset, frame)
-        })
-        .map(Some)
+        let (offset, frame) = core.feed_frame(data.as_bytes())?;
+        Some(NativeFrame::new(origin, offset, frame.into()))
     }
 }
 
@@ -55,9 +48,9 @@ impl NativeFramer {
     fn feed<'py>(&self, data: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyList>> {
         let py = data.py();
         if let Ok(bytes) = data.cast_exact::<PyBytes>()
-            && let Some(frame) = self.feed_frame(bytes)?
+            && let Some(frame) = self.feed_frame(bytes)
         {
-            return PyList::new(py, [frame]);
+            return PyList::new(py, [frame.into_object(py)?]);
         }
         let copy;
         let chunk = match data.cast::<PyBytes>() {
@@ -67,16 +60,16 @@ impl NativeFramer {
                 &copy
             }
         };
-        let mut events = Events::new(py, &self.origin)?;
+        let mut events = Events::default();
         self.core().feed(chunk, |event| events.add(event));
-        events.finish()
+        events.into_list(py, &self.origin)
     }
 
     /// Refute the candidate that waits; return the events of all remaining bytes.
     fn flush<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyList>> {
-        let mut events = Events::new(py, &self.origin)?;
+        let mut events = Events::default();
         self.core().flush(|event| events.add(event));
-        events.finish()
+        events.into_list(py, &self.origin)
     }
 
     /// The number of bytes fed that no event covers yet.

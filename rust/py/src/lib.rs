@@ -19,14 +19,12 @@ mod errors;
 mod events;
 mod exclusive;
 mod frame;
-mod frame_class;
 mod framer;
 mod given;
 mod interpreter;
 mod memory;
 mod names;
 mod objects;
-mod once;
 mod parts;
 mod plain;
 mod survey;
@@ -45,7 +43,7 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<codec::NativeCodec>()?;
     module.add_class::<bulk::NativeColumnReader>()?;
     module.add_class::<capture::NativeCaptureReader>()?;
-    module.add("NativeFrame", frame_class::class(module.py())?)?;
+    module.add_class::<frame::NativeFrame>()?;
     module.add_class::<survey::NativeSurvey>()?;
     module.add_class::<framer::NativeFramer>()?;
     #[cfg(unix)]
