@@ -82,22 +82,37 @@ impl NativeFrame {
         })
     }
 
+    /// Decode it by a template. None if its message has no template, or has a number that is not
+    /// allowed.
+    #[inline(always)]
+    fn plain<'py>(
+        &self,
+        py: Python<'py>,
+        rules: &Rules,
+        of: Option<usize>,
+    ) -> PyResult<Option<Message<'py>>> {
+        let core = &self.origin.edition.core;
+        let Some(plain) = cobotwire_core::read_plain(core, rules, self.frame(), of) else {
+            return Ok(None);
+        };
+        let values = plain_objects(py, plain.numbers)?;
+        Ok(values.map(|values| Message {
+            variant: plain.variant,
+            values,
+            address: plain.address,
+        }))
+    }
+
     fn decoded<'py>(
         &self,
         py: Python<'py>,
         rules: &Rules,
         of: Option<usize>,
     ) -> PyResult<Result<Message<'py>, DecodeError>> {
-        let (core, frame) = (&self.origin.edition.core, self.frame());
-        if let Some(plain) = cobotwire_core::read_plain(core, rules, frame, of)
-            && let Some(values) = plain_objects(py, plain.numbers)?
-        {
-            return Ok(Ok(Message {
-                variant: plain.variant,
-                values,
-                address: plain.address,
-            }));
+        if let Some(message) = self.plain(py, rules, of)? {
+            return Ok(Ok(message));
         }
+        let (core, frame) = (&self.origin.edition.core, self.frame());
         let decoded = match cobotwire_core::read(core, rules, frame, of) {
             Ok(decoded) => decoded,
             Err(error) => return Ok(Err(error)),
@@ -144,7 +159,11 @@ impl NativeFrame {
     /// The values of its message, one for each field.
     #[getter]
     fn values<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
-        Ok(self.read(py, None, None)?.values)
+        // Without the general function, which takes 7 % longer.
+        match self.plain(py, &self.origin.rules, None)? {
+            Some(message) => Ok(message.values),
+            None => Ok(self.read(py, None, None)?.values),
+        }
     }
 
     /// Return what `codec.decode(direction, frame.data, of=of)` returns, without judging it again.
