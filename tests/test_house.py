@@ -131,6 +131,22 @@ def test_sources_of_the_rust_core_have_no_tests_because_none_would_run() -> None
         assert not re.search(r"^\s*//[/!] ```", text, re.MULTILINE), path
 
 
+def test_unsafe_rust_code_is_only_in_the_files_for_it() -> None:
+    rust = vectors.ROOT / "rust"
+    found = {
+        path.relative_to(rust).as_posix()
+        for path in rust.rglob("*.rs")
+        if "target" not in path.parts
+        and any(
+            re.search(r"\bunsafe\b|allow\(unsafe_code", line.partition("//")[0])
+            for line in path.read_text("utf-8").splitlines()
+        )
+    }
+    instructions = {name for name in found if name.startswith("simd/src/")}
+    assert instructions
+    assert found - instructions == {"py/src/memory.rs", "py/src/descriptor.rs"}
+
+
 def test_native_classes_are_never_borrowed_mutably() -> None:
     # PyO3 raises RuntimeError if code that Python runs meanwhile uses the object, which is a call
     # of another thread, say. A frozen class has no such borrows; its locks are held briefly.

@@ -184,7 +184,10 @@ class AlarmClock:
 
 @final
 class NativeFrame:
-    """A legal frame; a virtual subclass of :class:`cobotwire.codec.events.Frame`."""
+    """A legal frame; a virtual subclass of :class:`cobotwire.codec.events.Frame`.
+
+    It keeps its bytes, not its message, and decodes them at each use.
+    """
 
     @property
     def offset(self) -> int:

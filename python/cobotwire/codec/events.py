@@ -52,7 +52,7 @@ class Frame(metaclass=ABCMeta):  # noqa: B024  (the native class registers as a 
     """A legal frame with its command id; ``offset`` is its start in the stream.
 
     The message is decoded on first use. The frames of the native codec are instances of this class
-    too.
+    too; they decode it at each use.
     """
 
     __slots__ = ("_message", "_read", "command", "data", "offset")

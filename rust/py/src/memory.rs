@@ -1,4 +1,4 @@
-//! `Memory`: a column behind Python's buffer protocol.
+//! `Memory`: a column that Python reads through the buffer protocol.
 
 #![allow(unsafe_code)] // the buffer protocol, `madvise` and the collector are C's
 
@@ -212,9 +212,9 @@ pub fn large_pages(start: *const u8, size: usize) {
 }
 
 /// Untrack an object that cannot be part of a cycle: otherwise the garbage collector would visit
-/// millions of such objects again and again.
+/// millions of such objects again and again (`docs/speed.md` says what that costs).
 pub fn untrack<T>(object: &Bound<'_, T>) {
-    // SAFETY: the object is complete, and its class supports the collector, as all classes of PyO3
-    // do. An untracked object is freed like any other.
+    // SAFETY: the object is complete, and its class supports the collector, as tuples and all classes
+    // of PyO3 do. An untracked object is freed like any other.
     unsafe { ffi::PyObject_GC_UnTrack(object.as_ptr().cast()) }
 }
