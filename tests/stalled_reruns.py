@@ -1,9 +1,10 @@
 """Run a failed test again if the machine stood still meanwhile.
 
 Many tests wait for a real reply within a deadline. If the machine stops for longer than that, once
-or in several pieces, the failure says nothing about the code. A test that fails without a stall
-fails at once, and one that fails in each run fails. The summary names the tests that were run
-again.
+or in several pieces, the failure says nothing about the code. A stall of one processor counts, and
+so does one of pseudo-terminals: either may stop the far end of a line, which is often another
+thread or process. A test that fails without a stall fails at once, and one that fails in each run
+fails. The summary names the tests that were run again.
 """
 
 from __future__ import annotations
@@ -13,7 +14,7 @@ from typing import Any
 import pytest
 from _pytest.runner import call_and_report
 
-from stalls import StallMeter
+from machine_stalls import machine_stalls
 
 # Half of the deadline that a client gives a reply: stalls within a second that add up to more.
 STALL = 0.25
@@ -45,19 +46,19 @@ def _run(
     function: Any = item
     if not getattr(function, "_request", True):
         function._initrequest()
-    with StallMeter(PERIOD) as meter:
+    with machine_stalls(PERIOD) as stalls:
         reports = [call_and_report(item, "setup", log=False)]
         failed = False
         if reports[0].passed:
             reports.append(call_and_report(item, "call", log=False))
             failed = reports[-1].failed
-    again = failed and not last and meter.worst_second > STALL
+    again = failed and not last and stalls.worst_second > STALL
     # Fixtures that tests share stay for the next run: only the test's own end.
     after = item.parent if again else nextitem
     reports.append(call_and_report(item, "teardown", log=False, nextitem=after))
     if hasattr(function, "_request"):
         function._request, function.funcargs = False, None
-    return reports, meter.worst_second if again else 0.0
+    return reports, stalls.worst_second if again else 0.0
 
 
 def pytest_terminal_summary(terminalreporter: Any, config: pytest.Config) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import threading
 import time
 from collections.abc import Callable
-from typing import TypeVar
+from typing import Self, TypeVar
 
 R = TypeVar("R")
 PERIOD = 0.005
@@ -30,7 +30,7 @@ class StallMeter:
         self._over = threading.Event()
         self._thread = threading.Thread(target=self._measure, daemon=True)
 
-    def __enter__(self) -> StallMeter:
+    def __enter__(self) -> Self:
         """Start to measure."""
         self._thread.start()
         return self
@@ -40,10 +40,14 @@ class StallMeter:
         self._over.set()
         self._thread.join()
 
+    def _visit(self) -> None:
+        """Use what a subclass measures; the time that this takes adds to the delay."""
+
     def _measure(self) -> None:
         before = second_from = time.monotonic()
         in_second = 0.0
         while not self._over.wait(self._period):
+            self._visit()
             now = time.monotonic()
             too_late = now - before - self._period
             self.longest = max(self.longest, too_late)
