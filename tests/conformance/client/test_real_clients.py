@@ -8,6 +8,7 @@ import pytest
 
 from client_findings import LINES, Line, judged
 from cobotwire.conformance import Report
+from machine_stalls import PtyMeter
 from stalls import unstalled
 
 # A client repeats a query after about 170 ms. A referee that stands still for as long receives both
@@ -16,8 +17,8 @@ ALLOWED_STALL = 0.1
 
 
 def judged_on_time(client: str, line: Line) -> tuple[Report, list[str]]:
-    """Run the session; run it again if the machine stalled for long enough to change its times."""
-    return unstalled(partial(judged, client, line), ALLOWED_STALL)
+    """Run the session; run it again if the machine or its ptys stalled long enough to matter."""
+    return unstalled(partial(judged, client, line), ALLOWED_STALL, PtyMeter)
 
 
 OURS = ["cobotwire", "cobotwire tcp", "cobotwire asyncio", "cobotwire asyncio tcp"]
