@@ -56,3 +56,11 @@ def test_command_with_other_output_than_the_page_does_not_match(tmp_path: Path) 
         "```console\n$ echo one; echo two\none\n```\n```console\n$ echo a\n...\na\n```\n"
     )
     assert [each.matches for each in run(page, tmp_path, "")] == [False, True]
+
+
+def test_output_of_a_slow_line_matches_the_page_of_a_fast_one(tmp_path: Path) -> None:
+    slow = "- slow: a round trip takes 16.0 ms\n    if this is a USB adapter, its timer\n"
+    (tmp_path / "printed.txt").write_text(f"! no-power: the arm\n    advice\n{slow}")
+    page = tmp_path / "page.md"
+    page.write_text("```console\n$ cat printed.txt\n! no-power: the arm\n    advice\n```\n")
+    assert [each.matches for each in run(page, tmp_path, "")] == [True]
