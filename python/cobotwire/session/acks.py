@@ -10,7 +10,6 @@ and in time. An acknowledgement that was lost causes doubt only until it is too 
 
 from __future__ import annotations
 
-from bisect import insort
 from collections import deque
 from math import inf
 from typing import NamedTuple
@@ -50,17 +49,13 @@ class ExpectedAck:
         self.doubts: list[float] = []
         self.certain = False
 
-    def doubt(self, until: float) -> None:
-        """Note that the acknowledgement of another request, which looks alike, may come."""
-        insort(self.doubts, until)
+    def doubt(self, until: list[float]) -> None:
+        """Note until when the acknowledgements of other requests, which look alike, may come."""
+        self.doubts = sorted(until)
 
     def shorten(self, seconds: float) -> None:
         """Expect it only that long after its request."""
         self.until = min(self.until, self.sent_at + seconds)
-
-    def renew_doubts(self, doubts: list[float]) -> None:
-        """Replace its doubts."""
-        self.doubts = doubts
 
     def count(self, frame: Frame, began_at: float) -> None:
         """Count an acknowledgement of the command: of another request, as long as it can be."""
@@ -143,9 +138,9 @@ class _CommandAcks:
             self.began_at = ack.sent_at
         for earlier in self.uncertain:
             if not replies_differ(earlier.request, ack.request):
-                earlier.doubt(ack.until)
+                earlier.doubt([*earlier.doubts, ack.until])
         if waited_for:
-            ack.renew_doubts(self.doubts_of(ack.request))
+            ack.doubt(self.doubts_of(ack.request))
             self.uncertain.append(ack)
         self.expected.append(ack)
 
@@ -155,7 +150,7 @@ class _CommandAcks:
             ack.shorten(seconds)
         self.forget_expired(now)
         for ack in self.uncertain:
-            ack.renew_doubts(self.doubts_of(ack.request, ack))
+            ack.doubt(self.doubts_of(ack.request, ack))
 
     def note_copy(self, frame: Frame) -> None:
         """Note a copy of a request, if it is clear which of the expected ones was copied."""
@@ -175,11 +170,8 @@ class _CommandAcks:
 
     def doubts_of(self, request: EncodedRequest, ack: ExpectedAck | None = None) -> list[float]:
         """Return the doubts of a request, by all that is expected except for its own ``ack``."""
-        return sorted(
-            other.until
-            for other in self.expected
-            if other is not ack and not replies_differ(other.request, request)
-        )
+        others = (other for other in self.expected if other is not ack)
+        return [each.until for each in others if not replies_differ(each.request, request)]
 
     def oldest(self, received: _Received) -> ExpectedAck | None:
         """Return the oldest acknowledgement that a frame can be; None: it can be none."""

@@ -52,21 +52,17 @@ class Alignment:
 
     Attributes:
         align: what must be written before the next request; empty on an aligned line.
+        held: every part that the peer may hold: one, or several if it is not known what was
+            written; empty on an aligned line.
     """
 
     def __init__(self, codec: Codec) -> None:
         self._codec = codec
         self._format = codec.table.frame
-        # Every part that the peer may hold: one, or several if it is not known what was written.
-        self._held: tuple[Part, ...] = ()
+        self.held: tuple[Part, ...] = ()
         self.align = b""
         # The frame that was sent last; empty if none was since the transport was lost.
         self._last_request = b""
-
-    @property
-    def held(self) -> tuple[Part, ...]:
-        """Every part that the peer may hold; empty on an aligned line."""
-        return self._held
 
     def sent(self, request: bytes) -> None:
         """Note the frame that is sent now."""
@@ -84,7 +80,7 @@ class Alignment:
             How many of these bytes belong to the request.
         """
         if written is None:
-            self.hold(self._held + _all_parts(self._format, request))
+            self.hold(self.held + _all_parts(self._format, request))
             return None
         if written and written >= len(align):
             begun = written - len(align)
@@ -93,7 +89,7 @@ class Alignment:
             self.hold((Part(request, begun),) if 0 < begun < whole else ())
             return begun
         if written and self._completes():
-            [part] = self._held
+            [part] = self.held
             self.hold((Part(part.request, part.written + written),))
         return 0
 
@@ -109,13 +105,13 @@ class Alignment:
         width, order = self._format.length_number
         begun = last[: self._format.length_at] + longest.to_bytes(width, order)
         parts = Part(begun, len(begun)), *_all_parts(self._format, last)
-        self.hold(self._held + parts)
+        self.hold(self.held + parts)
         self._last_request = b""
 
     def hold(self, parts: tuple[Part, ...]) -> None:
         """Note every part that the peer may hold."""
         self.align = self._ending(parts) if parts else b""
-        self._held = parts
+        self.held = parts
 
     def _ending(self, parts: tuple[Part, ...]) -> bytes:
         """Return what ends the part that the peer holds, whichever it is."""
@@ -130,7 +126,7 @@ class Alignment:
         return any(isinstance(event, Frame) for event in events)
 
     def _completes(self) -> bool:
-        return len(self._held) == 1 and self.align == self._held[0].rest
+        return len(self.held) == 1 and self.align == self.held[0].rest
 
 
 def fill_bytes(format: FrameFormat, parts: Sequence[bytes]) -> bytes:

@@ -166,8 +166,8 @@ class Exchange:
         replies = [reply for reply in self._outstanding.replies if reply.until > now]
         if waiting is not None:
             replies += late_replies(waiting, 0)
-        late = (LateFrame(reply.request.frame, reply.until) for reply in replies)
-        return PersistedState(tuple(late), self.alignment.held)
+        late = tuple(LateFrame(reply.request.frame, reply.until) for reply in replies)
+        return PersistedState(late, self.alignment.held)
 
     def restore(self, state: PersistedState) -> None:
         """Respect what an earlier session left on this port."""
@@ -363,7 +363,7 @@ class Exchange:
         return noise
 
     def _match(self, frame: Frame, now: float, began_at: float) -> SessionEvent:
-        """Find out what a frame is, whose first byte came at ``began_at`` or earlier; act on it."""
+        """Find out what a frame is; its first byte came at ``began_at`` or earlier."""
         is_copy = self._echo.take_copy(frame)
         waiting = self._waiting()
         if waiting is None or not waiting.accepts(frame):
