@@ -55,7 +55,7 @@ def pytest_configure(config: pytest.Config) -> None:
     """
     signal.signal(signal.SIGINT, signal.default_int_handler)
     config.stash[TEMPORARY] = tempfile.TemporaryDirectory(prefix="cw-")
-    os.environ["TMPDIR"] = tempfile.tempdir = config.stash[TEMPORARY].name
+    os.environ["TMPDIR"] = config.stash[TEMPORARY].name
 
 
 def pytest_collection_finish() -> None:

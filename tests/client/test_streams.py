@@ -33,7 +33,8 @@ NEWER = openers(MyCobot280, AsyncMyCobot280)
 
 def test_samples_are_numbered_timed_and_typed(open_arm: Opener, server: PtyServer) -> None:
     with open_arm(server.url) as arm:
-        stream = arm.stream(GET_ANGLES, get_encoder(2), GET_COORDS, rate=50)
+        # Three requests take turns with other programs of a busy machine.
+        stream = arm.stream(GET_ANGLES, get_encoder(2), GET_COORDS, rate=20)
         started = time.monotonic()
         samples = list(islice(stream, 25))
         assert [sample.number for sample in samples] == list(range(25))
@@ -50,7 +51,7 @@ def test_samples_are_numbered_timed_and_typed(open_arm: Opener, server: PtyServe
         assert report.samples == 25
         # A busy machine sometimes wakes late; no other slot may be missed.
         assert report.unanswered == 0
-        assert report.reached > 40
+        assert report.reached > 16
 
 
 @pytest.mark.parametrize("opening", list(NEWER))
@@ -98,7 +99,7 @@ def test_missing_and_illegal_replies_are_counted_and_the_stream_continues(
     powered, nonsense = (bytes.fromhex(f"FE FE 03 12 {value} FA") for value in ("01", "05"))
     script = [[powered], [], [powered], [nonsense], [powered]]
     with peer_on(*script) as peer, open_arm(peer.url, retry=QUICK) as arm:
-        stream = arm.stream(IS_POWER_ON, rate=50, timeout=0.05)
+        stream = arm.stream(IS_POWER_ON, rate=20, timeout=0.2)
         assert [sample.values for sample in islice(stream, 3)] == [(True,)] * 3
         report = stream.report
         assert (report.samples, report.unanswered) == (3, 2)
