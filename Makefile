@@ -17,10 +17,11 @@ IN_TURN := $(and $(CI),$(filter output-sync,$(.FEATURES)),--output-sync=target)
 unexport PYTHONDONTWRITEBYTECODE
 FUZZ_SECONDS ?= 60
 ATTACK_SECONDS ?= 180
+STATES ?= 1000000
 REV ?= HEAD
 CARGO_FUZZ := .cargo-tools/bin/cargo-fuzz
 
-.PHONY: set-up spec-mutants help demo test lint lint-and-rust python-test computing-tests simulating-tests calling-tests waiting-tests other-tests rust-test products gen targets docs bench plots picture answers table fuzz figures clean faults conform defects attack archives bench-archive bench-compare rust-asan robots layer demos front-end front-end-if-reachable four-hours studio-pictures
+.PHONY: set-up spec-mutants help demo test lint lint-and-rust python-test computing-tests simulating-tests calling-tests waiting-tests other-tests rust-test products gen targets docs bench plots picture answers table fuzz figures clean faults conform defects attack archives bench-archive bench-compare rust-asan robots layer demos front-end front-end-if-reachable four-hours studio-pictures explore
 .DEFAULT_GOAL := help
 
 help: ## list the targets
@@ -180,6 +181,9 @@ defects: .venv/.tools .venv/.native ## test independent subjects with planted de
 
 attack: .venv/.tools .venv/.native ## attack the clients for ATTACK_SECONDS (180) with a hostile peer
 	PYTHONPATH=tests $(BIN)/python -m attack --seconds $(ATTACK_SECONDS) $(ATTACK)
+
+explore: .venv/.tools .venv/.native ## explore every order of events of an exchange until STATES (1000000) were seen
+	PYTHONPATH=python:tests $(BIN)/python -m session.exploring $(STATES)
 
 archives: .venv/.tools .venv/.native ## export and query archives on a Dask cluster and an S3 server
 	$(BIN)/python -m pytest tests/archive -o python_files='test_*.py on_*.py'

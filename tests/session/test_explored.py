@@ -13,6 +13,7 @@ from cobotwire.session.acks import Acks, ExpectedAck
 from cobotwire.session.alignment import Alignment
 from cobotwire.session.echo import EchoDetector
 from cobotwire.session.outstanding import OutstandingReplies, PersistedState
+from session.exploring.__main__ import main
 from session.exploring.explorer import Search
 from session.exploring.topics import TOPICS
 
@@ -125,3 +126,13 @@ def test_planted_fault_is_found(rule: str, monkeypatch: pytest.MonkeyPatch) -> N
         search.deepen()
     print(f"\n{rule}, after {len(search.seen)} states: {search.found}")
     assert broken in search.found
+
+
+def test_make_explore_prints_counts_limits_and_the_shortest_sequence(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(400) == 0
+    assert "0 broken promises; limits met: first copy" in capsys.readouterr().out
+    monkeypatch.setattr(Acks, "wake", _no)
+    assert main(400) == 1
+    assert "after: call color; then time passes" in capsys.readouterr().out

@@ -10,25 +10,29 @@ from session.exploring.topics import TOPICS
 
 
 def main(most: int) -> int:
-    """Deepen the search with the fewest states to continue, again and again; return 1 if broken."""
+    """Deepen the smallest search until ``most`` states were seen; return 1 if a promise breaks."""
     searches = {name: Search(topic) for name, topic in TOPICS.items()}
-    found, states = "", 0
-    while not found and states < most:
-        name, search = min(searches.items(), key=lambda each: len(each[1].frontier))
-        search.deepen(len(search.seen) + most - states)
-        found, states = search.found, sum(len(each.seen) for each in searches.values())
+
+    def states() -> int:
+        return sum(len(search.seen) for search in searches.values())
+
+    def report() -> None:
         if sys.stderr.isatty():
-            print(f"\r{states:,} states, {name} depth {search.depth}   ", end="", file=sys.stderr)
-    limits = sum((search.limits for search in searches.values()), Counter[str]())
+            print(f"\r{states():,} states, {name} {search.depth + 1}   ", end="", file=sys.stderr)
+
+    found = ""
+    while not found and (left := most - states()) > 0:
+        name, search = min(searches.items(), key=lambda each: len(each[1].frontier))
+        search.deepen(len(search.seen) + left, report)
+        found = search.found
     events = sum(search.events for search in searches.values())
     depths = ", ".join(f"{name} {search.depth}" for name, search in searches.items())
+    limits = sum((search.limits for search in searches.values()), Counter[str]())
     met = ", ".join(f"{limit} {count:,}" for limit, count in limits.most_common())
-    print(
-        f"{states:,} states, {events:,} events, every order of up to: {depths}; "
-        f"{int(bool(found))} broken promises; limits met: {met}"
-    )
+    print(f"{states():,} states, {events:,} events, every order of up to: {depths}")
+    print(f"{1 if found else 0} broken promises; limits met: {met or 'none'}")
     print(found, end="\n" if found else "")
-    return int(bool(found))
+    return 1 if found else 0
 
 
 if __name__ == "__main__":

@@ -7,7 +7,7 @@ on: each attribute of the exchange, with times relative to now, and what the wor
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from itertools import chain
 from math import inf
 from typing import Any, NamedTuple
@@ -56,10 +56,11 @@ class Search:
         self.limits: Counter[str] = Counter()
         self.found = ""
 
-    def deepen(self, most: float = inf) -> None:
+    def deepen(self, most: float = inf, report: Callable[[], None] = lambda: None) -> None:
         """Explore sequences that are longer by one event, until ``most`` states were seen."""
         paths, self.frontier = self.frontier, []
         for path in paths:
+            report()
             for event in list(self._replay(path).choices()):
                 self.events += 1
                 self._explore(Path(path, event))
@@ -127,7 +128,7 @@ def state_of(world: World) -> tuple[object, ...]:
 
     def frozen(value: Any, name: str = "") -> object:
         if name == "offset":
-            return max(value - fed, -unparsed)
+            return max(value - fed + unparsed, 0)
         if isinstance(value, float):
             return max(value - now, -LATEST) if abs(value) < inf else value
         if value is None or isinstance(value, int | bytes | str):
@@ -155,7 +156,7 @@ def state_of(world: World) -> tuple[object, ...]:
         *(tuple(inside(call)) for call in calls),
         frozen((world.replies, world.unread, world.next_write, promises.doubtful)),
         promises.echo_shown,
-        tuple(sorted(at - arm_fed for at in promises.torn)),
+        tuple(sorted(arm_fed - at for at in promises.torn)),
         unparsed,
         world.arm.pending,
     )
