@@ -52,7 +52,11 @@ def _expiring_unflushed(exchange: Exchange, waiting: PendingRequest, now: float)
 
 
 def _only_parts(exchange: Exchange, now: float) -> PersistedState:
-    return PersistedState((), _persist(exchange, now).parts)
+    return _persist(exchange, now)._replace(late=())
+
+
+def _only_late(exchange: Exchange, now: float) -> PersistedState:
+    return _persist(exchange, now)._replace(parts=())
 
 
 _held_until, _find = OutstandingReplies.held_until, OutstandingReplies.find
@@ -104,7 +108,7 @@ FAULTS: dict[str, tuple[str, str, str, Any, str, Any]] = {
         *("writes", "frame inside", "nobody sent", Alignment, "_exposes"),
         lambda *_: False,
     ),
-    "cut not persisted": ("writes", "pin 1,motion", "arm did not", Alignment, "held", ()),
+    "cut not persisted": ("writes", "pin 1,motion", "arm did not", Exchange, "persist", _only_late),
     "late reply not persisted": (
         *("reopening", "plain", "settled by", Exchange, "persist"),
         _only_parts,

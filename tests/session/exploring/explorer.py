@@ -13,9 +13,10 @@ from math import inf
 from typing import Any, NamedTuple
 
 from cobotwire.session import EncodedRequest, Pending
+from session.exploring.calls import Call
 from session.exploring.promises import Broken
 from session.exploring.topics import POLICY, Event, Topic
-from session.exploring.world import LATEST, Call, World
+from session.exploring.world import LATEST, World
 
 # Nothing depends on these, except for the text of an error; or they never change.
 IGNORED = {
@@ -129,7 +130,7 @@ def state_of(world: World) -> tuple[object, ...]:
     def frozen(value: Any, name: str = "") -> object:
         if name == "offset":
             return max(value - fed + unparsed, 0)
-        if isinstance(value, float):
+        if type(value) is float:
             return max(value - now, -LATEST) if abs(value) < inf else value
         if value is None or isinstance(value, int | bytes | str):
             return value
@@ -141,7 +142,7 @@ def state_of(world: World) -> tuple[object, ...]:
             return None
         if isinstance(value, dict):
             value = value.items()
-        if isinstance(value, tuple) or hasattr(value, "__iter__"):
+        if hasattr(value, "__iter__"):
             return tuple(frozen(each) for each in value)
         if type(value).__module__.startswith(("cobotwire.session", "session.exploring")):
             return (owners.get(id(value)), *inside(value))

@@ -10,10 +10,11 @@ from cobotwire.codec.interface import Frame
 from cobotwire.protocol.errors import ReplyTimeout
 from cobotwire.session.events import EchoReceived, ReplyMatched, ReplyRejected, SessionEvent
 from cobotwire.session.pending import GRACE_SECONDS
+from session.exploring.calls import Arrival, Call
 from session.exploring.topics import POLICY, REPLIES, REQUESTS, WAIT
 
 if TYPE_CHECKING:
-    from session.exploring.world import Arrival, Call, World
+    from session.exploring.world import World
 
 # The only excuses for a broken promise: the bytes that decide are equal.
 LIMITS = {

@@ -7,73 +7,19 @@ writes as the clients do: ``cobotwire.client.steps``, ``cobotwire.client.writing
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field
 from math import inf
 
 from cobotwire.codec.interface import Frame
 from cobotwire.protocol.errors import LinkError
-from cobotwire.session import Exchange, Pending, PendingRequest
+from cobotwire.session import Exchange, PendingRequest
 from session.exploring import topics
+from session.exploring.calls import Arrival, Call, Reply
 from session.exploring.promises import Promises
 from session.exploring.topics import CODEC, KINDS, MOMENT, POLICY, REPLIES, REQUESTS, WAIT
 
 MOST_CALLS, MOST_REPLIES = 3, 3
 # A reply comes no later than this: longer than any grace.
 LATEST = 1.25
-
-
-@dataclass(eq=False)
-class Call:
-    """A request of a caller, who waits until ``pending`` is done, unless nothing is waited for."""
-
-    kind: str
-    ends_by: float
-    pending: Pending | None = None
-    ended: bool = False
-    writes: list[float] = field(default_factory=list)
-    received_by_arm: int = 0
-    # Which of its replies were read while it waited, by form.
-    read: set[int] = field(default_factory=set)
-    # Whose texts were read while it waited for a text.
-    texts: list[Arrival] = field(default_factory=list)
-    answered: bool = False
-    # The limit by which the reply to another request has ended it.
-    misled: str | None = None
-
-    @property
-    def is_query(self) -> bool:
-        """Whether it requires a reply."""
-        return REQUESTS[self.kind].command.requires_reply
-
-    @property
-    def command(self) -> str:
-        """The name of its command."""
-        return KINDS[self.kind].command
-
-    @property
-    def waits(self) -> bool:
-        """Whether neither its caller nor the exchange has ended it."""
-        return not self.ended and self.pending is not None and not self.pending.done
-
-
-@dataclass(eq=False)
-class Reply:
-    """A reply to a request that the arm received; it may come twice, or never."""
-
-    call: Call
-    requested_at: float
-    times: int = 0
-
-
-@dataclass(eq=False)
-class Arrival:
-    """Bytes that came to the host; ``copy`` is 2 for a doubled reply, ``form`` -1 if damaged."""
-
-    data: bytes
-    time: float
-    reply: Reply | None = None
-    copy: int = 1
-    form: int = 0
 
 
 class World:
@@ -153,15 +99,13 @@ class World:
 
     _on_arrive_unread = _on_arrive
 
-    def _on_cut(self, index: str, form: str) -> None:
+    def _on_cut(self, index: str, form: str, size: int = 4, end: bytes = b"") -> None:
         self._on_arrive(index, form)
         last = self.unread[-1]
-        last.data, last.form = last.data[:4], -1
+        last.data, last.form = last.data[:size] + end, -1
 
     def _on_damaged(self, index: str, form: str) -> None:
-        self._on_arrive(index, form)
-        last = self.unread[-1]
-        last.data, last.form = last.data[:-1] + b"\x00", -1
+        self._on_cut(index, form, -1, b"\x00")
 
     def _on_event(self) -> None:
         self.unread.append(Arrival(topics.EVENT, self.now))
@@ -186,6 +130,11 @@ class World:
     def _on_give_up(self, index: str) -> None:
         self._give_up(self.waiting[int(index)])
 
+    def _give_up(self, call: Call) -> None:
+        call.ended = True
+        if call.pending is not None:
+            self.exchange.give_up(call.pending)
+
     def _on_write(self, how: str) -> None:
         self.next_write = how
 
@@ -201,11 +150,6 @@ class World:
             call.ended = True
         self._open()
         self.exchange.restore(state)
-
-    def _give_up(self, call: Call) -> None:
-        call.ended = True
-        if call.pending is not None:
-            self.exchange.give_up(call.pending)
 
     def _turn(self) -> bool:
         """Read once, let time pass, write the next request; return whether it did either."""

@@ -1,0 +1,62 @@
+"""What the world knows of each request and of each reply, and the exchange has to find out."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from cobotwire.session import Pending
+from session.exploring.topics import KINDS, REQUESTS
+
+
+@dataclass(eq=False)
+class Call:
+    """A request of a caller, who waits until ``pending`` is done, unless nothing is waited for."""
+
+    kind: str
+    ends_by: float
+    pending: Pending | None = None
+    ended: bool = False
+    writes: list[float] = field(default_factory=list)
+    received_by_arm: int = 0
+    # Which of its replies were read while it waited, by form.
+    read: set[int] = field(default_factory=set)
+    # Whose texts were read while it waited for a text.
+    texts: list[Arrival] = field(default_factory=list)
+    answered: bool = False
+    # The limit by which the reply to another request has ended it.
+    misled: str | None = None
+
+    @property
+    def is_query(self) -> bool:
+        """Whether it requires a reply."""
+        return REQUESTS[self.kind].command.requires_reply
+
+    @property
+    def command(self) -> str:
+        """The name of its command."""
+        return KINDS[self.kind].command
+
+    @property
+    def waits(self) -> bool:
+        """Whether neither its caller nor the exchange has ended it."""
+        return not self.ended and self.pending is not None and not self.pending.done
+
+
+@dataclass(eq=False)
+class Reply:
+    """A reply to a request that the arm received; it may come twice, or never."""
+
+    call: Call
+    requested_at: float
+    times: int = 0
+
+
+@dataclass(eq=False)
+class Arrival:
+    """Bytes that came to the host; ``copy`` is 2 for a doubled reply, ``form`` -1 if damaged."""
+
+    data: bytes
+    time: float
+    reply: Reply | None = None
+    copy: int = 1
+    form: int = 0
