@@ -25,6 +25,8 @@ def main(most: int) -> int:
         name, search = min(searches.items(), key=lambda each: len(each[1].frontier))
         search.deepen(len(search.seen) + left, report)
         found = search.found
+    if sys.stderr.isatty():
+        print(file=sys.stderr)
     events = sum(search.events for search in searches.values())
     depths = ", ".join(f"{name} {search.depth}" for name, search in searches.items())
     limits = sum((search.limits for search in searches.values()), Counter[str]())

@@ -11,8 +11,10 @@ from collections.abc import Callable, Iterator
 from itertools import chain
 from math import inf
 from typing import Any, NamedTuple
+from unittest.mock import patch
 
 from cobotwire.session import EncodedRequest, Pending
+from cobotwire.session.received import ReceivedMeanwhile
 from session.exploring.calls import Call
 from session.exploring.promises import Broken
 from session.exploring.topics import POLICY, Event, Topic
@@ -60,13 +62,15 @@ class Search:
     def deepen(self, most: float = inf, report: Callable[[], None] = lambda: None) -> None:
         """Explore sequences that are longer by one event, until ``most`` states were seen."""
         paths, self.frontier = self.frontier, []
-        for path in paths:
-            report()
-            for event in list(self._replay(path).choices()):
-                self.events += 1
-                self._explore(Path(path, event))
-                if self.found or len(self.seen) >= most:
-                    return
+        # The text of an error takes longer to write than everything else together.
+        with patch.object(ReceivedMeanwhile, "lines", lambda *_: ()):
+            for path in paths:
+                report()
+                for event in list(self._replay(path).choices()):
+                    self.events += 1
+                    self._explore(Path(path, event))
+                    if self.found or len(self.seen) >= most:
+                        return
         self.depth += 1
 
     def __str__(self) -> str:
@@ -158,7 +162,7 @@ def state_of(world: World) -> tuple[object, ...]:
         frozen((world.replies, world.unread, world.next_write, promises.doubtful)),
         promises.echo_shown,
         tuple(sorted(arm_fed - at for at in promises.torn)),
-        unparsed,
+        world.tail[len(world.tail) - unparsed :],
         world.arm.pending,
     )
 

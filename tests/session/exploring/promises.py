@@ -6,9 +6,15 @@ from collections import Counter
 from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
-from cobotwire.codec.interface import Frame
+from cobotwire.codec.interface import Frame, Noise
 from cobotwire.protocol.errors import ReplyTimeout
-from cobotwire.session.events import EchoReceived, ReplyMatched, ReplyRejected, SessionEvent
+from cobotwire.session.events import (
+    EchoReceived,
+    ReplyMatched,
+    ReplyRejected,
+    RequestExpired,
+    SessionEvent,
+)
 from cobotwire.session.pending import GRACE_SECONDS
 from session.exploring.calls import Arrival, Call
 from session.exploring.topics import POLICY, REPLIES, REQUESTS, WAIT
@@ -19,10 +25,11 @@ if TYPE_CHECKING:
 # The only excuses for a broken promise: the bytes that decide are equal.
 LIMITS = {
     "later than its grace": "a reply does not say which request it belongs to",
-    "second copy": "nor does the second copy of a reply that was taken, which nobody expects",
-    "acknowledged before reopening": "nor does an acknowledgement say which session it belongs to",
-    "first copy on a line that echoes": "until a copy cannot be a reply, it may be one",
-    "torn around a whole frame": "what ends the outer frame may expose the inner one",
+    "second copy": "the second copy of a reply that was taken looks like the next reply",
+    "pieces of cut replies": "without a check, several pieces can be a legal reply together",
+    "acknowledged before reopening": "an acknowledgement does not say which session it belongs to",
+    "first copy on a line that echoes": "the echo of some requests is a legal reply to them",
+    "torn around a whole frame": "nobody knows how much was written, and the inner frame is legal",
 }
 SILENCE = 0.2
 
@@ -39,7 +46,7 @@ class Promises:
         self.limits: Counter[str] = Counter()
         # The limit by which an acknowledgement of a command may be that of another request.
         self.doubtful: dict[str, str] = {}
-        # Whether a copy was read that cannot be a reply.
+        # Whether an echo was read that cannot be a reply.
         self.echo_shown = False
         # Where the requests begin of which nobody knows how much the arm has.
         self.torn: set[int] = set()
@@ -126,30 +133,40 @@ class Promises:
         """Check which arrivals have settled requests, and how calls have ended."""
         last = self._world.exchange.sent_last
         for event in events:
+            joined = self._joined(event)
             if isinstance(event, EchoReceived) and last and event.frame.data == last.request.frame:
                 self._copy_at = event.frame.offset
             elif isinstance(event, ReplyMatched | ReplyRejected):
                 [call] = [call for call in self._world.calls if call.pending is last]
                 call.answered = True
                 offset = self._copy_at if event.frame is None else event.frame.offset
-                settling = call.texts or [self._world.arrivals[offset]]
-                for arrival in settling:
-                    self._check_pair(call, arrival)
+                for arrival in call.texts or joined or [self._world.arrivals[offset]]:
+                    self._check_pair(call, arrival, "pieces of cut replies" if joined else None)
         for call in self._world.waiting:
             if not call.waits:
                 call.ended = True
                 self._check_end(call)
 
-    def _check_pair(self, call: Call, arrival: Arrival) -> None:
+    def _joined(self, event: SessionEvent) -> list[Arrival]:
+        """Return what came inside a frame, after a piece of a cut reply that begins it."""
+        frame = None if isinstance(event, Noise | RequestExpired) else event.frame
+        if frame is None:
+            return []
+        inside = range(frame.offset + 1, frame.offset + len(frame.data))
+        joined = [arrival for at, arrival in self._world.arrivals.items() if at in inside]
+        for arrival in joined:
+            if arrival.reply is not None:
+                arrival.reply.call.read.discard(arrival.form)
+        return joined
+
+    def _check_pair(self, call: Call, arrival: Arrival, limit: str | None) -> None:
         owner = None if arrival.reply is None else arrival.reply.call
-        if owner is call:
+        if owner is call and limit is None:
             return
-        limit = None
         # A damaged text is still a text.
-        if arrival.data in REPLIES[call.kind] or call.kind == "text":
-            limit = self._limit(arrival, POLICY.grace) or self._echo_limit(
-                call, call.writes[0] + WAIT
-            )
+        if limit is None and (arrival.data in REPLIES[call.kind] or call.kind == "text"):
+            deadline = call.writes[0] + WAIT
+            limit = self._limit(arrival, POLICY.grace) or self._echo_limit(call, deadline)
         call.misled = limit
         other = "an echo or event" if owner is None else f"the reply to an earlier {owner.kind}"
         self._excuse(limit, f"{call.kind} is settled by {other}")
@@ -160,7 +177,10 @@ class Promises:
             return None
         if arrival.time >= arrival.reply.requested_at + grace:
             return "later than its grace"
-        return "second copy" if arrival.copy > 1 else arrival.reply.call.misled
+        call = arrival.reply.call
+        # After any other end, the exchange expects late replies.
+        expected = call.is_query and not (call.answered and len(call.writes) == 1)
+        return "second copy" if arrival.copy > 1 and not expected else call.misled
 
     def _echo_limit(self, call: Call, deadline: float) -> str | None:
         """Return the limit that makes the echo of a request its reply; None: it is not."""

@@ -42,6 +42,8 @@ class World:
     def _open(self) -> None:
         self.exchange = Exchange(CODEC)
         self.fed = 0
+        # The end of what was read, which the framer may not have parsed yet.
+        self.tail = b""
         # What was read from each offset of the stream on.
         self.arrivals: dict[int, Arrival] = {}
 
@@ -160,6 +162,7 @@ class World:
             data += arrival.data
             self.promises.read(arrival)
         self.fed += len(data)
+        self.tail = (self.tail + data)[-64:]
         self.promises.note(exchange.advance(data, self.now))
         request = b""
         if exchange.has_next(self.now):
