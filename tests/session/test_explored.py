@@ -18,7 +18,7 @@ from session.exploring.explorer import Search
 from session.exploring.topics import TOPICS
 
 # How many events in a row `make test` explores; `make explore` goes on from there.
-DEPTHS = {"everything": 2, "unread": 5, "reopening": 5}
+DEPTHS = {"everything": 2, "unread": 5}
 USUAL_DEPTH = 4
 
 
