@@ -6,15 +6,9 @@ from collections import Counter
 from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
-from cobotwire.codec.interface import Frame, Noise
+from cobotwire.codec.interface import Frame
 from cobotwire.protocol.errors import ReplyTimeout
-from cobotwire.session.events import (
-    EchoReceived,
-    ReplyMatched,
-    ReplyRejected,
-    RequestExpired,
-    SessionEvent,
-)
+from cobotwire.session.events import EchoReceived, ReplyMatched, ReplyRejected, SessionEvent
 from cobotwire.session.pending import GRACE_SECONDS
 from session.exploring.calls import Arrival, Call
 from session.exploring.topics import POLICY, REPLIES, REQUESTS, WAIT
@@ -149,7 +143,7 @@ class Promises:
 
     def _joined(self, event: SessionEvent) -> list[Arrival]:
         """Return what came inside a frame, after a piece of a cut reply that begins it."""
-        frame = None if isinstance(event, Noise | RequestExpired) else event.frame
+        frame: Frame | None = getattr(event, "frame", None)
         if frame is None:
             return []
         inside = range(frame.offset + 1, frame.offset + len(frame.data))
