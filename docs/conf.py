@@ -11,6 +11,9 @@ from typing import Any
 
 from sphinx.application import Sphinx
 
+from cobotwire_codegen.emit import write
+from cobotwire_codegen.project import SITE, editions, products
+
 project = "cobotwire"
 author = "the cobotwire engineers"
 copyright = "the cobotwire engineers"
@@ -48,7 +51,8 @@ html_theme = "furo"
 html_title = f"cobotwire {version}"
 html_static_path = ["_static", "pictures"]
 html_css_files = ["site.css"]
-_PROJECT = tomllib.loads((Path(__file__).parents[1] / "pyproject.toml").read_text("utf-8"))
+ROOT = Path(__file__).parents[1]
+_PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))
 REPOSITORY = _PROJECT["project"]["urls"]["Repository"]
 html_theme_options = {
     # For "edit this page".
@@ -106,7 +110,9 @@ def _section(found: re.Match[str]) -> str:
 
 
 def setup(app: Sphinx) -> None:
-    """Change pages before the theme (priority 500) writes them."""
+    """Write the generated pages; change all pages before the theme (priority 500) writes them."""
+    for target in products(ROOT, editions(ROOT), SITE):
+        write(target)
     app.connect("autodoc-process-signature", _without_noise)
     # Before napoleon (priority 500) reads the docstring.
     app.connect("autodoc-process-docstring", _as_sections, priority=400)

@@ -14,11 +14,12 @@ import pytest
 import in_process
 import vectors
 from cobotwire_codegen.cli import main
+from cobotwire_codegen.language.reference import language_page
 from cobotwire_codegen.render.vectors_json import vectors_json
 from in_process import Ended
 
 EDITIONS = ("mycobot", "mycobot280")
-GENERATED = ("python/cobotwire/editions/mycobot", "docs/reference", "docs/_static/decoder/tables")
+GENERATED = ("python/cobotwire/editions/mycobot", *(f"docs/reference/{name}" for name in EDITIONS))
 
 
 def run(root: Path, *words: str) -> Ended:
@@ -72,10 +73,7 @@ def _files(root: Path) -> dict[str, bytes]:
 def test_committed_files_are_fresh(tmp_path: Path) -> None:
     shutil.copytree(vectors.ROOT / "spec", tmp_path / "spec")
     _generate(tmp_path, seed="1")
-    # The package lists its test suite itself, and is not here; `make lint` compares these pages.
-    suite = "docs/reference/test-suite/"
-    here = _files(vectors.ROOT).items()
-    assert _files(tmp_path) == {name: data for name, data in here if not name.startswith(suite)}
+    assert _files(tmp_path) == _files(vectors.ROOT)
     assert len(_files(tmp_path)) > 30
 
 
@@ -116,10 +114,13 @@ def test_check_reports_missing_and_left_over_files(generated: Path) -> None:
 def test_products_are_written_only_with_their_option(generated: Path) -> None:
     assert not (generated / "targets").exists()
     assert not (generated / "rust").exists()
+    assert not (generated / "docs/_static").exists()
     assert run(generated, "--products").returncode == 0
     for product in ("c/mycobot280/mycobot280.h", "vectors/schema.json", "wireshark/mycobot.lua"):
         assert (generated / "targets" / product).stat().st_size > 1000
     assert (generated / "rust/core/tests/data/mycobot280.json").exists()
+    assert (generated / "docs/_static/decoder/editions/mycobot280.js").exists()
+    assert (generated / "docs/reference/language.md").read_text() == language_page()
     assert run(generated, "--products", "--check").stdout == "fresh\n"
     (generated / "targets/construct/mycobot.py").unlink()
     assert run(generated, "--check").returncode == 0

@@ -16,8 +16,8 @@ import vectors
 from cobotwire.editions import load, names
 from cobotwire.protocol.errors import ReplyTimeout
 from cobotwire.simulator import MemoryTransport, SteppedClock
+from cobotwire_codegen.render import render_reference
 
-REFERENCE = vectors.ROOT / "docs" / "reference"
 SECTION = re.compile(r"^## (\w+)$(.*?)(?=^## |\Z)", re.DOTALL | re.MULTILINE)
 CALL = re.compile(r"^```pycon\n>>> (arm\..*)\n(?:(.*)\n)?```$", re.MULTILINE)
 # A message without fields is its only frame; others have the example's bytes below the boxes.
@@ -40,8 +40,8 @@ class Example(NamedTuple):
 
 
 def examples(edition: str) -> Iterator[Example]:
-    for page in sorted((REFERENCE / edition).glob("*.md")):
-        for section in SECTION.finditer(page.read_text(encoding="utf-8")):
+    for page in render_reference(vectors.edition(edition)).values():
+        for section in SECTION.finditer(page):
             if call := CALL.search(section[2]):
                 yield Example(
                     call[1],

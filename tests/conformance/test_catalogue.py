@@ -6,15 +6,11 @@ from dataclasses import replace
 
 import pytest
 
-import vectors
 from cobotwire import editions
 from cobotwire.conformance import Suite
 from cobotwire.conformance.catalogue import HISTORY, VERSION, code_digest, listing
-from cobotwire.conformance.catalogue.pages import pages
 from cobotwire.conformance.device import SUITE
 from conformance.device.testing import permissions, prepared
-
-PAGES = vectors.ROOT / "docs" / "reference" / "test-suite"
 
 
 def test_present_version_has_the_digest_of_the_test_cases() -> None:
@@ -52,11 +48,6 @@ def test_every_group_says_what_it_tests_and_sends() -> None:
         for group in suite.groups:
             assert group.subject, group.name
             assert group.sends or suite.kind == "client" or group.body is None, group.name
-
-
-def test_committed_pages_are_those_of_the_test_cases() -> None:
-    found = {path.name: path.read_text() for path in PAGES.iterdir()}
-    assert found == pages()
 
 
 def test_page_of_an_edition_lists_the_test_cases_of_a_run() -> None:

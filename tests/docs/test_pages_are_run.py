@@ -21,12 +21,6 @@ def test_every_plan_is_that_of_a_page() -> None:
     assert len(pages()) > 40
 
 
-def test_generated_pages_have_no_commands_and_no_programs() -> None:
-    texts = [path.read_text("utf-8") for path in (ROOT / "docs" / "reference").rglob("*.md")]
-    assert [line for text in texts for line in commands(text)] == []
-    assert [block for text in texts for block in programs(text)] == []
-
-
 PAGE = """\
 # Page
 

@@ -11,7 +11,7 @@ from cobotwire_codegen.emit import Target
 from cobotwire_codegen.errors import Place, Problem, SpecError
 from cobotwire_codegen.language.reference import language_page
 from cobotwire_codegen.language.schema import schema_json
-from cobotwire_codegen.library import build_library, render_library, render_page
+from cobotwire_codegen.library import Library, build_library, render_library, render_page
 from cobotwire_codegen.model import Edition
 from cobotwire_codegen.publish import edition_json
 from cobotwire_codegen.render import (
@@ -23,6 +23,7 @@ from cobotwire_codegen.render import (
 )
 from cobotwire_codegen.render.sharing import Sharing
 from cobotwire_codegen.render.unit_module import render_clients, render_units
+from cobotwire_codegen.suite_pages import suite_pages
 from cobotwire_codegen.targets.c import render_c
 from cobotwire_codegen.targets.construct import render_construct
 from cobotwire_codegen.targets.decoder import render_decoder
@@ -70,40 +71,35 @@ def spec_files(root: Path) -> list[Path]:
     return edition_files(root) + [bus] * bus.exists()
 
 
+# The editions with a committed reference: newcomers and reviewers of a change of the spec read it.
+REVIEWED = ("mycobot", "mycobot280")
+
+
 def committed(root: Path, found: list[Edition]) -> list[Target]:
-    """Return the generated files that people review, and that are committed."""
+    """Return the generated files that git has: what pip installs, and what reviewers read."""
     package = root / "python" / "cobotwire" / "editions"
-    reference = root / "docs" / "reference"
     sharings = _sharings(found)
     made = []
     for edition in found:
         base = sharings.get(edition.base)
         made.append(Target(package / edition.name, render_python(edition, base=base)))
-        made.append(Target(reference / edition.name, render_reference(edition)))
-    made.append(Target(root / "docs" / "_static" / "decoder" / "tables", render_decoder(found)))
-    made.append(schema_target(root, found))
+        if edition.name in REVIEWED:
+            made.append(Target(root / REFERENCE / edition.name, render_reference(edition)))
     clients = {PurePosixPath("clients.py"): render_clients(found)}
     made.append(Target(package, clients, alone=False))
-    made += _library(root, found)
+    if library := _library(root, found):
+        folder = root / "python" / "cobotwire" / "pymycobot"
+        made.append(Target(folder, render_library(library), alone=False))
     made += _servo_bus(root)
     units = {PurePosixPath("units.py"): render_units()}
     made.append(Target(root / "python" / "cobotwire" / "protocol", units, alone=False))
-    made.append(Target(reference, {PurePosixPath("language.md"): language_page()}, alone=False))
     return made
 
 
-def _library(root: Path, found: list[Edition]) -> list[Target]:
-    """Return the classes with the maker's names; none if the project does not state them."""
+def _library(root: Path, found: Sequence[Edition]) -> Library | None:
+    """Return the classes with the maker's names; None if the project does not state them."""
     path = root / "spec" / "pymycobot.yaml"
-    if not path.is_file():
-        return []
-    library = build_library(path, root, found)
-    package = root / "python" / "cobotwire" / "pymycobot"
-    reference = root / "docs" / "reference"
-    return [
-        Target(package, render_library(library), alone=False),
-        Target(reference, render_page(library), alone=False),
-    ]
+    return build_library(path, root, [*found]) if path.is_file() else None
 
 
 def _servo_bus(root: Path) -> list[Target]:
@@ -129,20 +125,39 @@ def _every_vectors(found: Sequence[Edition]) -> Files:
     return {path: text for edition in found for path, text in render_vectors(edition).items()}
 
 
+def _reference(root: Path, found: Sequence[Edition]) -> Files:
+    """Return all generated pages of the docs site, also those that are committed."""
+    made = {PurePosixPath("language.md"): language_page()}
+    for edition in found:
+        made |= {edition.name / path: text for path, text in render_reference(edition).items()}
+    if library := _library(root, found):
+        made |= render_page(library)
+    return made | suite_pages(root)
+
+
 RUST_DATA = "rust/core/tests/data"
+REFERENCE = "docs/reference"
+# What docs/conf.py writes before it builds the site.
+SITE = (REFERENCE, "docs/_static/decoder/editions")
 # Build products by their folder. Git ignores them; users generate the ones that they need.
-PRODUCTS: dict[str, Callable[[Sequence[Edition]], Files]] = {
-    RUST_DATA: _every_vectors,
-    "targets/c": _every_c,
-    "targets/construct": render_construct,
-    "targets/vectors": render_shared_vectors,
-    "targets/wireshark": render_wireshark,
+PRODUCTS: dict[str, Callable[[Path, Sequence[Edition]], Files]] = {
+    REFERENCE: _reference,
+    "docs/_static/decoder/editions": lambda _, found: render_decoder(found),
+    RUST_DATA: lambda _, found: _every_vectors(found),
+    "targets/c": lambda _, found: _every_c(found),
+    "targets/construct": lambda _, found: render_construct(found),
+    "targets/vectors": lambda _, found: render_shared_vectors(found),
+    "targets/wireshark": lambda _, found: render_wireshark(found),
 }
 
 
 def products(root: Path, found: list[Edition], folders: Iterable[str] = PRODUCTS) -> list[Target]:
-    """Return the generated files that git ignores: output targets, and data of the Rust tests."""
-    return [Target(root / folder, PRODUCTS[folder](found)) for folder in folders]
+    """Return the generated files that git ignores: pages of the site, output targets, test data.
+
+    Raises:
+        SuiteError: the pages of the test suite cannot be made.
+    """
+    return [Target(root / folder, PRODUCTS[folder](root, found)) for folder in folders]
 
 
 def _sharings(found: list[Edition]) -> dict[str, Sharing]:
@@ -158,6 +173,6 @@ def _sharings(found: list[Edition]) -> dict[str, Sharing]:
 
 
 def schema_target(root: Path, found: list[Edition]) -> Target:
-    """Return the schema for editors, which lies next to the files that it describes."""
+    """Return the schema for editors, next to the files that it describes; git ignores it."""
     files = {PurePosixPath("schema.json"): schema_json(found)}
     return Target(root / "spec", files, alone=False)

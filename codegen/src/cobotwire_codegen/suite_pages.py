@@ -12,7 +12,7 @@ import subprocess
 import sys
 from pathlib import Path, PurePosixPath
 
-from cobotwire_codegen.emit import Target
+from cobotwire_codegen.render import Files
 
 MODULE = "cobotwire.conformance.catalogue"
 HISTORY = "python/cobotwire/conformance/catalogue/history.py"
@@ -22,15 +22,17 @@ class SuiteError(Exception):
     """The pages of the test suite cannot be made; the text says why, and what to do."""
 
 
-def suite_pages(root: Path) -> list[Target]:
-    """Return the pages of the catalogue of test cases; none if the project has no test suite.
+def suite_pages(root: Path) -> Files:
+    """Return the pages of the catalogue of test cases, below the folder of the reference.
+
+    A project without a test suite has none.
 
     Raises:
         SuiteError: the test cases have changed and the catalogue has no new version, or they cannot
             be listed.
     """
     if not (root / HISTORY).is_file():
-        return []
+        return {}
     package = str((root / "python").resolve())
     path = os.pathsep.join([package, *filter(None, [os.environ.get("PYTHONPATH")])])
     done = subprocess.run(  # noqa: S603  (the project's own package)
@@ -42,5 +44,5 @@ def suite_pages(root: Path) -> list[Target]:
     )
     if done.returncode:
         raise SuiteError(done.stderr.strip().rpartition("\n")[2])
-    files = {PurePosixPath(name): text for name, text in json.loads(done.stdout).items()}
-    return [Target(root / "docs" / "reference" / "test-suite", files)]
+    pages = json.loads(done.stdout)
+    return {PurePosixPath("test-suite", name): text for name, text in pages.items()}

@@ -273,10 +273,9 @@
     return Uint8Array.from(bytes);
   }
 
-  const known = globalThis.cobotwire || { tables: {} };
-  globalThis.cobotwire = Object.assign(known, {
+  Object.assign(cobotwire, {
     // `source` is this code after that of values.js, for a worker: a page that is a file may not load
     // another file into one.
-    Law, Rejection, hex, parse, source: `${known.source || ""}"use strict";(${law})();`,
+    Law, Rejection, hex, parse, source: `${cobotwire.source}"use strict";(${law})();`,
   });
 })();

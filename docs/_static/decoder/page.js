@@ -112,7 +112,7 @@
       use(cobotwire.tables[name]);
       return;
     }
-    const script = element("script", { src: new URL(`tables/${name}.js`, HERE).href });
+    const script = element("script", { src: new URL(`editions/${name}.js`, HERE).href });
     script.addEventListener("load", () => use(cobotwire.tables[name]));
     document.head.append(script);
   }

@@ -147,8 +147,7 @@
     return size && legal ? size : 0;
   }
 
-  const known = globalThis.cobotwire || { tables: {} };
-  globalThis.cobotwire = Object.assign(known, {
-    PARTS, elements, fieldSize, fieldsOf, unsigned, source: `"use strict";(${values})();`,
-  });
+  globalThis.cobotwire = {
+    tables: {}, PARTS, elements, fieldSize, fieldsOf, unsigned, source: `"use strict";(${values})();`,
+  };
 })();

@@ -8,6 +8,8 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
+import vectors
+from cobotwire_codegen.targets.decoder import edition_script
 from targets.comparison import Comparison
 from targets.decoder import browser
 from targets.vectors.comparison import Record, read
@@ -23,7 +25,7 @@ def compare(edition: str) -> Comparison:
     Raises:
         ToolMissing: Chromium is not installed.
     """
-    return judged(read(edition), (SCRIPTS / "tables" / f"{edition}.js").read_text())
+    return judged(read(edition), edition_script(vectors.edition(edition)))
 
 
 def judged(document: Record, table: str) -> Comparison:
@@ -57,7 +59,7 @@ def _compared(document: Record, found: Any) -> Comparison:
 
 def _page(documents: Sequence[tuple[Record, str]]) -> str:
     scripts = [
-        *((SCRIPTS / f"{name}.js").read_text() for name in ("values", "law")),
+        *((SCRIPTS / f"{name}.js").read_text() for name in ("values", "law", "table")),
         *(table for _, table in documents),
         f"const cobotwireVectors = {json.dumps([document for document, _ in documents])};",
         HARNESS.read_text(),

@@ -8,7 +8,7 @@ import pytest
 
 import vectors
 from cobotwire.codec.interface import Codec
-from cobotwire_codegen.targets.decoder import table_script
+from cobotwire_codegen.targets.decoder import edition_script
 from strategies import TABLES, codec_of
 from targets.comparison import ToolMissing
 from targets.decoder import browser
@@ -43,7 +43,7 @@ def test_streams_of_both_directions_are_framed_as_in_codec(edition: str) -> None
     streams = [_damaged(chance, frames) for _ in range(STREAMS)]
     records = [_record(codec, data) for data in streams]
     found = {"edition": edition, "messages": [], "malformed": [], "streams": records}
-    script = table_script(vectors.edition(edition))
+    script = edition_script(vectors.edition(edition))
     assert judged(found, script).differences == []
     noise = {event.get("noise") for record in records for event in record["events"]}
     assert noise >= {"no-header", "bad-length", "unknown-id", "bad-check", "truncated", None}
@@ -68,7 +68,7 @@ def _record(codec: Codec, data: bytes) -> Record:
 @pytest.mark.parametrize("kind", WRONG)
 def test_decoder_page_of_a_wrong_model_differs_from_the_vectors(kind: str) -> None:
     wrong = with_wrong_angles(vectors.edition("mycobot"), WRONG[kind])
-    script = table_script(wrong)
+    script = edition_script(wrong)
     found = judged(read("mycobot"), script).differences
     assert found
     assert all("get_angles" in difference for difference in found)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import html
 import json
 import re
+import shutil
 from collections.abc import Iterator
 from pathlib import Path
 from urllib.parse import urlencode
@@ -13,8 +14,9 @@ import pytest
 
 import vectors
 from cobotwire.codec.interface import Noise
+from cobotwire_codegen.emit import Target, write
 from cobotwire_codegen.project import edition_files
-from cobotwire_codegen.targets.decoder import table_script
+from cobotwire_codegen.targets.decoder import edition_script, render_decoder
 from strategies import TABLES, codec_of
 from targets.c.specs import SPECS, edition_of
 from targets.comparison import ToolMissing
@@ -48,7 +50,10 @@ def page(tmp_path_factory: pytest.TempPathFactory) -> Path:
     path = tmp_path_factory.mktemp("decoder") / "decoder.html"
     body = re.findall(r"^```\{raw\} html\n(.*?)^```$", PAGE, re.DOTALL | re.MULTILINE)[0]
     path.write_text(f'<!doctype html><meta charset="utf-8"><body>{body}</body>')
-    (path.parent / "_static").symlink_to(ROOT / "docs" / "_static")
+    static = path.parent / "_static"
+    shutil.copytree(ROOT / "docs" / "_static", static, ignore=shutil.ignore_patterns("editions"))
+    scripts = render_decoder([*vectors.editions().values()])
+    write(Target(static / "decoder" / "editions", scripts))
     return path
 
 
@@ -129,9 +134,9 @@ def test_message_without_a_request_is_shown_as_an_event(page: Path) -> None:
 
 
 def test_each_type_of_the_language_is_explained(page: Path) -> None:
-    script = table_script(edition_of(SPECS["sensor"]))
+    script = edition_script(edition_of(SPECS["sensor"]))
     own = page.with_name("sensor.html")
-    own.write_text(page.read_text().replace("<div id", f"<script>{script}</script><div id"))
+    own.write_text(page.read_text().replace("</body>", f"<script>{script}</script></body>"))
     states = [_state(pasted, "reply", "sensor") for pasted in EXPLAINED]
     calls = (f"shown({json.dumps(state)})" for state in states)
     _, *shown = browser.evaluate(own.as_uri(), SHOWN, *calls)

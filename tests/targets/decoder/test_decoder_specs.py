@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from cobotwire.codec.interface import Listening
 from cobotwire_codegen.model import Edition
-from cobotwire_codegen.targets.decoder import table_script
+from cobotwire_codegen.targets.decoder import edition_script
 from random_editions import editions
 from raw_messages import raw_messages
 from targets.c.specs import SPECS, edition_of
@@ -66,7 +66,7 @@ def test_random_protocols_are_decoded_as_in_codec(tmp_path: Path) -> None:
 
 
 def _assert_decoded(found: list[Edition], documents: list[Document]) -> None:
-    scripts = [table_script(edition) for edition in found]
+    scripts = [edition_script(edition) for edition in found]
     records = [document.record for document in documents]
     compared = judged_all(list(zip(records, scripts, strict=True)))
     assert [text for each in compared for text in each.differences] == []

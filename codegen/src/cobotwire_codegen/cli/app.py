@@ -54,7 +54,7 @@ def main(
 ) -> None:
     """Generate software from a protocol in YAML.
 
-    Without a verb, generate this project's own files (editions, reference, test data) from spec/.
+    Without a verb, generate this project's own files (editions, reference, schema) from spec/.
     With --check, report files that are stale, missing or left over instead.
     """
     same_version.check()

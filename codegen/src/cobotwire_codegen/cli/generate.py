@@ -3,14 +3,22 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Iterable
 from pathlib import Path
 
 import click
 
 from cobotwire_codegen.cli.shared import report_problems, root_option
 from cobotwire_codegen.emit import Target, compare, write
-from cobotwire_codegen.project import PRODUCTS, RUST_DATA, committed, editions, products
-from cobotwire_codegen.suite_pages import SuiteError, suite_pages
+from cobotwire_codegen.project import (
+    PRODUCTS,
+    RUST_DATA,
+    committed,
+    editions,
+    products,
+    schema_target,
+)
+from cobotwire_codegen.suite_pages import SuiteError
 
 
 @click.command()
@@ -19,35 +27,29 @@ from cobotwire_codegen.suite_pages import SuiteError, suite_pages
 @click.option("--rust-data", is_flag=True)
 @root_option
 def generate(check_only: bool, with_products: bool, rust_data: bool, root: str) -> None:
-    """Generate what is committed: editions, reference, the decoder's tables, the spec's schema.
+    """Generate what is committed, the editions and their reference, and the schema for editors.
 
-    With --products, also generate what is not committed: output targets, data of the Rust tests.
-    With --rust-data, generate only the latter.
+    With --products, also generate what is not committed: the other pages of the docs site, output
+    targets, data of the Rust tests. With --rust-data, generate only the latter.
     """
     if rust_data and with_products:
         raise click.UsageError("--products includes the data of --rust-data: give one of them")
+    path = Path(root)
     with report_problems():
-        found = editions(Path(root))
-        wanted = [] if rust_data else committed(Path(root), found)
-    if with_products or rust_data:
-        wanted += products(Path(root), found, [RUST_DATA] if rust_data else PRODUCTS)
+        found = editions(path)
+        wanted = [] if rust_data else committed(path, found)
+    changed = 0 if check_only else write_all(wanted)
+    folders: Iterable[str] = [RUST_DATA] if rust_data else PRODUCTS if with_products else ()
+    try:
+        # After the editions, because the pages of the test suite list their commands.
+        others = products(path, found, folders)
+    except SuiteError as error:
+        raise click.ClickException(str(error)) from error
     if check_only:
-        sys.exit(show_stale(wanted + ([] if rust_data else _suite(Path(root)))))
-    changed = write_all(wanted)
-    if not rust_data:
-        # After the editions, because it lists their commands.
-        changed += write_all(_suite(Path(root)))
+        sys.exit(show_stale(wanted + others))
+    changed += write_all(others if rust_data else [schema_target(path, found), *others])
     commands = ", ".join(f"{edition.name} ({len(edition.commands)} commands)" for edition in found)
     click.echo(f"{commands}: {changed} file(s) changed")
-
-
-def _suite(root: Path) -> list[Target]:
-    """Return the pages of the test suite, or exit with 1."""
-    try:
-        return suite_pages(root)
-    except SuiteError as error:
-        click.echo(f"cobotwire-gen: {error}", err=True)
-        sys.exit(1)
 
 
 def write_all(wanted: list[Target]) -> int:
