@@ -36,7 +36,7 @@ test: set-up front-end-if-reachable ## run everything: linters, types, generated
 # Compile while pip fetches the tools. Only one pip at a time may install.
 set-up: .venv/.base
 	+$(MAKE) --no-print-directory --jobs 2 .venv/.tools .venv/.compiled
-	+$(MAKE) --no-print-directory .venv/.native
+	+$(MAKE) --no-print-directory .venv/.native spec/schema.json
 
 lint: .venv/.tools .venv/.native ## check formatting, types, stubs against the binary, generated files
 	$(BIN)/cobotwire-gen --check
@@ -105,10 +105,10 @@ four-hours: .venv/.tools .venv/.native front-end ## show four hours of a 50 Hz l
 studio-pictures: .venv/.tools .venv/.native front-end ## take the pictures of docs/studio.md
 	PYTHONPATH=python:tests $(BIN)/python -m studio.pictures docs/plots
 
-gen: .venv/.tools ## write the generated files from spec/
+gen: .venv/.tools ## write the generated files that git has from spec/, and the schema for editors
 	$(BIN)/cobotwire-gen
 
-products: .venv/.tools ## write the build products: output targets, data of the Rust tests
+products: .venv/.tools ## also write the build products: pages of the site, output targets, data of the Rust tests
 	$(BIN)/cobotwire-gen --products
 
 targets: products .venv/.native ## build each output target and run it in its real tool
@@ -209,7 +209,8 @@ figures: .venv/.tools .venv/.native ## count files, lines and import cycles of e
 	$(BIN)/python tests/house_figures.py
 
 clean: ## remove the environment and all build products
-	rm -rf .venv target targets rust/core/tests/data .cargo-tools rust/fuzz/target docs/_build
+	git clean -dfqX docs spec
+	rm -rf .venv target targets rust/core/tests/data .cargo-tools rust/fuzz/target
 
 .venv/.base: pyproject.toml
 	$(PYTHON) -c 'import sys; sys.exit("cobotwire needs Python 3.11 or newer" if sys.version_info < (3, 11) else 0)'
@@ -229,6 +230,11 @@ clean: ## remove the environment and all build products
 
 .venv/.tools: .venv/.base codegen/pyproject.toml Cargo.toml
 	$(BIN)/python -m pip install --quiet -e codegen --group test
+	touch $@
+
+# For editors; `make gen` keeps it up to date.
+spec/schema.json: .venv/.tools .venv/.native
+	$(BIN)/cobotwire-gen schema
 	touch $@
 
 # Install it in the project, so that other projects keep their version.

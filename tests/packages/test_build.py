@@ -30,6 +30,7 @@ def test_source_distribution_has_the_page_or_the_build_says_that_it_lacks_it(
         shutil.copytree(ROOT / folder, clone / folder, symlinks=True, ignore=ignored)
     for name in PARTS:
         shutil.copy(ROOT / name, clone / name)
+    (clone / "spec/schema.json").touch()  # git ignores it
     if fetched:
         _fetched(clone)
     system = tomllib.loads((clone / "pyproject.toml").read_text())["build-system"]
@@ -54,6 +55,8 @@ def test_source_distribution_has_the_page_or_the_build_says_that_it_lacks_it(
         names = {name.partition("/")[2] for name in opened.getnames()}
     # A wheel is built from it by the same backend.
     assert {"tools/build_backend.py", "tools/front_end.py"} <= names
+    assert "python/cobotwire/spec/frame.yaml" in names
+    assert [name for name in names if name.endswith("schema.json")] == []
     assert any(name.startswith(PAGE) for name in names) is fetched
     warning = f"warning: the package is built without `cobotwire studio`, because {NO_REGISTRY}/"
     assert (warning in ended.stderr) is not fetched
