@@ -109,7 +109,8 @@ EXPLANATIONS = (
         "unknown-key",
         "A mapping has a key that the language of the spec does not have there.",
         "A misspelt key would be ignored, together with its value.",
-        "Correct the spelling; docs/reference/language.md lists the keys.",
+        "Correct the spelling; https://cobotwire.github.io/cobotwire/reference/language.html "
+        "lists the keys.",
         "safty: query",
         "safety: query",
     ),

@@ -12,7 +12,8 @@ EXPLANATIONS = (
         "that does not end with the address, then data, and a check, a footer or both. C, "
         "Wireshark, construct and the decoder page support only two header bytes, one byte of LEN "
         "and of CMD after them, and a footer, crc16-modbus or sum.",
-        "Correct what the message names; docs/reference/language.md describes the frame.",
+        "Correct what the message names; https://cobotwire.github.io/cobotwire/reference/"
+        "language.html describes the frame.",
         "maximum_data: 300",
         "maximum_data: 16",
     ),
