@@ -295,9 +295,9 @@ class Exchange:
 
     def _free_times(self, now: float) -> list[tuple[PendingRequest, float]]:
         """Return each queued request, and from when on no late reply can be mistaken for its."""
-        if not self._outstanding.replies:
-            return [(p, now) for p in self._queue if not p.done and p is not self._last]
         queued = self._queued()
+        if not self._outstanding.replies:
+            return [(pending, now) for pending in queued]
         # Many callers may want the same.
         alike = {pending.request.frame: pending.request for pending in queued}
         held = {frame: self._outstanding.held_until(request) for frame, request in alike.items()}
