@@ -182,6 +182,8 @@ def test_name_of_the_port_says_which_robot_it_is() -> None:
         ("Pro450Client", "get_pro_gripper_angle", (0,), "gripper_id is 0"),
         ("Pro450Client", "base_external_can_control", (0, [1]), "can_id is 0"),
         ("Pro450Client", "set_limit_switch", (3, 1), "limit_mode is 3"),
+        ("Mercury", "set_limit_switch", (3, 1), "limit_mode is 3"),
+        ("Mercury", "set_limit_switch", (1, 2), "state is 2"),
         ("Pro630", "set_basic_output", (7, 1), "pin_no is 7"),
         *(("Pro630", "power_on", (delay,), f"delay is {delay!r}") for delay in (None, "2", -1)),
     ],

@@ -142,8 +142,11 @@ class Reporting(ClosedLoop):
         Without these reports, motions return when they are accepted.
 
         Raises:
+            UsageError: an argument is not allowed; nothing was sent, not even the query.
             ArmNotReady: the arm has no power; with ``errors="return"`` the result is -1.
         """
+        check_range("limit_mode", limit_mode, 1, 2)
+        check_range("state", state, 0, 1)
         powered = self.arm.is_power_on()
         if not powered:
             why = f"the arm has {no_power(powered)}; call power_on()"
