@@ -11,71 +11,44 @@ and an order is sent once. A call that fails raises our error. With ``errors="re
 
 from __future__ import annotations
 
-from importlib import import_module
-from typing import TYPE_CHECKING, Any
-
+from cobotwire.protocol.light import TYPE_CHECKING
 from cobotwire.pymycobot import utils
 from cobotwire.pymycobot.constants import PI_BAUD, PI_PORT
 from cobotwire.pymycobot.genre import Angle, Coord
+from cobotwire.pymycobot.layer import classes
 
 if TYPE_CHECKING:
-    from cobotwire.pymycobot.mecharm import MechArm
-    from cobotwire.pymycobot.mecharm270 import MechArm270
-    from cobotwire.pymycobot.mecharmsocket import MechArmSocket
-    from cobotwire.pymycobot.mercury import Mercury
-    from cobotwire.pymycobot.mercurysocket import MercurySocket
-    from cobotwire.pymycobot.myarm import MyArm
-    from cobotwire.pymycobot.myarmc import MyArmC
-    from cobotwire.pymycobot.myarmm import MyArmM
-    from cobotwire.pymycobot.myarmsocket import MyArmSocket
-    from cobotwire.pymycobot.mybuddy import MyBuddy
-    from cobotwire.pymycobot.mybuddysocket import MyBuddySocket
-    from cobotwire.pymycobot.mycobot import MyCobot
-    from cobotwire.pymycobot.mycobot280 import MyCobot280
-    from cobotwire.pymycobot.mycobot280rdkx5 import MyCobot280RDKX5, MyCobot280RDKX5Socket
-    from cobotwire.pymycobot.mycobot280socket import MyCobot280Socket
-    from cobotwire.pymycobot.mycobot320 import MyCobot320
-    from cobotwire.pymycobot.mycobot320socket import MyCobot320Socket
-    from cobotwire.pymycobot.mycobotsocket import MyCobotSocket
-    from cobotwire.pymycobot.mypalletizer import MyPalletizer
-    from cobotwire.pymycobot.mypalletizer260 import MyPalletizer260
-    from cobotwire.pymycobot.mypalletizersocket import MyPalletizerSocket
-    from cobotwire.pymycobot.pro400 import Pro400
-    from cobotwire.pymycobot.pro400client import Pro400Client
-    from cobotwire.pymycobot.pro450client import Pro450Client
-    from cobotwire.pymycobot.pro630 import Pro630
-    from cobotwire.pymycobot.pro630client import Pro630Client
+    from typing import Any
 
-# The module of each class; it is imported when the class is used.
-_MODULES = {
-    "MyCobot280": "mycobot280",
-    "MyCobot280Socket": "mycobot280socket",
-    "MyCobot280RDKX5": "mycobot280rdkx5",
-    "MyCobot280RDKX5Socket": "mycobot280rdkx5",
-    "MechArm270": "mecharm270",
-    "MechArmSocket": "mecharmsocket",
-    "MyPalletizer260": "mypalletizer260",
-    "MyPalletizerSocket": "mypalletizersocket",
-    "MyCobot320": "mycobot320",
-    "MyCobot320Socket": "mycobot320socket",
-    "MyArm": "myarm",
-    "MyArmSocket": "myarmsocket",
-    "MyArmM": "myarmm",
-    "MyArmC": "myarmc",
-    "MyBuddySocket": "mybuddysocket",
-    "MyBuddy": "mybuddy",
-    "MyCobotSocket": "mycobotsocket",
-    "MyCobot": "mycobot",
-    "MechArm": "mecharm",
-    "MyPalletizer": "mypalletizer",
-    "Mercury": "mercury",
-    "MercurySocket": "mercurysocket",
-    "Pro400": "pro400",
-    "Pro400Client": "pro400client",
-    "Pro630Client": "pro630client",
-    "Pro630": "pro630",
-    "Pro450Client": "pro450client",
-}
+    from cobotwire.pymycobot.layer.classes import (
+        MechArm,
+        MechArm270,
+        MechArmSocket,
+        Mercury,
+        MercurySocket,
+        MyArm,
+        MyArmC,
+        MyArmM,
+        MyArmSocket,
+        MyBuddy,
+        MyBuddySocket,
+        MyCobot,
+        MyCobot280,
+        MyCobot280RDKX5,
+        MyCobot280RDKX5Socket,
+        MyCobot280Socket,
+        MyCobot320,
+        MyCobot320Socket,
+        MyCobotSocket,
+        MyPalletizer,
+        MyPalletizer260,
+        MyPalletizerSocket,
+        Pro400,
+        Pro400Client,
+        Pro450Client,
+        Pro630,
+        Pro630Client,
+    )
 
 __all__ = [
     "PI_BAUD",
@@ -114,7 +87,7 @@ __all__ = [
 
 
 def __getattr__(name: str) -> Any:
-    module = _MODULES.get(name)
-    if module is None:
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    return getattr(import_module(f"{__name__}.{module}"), name)
+    # A class is made when it is used.
+    if name in __all__:
+        return getattr(classes, name)
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import json
 from dataclasses import dataclass
 from functools import lru_cache
-from importlib.resources import files
 from inspect import Parameter, isfunction, signature
 from typing import Any
 
@@ -13,6 +11,8 @@ import cobotwire
 import cobotwire.pymycobot
 from cobotwire.protocol.table import Table
 from cobotwire.pymycobot.layer.absent import absent
+from cobotwire.pymycobot.layer.calling import Method, methods
+from cobotwire.pymycobot.layer.table import CLASSES
 
 # The TCP port of most classes.
 TCP_PORT = 9000
@@ -177,10 +177,9 @@ _HOME = "send_angles([0] * {joints}, 10)"
 @lru_cache
 def library() -> dict[str, LibraryClass]:
     """Return the classes of the library by name."""
-    data = json.loads(files("cobotwire.pymycobot").joinpath("calls.json").read_text("utf-8"))
     made: dict[str, LibraryClass] = {}
-    for name, given in data.items():
-        made[name] = _class(name, given, made.get(given["like"]))
+    for given in CLASSES:
+        made[given["name"]] = _class(given, made.get(given.get("like", "")))
     return made
 
 
@@ -193,29 +192,39 @@ def are_alike(kinds: list[LibraryClass], method: str) -> bool:
     )
 
 
-def _class(name: str, given: dict[str, Any], like: LibraryClass | None) -> LibraryClass:
-    helpers: list[str] = given["helpers"]
-    methods = dict(like.methods if like else _SEVERAL)
+def _class(given: dict[str, Any], like: LibraryClass | None) -> LibraryClass:
+    name: str = given["name"]
+    helpers = [helper for _, helper in given.get("helpers", ())]
+    calls = dict(like.methods if like else _SEVERAL)
     for helper in helpers:
-        methods |= _OF_HELPERS.get(helper, {})
-    methods |= {key: _call(each) for key, each in given["methods"].items()}
+        calls |= _OF_HELPERS.get(helper, {})
+    calls |= {method.name: _call(method) for method in methods(name)}
     known = [each for each in helpers if each in _HOMES or each.startswith("Homing")]
     homes = (_HOMES.get(each, _HOME) for each in known)
     home = next(homes, like.home if like else _HOME).format(joints=given["joints"])
     return LibraryClass(
         name,
         given["opens"],
-        tuple(given["constructor"]),
+        tuple(parameter for parameter, *_ in given["constructor"]),
         given["native"],
-        tuple(given["on_ports"]),
+        given.get("on_ports", ()),
         given["joints"],
-        given["devices"],
+        given.get("devices", {}),
         home,
-        methods,
+        calls,
         {**(like.absent if like else absent("*")), **absent(name)},
     )
 
 
-def _call(given: dict[str, Any]) -> Call:
-    pairs = {name: (each[0], each[1]) for name, each in given["arguments"].items()}
-    return Call(**{**given, "arguments": pairs})
+def _call(method: Method) -> Call:
+    defaults = {name: "".join(map(repr, default)) for name, _, *default in method.parameters}
+    return Call(
+        method.calls,
+        defaults,
+        # Arguments of ours that the library's method has not are left out.
+        {ours: (given, "".join(default)) for ours, given, *default in method.arguments if given},
+        method.result,
+        method.gives,
+        method.keywords,
+        method.address,
+    )

@@ -1,0 +1,138 @@
+"""Renders the table that the layer and ``cobotwire migrate`` interpret."""
+
+from __future__ import annotations
+
+import json
+from ast import literal_eval
+from itertools import zip_longest
+
+from cobotwire_codegen.library.model import ENDED, Library, LibraryClass, Method
+from cobotwire_codegen.library.parameters import Typed, of_constructor, of_method
+from cobotwire_codegen.model import Chars, Enum, Flag, Listed, Quantity, Type, Value
+from cobotwire_codegen.render.arguments import arguments, keyword_only
+from cobotwire_codegen.render.parameters import results
+
+Row = tuple[object, ...]
+
+
+def class_lines(library: Library) -> list[str]:
+    """Return a line for each class of the library."""
+    return [repr(_stated(_class(given))) for given in library.classes]
+
+
+def method_lines(library: Library) -> list[str]:
+    """Return a line for each distinct method, with the classes that have it; sorted by name."""
+    owners: dict[Row, list[str]] = {}
+    for given in library.classes:
+        for method in given.methods:
+            owners.setdefault(_method(given, method), []).append(given.name)
+    rows = [(name, tuple(names), *rest) for (name, *rest), names in owners.items()]
+    return [repr(row) for row in sorted(rows, key=lambda row: str(row[0]))]
+
+
+def absent_json(library: Library) -> str:
+    """Return why names have no counterpart, by class; those of all classes have the class ``*``."""
+    found = [("*", library.absent)] + [(each.name, each.absent) for each in library.classes]
+    data = {name: dict(absent) for name, absent in found if absent}
+    return json.dumps(data, indent=1) + "\n"
+
+
+def place_of(helper: str) -> tuple[str, str]:
+    """Return the module of the layer that has a helper, and the name of its class."""
+    module, _, name = helper.rpartition(".")
+    return module or "helpers", name
+
+
+def _stated(row: dict[str, object]) -> dict[str, object]:
+    """Return what is not empty."""
+    return {key: value for key, value in row.items() if value}
+
+
+def _class(given: LibraryClass) -> dict[str, object]:
+    return {
+        "name": given.name,
+        "module": given.module,
+        "doc": given.doc,
+        "edition": given.edition.name,
+        "elsewhere": given.elsewhere.name if given.ports else "",
+        "ports": given.ports,
+        "orders": given.orders if given.orders != "acknowledged" else "",
+        "opens": given.opens,
+        "constructor": _parameters(of_constructor(given)),
+        "like": given.like,
+        "helpers": tuple(map(place_of, given.helpers)),
+        "native": given.elsewhere.class_name,
+        "joints": given.edition.joints,
+        "on_ports": (given.edition.class_name, *given.ports) if given.ports else (),
+        "devices": {str(each.value): each.attribute for each in given.edition.frame.addresses},
+    }
+
+
+def _parameters(typed: Typed) -> Row:
+    """Return each parameter with its annotation, and its default if it has one."""
+    return tuple(
+        (each.name, kind, literal_eval(each.default)) if each.default else (each.name, kind)
+        for each, kind in typed
+    )
+
+
+def _method(given: LibraryClass, method: Method) -> Row:
+    command = method.command
+    everywhere = any(each.name == command.name for each in given.elsewhere.commands)
+    gives = _gives_form(method)
+    more = {
+        "calls": command.name if command.name != method.name else "",
+        "only_here": not everywhere,
+        "address": method.address,
+        "lacks": method.lacks,
+        "ranges": tuple((name, int(low), int(high)) for name, low, high in method.ranges),
+        "result": method.result if method.result != "plain" else "",
+        "keywords": tuple(sorted(keyword_only(command))),
+        "gives": gives if gives != "nothing" else "",
+    }
+    # A number in place of a parameter is passed as it is; our last arguments may be left out.
+    passed = tuple(
+        (ours.name, theirs, ours.default) if ours.default else (ours.name, theirs)
+        for theirs, ours in zip_longest(method.passes, arguments(command), fillvalue="")
+        if not isinstance(ours, str)
+    )
+    stated = tuple(_stated(more).items())
+    return method.name, command.title, _by(method), _parameters(of_method(method)), passed, stated
+
+
+def _by(method: Method) -> str:
+    """Return which method of the layer makes the call."""
+    if method.result == ENDED:
+        return "move"
+    if method.command.ack:
+        return "order"
+    if method.command.awaits_reply:
+        return "ask"
+    return "finish" if method.result == "done" else "send"
+
+
+def _gives_form(method: Method) -> str:
+    """Return what a program must do to a result of ours to have the library's.
+
+    ``same`` is nothing, ``nothing`` says that only the library has a result. ``list``, ``int`` and
+    ``ints`` (a list of numbers) say what to make of ours, ``parts`` that no word does.
+    """
+    if method.result == ENDED or method.command.ack or not method.command.awaits_reply:
+        has_result = method.result != "nothing" and (method.command.ack or method.result != "plain")
+        return "nothing" if has_result or method.result == ENDED else "same"
+    found = results(method.command)
+    if method.result != "plain" or len(found) != 1 or found[0].optional or method.command.text:
+        return "parts"
+    forms = {_form(each) for each in found[0].types}
+    return forms.pop() if len(forms) == 1 else "parts"
+
+
+def _form(given: Type) -> str:
+    """Return what to make of a value of a type to have the library's."""
+    if isinstance(given, Flag | Enum):
+        return "int"
+    if isinstance(given, Listed):
+        return {"same": "list", "int": "ints"}.get(_form(given.of), "parts")
+    if isinstance(given, Value):
+        return "list"
+    return "same" if isinstance(given, Quantity | Chars) else "parts"
