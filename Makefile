@@ -45,7 +45,7 @@ lint: .venv/.tools .venv/.native ## check formatting, types, stubs against the b
 	$(BIN)/ruff check .
 	$(BIN)/codespell
 	$(BIN)/mypy
-	$(BIN)/python -m mypy.stubtest cobotwire._native --mypy-config-file pyproject.toml
+	$(BIN)/python -m mypy.stubtest cobotwire._native cobotwire.pymycobot.layer.classes --mypy-config-file pyproject.toml
 	cargo fmt --all --check
 	cargo fmt --manifest-path rust/fuzz/Cargo.toml --check
 # In release mode, because the dependencies are compiled in it already, for the native module.

@@ -10,7 +10,7 @@ import pytest
 import cobotwire.pymycobot as ours
 from cobotwire.protocol.errors import UsageError
 from cobotwire.pymycobot.layer.absent import why_absent
-from cobotwire.pymycobot.layer.table import CLASSES as STATED
+from cobotwire.pymycobot.layer.data import NAMES
 from differences import rulings, unruled
 from layer_comparison import FAILED, REJECTED, Called, call_ours, layer_on
 from layer_main import COMPARISONS
@@ -20,7 +20,7 @@ from pymycobot_classes import library, peer_on
 from pymycobot_ports import RecordingPort, RecordingTransport
 from robots.comparison import calls_of
 
-CLASSES = sorted(each["name"] for each in STATED)
+CLASSES = sorted(NAMES)
 # `make layer` compares all methods; here every n-th one.
 EVERY = {"calls": 12, "values": 45, "replies": 30}
 EVERY_BY_TCP = 40

@@ -11,15 +11,14 @@ and an order is sent once. A call that fails raises our error. With ``errors="re
 
 from __future__ import annotations
 
-from cobotwire.protocol.light import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
+
 from cobotwire.pymycobot import utils
 from cobotwire.pymycobot.constants import PI_BAUD, PI_PORT
 from cobotwire.pymycobot.genre import Angle, Coord
 from cobotwire.pymycobot.layer import classes
 
 if TYPE_CHECKING:
-    from typing import Any
-
     from cobotwire.pymycobot.layer.classes import (
         MechArm,
         MechArm270,

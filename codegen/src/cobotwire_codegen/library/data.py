@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from ast import literal_eval
 from itertools import zip_longest
+from typing import NamedTuple
 
 from cobotwire_codegen.library.model import ENDED, Library, LibraryClass, Method
 from cobotwire_codegen.library.parameters import Typed, of_constructor, of_method
@@ -15,19 +16,34 @@ from cobotwire_codegen.render.parameters import results
 Row = tuple[object, ...]
 
 
-def class_lines(library: Library) -> list[str]:
-    """Return a line for each class of the library."""
-    return [repr(_stated(_class(given))) for given in library.classes]
+class Stated(NamedTuple):
+    """What is stated about a class, in the file of that name: each text is a Python literal.
+
+    ``methods`` are those that no earlier class has, each with all classes that have it.
+    """
+
+    file: str
+    name: str
+    row: str
+    methods: list[str]
 
 
-def method_lines(library: Library) -> list[str]:
-    """Return a line for each distinct method, with the classes that have it; sorted by name."""
-    owners: dict[Row, list[str]] = {}
+def stated(library: Library) -> list[Stated]:
+    """Return what is stated about each class; a method is stated once, with its first class."""
+    # By the text, because the defaults False and 0 are equal.
+    owners: dict[str, list[str]] = {}
     for given in library.classes:
         for method in given.methods:
-            owners.setdefault(_method(given, method), []).append(given.name)
-    rows = [(name, tuple(names), *rest) for (name, *rest), names in owners.items()]
-    return [repr(row) for row in sorted(rows, key=lambda row: str(row[0]))]
+            owners.setdefault(repr(_method(given, method)), []).append(given.name)
+    made = []
+    for given in library.classes:
+        firsts = {names[0] for names in owners.values() if given.name in names}
+        files = tuple(each.name.lower() for each in library.classes if each.name in firsts)
+        row = repr(_not_empty({**_class(given), "methods_in": files}))
+        own = {text: names for text, names in owners.items() if names[0] == given.name}
+        methods = [f"({tuple(names)}, {text[1:]}" for text, names in own.items()]
+        made.append(Stated(given.name.lower(), given.name, row, methods))
+    return made
 
 
 def absent_json(library: Library) -> str:
@@ -43,7 +59,7 @@ def place_of(helper: str) -> tuple[str, str]:
     return module or "helpers", name
 
 
-def _stated(row: dict[str, object]) -> dict[str, object]:
+def _not_empty(row: dict[str, object]) -> dict[str, object]:
     """Return what is not empty."""
     return {key: value for key, value in row.items() if value}
 
@@ -96,8 +112,8 @@ def _method(given: LibraryClass, method: Method) -> Row:
         for theirs, ours in zip_longest(method.passes, arguments(command), fillvalue="")
         if not isinstance(ours, str)
     )
-    stated = tuple(_stated(more).items())
-    return method.name, command.title, _by(method), _parameters(of_method(method)), passed, stated
+    further = tuple(_not_empty(more).items())
+    return method.name, command.title, _by(method), _parameters(of_method(method)), passed, further
 
 
 def _by(method: Method) -> str:

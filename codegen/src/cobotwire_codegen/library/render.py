@@ -5,7 +5,7 @@ from __future__ import annotations
 from itertools import groupby
 from pathlib import PurePosixPath
 
-from cobotwire_codegen.library.data import absent_json, class_lines, method_lines
+from cobotwire_codegen.library.data import absent_json, stated
 from cobotwire_codegen.library.language import RESULTS
 from cobotwire_codegen.library.model import Library, LibraryClass, Method
 from cobotwire_codegen.library.stub import Stub, constructor, native, native_call, our_call
@@ -15,23 +15,21 @@ from cobotwire_codegen.render import Files, environment
 def render_library(library: Library) -> Files:
     """Return the data of the classes, their types, and a module for each of the library's."""
     jinja = environment()
-    jinja.globals.update(
-        class_lines=class_lines,
-        constructor=constructor,
-        method_lines=method_lines,
-        names=names,
-        native=native,
-    )
+    jinja.globals.update(constructor=constructor, names=names, native=native)
     made: Files = {PurePosixPath("absent.json"): absent_json(library)}
-    for name in ("table.py", "classes.pyi"):
-        text = jinja.get_template(f"library/{name}.j2").render(library=library, stub=Stub(library))
-        made[PurePosixPath("layer", name)] = text
+    text = jinja.get_template("library/classes.pyi.j2").render(stub=Stub(library))
+    made[PurePosixPath("layer", "classes.pyi")] = text
+    data, found = PurePosixPath("layer", "data"), stated(library)
+    made[data / "__init__.py"] = jinja.get_template("library/data.py.j2").render(found=found)
+    for each in found:
+        text = jinja.get_template("library/stated.py.j2").render(library=library, stated=each)
+        made[data / f"{each.file}.py"] = text
     index = jinja.get_template("library/index.py.j2").render(library=library)
     made[PurePosixPath("__init__.py")] = index
     template = jinja.get_template("library/module.py.j2")
     listed = sorted(library.classes, key=lambda each: (each.module, each.name))
-    for module, found in groupby(listed, key=lambda each: each.module):
-        text = template.render(library=library, classes=list(found))
+    for module, classes in groupby(listed, key=lambda each: each.module):
+        text = template.render(library=library, classes=list(classes))
         made[PurePosixPath(f"{module}.py")] = text
     return made
 

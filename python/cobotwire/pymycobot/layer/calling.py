@@ -7,15 +7,9 @@ from typing import Any
 from cobotwire.protocol.errors import UsageError
 from cobotwire.pymycobot.layer import results
 from cobotwire.pymycobot.layer.ranges import check_range
-from cobotwire.pymycobot.layer.table import METHODS
 
 # The parameter with which a caller does not wait for an acknowledgement or the end of a motion.
 QUIET = "_async"
-
-
-def methods(kind: str) -> list[Method]:
-    """Return the methods that are stated for a class of the library."""
-    return [Method(name, *row) for name, kinds, *row in METHODS if kind in kinds]
 
 
 class Method:

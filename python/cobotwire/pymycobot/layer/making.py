@@ -12,11 +12,10 @@ from types import CellType, CodeType, FunctionType
 from typing import Any
 
 from cobotwire.client import Client
-from cobotwire.pymycobot.layer.calling import Method, methods
+from cobotwire.pymycobot.layer.calling import Method
 from cobotwire.pymycobot.layer.client import CompatibleClient
-from cobotwire.pymycobot.layer.table import CLASSES
+from cobotwire.pymycobot.layer.stated import Row, class_row, methods
 
-Row = dict[str, Any]
 # Each parameter, its annotation, and its default if it has one.
 Parameters = tuple[tuple[Any, ...], ...]
 
@@ -31,11 +30,8 @@ def class_named(name: str) -> type:
         AttributeError: there is no such class.
     """
     if name not in _made:
-        row = next((each for each in CLASSES if each["name"] == name), None)
-        if row is None:
-            raise AttributeError(f"the layer has no class {name!r}", name=name)
         # Two threads that make a class at the same time get the same one.
-        _made.setdefault(name, _class(row))
+        _made.setdefault(name, _class(class_row(name)))
     return _made[name]
 
 
@@ -53,7 +49,7 @@ def _class(row: Row) -> type:
         body |= {"ELSEWHERE": _client(row["elsewhere"]), "PORTS": row["ports"]}
     if "orders" in row:
         body["ORDERS"] = row["orders"]
-    functions = [_constructor(row), *map(_method, methods(name))]
+    functions = [_constructor(row), *map(_method, methods(row))]
     for function in functions:
         function.__module__ = body["__module__"]
         function.__qualname__ = f"{name}.{function.__name__}"

@@ -11,8 +11,9 @@ import cobotwire
 import cobotwire.pymycobot
 from cobotwire.protocol.table import Table
 from cobotwire.pymycobot.layer.absent import absent
-from cobotwire.pymycobot.layer.calling import Method, methods
-from cobotwire.pymycobot.layer.table import CLASSES
+from cobotwire.pymycobot.layer.calling import Method
+from cobotwire.pymycobot.layer.data import NAMES
+from cobotwire.pymycobot.layer.stated import class_row, methods
 
 # The TCP port of most classes.
 TCP_PORT = 9000
@@ -178,8 +179,9 @@ _HOME = "send_angles([0] * {joints}, 10)"
 def library() -> dict[str, LibraryClass]:
     """Return the classes of the library by name."""
     made: dict[str, LibraryClass] = {}
-    for given in CLASSES:
-        made[given["name"]] = _class(given, made.get(given.get("like", "")))
+    for name in NAMES:
+        given = class_row(name)
+        made[name] = _class(given, made.get(given.get("like", "")))
     return made
 
 
@@ -198,7 +200,7 @@ def _class(given: dict[str, Any], like: LibraryClass | None) -> LibraryClass:
     calls = dict(like.methods if like else _SEVERAL)
     for helper in helpers:
         calls |= _OF_HELPERS.get(helper, {})
-    calls |= {method.name: _call(method) for method in methods(name)}
+    calls |= {method.name: _call(method) for method in methods(given)}
     known = [each for each in helpers if each in _HOMES or each.startswith("Homing")]
     homes = (_HOMES.get(each, _HOME) for each in known)
     home = next(homes, like.home if like else _HOME).format(joints=given["joints"])
