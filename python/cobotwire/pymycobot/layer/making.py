@@ -97,6 +97,7 @@ def _function(
     ``named`` are parameters that are given by name only; ``returns`` annotates the result.
     """
     every = parameters + named
+    # Python has no other way to give a function parameters by their names, but to compile text.
     code = _CODES[len(every)].replace(
         co_name=name,
         co_varnames=("self", *(each for each, *_ in every)),
@@ -126,4 +127,5 @@ def _codes(do: Callable[..., Any]) -> list[CodeType]:
     return [method.__code__ for method in methods]
 
 
+# Each function gets another ``do``.
 _CODES = _codes(print)
