@@ -103,7 +103,8 @@ class Method:
         if not self._is_prepared:
             self._prepare()
         try:
-            self._check(client, given)
+            if self._lacks or self._ranges:
+                self._check(client, given)
             ours = self._ours(client, given)
             every = given + self._numbers
             passed = [every[place] for place in self._passes]
@@ -119,8 +120,7 @@ class Method:
             raise error.renamed(self._names) from None
 
     def _check(self, client: Any, given: tuple[Any, ...]) -> None:
-        if self._lacks:
-            client._lacks(**{name: given[place] for name, place in self._lacks})
+        client._lacks(**{name: given[place] for name, place in self._lacks})
         for name, place, lowest, highest in self._ranges:
             check_range(name, given[place], lowest, highest)
 
