@@ -67,10 +67,9 @@ fn receive<'py>(
     wait: Option<&Wait<'_>>,
 ) -> Result<Option<Bound<'py, PyBytes>>, Fault> {
     let mut space = [MaybeUninit::uninit(); READ_SIZE];
-    while wait.is_none() || is_ready(py, descriptor, wait)? {
+    // A terminal without data reads as if the data had ended, so it is read only when it is ready.
+    while is_ready(py, descriptor, wait)? {
         match read(descriptor, &mut space) {
-            // A terminal without data reads as if the data had ended.
-            Ok(([], _)) if wait.is_none() && !is_ready(py, descriptor, None)? => break,
             Ok((data, _)) => return Ok(Some(PyBytes::new(py, data))),
             // Another reader was faster.
             Err(Errno::AGAIN) if wait.is_some() => (),
