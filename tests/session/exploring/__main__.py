@@ -1,4 +1,4 @@
-"""Explore all topics until so many states were seen: ``make explore STATES=1000000``."""
+"""Explore all topics until a number of states was seen: ``make explore STATES=1000000``."""
 
 from __future__ import annotations
 

@@ -23,7 +23,7 @@ class Method:
         arguments: each argument of ours; the parameter or the number that is passed, empty if the
             library has none; and our default if it has one.
         calls: our method.
-        address: the parameter that selects the device; empty if there is none.
+        address: the parameter that selects the device; empty if no parameter does.
         only_here: whether only the client of the edition of ``PORTS`` has our method.
         lacks: parameters that cannot be sent.
         ranges: parameters, each with its least and greatest number.
