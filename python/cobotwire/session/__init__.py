@@ -20,12 +20,11 @@ from cobotwire.session.events import (
     UnexpectedFrame,
 )
 from cobotwire.session.exchange import Exchange
-from cobotwire.session.pending import Answer, Pending, PendingRequest, RetryPolicy
+from cobotwire.session.pending import Pending, PendingRequest, RetryPolicy
 from cobotwire.session.request import EncodedRequest
 
 __all__ = [
     "AckReceived",
-    "Answer",
     "DeviceSession",
     "EchoReceived",
     "EncodedRequest",

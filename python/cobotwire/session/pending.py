@@ -25,9 +25,6 @@ from cobotwire.session.text import TextCollector
 GRACE_SECONDS = 1.0
 MOST_ATTEMPTS = 100
 
-# The fields of a reply by name, the moment before its request was written, and when it was read.
-Answer = tuple[dict[str, Any], float, float]
-
 
 def _is_number(value: object) -> bool:
     return isinstance(value, int | float) and not isinstance(value, bool)
@@ -266,8 +263,8 @@ class PendingRequest(Pending):
         self.replied_at = now
         self.succeed(fields)
 
-    def answer(self) -> Answer:
-        """Return the reply and its times.
+    def answer(self) -> tuple[dict[str, Any], float, float]:
+        """Return the fields of the reply by name, when its request was sent, and when it was read.
 
         Raises:
             CobotwireError: the reason why there is no reply.
