@@ -21,7 +21,7 @@ STATES ?= 1000000
 REV ?= HEAD
 CARGO_FUZZ := .cargo-tools/bin/cargo-fuzz
 
-.PHONY: set-up spec-mutants help demo test lint lint-and-rust python-test computing-tests simulating-tests calling-tests waiting-tests other-tests rust-test products gen targets docs bench plots picture answers table fuzz figures clean faults conform defects attack archives bench-archive bench-compare rust-asan robots layer demos front-end front-end-if-reachable four-hours studio-pictures explore
+.PHONY: set-up spec-mutants help demo test lint lint-and-rust python-test computing-tests simulating-tests calling-tests waiting-tests other-tests rust-test products gen targets docs bench plots picture answers table fuzz figures clean faults conform defects attack archives bench-archive bench-compare rust-asan robots layer demos front-end front-end-if-reachable four-hours studio-pictures explore nightly
 .DEFAULT_GOAL := help
 
 help: ## list the targets
@@ -184,6 +184,9 @@ attack: .venv/.tools .venv/.native ## attack the clients for ATTACK_SECONDS (180
 
 explore: .venv/.tools .venv/.native ## explore every order of events of an exchange until STATES (1000000) were seen
 	PYTHONPATH=python:tests $(BIN)/python -m session.exploring $(STATES)
+
+nightly: .venv/.tools .venv/.native ## run the long searches one after another, and print one table: make nightly SEARCHES="fuzz attack"
+	$(BIN)/python tools/nightly.py $(SEARCHES)
 
 archives: .venv/.tools .venv/.native ## export and query archives on a Dask cluster and an S3 server
 	$(BIN)/python -m pytest tests/archive -o python_files='test_*.py on_*.py'
