@@ -122,7 +122,7 @@ def test_products_are_written_only_with_their_option(generated: Path) -> None:
     assert (generated / "docs/_static/decoder/editions/mycobot280.js").exists()
     assert (generated / "docs/reference/language.md").read_text() == language_page()
     assert run(generated, "--products", "--check").stdout == "fresh\n"
-    (generated / "targets/construct/mycobot.py").unlink()
+    (generated / "targets/wireshark/mycobot.lua").unlink()
     assert run(generated, "--check").returncode == 0
     assert run(generated, "--products", "--check").returncode == 1
 

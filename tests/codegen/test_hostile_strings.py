@@ -25,7 +25,6 @@ from cobotwire_codegen.legal import odd_character
 from cobotwire_codegen.model import Edition
 from cobotwire_codegen.render import render_python, render_reference, render_vectors
 from cobotwire_codegen.targets.c import render_c
-from cobotwire_codegen.targets.construct import render_construct
 from cobotwire_codegen.targets.decoder import render_decoder
 from cobotwire_codegen.targets.wireshark import render_wireshark
 from codegen import hostile
@@ -50,8 +49,6 @@ def _outputs(edition: Edition) -> dict[str, str]:
     made = dict(render_python(edition))
     made |= {PurePosixPath("docs", name): text for name, text in render_reference(edition).items()}
     made |= {PurePosixPath("vectors", name): text for name, text in render_vectors(edition).items()}
-    modules = render_construct([edition]).items()
-    made |= {PurePosixPath("construct", name): text for name, text in modules}
     made |= render_c(edition) | render_wireshark([edition]) | render_decoder([edition])
     return {str(name): text for name, text in made.items()}
 

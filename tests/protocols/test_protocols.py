@@ -23,7 +23,6 @@ from cobotwire_codegen.model import Edition
 from cobotwire_codegen.model.shapes import Shaped
 from cobotwire_codegen.render.vectors_json import plain
 from cobotwire_codegen.targets.c import render_c
-from cobotwire_codegen.targets.construct import render_construct
 from cobotwire_codegen.targets.vectors.law import Law, Reading
 from cobotwire_codegen.targets.wireshark import render_wireshark
 from conformance.device.testing import prepared
@@ -124,7 +123,7 @@ def test_sync_write_goes_to_every_servo(package: Any) -> None:
 
 def test_every_target_can_express_the_protocols() -> None:
     for edition in map(edition_of, NAMES):
-        for files in (render_c(edition), render_construct([edition]), render_wireshark([edition])):
+        for files in (render_c(edition), render_wireshark([edition])):
             assert files
             assert all(files.values())
 

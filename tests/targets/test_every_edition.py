@@ -11,14 +11,10 @@ import vectors
 from strategies import codec_of
 from targets.c.comparison import judged as judged_in_c
 from targets.c.compiled import missing
-from targets.construct.comparison import judged as judged_by_construct
-from targets.construct.comparison import messages
 from targets.vectors.comparison import CODECS, Record, judged, read
 
 PARTS = ("messages", "rejected", "malformed", "streams", "texts")
 STEP = 9
-# They have fields with an address, with choices in cases, with bytes and with a later selector.
-CONSTRUCT = ("mercury_a1", "myarm300", "mybuddy")
 
 
 def sample(name: str, command: str = "") -> Record:
@@ -48,10 +44,3 @@ def test_c_code_refuses_values_that_a_case_does_not_list() -> None:
     assert any(r["name"] == "set_pro_gripper request, value 2" for r in document["rejected"])
     found = judged_in_c(document, vectors.edition("mycobot320"), "gcc", ("-O0",), "sample320")
     assert found.differences == []
-
-
-@pytest.mark.parametrize("name", CONSTRUCT)
-def test_construct_agrees_with_sample_of_vectors(name: str) -> None:
-    found = judged_by_construct(sample(name, "is_robot_in_position"), messages(name))
-    assert found.differences == []
-    assert found.vectors > 100

@@ -25,7 +25,6 @@ from cobotwire_codegen.render.sharing import Sharing
 from cobotwire_codegen.render.unit_module import render_clients, render_units
 from cobotwire_codegen.suite_pages import suite_pages
 from cobotwire_codegen.targets.c import render_c
-from cobotwire_codegen.targets.construct import render_construct
 from cobotwire_codegen.targets.decoder import render_decoder
 from cobotwire_codegen.targets.vectors import render_shared_vectors
 from cobotwire_codegen.targets.wireshark import render_wireshark
@@ -145,7 +144,6 @@ PRODUCTS: dict[str, Callable[[Path, Sequence[Edition]], Files]] = {
     "docs/_static/decoder/editions": lambda _, found: render_decoder(found),
     RUST_DATA: lambda _, found: _every_vectors(found),
     "targets/c": lambda _, found: _every_c(found),
-    "targets/construct": lambda _, found: render_construct(found),
     "targets/vectors": lambda _, found: render_shared_vectors(found),
     "targets/wireshark": lambda _, found: render_wireshark(found),
 }

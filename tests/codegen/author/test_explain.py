@@ -17,13 +17,12 @@ from cobotwire_codegen.language.schema import records
 from codegen.author import samples
 
 SOURCES = vectors.ROOT / "codegen/src/cobotwire_codegen"
-# Codes about a folder, about files that do not belong to an edition, and of output targets. Without
-# the lines of its commands, an edition has other problems first.
+# Codes about a folder and about files that do not belong to an edition. Without the lines of its
+# commands, an edition has other problems first.
 WITHOUT_LINES = {
     "no-edition",
     "no-command",
     "unknown-rule",
-    "unsupported-type",
     "bad-size",
     "bad-count",
 }

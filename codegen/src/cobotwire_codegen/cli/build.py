@@ -24,7 +24,6 @@ from cobotwire_codegen.emit import Target, foreign
 from cobotwire_codegen.model import Edition
 from cobotwire_codegen.render import Files, render_python, render_reference
 from cobotwire_codegen.targets.c import render_c
-from cobotwire_codegen.targets.construct import render_construct
 from cobotwire_codegen.targets.wireshark import render_wireshark
 
 # What is generated into the folder of each option.
@@ -33,10 +32,9 @@ RENDERERS: dict[str, Callable[[Edition, Path | None], Files]] = {
     "--docs": render_reference,
     "--c": render_c,
     "--wireshark": lambda edition, own: render_wireshark([edition], own),
-    "--construct": lambda edition, own: render_construct([edition], own),
 }
-# Wireshark's folder for plugins, and one for modules, may contain other files.
-SHARED = ("--wireshark", "--construct")
+# Wireshark's folder for plugins may contain other files.
+SHARED = ("--wireshark",)
 
 
 @click.command()
@@ -54,11 +52,6 @@ SHARED = ("--wireshark", "--construct")
     help="Also write a Wireshark dissector, to this folder; it may contain other files.",
 )
 @click.option(
-    "--construct",
-    type=click.Path(file_okay=False),
-    help="Also write declarations for construct, to this folder; it may contain other files.",
-)
-@click.option(
     "--templates",
     type=click.Path(exists=True, file_okay=False),
     help="Templates of your own; each replaces the built-in one of the same name. Templates are "
@@ -72,7 +65,6 @@ def build(
     docs: str | None,
     c: str | None,
     wireshark: str | None,
-    construct: str | None,
     templates: str | None,
     check_only: bool,
     variant: str,
@@ -83,8 +75,7 @@ def build(
     (`cobotwire --edition PACKAGE`). The folders of package and reference must contain nothing else.
     """
     path = edition_path(file)
-    given = {"--out": out, "--docs": docs, "--c": c}
-    given |= {"--wireshark": wireshark, "--construct": construct}
+    given = {"--out": out, "--docs": docs, "--c": c, "--wireshark": wireshark}
     folders = {option: Path(folder) for option, folder in given.items() if folder}
     _check_folders(folders)
     with report_problems(variant):

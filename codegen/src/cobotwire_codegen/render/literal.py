@@ -15,15 +15,6 @@ class Name:
     text: str
 
 
-class Call:
-    """A call: positional arguments, then keywords."""
-
-    def __init__(self, function: str, *arguments: Any, **keywords: Any) -> None:
-        self.function = function
-        self.arguments = arguments
-        self.keywords = keywords
-
-
 def literal(value: Any, indent: int = 0, before: int = 0, after: int = 0) -> str:
     """Return the text of an expression.
 
@@ -31,39 +22,19 @@ def literal(value: Any, indent: int = 0, before: int = 0, after: int = 0) -> str
     on the same line.
     """
     flat = _flat(value)
-    if indent + before + len(flat) + after <= WIDTH or not _parts(value):
+    if indent + before + len(flat) + after <= WIDTH or not isinstance(value, tuple):
         return flat
-    opening, parts, closing = _brackets(value), _parts(value), ")"
-    inner = " " * (indent + 4)
-    joined = ", ".join(name + _flat(part) for name, part in parts)
-    # ruff first tries to put the arguments of a call, but not of a tuple, on one separate line.
-    if isinstance(value, Call) and len(parts) > 1 and indent + 4 + len(joined) <= WIDTH:
-        return f"{opening}\n{inner}{joined}\n{' ' * indent}{closing}"
-    lines = [f"{inner}{name}{literal(part, indent + 4, len(name), 1)}," for name, part in parts]
-    return "\n".join([opening, *lines, " " * indent + closing])
-
-
-def _brackets(value: Any) -> str:
-    return f"{value.function}(" if isinstance(value, Call) else "("
-
-
-def _parts(value: Any) -> list[tuple[str, Any]]:
-    if isinstance(value, Call):
-        keywords = [(f"{name}=", part) for name, part in value.keywords.items()]
-        return [("", part) for part in value.arguments] + keywords
-    return [("", part) for part in value] if isinstance(value, tuple) else []
+    lines = [f"{' ' * (indent + 4)}{literal(part, indent + 4, after=1)}," for part in value]
+    return "\n".join(["(", *lines, " " * indent + ")"])
 
 
 def _flat(value: Any) -> str:
     if isinstance(value, Name):
         return value.text
-    if isinstance(value, Call) or (isinstance(value, tuple) and value):
-        inner = ", ".join(name + _flat(part) for name, part in _parts(value))
-        comma = "," if isinstance(value, tuple) and len(value) == 1 else ""
-        return f"{_brackets(value)}{inner}{comma})"
-    if isinstance(value, str):
-        return quoted(value)
-    return repr(value)
+    if isinstance(value, tuple):
+        inner = ", ".join(map(_flat, value))
+        return f"({inner},)" if len(value) == 1 else f"({inner})"
+    return quoted(value) if isinstance(value, str) else repr(value)
 
 
 def quoted(text: str) -> str:

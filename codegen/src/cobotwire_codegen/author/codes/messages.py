@@ -7,11 +7,9 @@ from cobotwire_codegen.author.codes.explanation import Explanation
 EXPLANATIONS = (
     Explanation(
         "bad-frame",
-        "The codecs or an output target lack the frame format, or a reply does not fit it.",
+        "The codecs lack the frame format, or a reply does not fit it.",
         "A frame has one to four header bytes, then LEN, CMD and an optional address in any order "
-        "that does not end with the address, then data, and a check, a footer or both. C, "
-        "Wireshark, construct and the decoder page support only two header bytes, one byte of LEN "
-        "and of CMD after them, and a footer, crc16-modbus or sum.",
+        "that does not end with the address, then data, and a check, a footer or both.",
         "Correct what the message names; https://cobotwire.github.io/cobotwire/reference/"
         "language.html describes the frame.",
         "maximum_data: 300",

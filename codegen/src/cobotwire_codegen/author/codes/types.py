@@ -89,16 +89,6 @@ EXPLANATIONS = (
         "- {name: data, type: blob, count: size}",
     ),
     Explanation(
-        "unsupported-type",
-        "An output target (construct) cannot express a message.",
-        "Code that misreads a field is worse than no code.",
-        "Put the field of variable length after the field that holds the count.",
-        "- {name: rest, type: note}\n- {name: size, type: count}\n"
-        "- {name: data, type: blob, count: size}",
-        "- {name: size, type: count}\n- {name: rest, type: note}\n"
-        "- {name: data, type: blob, count: size}",
-    ),
-    Explanation(
         "bad-unit",
         "A quantity is shown in radians, but its unit is not degree.",
         "`shown_in: radian` converts degrees; it has no meaning for other units.",
