@@ -189,7 +189,7 @@ nightly: .venv/.tools .venv/.native ## run the long searches one after another, 
 	$(BIN)/python tools/nightly.py $(SEARCHES)
 
 archives: .venv/.tools .venv/.native ## export and query archives on a Dask cluster and an S3 server
-	$(BIN)/python -m pytest tests/archive -o python_files='test_*.py on_*.py'
+	$(BIN)/python -m pytest tests/capture/archive -o python_files='test_*.py on_*.py'
 
 .PHONY: wheels-check
 wheels-check: .venv/.base ## build both distributions; run README, website and three other protocols from the wheels in fresh environments: PYTHONS="python3.11 ..."

@@ -19,8 +19,8 @@ from typing import NamedTuple
 
 from distributed import Client, LocalCluster
 
-from cobotwire import archive
-from cobotwire.archive import DaskEngine
+from cobotwire.capture import archive
+from cobotwire.capture.archive import DaskEngine
 from cobotwire.capture.export import ExportPlan, Inputs, Report
 from cobotwire.editions.mycobot280 import TABLE
 from cobotwire.inspect.exporting import InstalledEditions
@@ -51,7 +51,7 @@ def peak() -> int:
 
 def prepare() -> None:
     """Import and load what an export needs."""
-    import cobotwire.archive.exporting  # noqa: F401
+    import cobotwire.capture.archive.exporting  # noqa: F401
 
     InstalledEditions("mycobot280").codec("")
 

@@ -1,4 +1,4 @@
-"""``cobotwire export --engine``, as a user starts it; tests/archive/on_a_cluster.py has Dask."""
+"""``cobotwire export --engine``, as a user starts it; Dask: tests/capture/archive/on_a_cluster.py."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import Any
 import pyarrow.parquet as pq
 import pytest
 
-from archive.captures import noisy_stream
+from capture.archive.captures import noisy_stream
 from command_line import run_program
 
 

@@ -67,7 +67,7 @@ except LinkError as error:
 FILES = """
 import sys
 from pathlib import Path
-from cobotwire.archive.stored import Stored
+from cobotwire.capture.archive.stored import Stored
 from cobotwire.capture.export.atomic_file import AtomicFile
 from cobotwire.capture.export.inputs import Input
 path = Path(sys.argv[1])

@@ -12,8 +12,8 @@ import click
 from rich.console import Console
 from rich.progress import BarColumn, DownloadColumn, Progress, TextColumn, TimeRemainingColumn
 
-from cobotwire import archive
-from cobotwire.archive import ENGINES, EngineName, choose_engine
+from cobotwire.capture import archive
+from cobotwire.capture.archive import ENGINES, EngineName, choose_engine
 from cobotwire.capture.export import ExportPlan, FormatName, Inputs, write
 from cobotwire.capture.export.formats import format_of
 from cobotwire.capture.export.plan import Compression, Key

@@ -85,6 +85,21 @@ def is_url(argument: str) -> bool:
     return "://" in argument
 
 
+def store_of(url: str, argument: str = "INPUT") -> tuple[Any, str]:
+    """Return the file system of fsspec for a URL, and the path in it.
+
+    Raises:
+        UsageError: fsspec or the package of the store is missing, or there is no such store.
+    """
+    fsspec = needed("fsspec", "fsspec", f"{'reading' if argument == 'INPUT' else 'writing'} {url}")
+    try:
+        # The store itself may need a package: the error of fsspec names it.
+        store, path = fsspec.url_to_fs(url)
+    except (ImportError, ValueError) as error:
+        raise UsageError(argument, url, message=f"{url}: {error}") from None
+    return store, str(path)
+
+
 def _files(argument: str) -> Iterator[Input]:
     if argument == STDIN:
         yield Input(STDIN)
@@ -122,12 +137,7 @@ def _none(argument: str, why: str) -> list[str]:
 
 def _objects(url: str) -> Iterator[Input]:
     """Yield the objects that an fsspec URL names."""
-    fsspec = needed("fsspec", "fsspec", f"reading {url}")
-    try:
-        # The store itself may need a package: the error of fsspec names it.
-        store, path = fsspec.url_to_fs(url)
-    except (ImportError, ValueError) as error:
-        raise UsageError("INPUT", url, message=f"{url}: {error}") from None
+    store, path = store_of(url)
     try:
         if "::" in url:
             yield Input(url)

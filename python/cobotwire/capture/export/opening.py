@@ -12,8 +12,7 @@ from cobotwire.capture.compression import (
     Decompressed,
     compression_of,
 )
-from cobotwire.capture.export.extras import needed
-from cobotwire.capture.export.inputs import COMPRESSED, STDIN, Input, is_url
+from cobotwire.capture.export.inputs import COMPRESSED, STDIN, Input, is_url, store_of
 from cobotwire.capture.file_errors import unusable_file
 from cobotwire.protocol.errors import LinkError
 
@@ -94,8 +93,8 @@ def _open(input: Input) -> BinaryIO:
         if input.url == STDIN:
             return open(0, "rb", buffering=0, closefd=False)
         if is_url(input.url):
-            fsspec = needed("fsspec", "fsspec", f"reading {input.url}")
-            opened: BinaryIO = fsspec.open(input.url, "rb").open()
+            store, path = store_of(input.url)
+            opened: BinaryIO = store.open(path, "rb")
             return opened
         return open(input.url, "rb", buffering=0)
     except (OSError, ValueError) as error:

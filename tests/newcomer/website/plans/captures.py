@@ -14,7 +14,7 @@ for name in left right; do
     done > captures/$name.bin
 done
 """
-STORE = "it reads an object store; tests/archive runs such exports on an S3 server"
+STORE = "it reads an object store; tests/capture/archive runs such exports on an S3 server"
 CLUSTER = (
     "cobotwire export s3://lab/raw/ -o s3://lab/lake/ --engine dask --scheduler tcp://head:8786"
 )

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from archive.dask_processes import DaskProcesses
+from capture.archive.dask_processes import DaskProcesses
 
 CREDENTIALS = {
     "AWS_ACCESS_KEY_ID": "test",

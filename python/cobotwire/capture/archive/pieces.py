@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from contextlib import closing
 from typing import NamedTuple
 
-from cobotwire.archive.stored import Stored
+from cobotwire.capture.archive.stored import Stored
 from cobotwire.capture.export.batch import Batch
 from cobotwire.capture.export.inputs import COMPRESSED, Input, Inputs
 from cobotwire.capture.export.opening import InputStream

@@ -11,18 +11,16 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Literal, get_args
 
-from cobotwire.archive.dask_engine import DaskEngine
-from cobotwire.archive.engine import Engine, ThreadEngine
-from cobotwire.capture.export import ExportPlan, Inputs, Message, Report
+from cobotwire.capture.archive.dask_engine import DaskEngine
+from cobotwire.capture.archive.engine import Engine, ThreadEngine
+from cobotwire.capture.export import Editions, ExportPlan, Inputs, Message, Report
 from cobotwire.capture.export.extras import needed
 from cobotwire.codec.interface import Listening
-from cobotwire.editions import DEFAULT
-from cobotwire.inspect.exporting import InstalledEditions
 from cobotwire.protocol.errors import UsageError
 from cobotwire.protocol.table import Direction
 
 if TYPE_CHECKING:
-    from cobotwire.archive.scanning import Scan
+    from cobotwire.capture.archive.scanning import Scan
 
 __all__ = [
     "ENGINES",
@@ -45,10 +43,10 @@ PIECE_BYTES = 64 << 20
 
 def scan(
     urls: str | Sequence[str],
+    editions: Editions,
     command: str,
     direction: Direction = "reply",
     *,
-    edition: str = DEFAULT,
     listening: Listening | None = None,
     wide: bool = True,
     begin_ns: int | None = None,
@@ -59,9 +57,9 @@ def scan(
 
     Args:
         urls: files, folders, patterns or fsspec URLs of recordings (pcapng) and of raw bytes.
+        editions: finds the editions of the inputs, as in an :class:`ExportPlan`.
         command: the name of the command.
         direction: its reply or its request.
-        edition: the edition of inputs that name none.
         listening: what raw bytes hold; by default only messages of ``direction``.
         wide: whether a field of several numbers becomes several columns.
         begin_ns: the first time, in nanoseconds since 1970 (UTC); only for recordings.
@@ -74,12 +72,12 @@ def scan(
         LinkError: a store cannot be listed, or an input cannot be read.
     """
     needed("pyarrow", "arrow", "reading an archive")
-    from cobotwire.archive.pieces import divide
-    from cobotwire.archive.scanning import Scan
+    from cobotwire.capture.archive.pieces import divide
+    from cobotwire.capture.archive.scanning import Scan
 
     plan = ExportPlan(
         "",
-        InstalledEditions(edition),
+        editions,
         commands=(command,),
         direction=listening or direction,
         begin_ns=begin_ns,
@@ -88,7 +86,7 @@ def scan(
     )
     inputs = Inputs.find([urls] if isinstance(urls, str) else urls)
     # A command of another edition, or a direction that it lacks, has no columns.
-    plan.editions.codec("").decode_columns(b"").rows(command, direction)
+    editions.codec("").decode_columns(b"").rows(command, direction)
     return Scan(Message(command, direction), plan, divide(inputs, piece_bytes))
 
 
@@ -114,7 +112,7 @@ def export(
         OutputError: a file cannot be written.
     """
     needed("pyarrow", "arrow", "export")
-    from cobotwire.archive import exporting
+    from cobotwire.capture.archive import exporting
 
     return exporting.export(plan, inputs, engine or ThreadEngine(), piece_bytes, progress)
 

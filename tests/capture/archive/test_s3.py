@@ -7,9 +7,10 @@ from pathlib import Path
 import pytest
 import s3fs
 
-from archive.captures import archive_in, counts, on_one_machine, plan, rows
-from cobotwire import archive
+from capture.archive.captures import archive_in, counts, on_one_machine, plan, rows
+from cobotwire.capture import archive
 from cobotwire.capture.export import Inputs
+from cobotwire.inspect.exporting import InstalledEditions
 from cobotwire.protocol.errors import OutputError, UsageError
 
 
@@ -45,8 +46,12 @@ def test_bucket_that_does_not_exist_is_an_error(bucket: str, tmp_path: Path) -> 
 def test_table_of_objects_is_that_of_files(bucket: str, tmp_path: Path) -> None:
     archive_in(tmp_path)
     s3fs.S3FileSystem().put(str(tmp_path / "arm1.bin"), f"{bucket}/scanned/arm1.bin")
-    files = archive.scan(str(tmp_path / "arm1.bin"), "get_angles", piece_bytes=5000)
-    objects = archive.scan(f"{bucket}/scanned/*.bin", "get_angles", piece_bytes=5000)
+    files = archive.scan(
+        str(tmp_path / "arm1.bin"), InstalledEditions(), "get_angles", piece_bytes=5000
+    )
+    objects = archive.scan(
+        f"{bucket}/scanned/*.bin", InstalledEditions(), "get_angles", piece_bytes=5000
+    )
     assert len(objects.pieces) == len(files.pieces) > 10
     expected = files.to_arrow().drop_columns("source")
     assert objects.to_arrow().drop_columns("source") == expected

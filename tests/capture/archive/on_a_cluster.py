@@ -12,11 +12,12 @@ import pytest
 import s3fs
 from distributed import Client
 
-from archive.captures import archive_in, counts, noisy_stream, on_one_machine, plan, rows
-from archive.dask_processes import DaskProcesses
-from cobotwire import archive
-from cobotwire.archive import DaskEngine
+from capture.archive.captures import archive_in, counts, noisy_stream, on_one_machine, plan, rows
+from capture.archive.dask_processes import DaskProcesses
+from cobotwire.capture import archive
+from cobotwire.capture.archive import DaskEngine
 from cobotwire.capture.export import Inputs
+from cobotwire.inspect.exporting import InstalledEditions
 from cobotwire.protocol.errors import LinkError
 from command_line import run_program
 
@@ -27,7 +28,9 @@ def test_dataframe_and_delayed_tables_hold_the_rows_of_one_machine(
     cluster: DaskProcesses, tmp_path: Path
 ) -> None:
     inputs = archive_in(tmp_path)
-    scan = archive.scan([input.url for input in inputs.files], "get_angles", piece_bytes=12_000)
+    scan = archive.scan(
+        [input.url for input in inputs.files], InstalledEditions(), "get_angles", piece_bytes=12_000
+    )
     expected = scan.to_arrow()
     with Client(cluster.address):
         frame = scan.dataframe()

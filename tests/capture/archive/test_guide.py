@@ -10,7 +10,7 @@ import dask
 import pytest
 
 import vectors
-from archive.captures import noisy_stream
+from capture.archive.captures import noisy_stream
 
 
 def test_examples_of_the_page_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -14,9 +14,9 @@ from pathlib import Path
 from typing import NamedTuple
 from uuid import uuid4
 
-from cobotwire.archive.engine import Engine
-from cobotwire.archive.pieces import Piece, divide
-from cobotwire.archive.store import Store, store_at
+from cobotwire.capture.archive.engine import Engine
+from cobotwire.capture.archive.pieces import Piece, divide
+from cobotwire.capture.archive.store import Store, store_at
 from cobotwire.capture.export.formats import FORMATS
 from cobotwire.capture.export.inputs import STDIN, Inputs
 from cobotwire.capture.export.layout import Layout
@@ -73,7 +73,7 @@ def export(
     piece_bytes: int,
     progress: Callable[[int], None],
 ) -> Report:
-    """Export inputs; :func:`cobotwire.archive.export` describes it."""
+    """Export inputs; :func:`cobotwire.capture.archive.export` describes it."""
     _check(plan, inputs)
     store = store_at(plan.output)
     pieces = divide(inputs, piece_bytes)

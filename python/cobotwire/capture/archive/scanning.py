@@ -8,8 +8,8 @@ from typing import Any, NamedTuple, TypeVar
 
 import pyarrow as pa
 
-from cobotwire.archive.engine import Engine, ThreadEngine
-from cobotwire.archive.pieces import Piece
+from cobotwire.capture.archive.engine import Engine, ThreadEngine
+from cobotwire.capture.archive.pieces import Piece
 from cobotwire.capture.export.extras import needed
 from cobotwire.capture.export.plan import ExportPlan, Message
 from cobotwire.capture.export.report import Report

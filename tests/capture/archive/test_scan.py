@@ -7,10 +7,11 @@ from pathlib import Path
 import duckdb
 import pytest
 
-from archive.captures import archive_in, counts, on_one_machine, rows
-from cobotwire import archive
-from cobotwire.archive import ThreadEngine
+from capture.archive.captures import archive_in, counts, on_one_machine, rows
+from cobotwire.capture import archive
+from cobotwire.capture.archive import ThreadEngine
 from cobotwire.capture.export import Inputs
+from cobotwire.inspect.exporting import InstalledEditions
 from cobotwire.protocol.errors import UsageError
 
 
@@ -23,7 +24,7 @@ def test_tables_hold_the_rows_of_an_export_in_their_order(inputs: Inputs, tmp_pa
     report = on_one_machine(tmp_path / "one", inputs, wide=True)
     exported = rows(tmp_path / "one")["get_angles.reply"]
     urls = [input.url for input in inputs.files]
-    scan = archive.scan(urls, "get_angles", piece_bytes=3001)
+    scan = archive.scan(urls, InstalledEditions(), "get_angles", piece_bytes=3001)
     assert len(scan.pieces) > 10
     table = scan.to_arrow(ThreadEngine(3))
     assert table.schema == scan.schema
@@ -39,7 +40,9 @@ def test_tables_hold_the_rows_of_an_export_in_their_order(inputs: Inputs, tmp_pa
 
 
 def test_table_answers_a_query(inputs: Inputs) -> None:
-    table = archive.scan(inputs.files[0].url, "get_angles", piece_bytes=10_000).to_arrow()
+    table = archive.scan(
+        inputs.files[0].url, InstalledEditions(), "get_angles", piece_bytes=10_000
+    ).to_arrow()
     with duckdb.connect() as database:
         database.register("angles", table)
         found = database.sql("select count(*), max(j1) <= 160 from angles").fetchall()
@@ -47,7 +50,7 @@ def test_table_answers_a_query(inputs: Inputs) -> None:
 
 
 def test_message_that_no_input_holds_has_an_empty_table(inputs: Inputs) -> None:
-    table = archive.scan(inputs.files[0].url, "get_encoders").to_arrow()
+    table = archive.scan(inputs.files[0].url, InstalledEditions(), "get_encoders").to_arrow()
     assert table.num_rows == 0
     assert "offset" in table.column_names
 
@@ -55,8 +58,8 @@ def test_message_that_no_input_holds_has_an_empty_table(inputs: Inputs) -> None:
 def test_message_that_the_edition_lacks_is_rejected(inputs: Inputs) -> None:
     url = inputs.files[0].url
     with pytest.raises(UsageError, match="did you mean get_angles"):
-        archive.scan(url, "get_angels")
+        archive.scan(url, InstalledEditions(), "get_angels")
     with pytest.raises(UsageError, match="jog_stop has no reply"):
-        archive.scan(url, "jog_stop")
+        archive.scan(url, InstalledEditions(), "jog_stop")
     with pytest.raises(UsageError, match="no such file"):
-        archive.scan(f"{url}.bak", "get_angles")
+        archive.scan(f"{url}.bak", InstalledEditions(), "get_angles")

@@ -11,9 +11,8 @@ from tempfile import TemporaryDirectory
 from typing import Protocol
 
 from cobotwire.capture.export.atomic_file import output_error
-from cobotwire.capture.export.extras import needed
-from cobotwire.capture.export.inputs import is_url
-from cobotwire.protocol.errors import OutputError, UsageError
+from cobotwire.capture.export.inputs import is_url, store_of
+from cobotwire.protocol.errors import OutputError
 
 
 class Store(Protocol):
@@ -114,13 +113,9 @@ class _Folder:
 
 class _Objects:
     def __init__(self, url: str) -> None:
-        fsspec = needed("fsspec", "fsspec", f"writing {url}")
         self._url = url.rstrip("/")
-        try:
-            self._store, path = fsspec.url_to_fs(self._url)
-        except (ImportError, ValueError) as error:
-            raise UsageError("output", url, message=f"{url}: {error}") from None
-        self._path = str(path).rstrip("/")
+        self._store, path = store_of(self._url, "output")
+        self._path = path.rstrip("/")
 
     @contextmanager
     def filled(self, name: str) -> Iterator[str]:

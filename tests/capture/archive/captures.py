@@ -10,7 +10,8 @@ from typing import Any
 import pyarrow as pa
 import pyarrow.parquet as pq
 
-from cobotwire.capture import CaptureWriter, Interface, Packet
+from capture.export.exporting import START, recording
+from cobotwire.capture import Packet
 from cobotwire.capture.export import ExportPlan, Inputs, Report, write
 from cobotwire.editions.mycobot280 import TABLE
 from cobotwire.inspect.exporting import InstalledEditions
@@ -41,24 +42,18 @@ def noisy_stream(frames: int, seed: int = 1) -> bytes:
     return b"".join(parts)
 
 
-def recording(path: Path, stream: bytes) -> None:
-    """Write a recording of what an arm sent, in packets of 100 bytes."""
-    with path.open("wb") as file:
-        writer = CaptureWriter(file)
-        writer.interface(Interface("/dev/ttyACM0", "mycobot280", 115200))
-        for at in range(0, len(stream), 100):
-            data = stream[at : at + 100]
-            writer.packet(Packet(1_700_000_000_000_000_000 + at * 10**6, "received", data, "bytes"))
-        writer.finish()
-
-
 def archive_in(folder: Path) -> Inputs:
     """Write a large raw file, a small one, an empty one, a compressed one and a recording."""
     (folder / "arm1.bin").write_bytes(noisy_stream(2000))
     (folder / "arm2.bin").write_bytes(noisy_stream(50, seed=2))
     (folder / "arm3.bin").write_bytes(b"")
     (folder / "arm4.bin.gz").write_bytes(gzip.compress(noisy_stream(200, seed=4)))
-    recording(folder / "arm5.pcapng", noisy_stream(150, seed=5))
+    sent = noisy_stream(150, seed=5)
+    packets = (
+        Packet(START + at * 10**6, "received", sent[at : at + 100], "bytes")
+        for at in range(0, len(sent), 100)
+    )
+    recording(folder / "arm5.pcapng", packets, "mycobot280")
     return Inputs.find([str(folder)])
 
 

@@ -10,10 +10,10 @@ from pathlib import Path
 
 import pytest
 
-from archive.captures import counts, noisy_stream, on_one_machine, plan, rows
-from archive.dask_processes import DaskProcesses
-from cobotwire import archive
-from cobotwire.archive import DaskEngine, dask_engine
+from capture.archive.captures import counts, noisy_stream, on_one_machine, plan, rows
+from capture.archive.dask_processes import DaskProcesses
+from cobotwire.capture import archive
+from cobotwire.capture.archive import DaskEngine, dask_engine
 from cobotwire.capture.export import Inputs
 from cobotwire.protocol.errors import LinkError
 

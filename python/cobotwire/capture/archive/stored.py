@@ -5,8 +5,7 @@ from __future__ import annotations
 from types import TracebackType
 from typing import Protocol, Self
 
-from cobotwire.capture.export.extras import needed
-from cobotwire.capture.export.inputs import Input, is_url
+from cobotwire.capture.export.inputs import Input, is_url, store_of
 from cobotwire.capture.file_errors import unusable_file
 from cobotwire.protocol.errors import LinkError
 
@@ -96,8 +95,7 @@ class _Object:
     """An object in a store: each read is one request for a range."""
 
     def __init__(self, url: str) -> None:
-        fsspec = needed("fsspec", "fsspec", f"reading {url}")
-        self._store, self._path = fsspec.url_to_fs(url)
+        self._store, self._path = store_of(url)
 
     def read(self, offset: int, size: int) -> bytes:
         data: bytes = self._store.cat_file(self._path, start=offset, end=offset + size)

@@ -8,9 +8,9 @@ from typing import Any, NamedTuple
 
 import pytest
 
-from archive.captures import archive_in, counts, noisy_stream, on_one_machine, plan, rows
-from cobotwire import archive
-from cobotwire.archive import ThreadEngine
+from capture.archive.captures import archive_in, counts, noisy_stream, on_one_machine, plan, rows
+from cobotwire.capture import archive
+from cobotwire.capture.archive import ThreadEngine
 from cobotwire.capture.export import Inputs, Report
 from cobotwire.protocol.errors import LinkError, UsageError
 
