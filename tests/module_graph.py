@@ -40,6 +40,30 @@ def python_imports_of(root: Path, name: str) -> Imports:
     return imports
 
 
+def modules_in_texts(path: Path, package: str) -> Iterator[str]:
+    """Yield the modules of a package that texts in a file name, as ``import_module`` takes them."""
+    for node in ast.walk(ast.parse(path.read_text())):
+        text = node.value if isinstance(node, ast.Constant) else None
+        if isinstance(text, str) and re.fullmatch(rf"{package}(\.\w+)+\.?", text):
+            yield text.rstrip(".")
+
+
+def imports_of_parts(imports: Imports, package: str) -> Imports:
+    """Return which parts of a package import each other; a part is a module or a folder in it."""
+    start = f"{package}."
+    parts: Imports = {}
+    for module, imported in imports.items():
+        if module.startswith(start):
+            part = _part(module, start)
+            found = {_part(name, start) for name in imported if name.startswith(start)}
+            parts.setdefault(part, set()).update(found - {part})
+    return parts
+
+
+def _part(module: str, start: str) -> str:
+    return start + module.removeprefix(start).partition(".")[0]
+
+
 def _python_modules(root: Path, name: str) -> dict[str, Path]:
     found = {}
     for path in sorted(root.rglob("*.py")):

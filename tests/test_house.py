@@ -11,7 +11,14 @@ from pathlib import Path
 import pytest
 
 import vectors
-from module_graph import import_cycles, python_imports, python_imports_of, rust_imports_of
+from module_graph import (
+    import_cycles,
+    imports_of_parts,
+    modules_in_texts,
+    python_imports,
+    python_imports_of,
+    rust_imports_of,
+)
 
 PACKAGE = vectors.ROOT / "python" / "cobotwire"
 
@@ -61,7 +68,8 @@ def test_module_imports_only_rooms_above_its_own(path: Path) -> None:
     allowed = {*ROOMS[: ROOMS.index(room) + 1]}
     if room in ("codec", "transport", "cli"):
         allowed.add("_native")
-    for name in python_imports(path, "cobotwire." + ".".join(place.with_suffix("").parts)):
+    module = "cobotwire." + ".".join(place.with_suffix("").parts)
+    for name in (*python_imports(path, module), *modules_in_texts(path, "cobotwire")):
         package, _, rest = name.partition(".")
         part = rest.partition(".")[0]
         if package == "cobotwire" and part in {*ROOMS, "_native"}:
@@ -81,8 +89,11 @@ def test_package_holds_the_rooms_and_nothing_else() -> None:
     [(PACKAGE, "cobotwire"), (vectors.ROOT / "codegen/src/cobotwire_codegen", "cobotwire_codegen")],
     ids=["package", "generator"],
 )
-def test_python_modules_have_no_import_cycle(root: Path, name: str) -> None:
-    assert import_cycles(python_imports_of(root, name)) == []
+def test_python_modules_and_folders_have_no_import_cycle(root: Path, name: str) -> None:
+    imports = python_imports_of(root, name)
+    assert import_cycles(imports) == []
+    for package in {module.rpartition(".")[0] for module in imports} - {""}:
+        assert import_cycles(imports_of_parts(imports, package)) == [], package
 
 
 @pytest.mark.parametrize("crate", ["core", "py", "fuzz"])

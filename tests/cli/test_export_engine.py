@@ -1,4 +1,4 @@
-"""``cobotwire export --engine``, as a user starts it; Dask: tests/capture/archive/on_a_cluster.py."""
+"""``cobotwire export --engine``, as a user starts it; Dask: capture/archive/on_a_cluster.py."""
 
 from __future__ import annotations
 

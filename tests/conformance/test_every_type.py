@@ -13,7 +13,7 @@ import vectors
 from cobotwire import codec as codecs
 from cobotwire.conformance.client import Referee, ScriptLine, faulty_replies
 from cobotwire.conformance.codec import Run, derive_questions
-from cobotwire.conformance.codec.adapter.ours import OurCodec
+from cobotwire.conformance.codec.questions.our_codec import OurCodec
 from cobotwire.conformance.codec.questions.question import Json, Question
 from cobotwire.conformance.report import Report
 from cobotwire.simulator import MemoryTransport, SteppedClock

@@ -10,8 +10,8 @@ import pytest
 
 from cobotwire import codec as codecs
 from cobotwire.conformance.codec import Question, Run, derive_questions
-from cobotwire.conformance.codec.adapter.ours import OurCodec
 from cobotwire.conformance.codec.questions.frames import variants_of
+from cobotwire.conformance.codec.questions.our_codec import OurCodec
 from cobotwire.conformance.report import Verdict
 from strategies import TABLES
 

@@ -23,7 +23,7 @@ from cobotwire.conformance.codec import (
     derive_questions,
     read_expectations,
 )
-from cobotwire.conformance.codec.adapter.ours import OurCodec
+from cobotwire.conformance.codec.questions.our_codec import OurCodec
 from cobotwire.conformance.codec.questions.question import Json
 from cobotwire.conformance.report import Cause, Report, Result, Verdict
 from cobotwire.conformance.reports import from_json, to_html, to_json, to_junit
@@ -248,7 +248,7 @@ def test_full_standard_error_does_not_stop_a_command(
         "import sys\n"
         "from cobotwire.codec.reference import ReferenceCodec\n"
         "from cobotwire.conformance.codec.adapter.loop import serve\n"
-        "from cobotwire.conformance.codec.adapter.ours import OurCodec\n"
+        "from cobotwire.conformance.codec.questions.our_codec import OurCodec\n"
         "from cobotwire.editions.mycobot import TABLE\n"
         "ours = OurCodec(ReferenceCodec(TABLE))\n"
         "def loud(question):\n"

@@ -7,7 +7,7 @@ from dataclasses import replace
 from typing import Any
 
 from cobotwire.codec.reference import ReferenceCodec
-from cobotwire.conformance.codec.adapter.ours import OurCodec
+from cobotwire.conformance.codec.questions.our_codec import OurCodec
 from cobotwire.conformance.codec.questions.question import Json, hexed
 from cobotwire.protocol.table import Case, Field, Number, Table, Variant
 from mutation.device.cells import checked

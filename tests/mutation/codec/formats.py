@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import replace
 
 from cobotwire.codec.reference import ReferenceCodec
-from cobotwire.conformance.codec.adapter.ours import OurCodec
+from cobotwire.conformance.codec.questions.our_codec import OurCodec
 from cobotwire.protocol.checks import Check
 from cobotwire.protocol.table import Table
 from mutation.codec.answers import Make, decoding, encoding

@@ -6,8 +6,8 @@ from typing import Any
 
 from cobotwire.codec.interface import Codec
 from cobotwire.codec.reference import ReferenceCodec
-from cobotwire.conformance.codec.adapter.ours import encode_named, plain_fields
 from cobotwire.conformance.codec.questions.frames import frame_of
+from cobotwire.conformance.codec.questions.our_codec import encode_named, plain_fields
 from cobotwire.conformance.samples import (
     RawValues,
     named_values,

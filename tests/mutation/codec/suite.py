@@ -8,7 +8,7 @@ from functools import cached_property
 from cobotwire import codec as codecs
 from cobotwire.codec.reference import ReferenceCodec
 from cobotwire.conformance.codec import Question, Run, derive_questions
-from cobotwire.conformance.codec.adapter.ours import OurCodec
+from cobotwire.conformance.codec.questions.our_codec import OurCodec
 from cobotwire.conformance.report import Report
 from cobotwire.protocol.table import Table
 from mutation.codec.answers import ANSWERS, turned

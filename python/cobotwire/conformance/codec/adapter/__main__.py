@@ -7,7 +7,7 @@ import sys
 from cobotwire import codec as codecs
 from cobotwire import editions
 from cobotwire.conformance.codec.adapter.loop import Answer, serve
-from cobotwire.conformance.codec.adapter.ours import OurCodec
+from cobotwire.conformance.codec.questions.our_codec import OurCodec
 from cobotwire.conformance.codec.questions.question import Json
 from cobotwire.protocol.errors import UsageError
 

@@ -7,7 +7,6 @@ from collections.abc import Iterator, Sequence
 from itertools import pairwise
 
 from cobotwire.codec.interface import Codec, Listening
-from cobotwire.conformance.codec.adapter.ours import OurCodec
 from cobotwire.conformance.codec.questions.frames import (
     CommandVariant,
     frame_of,
@@ -15,6 +14,7 @@ from cobotwire.conformance.codec.questions.frames import (
     variants_of,
 )
 from cobotwire.conformance.codec.questions.malformed import damages
+from cobotwire.conformance.codec.questions.our_codec import OurCodec
 from cobotwire.conformance.codec.questions.question import Json, Question, hexed
 from cobotwire.conformance.suite import Group, TestCase
 from cobotwire.protocol.table import Table

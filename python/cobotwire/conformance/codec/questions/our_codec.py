@@ -1,4 +1,4 @@
-"""Our codecs as implementations of the line protocol."""
+"""Answer questions with one of our codecs, in the same process or for the line protocol."""
 
 from __future__ import annotations
 
