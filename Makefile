@@ -172,12 +172,12 @@ fuzz: products .venv/.native $(CARGO_FUZZ) ## fuzz each target for FUZZ_SECONDS 
 table: .venv/.tools .venv/.native ## compare our clients with pymycobot on bad lines; write docs/bad-lines.md
 	PYTHONPATH=tests $(BIN)/python bench/bad_lines.py
 
-conform: .venv/.tools .venv/.native ## break subjects of EDITIONS (all) on purpose; count what the conformance tests find; FULL=1: all mutants; WRITE=1: write the table
-	PYTHONPATH=tests $(BIN)/python -m mutation $(EDITIONS) $(if $(FULL),,--sample 3) $(if $(WRITE),--write)
+conform: .venv/.tools .venv/.native ## break subjects of EDITIONS (all) on purpose; count what the conformance tests find; FULL=1: all mutants
+	PYTHONPATH=tests $(BIN)/python -m mutation $(EDITIONS) $(if $(FULL),,--sample 3)
 	POSES=500 $(BIN)/python -m pytest -q tests/conformance/device/test_start_poses.py -k any_pose
 
-defects: .venv/.tools .venv/.native ## test independent subjects with planted defects; write the table of docs/conformance.md
-	PYTHONPATH=tests:tests/peers $(BIN)/python -m defects $(or $(DEFECTS),--write)
+defects: .venv/.tools .venv/.native ## test independent subjects with planted defects
+	PYTHONPATH=tests:tests/peers $(BIN)/python -m defects $(DEFECTS)
 
 attack: .venv/.tools .venv/.native ## attack the clients for ATTACK_SECONDS (180) with a hostile peer
 	PYTHONPATH=tests $(BIN)/python -m attack --seconds $(ATTACK_SECONDS) $(ATTACK)

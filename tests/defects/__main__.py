@@ -1,7 +1,7 @@
 """Test independent subjects with planted defects; print what is found, and whether it is named.
 
-make defects                              run all; write the tables into docs/conformance.md
-make defects DEFECTS='arm firmware'       run some subjects; print only
+make defects                              run all
+make defects DEFECTS='arm firmware'       run some subjects
 PYTHONPATH=tests python -m defects arm --only two-joints-swapped --messages
 """
 
@@ -16,11 +16,8 @@ from fnmatch import fnmatch
 
 from defects.judging import Judgement, Message, judge, messages_of
 from defects.key import SUBJECTS, Defect, defects
-from defects.page import rewritten, tables
+from defects.listing import figures, line
 from defects.running import CORRECT, report_on
-from vectors import ROOT
-
-PAGE = ROOT / "docs" / "conformance.md"
 
 
 def main() -> int:
@@ -37,15 +34,13 @@ def main() -> int:
         judgements = []
         for judgement in pool.map(_judged, planted):
             judgements.append(judgement)
-            _print(judgement, all_of_them=given.messages)
-    text = tables(judgements, correct)
-    print(text[: text.index("\n\n")])
+            print(line(judgement), flush=True)
+            if given.messages:
+                print(*(f"       {message}" for message in judgement.messages), sep="\n")
     for subject, failures in correct.items():
         for message in failures:
             print(f"REJECTED correct {subject}: {message}")
-    print(f"{time.monotonic() - began:.0f} s")
-    if given.write:
-        PAGE.write_text(rewritten(PAGE.read_text("utf-8"), text), "utf-8")
+    print(*figures(judgements, correct), f"{time.monotonic() - began:.0f} s", sep="\n")
     sound = all(each.found for each in judgements) and not any(correct.values())
     return 0 if sound else 1
 
@@ -59,21 +54,12 @@ def _judged(defect: Defect) -> Judgement:
     return judge(defect, messages_of(report_on(defect.subject, defect.switch, defect.line)))
 
 
-def _print(judgement: Judgement, *, all_of_them: bool) -> None:
-    verdict = "named" if judgement.named else "found" if judgement.found else "MISSED"
-    print(f"{verdict:<7}{judgement.defect.subject}: {judgement.defect.switch}", flush=True)
-    if judgement.named is None or all_of_them:
-        for message in judgement.messages[: None if all_of_them else 4]:
-            print(f"       {message!s:.300}")
-
-
 def _arguments(words: Sequence[str] | None = None) -> argparse.Namespace:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("subjects", nargs="*", choices=[*SUBJECTS, []], help="default: all")
     parser.add_argument("--only", default="*", help="a pattern of the switches")
     parser.add_argument("--processes", type=int, default=2)
     parser.add_argument("--messages", action="store_true", help="print every message")
-    parser.add_argument("--write", action="store_true", help="write the tables into the page")
     return parser.parse_args(words)
 
 

@@ -18,7 +18,7 @@ class Message(NamedTuple):
     text: str
 
     def __str__(self) -> str:
-        return f"{self.case} {self.command}: {self.text}" if self.command else self[0] + self.text
+        return f"{f'{self.case} {self.command}'.rstrip()}: {self.text}"
 
 
 class Judgement(NamedTuple):

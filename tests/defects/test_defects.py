@@ -12,7 +12,7 @@ from defects.clients import report_on_client
 from defects.devices import report_on_arm
 from defects.judging import Message, judge, messages_of
 from defects.key import HERE, SUBJECTS, Defect, defects
-from defects.page import BEGIN, END, rewritten, tables
+from defects.listing import figures, line
 
 KEY = {(defect.subject, defect.switch): defect for defect in defects()}
 # One for each rule that finds what no other rule finds, and for each way to name a cause.
@@ -92,12 +92,19 @@ def test_message_names_a_cause_by_command_and_every_word(
     assert judge(DEFECT, [message]).named == (message if named else None)
 
 
-def test_tables_count_and_show_each_defect() -> None:
-    message = Message("reply-frame", "get_angles", "LEN is 0F | more")
-    found = [judge(DEFECT, [message]), judge(DEFECT._replace(words=("x",)), [message])]
-    text = tables([*found, judge(DEFECT, [])], {"arm": [message]})
-    assert f"| {SUBJECTS['arm']} | 3 | 2 | 1 | 1 failures |" in text
-    assert "| arm | it is wrong | yes | `reply-frame` get_angles: LEN is 0F / more |" in text
-    assert "| **not found** |  |" in text
-    page = rewritten(f"before {BEGIN} old {END} after", text)
-    assert (page[:7], page[-6:], "old" in page) == ("before ", " after", False)
+def test_listing_counts_and_shows_each_defect() -> None:
+    message = Message("reply-frame", "get_angles", "LEN is 0F")
+    judgements = [
+        judge(DEFECT, [Message("state-kept", "stop", "it moved"), message]),
+        judge(DEFECT._replace(words=("x",)), [message]),
+        judge(DEFECT, []),
+    ]
+    _, arm, every = figures(judgements, {"arm": [message]})
+    assert arm.split("  ")[0] == SUBJECTS["arm"]
+    assert arm.split()[-5:] == ["3", "2", "1", "1", "failures"]
+    assert every.split() == ["all", "3", "2", "1"]
+    assert list(map(line, judgements)) == [
+        "named  arm x: it is wrong\n       reply-frame get_angles: LEN is 0F (+1)",
+        "found  arm x: it is wrong\n       reply-frame get_angles: LEN is 0F",
+        "MISSED arm x: it is wrong",
+    ]

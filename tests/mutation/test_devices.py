@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
-from pathlib import Path
 
 import pytest
 
@@ -14,7 +14,7 @@ from cobotwire.simulator.clock import SteppedClock
 from mutation.device import device_mutants
 from mutation.device.broken import BrokenArm, Fault
 from mutation.device.suite import DeviceSuite
-from mutation.listing import lines, page
+from mutation.listing import lines, table
 from mutation.mutant import Mutant
 from mutation.oracle.compare import conversations, first_difference
 from mutation.oracle.reasons import reason
@@ -134,16 +134,23 @@ def test_run_is_sound_if_all_are_killed_or_excused_and_correct_subjects_pass() -
     assert total([KILLED, EXCUSED, MISSED, CRASHED]) == (1, 1, 4)
 
 
-def test_listing_names_each_survivor_with_its_reason(tmp_path: Path) -> None:
+def test_listing_names_each_survivor_with_its_reason() -> None:
     verdicts = _verdicts([KILLED, EXCUSED, MISSED, CRASHED], accepted=False)
-    for text in ("\n".join(lines(verdicts)), page([verdicts], 1.0)):
-        for part in (
-            "two",
-            "equal on the line",
-            "three",
-            "the tester missed it",
-            "ValueError",
-        ):
-            assert part in text
-        assert "a test case" not in text.split("\n", 12)[-1]
-    assert "REJECTED  clean 0: it failed" in "\n".join(lines(verdicts))
+    text = "\n".join(lines(verdicts))
+    for part in ("two", "equal on the line", "three", "the tester missed it", "ValueError"):
+        assert part in text
+    assert "a test case" not in text
+    assert "REJECTED  clean 0: it failed" in text
+
+
+def test_table_counts_what_each_tester_killed_and_what_is_excused() -> None:
+    found = [
+        _verdicts([KILLED, EXCUSED, MISSED])._replace(name="device, mycobot"),
+        _verdicts([KILLED, KILLED])._replace(name="codec, mycobot"),
+        _verdicts([KILLED])._replace(name="device, pro400"),
+    ]
+    _, *rows = table(found).splitlines()
+    assert [re.split(r"\s{2,}", row) for row in rows] == [
+        ["mycobot", "1 + 1 of 3", "2 + 0 of 2"],
+        ["pro400", "1 + 0 of 1", ""],
+    ]

@@ -1,0 +1,61 @@
+"""Show the results of a run on a terminal."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from textwrap import shorten
+
+from defects.judging import Judgement, Message
+from defects.key import SUBJECTS
+
+# A message is cut to this many characters.
+MOST = 240
+
+
+def figures(
+    judgements: Sequence[Judgement], correct: Mapping[str, Sequence[Message]]
+) -> Iterator[str]:
+    """Yield a row for each subject.
+
+    ``correct`` holds the failures of each subject without a defect, by subject.
+    """
+    yield _row("subject", "defects", "found", "named", "correct subject")
+    for subject, title in SUBJECTS.items():
+        mine = [each for each in judgements if each.defect.subject == subject]
+        if mine:
+            yield _row(title, *_counts(mine), _passed(correct.get(subject)))
+    yield _row("all", *_counts(judgements), "")
+
+
+def _row(title: str, *columns: object) -> str:
+    *counts, correct = columns
+    return f"{title:26}" + "".join(f"{count:>9}" for count in counts) + f"   {correct}".rstrip()
+
+
+def _counts(judgements: Sequence[Judgement]) -> tuple[int, int, int]:
+    found = sum(each.found for each in judgements)
+    return len(judgements), found, sum(each.named is not None for each in judgements)
+
+
+def _passed(failures: Sequence[Message] | None) -> str:
+    if failures is None:
+        return "there is none"
+    return f"{len(failures)} failures" if failures else "conforms"
+
+
+def line(judgement: Judgement) -> str:
+    """Return what was found of a defect, with the message that names it, or else the first one."""
+    verdict = "named" if judgement.named else "found" if judgement.found else "MISSED"
+    defect = judgement.defect
+    text = f"{verdict:7}{defect.subject} {defect.switch}: {defect.what}"
+    if not judgement.messages:
+        return text
+    # Programs are built in temporary folders.
+    message = re.sub(
+        r"/\S*/(?=firmware-|client-)", "", str(judgement.named or judgement.messages[0])
+    )
+    others = len(judgement.messages) - 1
+    return f"{text}\n       {shorten(message, MOST, placeholder=' ...')}" + f" (+{others})" * bool(
+        others
+    )
