@@ -67,7 +67,7 @@ def _measured(run: Run) -> Row:
         until = time.monotonic() + LIMIT_SECONDS
         results = [one.result(until) for one in started]
         line.settle()
-        frames, garbled = list(line.arm.frames), line.arm.garbled
+        frames, garbled = line.frames, line.garbled
     ended = [result for result in results if result is not None]
     outcomes = [outcome for result in ended for outcome in result[0]]
     seconds = max((result[1] for result in ended), default=LIMIT_SECONDS)

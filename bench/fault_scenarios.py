@@ -19,12 +19,13 @@ from typing import NamedTuple
 import apart
 from cobotwire import codec as codecs
 from cobotwire.editions.mycobot280 import TABLE
+from cobotwire.session.device import DeviceEvent
 from cobotwire.simulator import PtyServer
 from cobotwire.simulator.faults import find, shipped
 from fault_session import CAREFUL, SESSION, TimedOutcome, play_session
 from field_notes.case import DONE, Call
+from field_notes.line import frames_of, steady_arm
 from field_notes.play import RIGHT, WRONG, Outcome
-from field_notes.steady_arm import SteadyArm
 
 DOCUMENT = Path(__file__).parents[1] / "docs" / "fault-scenarios.md"
 BEGIN, END = "<!-- begin: make faults -->", "<!-- end: make faults -->"
@@ -72,7 +73,8 @@ def main() -> None:
 
 
 def _measured(name: str, who: str) -> Run:
-    arm = SteadyArm()
+    received: list[DeviceEvent] = []
+    arm = steady_arm(received)
     codec = codecs.load(TABLE)
     peer = arm if name == NONE else find(name, TABLE).wrap(arm, codec)
     with PtyServer(peer) as port:
@@ -80,7 +82,7 @@ def _measured(name: str, who: str) -> Run:
         timed = started.result(time.monotonic() + LIMIT_SECONDS)
         # Wait for the last bytes that the client wrote.
         time.sleep(0.3)
-    return _judged(timed, arm.frames)
+    return _judged(timed, frames_of(received))
 
 
 def _judged(timed: list[TimedOutcome] | None, frames: list[bytes]) -> Run:

@@ -7,8 +7,8 @@ from dataclasses import replace
 from typing import NamedTuple
 
 from field_notes.case import DONE, GET_ANGLES, Call, encoder
+from field_notes.line import COORDS_READ, REGISTER_READ
 from field_notes.play import OPENERS, Outcome, called
-from field_notes.steady_arm import COORDS_READ, REGISTER_READ
 
 POWERED = Call("is_power_on", (), 1)
 COORDS = Call("get_coords", (), COORDS_READ)

@@ -9,8 +9,8 @@ import asyncio
 import itertools
 import threading
 import time
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager, suppress
+from collections.abc import Callable
+from contextlib import suppress
 from typing import Any, NamedTuple
 
 import pytest
@@ -22,13 +22,12 @@ from cobotwire import codec as codecs
 from cobotwire.editions.mycobot import TABLE, AsyncMyCobot, GetEncoder
 from cobotwire.editions.mycobot280 import AsyncMyCobot280
 from cobotwire.session import Exchange, RequestReceived
-from cobotwire.session.device import DeviceEvent
 from cobotwire.session.request import RequestEncoder
-from cobotwire.simulator import PtyServer, SimulatedArm, TcpServer
-from cobotwire.simulator.faults import Echo, Fault, Late, Scenario
+from cobotwire.simulator import PtyServer, SimulatedArm
+from cobotwire.simulator.faults import Echo, Fault, Late
+from faulty_arm import faulty_arm
 from scripted_peer import ScriptedPeer
 from session.one_caller import submit
-from slow_arm import SlowArm
 from stalls import unstalled
 from stuck_pty import ANGLES, MOTION, STOP, StuckPty
 
@@ -47,16 +46,6 @@ class Call(NamedTuple):
     seconds: float
     attempts: int
     waited_for: str
-
-
-@contextmanager
-def hostile_arm(kind: str, faults: tuple[Fault, ...]) -> Iterator[tuple[str, list[DeviceEvent]]]:
-    """Serve an arm on a bad line; yield its URL, and what it received."""
-    received: list[DeviceEvent] = []
-    arm = SimulatedArm(TABLE, on_event=lambda event, reply: received.append(event))
-    peer = Scenario(name="hostile", faults=faults).wrap(arm, CODEC)
-    with PtyServer(peer) if kind == "pty" else TcpServer(lambda: peer) as server:
-        yield server.url, received
 
 
 def measured(began: float, error: ReplyTimeout | None = None) -> Call:
@@ -128,7 +117,7 @@ def test_no_call_takes_longer_than_the_deadline_and_errors_say_truly_what_was_se
     run: Callable[..., list[Call]], kind: str, codec: str, faults: tuple[Fault, ...]
 ) -> None:
     def attempt() -> tuple[list[Call], int]:
-        with hostile_arm(kind, faults) as (url, received):
+        with faulty_arm(*faults, kind=kind) as (url, received):
             calls = run(url, timeout=TIMEOUT, deadline=DEADLINE, retry=ONCE, codec=codec)
             # What was not sent by its deadline would come now.
             time.sleep(0.1)
@@ -243,14 +232,12 @@ def test_waited_motion_has_a_time_of_its_own(open_arm: Opener) -> None:
 
 @pytest.mark.parametrize("timeout", [0.1, 2.0])
 def test_request_of_a_stream_has_the_deadline(open_arm: Opener, timeout: float) -> None:
-    arm_with_late_replies = SlowArm({1: 0.2})
-    with open_arm(arm_with_late_replies.url, deadline=0.1) as arm:
+    with faulty_arm(Late(seconds=0.2)) as (url, _), open_arm(url, deadline=0.1) as arm:
         stream = arm.stream(GetEncoder(1), rate=10, timeout=timeout)
         closing = threading.Timer(0.6, stream.close)
         closing.start()
         assert list(stream) == [], "each reply is too late"
         closing.join()
-    arm_with_late_replies.close()
 
 
 @pytest.mark.parametrize("deadline", [0, -1, float("nan"), 3600, True, "1"])

@@ -64,12 +64,12 @@ def test_call_on_a_field_notes_line_ends_with_the_verdict_of_its_case(
         verdicts.sort(key=case.verdicts.index)
     assert verdicts == list(case.verdicts), outcomes
     assert seconds < case.within
-    assert line.arm.garbled == 0
+    assert line.garbled == 0
     if case.requests is not None:
-        assert len(line.arm.frames) == case.requests
+        assert len(line.frames) == case.requests
     for call in case.calls:
         if call.right == DONE and call.sends:
-            assert line.arm.frames.count(call.sends) == 1
+            assert line.frames.count(call.sends) == 1
 
 
 def test_no_edition_has_the_query_that_froze_an_arm() -> None:

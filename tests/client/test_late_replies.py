@@ -3,29 +3,25 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Iterator
 from contextlib import suppress
 
 import pytest
 
 from cobotwire import MyCobot, ReplyTimeout
 from cobotwire.client import Traffic
-from slow_arm import SlowArm, encoder_reply
+from cobotwire.simulator.faults import Late, Lost
+from faulty_arm import faulty_arm
 
 TIMEOUT = 0.1
 
 
-@pytest.fixture
-def slow_arm(request: pytest.FixtureRequest) -> Iterator[SlowArm]:
-    made = SlowArm(request.param)
-    yield made
-    made.close()
-
-
-@pytest.mark.parametrize("slow_arm", [{1: TIMEOUT + 0.05}], indirect=True)
-def test_reply_50_ms_late_is_not_used_for_another_joint(slow_arm: SlowArm) -> None:
+def test_reply_50_ms_late_is_not_used_for_another_joint() -> None:
     traffic: list[Traffic] = []
-    with MyCobot(slow_arm.url, timeout=TIMEOUT, trace=traffic.append) as arm:
+    late = Late(seconds=TIMEOUT + 0.05, nth=(1,))
+    with (
+        faulty_arm(late) as (url, _),
+        MyCobot(url, timeout=TIMEOUT, trace=traffic.append) as arm,
+    ):
         started = time.monotonic()
         with pytest.raises(ReplyTimeout):
             arm.get_encoder(1)
@@ -36,22 +32,22 @@ def test_reply_50_ms_late_is_not_used_for_another_joint(slow_arm: SlowArm) -> No
         # It holds them as long as a copy of it could come: some lines double replies.
         assert 0.9 < time.monotonic() - started < 1.9
     directions = [(t.direction, t.data) for t in traffic]
-    assert directions.index(("received", encoder_reply(1))) < directions.index(
+    assert directions.index(("received", bytes.fromhex("FE FE 04 3B 00 01 FA"))) < directions.index(
         ("sent", bytes.fromhex("FE FE 03 3B 02 FA"))
     )
 
 
-@pytest.mark.parametrize("slow_arm", [{1: 0.727, 2: 0.0}], indirect=True)
-def test_reply_after_727_ms_is_not_used_for_another_joint(slow_arm: SlowArm) -> None:
-    with MyCobot(slow_arm.url, timeout=TIMEOUT) as arm:
+def test_reply_after_727_ms_is_not_used_for_another_joint() -> None:
+    late = Late(seconds=0.727, nth=(1,))
+    with faulty_arm(late) as (url, _), MyCobot(url, timeout=TIMEOUT) as arm:
         with pytest.raises(ReplyTimeout):
             arm.get_encoder(1)
         assert arm.get_encoder(2) == 2
 
 
-@pytest.mark.parametrize("slow_arm", [{1: 60.0}], indirect=True)
-def test_lost_reply_holds_the_next_query_but_not_a_one_way_request(slow_arm: SlowArm) -> None:
-    with MyCobot(slow_arm.url, timeout=TIMEOUT) as arm:
+def test_lost_reply_holds_the_next_query_but_not_a_one_way_request() -> None:
+    lost = Lost(nth=(1,))
+    with faulty_arm(lost) as (url, _), MyCobot(url, timeout=TIMEOUT) as arm:
         sent_at = time.monotonic()
         with pytest.raises(ReplyTimeout):
             arm.get_encoder(1)

@@ -25,13 +25,16 @@ from cobotwire.session import Exchange
 from cobotwire.session.alignment import Part
 from cobotwire.session.outstanding import LateFrame, PersistedState
 from cobotwire.session.request import RequestEncoder
+from cobotwire.simulator.faults import Late
 from cobotwire.transport import open_transport
 from command_line import run_program
+from faulty_arm import faulty_arm
 from scripted_peer import ScriptedPeer
-from slow_arm import SlowArm
 from stuck_pty import ANGLES, CODEC, MOTION, STOP, StuckPty, frames
 
 LATE = 0.75
+# The attempts of the first query.
+ATTEMPTS = (1, 2, 3)
 GET_ENCODER = bytes.fromhex("FE FE 03 3B 01 FA")
 BOTH = [MyCobot, lambda port, **options: InLoop(AsyncMyCobot, port, **options)]
 
@@ -43,32 +46,23 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path / f"cobotwire-{os.getuid()}"
 
 
-@pytest.fixture
-def late_arm() -> Iterator[SlowArm]:
-    arm = SlowArm({1: LATE})
-    yield arm
-    arm.close()
-
-
 @pytest.mark.parametrize("who", BOTH)
-def test_late_reply_to_a_closed_client_is_not_used_by_the_next_one(
-    late_arm: SlowArm, who: Callable[..., Any]
-) -> None:
-    with who(late_arm.url, timeout=0.3) as arm, pytest.raises(ReplyTimeout):
-        arm.get_encoder(1)
-    with who(late_arm.url) as arm:
-        assert arm.get_encoder(2) == 2
+def test_late_reply_to_a_closed_client_is_not_used_by_the_next_one(who: Callable[..., Any]) -> None:
+    with faulty_arm(Late(seconds=LATE, nth=ATTEMPTS)) as (url, _):
+        with who(url, timeout=0.3) as arm, pytest.raises(ReplyTimeout):
+            arm.get_encoder(1)
+        with who(url) as arm:
+            assert arm.get_encoder(2) == 2
 
 
 def test_late_reply_to_one_program_is_not_printed_by_the_next_one(folder: Path) -> None:
     # So late that the next program has started by then.
-    arm = SlowArm({1: 0.95})
-    first = run_program("call", arm.url, "get_encoder", "1")
-    assert "no reply" in first.stderr
-    assert len(list(folder.iterdir())) == 1, "the program leaves a note"
-    second = run_program("call", arm.url, "get_encoder", "2")
-    assert second.stdout.strip() == "2", second
-    arm.close()
+    with faulty_arm(Late(seconds=0.95, nth=ATTEMPTS)) as (url, _):
+        first = run_program("call", url, "get_encoder", "1")
+        assert "no reply" in first.stderr
+        assert len(list(folder.iterdir())) == 1, "the program leaves a note"
+        second = run_program("call", url, "get_encoder", "2")
+        assert second.stdout.strip() == "2", second
 
 
 def test_half_a_request_of_a_closed_client_is_ended_by_the_next_one(

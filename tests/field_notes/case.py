@@ -62,7 +62,7 @@ class Case:
         name: the name in the table.
         notes: which lines of the notes the case covers, see ``notes.py``.
         line: the behaviour of the line, as the table describes it.
-        faults: what goes wrong between the client and the steady arm.
+        faults: what goes wrong between the client and the arm.
         calls: the calls, in order.
         verdicts: how each call ends for our clients: ``right``, or the name of the error.
         requests: how many frames our clients send; None where that depends on chance.
