@@ -12,7 +12,7 @@ from cobotwire.conformance import Cause
 from cobotwire.editions.mycobot280.messages import SetJointMax, SetWorldReference
 from cobotwire.protocol.messages import Request
 from cobotwire.simulator import SimulatedArm
-from cobotwire.simulator.behaviour import BEHAVIOURS
+from cobotwire.simulator.behaviour import BEHAVIOURS, Behaviour
 from cobotwire.simulator.behaviour.registry import Behave
 from cobotwire.simulator.state import ArmState
 from conformance.device.testing import Altered, bad, permissions, prepared
@@ -132,7 +132,9 @@ WRONG: dict[str, tuple[str, Behave, str]] = {
 @pytest.mark.parametrize("name", WRONG)
 def test_wrong_behaviour_fails_its_test_case(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     command, behave, case = WRONG[name]
-    monkeypatch.setitem(BEHAVIOURS, command, BEHAVIOURS[command]._replace(behave=behave))
+    request = TABLE.command(command).request_type
+    assert request is not None
+    monkeypatch.setitem(BEHAVIOURS, command, Behaviour(request, behave))
     assert (case, command) in {(r.case, r.command) for r in bad(prepared(TABLE).run())}
 
 

@@ -1,7 +1,7 @@
-"""What the arm does for commands that it knows only by their roles, in any edition.
+"""What the arm does for commands by their roles, in any edition.
 
-They serve editions that name commands or arguments in their own way, and arms with any number of
-joints. Where the registry has a behaviour for the command's name and fields, that one is used.
+So editions may name commands and arguments in their own way, and have any number of joints. Where
+the registry has a behaviour for the command's name and fields, that one is used.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ def perform_role(
     Raises:
         Unanswerable: the arm does not know what the reply reports.
     """
-    perform = _ROLES.get(command.role)
+    perform = PERFORMED.get(command.role)
     if perform is None:
         return None
     value = perform(table, arm, now, command, fields)
@@ -86,14 +86,17 @@ def _reached(table: Table, arm: ArmState, now: float, command: Command, fields: 
     if end is None or len(target) != len(arm.coordinates):
         raise Unanswerable
     way, turn = end.distance(arm.pose_of(target, standing))
-    return way <= millimetres and turn <= degrees
+    # Each joint rests up to half a tick from the angle that the target requires.
+    return way <= millimetres and turn <= degrees + arm.joints * arm.tick_degrees / 2
 
 
 def _moving(table: Table, arm: ArmState, now: float, command: Command, fields: Fields) -> bool:
+    # A braking arm still moves; one that is led by hand does not move by itself.
     return arm.angles.moving(now) and not arm.released
 
 
 def _stop(table: Table, arm: ArmState, now: float, command: Command, fields: Fields) -> None:
+    # End every motion, and a pause; the next motion is obeyed.
     arm.angles.brake(now)
     arm.resume(now)
 
@@ -110,7 +113,7 @@ def _speed(command: Command, fields: Fields) -> int:
     return USUAL_SPEED
 
 
-_ROLES: dict[Role, Perform] = {
+PERFORMED: dict[Role, Perform] = {
     "joint targets": _move_joints,
     "joint target": _move_joint,
     "coordinate targets": _move_end,

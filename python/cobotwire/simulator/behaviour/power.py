@@ -25,9 +25,6 @@ def power_off(arm: ArmState, now: float, request: m.PowerOff) -> None:
     arm.release(now)
 
 
-query(m.IsPowerOn, lambda arm, now, request: arm.powered)
-
-
 @behaviour(m.ReleaseAllServos)
 def release_all_servos(arm: ArmState, now: float, request: m.ReleaseAllServos) -> None:
     """Release every joint."""

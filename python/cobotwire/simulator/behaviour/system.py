@@ -23,8 +23,6 @@ stored("gripper_current", m.SetGripperProtectCurrent, m.GetGripperProtectCurrent
 query(m.CheckAsyncOrSync, lambda arm, now, request: False)
 # The controller starts once at first, and after each panic.
 query(m.GetRebootCount, lambda arm, now, request: arm.starts)
-# The last error; 0: there is none.
-query(m.GetErrorInformation, lambda arm, now, request: arm.error)
 
 
 @behaviour(m.ClearErrorInformation)
