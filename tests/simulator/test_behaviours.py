@@ -17,7 +17,7 @@ from cobotwire.conformance.device.read_back import settings_of
 from cobotwire.protocol.errors import UsageError
 from cobotwire.protocol.table import Table
 from cobotwire.simulator import PtyServer, SimulatedArm, TcpServer
-from cobotwire.simulator.behaviour import BEHAVIOURS, external, own, registry
+from cobotwire.simulator.behaviour import BEHAVIOURS, by_role, external, own, registry
 from cobotwire_codegen.build import build_edition
 from cobotwire_codegen.check import check
 from cobotwire_codegen.emit import Target, write
@@ -131,6 +131,8 @@ def test_what_read_by_promises_is_remembered_in_every_edition(
 ) -> None:
     for command in list(BEHAVIOURS):
         monkeypatch.delitem(BEHAVIOURS, command)
+    for role in list(by_role.PERFORMED):
+        monkeypatch.delitem(by_role.PERFORMED, role)
     monkeypatch.setattr(registry, "_FAMILIES", {})
     monkeypatch.setattr(registry, "HOMES", {})
     table: Table = editions.load(name).TABLE

@@ -14,7 +14,7 @@ from cobotwire.protocol.messages import Event, Reply
 from cobotwire.protocol.table import Command, Table
 from cobotwire.simulator.arm_connection import ArmConnection, EventListener
 from cobotwire.simulator.behaviour import Behaviour, Sized, own
-from cobotwire.simulator.behaviour.by_role import perform_role
+from cobotwire.simulator.behaviour.by_role import PERFORMED, perform_role
 from cobotwire.simulator.behaviour.external import installed
 from cobotwire.simulator.devices import new_state
 from cobotwire.simulator.events import Events
@@ -239,10 +239,10 @@ class SimulatedArm:
             if behaviour is not None:
                 request = behaviour.request_type.from_fields(fields)
                 return behaviour.behave(state, now, request)
+            if command.role in PERFORMED and not elsewhere:
+                return self._perform_role(command, state, now, fields)
             state.remembered.store(self.table, command, fields)
-            if elsewhere:
-                return None
-            return self._perform_role(command, state, now, fields)
+            return None
         finally:
             self.events.watch(command, address)
             for event, at in state.emitted:
@@ -268,7 +268,7 @@ class SimulatedArm:
         self, command: Command, state: ArmState, now: float, fields: Mapping[str, Any]
     ) -> Reply[Any] | None:
         found = perform_role(self.table, state, now, command, fields)
-        if found is None or command.reply_type is None:
+        if not found or command.reply_type is None:
             return None
         return command.reply_type.from_fields(found)
 

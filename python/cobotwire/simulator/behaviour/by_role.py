@@ -26,19 +26,14 @@ Perform = Callable[[Table, ArmState, float, Command, Fields], Any]
 
 def perform_role(
     table: Table, arm: ArmState, now: float, command: Command, fields: Fields
-) -> dict[str, Any] | None:
-    """Perform a command by its role; return the fields of its reply, None if it has none.
+) -> dict[str, Any]:
+    """Perform a command whose role is in ``PERFORMED``; return the fields that its reply has.
 
     Raises:
         Unanswerable: the arm does not know what the reply reports.
     """
-    perform = PERFORMED.get(command.role)
-    if perform is None:
-        return None
-    value = perform(table, arm, now, command, fields)
-    if not command.requires_reply:
-        return None
-    return {command.reply[0].fields[-1].name: value}
+    value = PERFORMED[command.role](table, arm, now, command, fields)
+    return {command.reply[0].fields[-1].name: value} if command.requires_reply else {}
 
 
 def _move_joints(table: Table, arm: ArmState, now: float, command: Command, fields: Fields) -> None:
