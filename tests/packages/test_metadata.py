@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import re
 import subprocess
 import sys
@@ -13,6 +14,8 @@ from typing import Any
 import pytest
 
 import cobotwire
+from cobotwire import editions
+from cobotwire.editions.clients import EDITIONS
 from newcomer.installing import run
 from vectors import ROOT
 
@@ -33,6 +36,24 @@ def test_version_is_stated_once_and_is_that_of_both_distributions() -> None:
     crates = tomllib.loads((ROOT / "Cargo.lock").read_text())["package"]
     ours = [crate["version"] for crate in crates if crate["name"].startswith("cobotwire-")]
     assert ours == [stated] * 3
+
+
+def test_stub_names_what_the_package_has() -> None:
+    tree = ast.parse((ROOT / "python/cobotwire/__init__.pyi").read_text("utf-8"))
+    stated = {
+        alias.asname
+        for node in tree.body
+        if isinstance(node, ast.ImportFrom)
+        for alias in node.names
+    }
+    assert {*stated - {None}, *EDITIONS, "__version__", "codec_in_use"} == set(cobotwire.__all__)
+    for name in cobotwire.__all__:
+        assert getattr(cobotwire, name)
+    assert {
+        kind.__name__: name
+        for name in editions.names()
+        for kind in (editions.load(name).CLIENT, editions.load(name).ASYNC_CLIENT)
+    } == EDITIONS
 
 
 def test_both_distributions_have_the_same_links_and_licence() -> None:

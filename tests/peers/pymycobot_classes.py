@@ -19,36 +19,8 @@ with warnings.catch_warnings():
     # Its import uses features that Python 3.11 deprecates (locale.getdefaultlocale). We cannot fix
     # that, and marks of pytest do not apply to imports.
     warnings.simplefilter("ignore")
-    from pymycobot import (
-        CommandGenerator,
-        MechArm,
-        MechArm270,
-        MechArmSocket,
-        Mercury,
-        MercurySocket,
-        MyArm,
-        MyArmC,
-        MyArmM,
-        MyArmSocket,
-        MyBuddy,
-        MyBuddySocket,
-        MyCobot,
-        MyCobot280,
-        MyCobot280RDKX5,
-        MyCobot280RDKX5Socket,
-        MyCobot280Socket,
-        MyCobot320,
-        MyCobot320Socket,
-        MyCobotSocket,
-        MyPalletizer,
-        MyPalletizer260,
-        MyPalletizerSocket,
-        Pro400,
-        Pro400Client,
-        Pro450Client,
-        Pro630,
-        Pro630Client,
-    )
+    import pymycobot
+    from pymycobot import CommandGenerator, MyArmC, MyArmM, MyCobot, MyCobot280, MyPalletizer260
     from pymycobot.common import DataProcessor, read, write
     from pymycobot.error import (
         MechArmDataException,
@@ -65,35 +37,10 @@ __all__ = ["CLASSES", "REJECTIONS", "MyCobot", "MyCobot280", "MyPalletizer260"]
 __all__ += ["peer_on", "recording_client", "without_port", "written"]
 
 CLASSES: dict[str, type[Any]] = {
-    "MechArm": MechArm,
-    "MechArm270": MechArm270,
-    "MechArmSocket": MechArmSocket,
+    **{name: found for name, found in vars(pymycobot).items() if isinstance(found, type)},
     # The class serves three robots; two of them have the same messages.
-    "Mercury (A1)": Mercury,
-    "Mercury (B1, X1)": Mercury,
-    "MercurySocket": MercurySocket,
-    "MyArm": MyArm,
-    "MyArmC": MyArmC,
-    "MyArmM": MyArmM,
-    "MyArmSocket": MyArmSocket,
-    "MyBuddy": MyBuddy,
-    "MyBuddySocket": MyBuddySocket,
-    "MyCobot": MyCobot,
-    "MyCobot280": MyCobot280,
-    "MyCobot280RDKX5": MyCobot280RDKX5,
-    "MyCobot280RDKX5Socket": MyCobot280RDKX5Socket,
-    "MyCobot280Socket": MyCobot280Socket,
-    "MyCobot320": MyCobot320,
-    "MyCobot320Socket": MyCobot320Socket,
-    "MyCobotSocket": MyCobotSocket,
-    "MyPalletizer": MyPalletizer,
-    "MyPalletizer260": MyPalletizer260,
-    "MyPalletizerSocket": MyPalletizerSocket,
-    "Pro400": Pro400,
-    "Pro400Client": Pro400Client,
-    "Pro450Client": Pro450Client,
-    "Pro630": Pro630,
-    "Pro630Client": Pro630Client,
+    "Mercury (A1)": pymycobot.Mercury,
+    "Mercury (B1, X1)": pymycobot.Mercury,
 }
 
 # Exceptions that a call raises before it writes: on purpose, for an argument outside its limits; or
