@@ -11,7 +11,7 @@ from contextlib import contextmanager
 
 from cobotwire import codec as codecs
 from cobotwire.codec.interface import Noise
-from cobotwire.editions.mycobot280 import TABLE
+from cobotwire.editions.mycobot280 import TABLE, Angles, Coords
 from cobotwire.editions.mycobot280.messages import (
     GetAngles,
     GetCoords,
@@ -31,8 +31,8 @@ COORDS_READ = [27.5, -60.2, 250.0, -90.5, 1.25, -86.0]
 REGISTER_READ = 1000
 
 STEADY = Behaviours()
-STEADY.query(GetAngles, lambda arm, now, request: ANGLES_READ)
-STEADY.query(GetCoords, lambda arm, now, request: COORDS_READ)
+STEADY.query(GetAngles, lambda arm, now, request: Angles(*ANGLES_READ))
+STEADY.query(GetCoords, lambda arm, now, request: Coords(*COORDS_READ))
 STEADY.query(IsPowerOn, lambda arm, now, request: True)
 STEADY.query(GetEncoder, lambda arm, now, request: 1000 + request.joint)
 STEADY.query(GetServoData, lambda arm, now, request: REGISTER_READ)

@@ -17,7 +17,7 @@ def table(all_verdicts: Iterable[Verdicts]) -> str:
         cells.setdefault(edition, {})[tester] = f"{killed} + {excused} of {count}"
     testers = ("device", "client with a script", "client without a script", "codec")
     widths = [max(len(tester), 20) for tester in testers]
-    rows = [("edition", testers)]
+    rows: list[tuple[str, tuple[str, ...]]] = [("edition", testers)]
     rows += [
         (name, tuple(row.get(tester, "") for tester in testers)) for name, row in cells.items()
     ]
