@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 from hypothesis import strategies as st
 
 import field
@@ -44,7 +42,7 @@ FORMATS = [
 ]
 CODECS = [
     codecs.load(table, name)
-    for table in (TABLE_280, *(replace(TABLE, frame=format) for format in FORMATS))
+    for table in (TABLE_280, *(TABLE._replace(frame=format) for format in FORMATS))
     for name in ("reference", "native")
 ]
 

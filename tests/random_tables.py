@@ -6,7 +6,6 @@ under selectors, and the frames on the line hold any raw values, allowed or not.
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import Any, Literal
 
 from hypothesis import strategies as st
@@ -92,7 +91,7 @@ def shaped_fields(draw: st.DrawFn, name: str) -> Field:
     byte = Number("", 1, "big", 255, 1, 1, 0, 255, "")
     encoding = draw(st.sampled_from(["ascii", "utf-8", "latin-1"])) if kind != "bytes" else ""
     if encoding == "ascii":
-        byte = replace(byte, maximum=127)
+        byte = byte._replace(maximum=127)
     padding = draw(st.sampled_from([-1, 0, 32])) if kind != "bytes" else -1
     case = Case((), (byte,) * (count * each))
     shape: Literal["bytes", "text"] = "bytes" if kind == "bytes" else "text"
@@ -118,11 +117,11 @@ def bits(draw: st.DrawFn) -> tuple[Number, ...]:
         number = Number("b", width, order, signed_at, 1, 1, low, signed_at, "")
         flag: Literal["number", "flag"] = "flag" if kind == "flag" else "number"
         if kind == "flag":
-            number = replace(number, signed_at=top, minimum=0, maximum=1)
-        number = replace(number, kind=flag, choices=choices, shift=shift, bits=count, more=True)
+            number = number._replace(signed_at=top, minimum=0, maximum=1)
+        number = number._replace(kind=flag, choices=choices, shift=shift, bits=count, more=True)
         found.append(number)
         shift += count
-    return (*found[:-1], replace(found[-1], more=False))
+    return (*found[:-1], found[-1]._replace(more=False))
 
 
 @st.composite

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import pytest
 
 from cobotwire.cli.commands import byte_table
@@ -32,7 +30,7 @@ def test_byte_table_shows_the_footer() -> None:
     ("check", "place", "length"), [(CRC16_MODBUS, "6-7", 4), (SUM_OF_DATA, "6", 3)]
 )
 def test_byte_table_shows_address_and_check(check: Check, place: str, length: int) -> None:
-    frame = replace(TABLE.frame, check=check, footer=b"", addresses=(1, 2))
+    frame = TABLE.frame._replace(check=check, footer=b"", addresses=(1, 2))
     assert rows(frame) == [
         ("0-1", "header", "FE FE"),
         ("2", "address", "01, 02"),

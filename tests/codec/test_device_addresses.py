@@ -84,9 +84,8 @@ def test_table_names_the_devices_after_the_offset(codec: Codec) -> None:
 
 @BOTH
 def test_address_without_a_name_is_named_by_its_number(codec: Codec) -> None:
-    from dataclasses import replace
 
-    unnamed = codecs.load(replace(TABLE, addresses=()), codec.name)
+    unnamed = codecs.load(TABLE._replace(addresses=()), codec.name)
     table = unnamed.decode_columns(STREAM, "reply").to_arrow("get_angles")
     assert table["address"].to_pylist() == ["1", "2", "2", "1"]
 

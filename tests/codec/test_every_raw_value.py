@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterator
-from dataclasses import replace
 from functools import lru_cache
 from typing import NamedTuple, TypeVar
 
@@ -36,7 +35,7 @@ class Slot(NamedTuple):
     @property
     def kind(self) -> Number:
         """The number without its name and unit, which the rules of encoding do not use."""
-        return replace(self.number, name="", unit="")
+        return self.number._replace(name="", unit="")
 
 
 class CommandVariant(NamedTuple):

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import replace
 from typing import Any
 
 import pytest
@@ -175,15 +174,15 @@ def test_frame_with_an_unknown_id_is_missed_in_the_direction_that_was_meant(
 
 def test_counted_list_takes_the_variant_of_its_size_and_names_the_element_at_fault() -> None:
     joint = (
-        replace(small_tables.number(2, -300, 300), name="angle"),
-        replace(small_tables.number(1, 0, 90), name="temperature"),
+        small_tables.number(2, -300, 300)._replace(name="angle"),
+        small_tables.number(1, 0, 90)._replace(name="temperature"),
     )
     variants = []
     for size in range(4):
-        count = replace(small_tables.field("n", small_tables.number(), choices=(size,)), const=size)
-        counted = replace(count, counts="joints", sizes=(0, 3))
+        count = small_tables.field("n", small_tables.number(), choices=(size,))._replace(const=size)
+        counted = count._replace(counts="joints", sizes=(0, 3))
         listed = small_tables.field("joints", *(joint * size), many=True)
-        variants.append(Variant((counted, replace(listed, each=2, sizes=(0, 3)))))
+        variants.append(Variant((counted, listed._replace(each=2, sizes=(0, 3)))))
     table = small_tables.table(small_tables.command(1, "set_joints", tuple(variants)))
     for codec in both(table):
         frame = codec.encode("set_joints", "request", (..., [(-3, 20), (300, 90)]))

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from itertools import pairwise
 
 import pytest
@@ -54,7 +53,7 @@ def test_truncated_frame_has_the_name_of_its_command(codec: Codec, lost: int) ->
 
 @pytest.mark.parametrize("name", ["reference", "native"])
 def test_frames_of_formats_without_ids_in_replies_are_described(name: codecs.CodecName) -> None:
-    codec = codecs.load(replace(TABLE, frame=NO_ID), name)
+    codec = codecs.load(TABLE._replace(frame=NO_ID), name)
     whole = codec.encode("get_angles", "reply", [(1.0, 2.0, 3.0, 4.0, 5.0, 6.0)], address=7)
     sizes = {variant.size for command in TABLE.commands for variant in command.reply}
     unlisted = NO_ID.enclose(0, bytes(min(set(range(1, 20)) - sizes)), 7, "reply")

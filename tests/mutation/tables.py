@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import replace
 from typing import NamedTuple
 
 from cobotwire.protocol.table import Case, Command, Direction, Field, Number, Table, Variant
@@ -71,7 +70,7 @@ def _of_message(table: Table, place: Place) -> Iterator[WrongTable]:
     if place.variant == 0:
         taken = {other.id for other in table.commands}
         free = next(id for id in range(command.id + 1, command.id + 256) if id % 256 not in taken)
-        wrong = with_command(table, command, replace(command, id=free % 256))
+        wrong = with_command(table, command, command._replace(id=free % 256))
         yield WrongTable("id", place, f"id {free % 256:02X}", wrong)
     variants = command.variants(place.direction)
     rest = (*variants[: place.variant], *variants[place.variant + 1 :])
@@ -95,11 +94,11 @@ def _of_field(field: Field) -> Iterator[tuple[str, str, Field]]:
     if len(field.cases) > 1 and field.cases[0].numbers != field.cases[1].numbers:
         first, second = field.cases[0], field.cases[1]
         cases = (
-            replace(first, numbers=second.numbers),
-            replace(second, numbers=first.numbers),
+            first._replace(numbers=second.numbers),
+            second._replace(numbers=first.numbers),
             *field.cases[2:],
         )
-        yield "case", "first two cases swapped", replace(field, cases=cases)
+        yield "case", "first two cases swapped", field._replace(cases=cases)
 
 
 def _of_list(field: Field) -> Iterator[tuple[str, str, Field]]:
@@ -110,26 +109,26 @@ def _of_list(field: Field) -> Iterator[tuple[str, str, Field]]:
         yield (
             "list",
             "without its last choice",
-            replace(field, choices=field.choices[:-1], labels=field.labels[:-1]),
+            field._replace(choices=field.choices[:-1], labels=field.labels[:-1]),
         )
     more = max(field.choices) + 1
     if more <= number.signed_at:
         labels = (*field.labels, "MORE") if field.labels else ()
-        wider = Case((), tuple(replace(n, maximum=max(n.maximum, more)) for n in (number,)))
+        wider = Case((), tuple(n._replace(maximum=max(n.maximum, more)) for n in (number,)))
         cases = (wider,) if len(field.cases) == 1 and not field.many else field.cases
         yield (
             "list",
             "with one more choice",
-            replace(field, choices=(*field.choices, more), labels=labels, cases=cases),
+            field._replace(choices=(*field.choices, more), labels=labels, cases=cases),
         )
 
 
 def _each_number(field: Field, change: Callable[[Number], Number]) -> Field:
     cases = tuple(
-        replace(case, numbers=tuple(change(number) for number in case.numbers))
+        case._replace(numbers=tuple(change(number) for number in case.numbers))
         for case in field.cases
     )
-    return replace(field, cases=cases)
+    return field._replace(cases=cases)
 
 
 def _sign(number: Number) -> Number:
@@ -138,19 +137,19 @@ def _sign(number: Number) -> Number:
     if number.minimum >= 0 and number.maximum <= top // 2:
         return number
     signed_at = top if number.signed_at < top else top // 2
-    return replace(number, signed_at=signed_at)
+    return number._replace(signed_at=signed_at)
 
 
 def _lifted(number: Number) -> Number:
     """Return the number with the other sign rule, and the whole range of that rule."""
     top = 256**number.width - 1
     if number.signed_at < top:
-        return replace(number, signed_at=top, minimum=0, maximum=top)
-    return replace(number, signed_at=top // 2, minimum=-(top // 2) - 1, maximum=top // 2)
+        return number._replace(signed_at=top, minimum=0, maximum=top)
+    return number._replace(signed_at=top // 2, minimum=-(top // 2) - 1, maximum=top // 2)
 
 
 def _narrow(number: Number, low: int, high: int) -> Number:
-    wrong = replace(number, minimum=number.minimum + low, maximum=number.maximum + high)
+    wrong = number._replace(minimum=number.minimum + low, maximum=number.maximum + high)
     return wrong if wrong.minimum <= wrong.maximum and _carried(wrong) else number
 
 
@@ -168,18 +167,18 @@ def _width(number: Number, step: int) -> Number:
     signed = number.signed_at < 256**number.width - 1
     at = top // 2 if signed else top
     low = max(number.minimum, at - top if signed else 0)
-    return replace(number, width=width, signed_at=at, minimum=low, maximum=min(number.maximum, at))
+    return number._replace(width=width, signed_at=at, minimum=low, maximum=min(number.maximum, at))
 
 
 def _other_order(number: Number) -> Number:
     if number.width == 1:
         return number
-    return replace(number, order="little" if number.order == "big" else "big")
+    return number._replace(order="little" if number.order == "big" else "big")
 
 
 NUMBERS: tuple[tuple[str, str, Callable[[Number], Number]], ...] = (
-    ("scale", "ten times as large", lambda n: replace(n, multiply=n.multiply * 10)),
-    ("scale", "a tenth as large", lambda n: replace(n, divide=n.divide * 10)),
+    ("scale", "ten times as large", lambda n: n._replace(multiply=n.multiply * 10)),
+    ("scale", "a tenth as large", lambda n: n._replace(divide=n.divide * 10)),
     ("sign", "with the other sign rule", _sign),
     ("sign", "with the other sign rule and its range", _lifted),
     ("endianness", "low byte first", _other_order),
@@ -213,11 +212,11 @@ def _with_variants(
     command: Command, direction: Direction, variants: tuple[Variant, ...]
 ) -> Command:
     if direction == "request":
-        return replace(command, request=variants)
-    return replace(command, reply=variants)
+        return command._replace(request=variants)
+    return command._replace(reply=variants)
 
 
 def with_command(table: Table, old: Command, new: Command) -> Table:
     """Return the table with one command in place of another."""
     commands = (new if command is old else command for command in table.commands)
-    return replace(table, commands=tuple(commands))
+    return table._replace(commands=tuple(commands))

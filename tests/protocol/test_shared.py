@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import gc
 import weakref
-from dataclasses import replace
 
 from cobotwire import codec as codecs
 from cobotwire.editions.mycobot280 import TABLE, AsyncMyCobot280
@@ -18,7 +17,7 @@ class Computed:
 
 def test_result_is_computed_once_for_each_table() -> None:
     compute = once_per_table(lambda table: Computed())
-    same = replace(TABLE)
+    same = TABLE._replace()
     assert same == TABLE
     assert compute(TABLE) is compute(TABLE)
     # Another table may change what the codec does, so equal ones are not compared.
@@ -27,10 +26,10 @@ def test_result_is_computed_once_for_each_table() -> None:
 
 def test_results_for_tables_that_are_no_longer_used_are_dropped() -> None:
     compute = once_per_table(lambda table: Computed())
-    first = weakref.ref(compute(replace(TABLE)))
+    first = weakref.ref(compute(TABLE._replace()))
     assert first() is not None
     for _ in range(KEPT):
-        compute(replace(TABLE))
+        compute(TABLE._replace())
     gc.collect()
     assert first() is None
 
@@ -43,6 +42,6 @@ def test_clients_of_an_edition_share_one_codec() -> None:
 
 
 def test_codec_of_a_table_with_other_limits_is_another_one() -> None:
-    narrower: Table = replace(TABLE, commands=TABLE.commands[:1])
+    narrower: Table = TABLE._replace(commands=TABLE.commands[:1])
     assert codecs.load(narrower) is not codecs.load(TABLE)
     assert codecs.load(narrower).table is narrower

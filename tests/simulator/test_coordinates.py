@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import Any
 
 import pytest
@@ -192,7 +191,7 @@ def test_arm_outside_its_limits_stays_there_until_it_is_sent_inside(
 
 def test_arm_of_which_nothing_is_stated_moves_joints_and_rejects_coordinates() -> None:
     clock = SteppedClock()
-    arm = SimulatedArm(replace(TABLE, robot=UNSTATED), clock=clock)
+    arm = SimulatedArm(TABLE._replace(robot=UNSTATED), clock=clock)
 
     def query(name: str, *values: Any) -> Any:
         reply = arm.receive(REFERENCE.encode(name, "request", values))

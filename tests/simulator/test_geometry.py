@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from importlib import import_module
 from pathlib import Path
 from typing import Any
@@ -99,5 +98,5 @@ def test_geometry_is_exact_and_belongs_to_no_name() -> None:
     known = geometry_of(TABLE)
     assert known is not None
     assert (known.links[0].d, known.links[1].a, known.links[5].d) == (131.22, -110.4, 48.6)
-    assert geometry_of(replace(TABLE, edition="another")) == known
-    assert geometry_of(replace(TABLE, robot=TABLE.robot._replace(geometry=None))) is None
+    assert geometry_of(TABLE._replace(edition="another")) == known
+    assert geometry_of(TABLE._replace(robot=TABLE.robot._replace(geometry=None))) is None

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import Any
 
 import pytest
@@ -39,7 +38,7 @@ MECHARM_PAIRS = (
 
 
 def _with(**parts: Any) -> Table:
-    return replace(TABLE, robot=TABLE.robot._replace(**parts))
+    return TABLE._replace(robot=TABLE.robot._replace(**parts))
 
 
 def test_encoders_count_as_the_edition_states() -> None:
@@ -96,7 +95,7 @@ def test_query_reports_its_start_value_until_something_is_set() -> None:
 def test_limits_are_the_ranges_of_targets_or_else_those_of_the_robot() -> None:
     assert joint_limits(DOCUMENT) == [(-165, 165)] * 6, "the document gives targets no range"
     assert joint_limits(TABLE)[0] == (-168, 168)
-    assert joint_limits(replace(DOCUMENT, robot=Robot())) == []
+    assert joint_limits(DOCUMENT._replace(robot=Robot())) == []
 
 
 def test_links_say_which_joints_turn_them() -> None:
@@ -104,7 +103,7 @@ def test_links_say_which_joints_turn_them() -> None:
     geometry = load_robot({"geometry": {"links": links, "doc": ""}}).geometry
     assert geometry is not None
     assert [link[4] for link in geometry.links] == [((0, 1.0),), ((0, -0.5),), ()]
-    found = geometry_of(replace(TABLE, robot=Robot(geometry)))
+    found = geometry_of(TABLE._replace(robot=Robot(geometry)))
     assert found is not None
     assert [*found.link_angles([40.0])] == [40.0, -20.0, 0]
     assert found.joints == 1
@@ -135,7 +134,7 @@ LEVEL = Dimensions(
 
 def test_arm_with_four_coordinates_moves_its_end() -> None:
     robot = PALLETIZER.robot._replace(geometry=LEVEL)
-    bench = Bench(replace(PALLETIZER, robot=robot))
+    bench = Bench(PALLETIZER._replace(robot=robot))
     bench.send("send_angles", (20.0, 30.0, -20.0, 45.0), 100)
     bench.clock.sleep(10)
     x, y, z, theta = bench.query("get_coords")

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 from contextlib import suppress
-from pathlib import Path
 from types import TracebackType
 from typing import Literal, Self
 
@@ -46,7 +45,7 @@ class Recording:
             UsageError: the file exists already, or it cannot be created.
         """
         try:
-            self._file = Path(path).open("xb")  # noqa: SIM115  (closed by close())
+            self._file = open(path, "xb")  # noqa: SIM115  (closed by close())
         except (OSError, ValueError) as error:
             raise unusable_file("record", path, error) from None
         self._name = str(path)

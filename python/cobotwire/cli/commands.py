@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-from dataclasses import asdict
 
 import click
 from rich.table import Table as Grid
@@ -12,6 +11,7 @@ from cobotwire import editions
 from cobotwire.cli.shared.completers import complete_commands
 from cobotwire.cli.shared.output import plain_console
 from cobotwire.protocol.frame_format import FixedPart
+from cobotwire.protocol.json_values import as_json_value
 from cobotwire.protocol.table import Command, Direction, Field, FrameFormat, Number, Variant
 
 _DIRECTIONS: tuple[Direction, ...] = ("request", "reply")
@@ -27,7 +27,7 @@ def commands(edition: str, name: str | None, as_json: bool) -> None:
     table = editions.load(edition).TABLE
     chosen = table.commands if name is None else (table.command(name),)
     if as_json:
-        click.echo(json.dumps([asdict(command) for command in chosen], indent=1))
+        click.echo(json.dumps([as_json_value(command) for command in chosen], indent=1))
     elif name is None:
         _print_list(chosen)
     else:

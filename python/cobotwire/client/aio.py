@@ -2,28 +2,36 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from contextlib import suppress
+from copy import copy
 from math import inf
+from types import TracebackType
+from typing import Any, ClassVar, Self
 
-from cobotwire.protocol.light import TYPE_CHECKING
-
-# Imported when a client is opened, or when it needs them. So a program that only imports a client
-# loads neither the session nor the table of an edition.
-if TYPE_CHECKING:
-    from collections.abc import Callable
-    from types import TracebackType
-    from typing import Any, ClassVar, Self
-
-    from cobotwire import codec as codecs
-    from cobotwire.client.aio_events import AsyncEventStream
-    from cobotwire.client.aio_streaming import AsyncStream
-    from cobotwire.client.events import EventHandler, EventT
-    from cobotwire.client.opening import OnError, RecordPath
-    from cobotwire.client.traffic import TrafficListener
-    from cobotwire.protocol.limits import Limits
-    from cobotwire.protocol.messages import Request, Result
-    from cobotwire.protocol.table import Table
-    from cobotwire.session import RetryPolicy
-    from cobotwire.transport import Transport
+from cobotwire import codec as codecs
+from cobotwire.client.aio_connection import AsyncConnection
+from cobotwire.client.aio_events import AsyncEventStream
+from cobotwire.client.aio_streaming import AsyncStream
+from cobotwire.client.events import EventHandler, EventQueue, EventT, Wanted
+from cobotwire.client.opening import (
+    OnError,
+    PortOpener,
+    RecordPath,
+    check_deadline,
+    check_on_error,
+    check_seconds,
+    settings,
+)
+from cobotwire.client.traffic import TrafficListener
+from cobotwire.protocol.addresses import find_address, named_address
+from cobotwire.protocol.errors import CaptureError, CobotwireError
+from cobotwire.protocol.limits import Limits
+from cobotwire.protocol.messages import Request, Result
+from cobotwire.protocol.table import Table
+from cobotwire.session import Exchange, RetryPolicy
+from cobotwire.session.request import RequestEncoder, check_acknowledged
+from cobotwire.transport import Transport
 
 
 class AsyncClient:
@@ -55,12 +63,6 @@ class AsyncClient:
         Raises:
             UsageError: an argument is not allowed.
         """
-        from cobotwire.client.aio_connection import AsyncConnection
-        from cobotwire.client.opening import PortOpener, check_deadline, check_on_error, settings
-        from cobotwire.protocol.addresses import find_address
-        from cobotwire.session.exchange import Exchange
-        from cobotwire.session.request import RequestEncoder
-
         self._settings = settings(self.table, timeout, retry, codec, limits)
         self._stops = check_on_error(on_error) == "stop"
         self._stopped_for: BaseException | None = None
@@ -133,11 +135,6 @@ class AsyncClient:
         Raises:
             UsageError: the edition has no such address.
         """
-        from copy import copy
-
-        from cobotwire.protocol.addresses import named_address
-        from cobotwire.session.request import RequestEncoder
-
         wanted = named_address(self.table, address)
         if wanted == self._address:
             return self
@@ -191,11 +188,6 @@ class AsyncClient:
         Raises:
             UsageError: an argument is not allowed, or is not a query; nothing was sent.
         """
-        from cobotwire.protocol.lazy import import_aside
-
-        import_aside("cobotwire.client.aio_streaming")
-        from cobotwire.client.aio_streaming import AsyncStream
-
         settings = self._settings.for_stream(timeout)
         return AsyncStream(self._connection, settings, self._encoder, requests, rate)
 
@@ -221,13 +213,6 @@ class AsyncClient:
         Raises:
             UsageError: an argument is not allowed, or the edition has no such event.
         """
-        from cobotwire.protocol.lazy import import_aside
-
-        import_aside("cobotwire.client.aio_events")
-        from cobotwire.client.aio_events import AsyncEventStream
-        from cobotwire.client.events import EventQueue, Wanted
-        from cobotwire.client.opening import check_seconds
-
         check_seconds("timeout", timeout)
         queue = EventQueue(Wanted(self.table, types, self._address), capacity)
         return AsyncEventStream(self._connection, queue, timeout)
@@ -244,8 +229,6 @@ class AsyncClient:
         Raises:
             UsageError: the edition has no such event, or the handler is not a function.
         """
-        from cobotwire.client.events import EventHandler, Wanted
-
         made = EventHandler(Wanted(self.table, (event,), self._address), handler)
         made.start(self._connection.listeners.add)
         return made
@@ -255,10 +238,6 @@ class AsyncClient:
         try:
             await self.close()
         except BaseException as failed:
-            from contextlib import suppress
-
-            from cobotwire.protocol.errors import CaptureError
-
             with suppress(Exception):
                 # What is closed already stays so.
                 self._connection.close()
@@ -291,8 +270,6 @@ class AsyncClient:
         stop = self.table.find_role("stop")
         if not self._stops or stop is None or error is self._stopped_for:
             return False
-        from cobotwire.protocol.errors import CobotwireError
-
         sent = True
         try:
             # That it is sent matters more than when.
@@ -339,9 +316,6 @@ class AsyncClient:
         ``deadline`` is another one than that of the client.
         """
         if ack_within is not None:
-            from cobotwire.client.opening import check_seconds
-            from cobotwire.session.request import check_acknowledged
-
             check_seconds("ack_within", ack_within)
         encoded = self._encoder.encode_request(request)
         if ack_within is not None:

@@ -8,20 +8,16 @@ from collections.abc import Callable
 from contextlib import suppress
 from functools import partial
 from math import inf
-from typing import TYPE_CHECKING
 
+from cobotwire.client.aio_slots import AsyncSlots
 from cobotwire.client.aio_steps import FULL_SECONDS, AsyncSteps
 from cobotwire.client.opening import OpenPort, PortOpener
 from cobotwire.client.port_memory import PortMemory
 from cobotwire.client.traffic import TrafficListener, TrafficListeners
 from cobotwire.protocol.errors import CaptureError, LinkError, UsageError
-from cobotwire.protocol.lazy import import_aside
 from cobotwire.session import EncodedRequest, Exchange, Pending, PendingRequest, RetryPolicy
 from cobotwire.transport import forks
 from cobotwire.transport.timing import times_of
-
-if TYPE_CHECKING:
-    from cobotwire.client.aio_slots import AsyncSlots
 
 # The longest wait, after which a listening task checks whether the transport is gone.
 LISTEN_SECONDS = 0.05
@@ -130,9 +126,6 @@ class AsyncConnection:
 
     def slots(self, closed: Callable[[], bool]) -> AsyncSlots:
         """Return what sends the requests of a stream until ``closed`` returns True."""
-        import_aside("cobotwire.client.aio_slots")
-        from cobotwire.client.aio_slots import AsyncSlots
-
         return AsyncSlots(self._opened, closed)
 
     async def listen(self, seconds: float, done: Callable[[], bool] | None = None) -> None:

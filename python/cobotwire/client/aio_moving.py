@@ -3,27 +3,20 @@
 from __future__ import annotations
 
 import asyncio
+from collections.abc import Sequence
+from contextlib import AbstractContextManager
+from typing import Any
 
+from cobotwire.client import events
 from cobotwire.client.aio import AsyncClient
-from cobotwire.protocol.light import MOTION_SECONDS, TYPE_CHECKING, Later
+from cobotwire.client.opening import check_seconds
+from cobotwire.protocol import roles
+from cobotwire.protocol.errors import MotionTimeout, ReplyTimeout
+from cobotwire.protocol.messages import Request
+from cobotwire.session import EncodedRequest, motion
 
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-    from contextlib import AbstractContextManager
-    from typing import Any
-
-    from cobotwire.client import events, opening
-    from cobotwire.protocol import errors, roles
-    from cobotwire.protocol.messages import Request
-    from cobotwire.session import EncodedRequest, motion
-else:
-    # Needed when the arm is first moved.
-    events = Later("cobotwire.client.events")
-    opening = Later("cobotwire.client.opening")
-    errors = Later("cobotwire.protocol.errors")
-    roles = Later("cobotwire.protocol.roles")
-    motion = Later("cobotwire.session.motion")
-
+# How long a motion is waited for by default.
+MOTION_SECONDS = 30.0
 # Percent of the fastest, unless the caller says otherwise.
 HOME_SPEED, GRIPPER_SPEED = 10, 50
 
@@ -109,7 +102,7 @@ class AsyncMovingClient(AsyncClient):
             LinkError: the transport is gone.
             MotionTimeout: the arm is not there in time, or stands still short of the target.
         """
-        opening.check_seconds("timeout", timeout)
+        check_seconds("timeout", timeout)
         goal = motion.goal_of(self.table, target, kind)
         with self._motion_ended() as ended:
             try:
@@ -167,7 +160,7 @@ class AsyncMovingClient(AsyncClient):
         wait: bool,
         timeout: float,
     ) -> None:
-        opening.check_seconds("timeout", timeout)
+        check_seconds("timeout", timeout)
         # A bad target is reported as such, before it is waited for.
         encoded = self._encoder.encode_request(request)
         goal = (
@@ -196,7 +189,7 @@ class AsyncMovingClient(AsyncClient):
         # The acceptance may be lost; the queries tell whether the arm moves.
         try:
             await self._connection.send(request, within)
-        except errors.ReplyTimeout:
+        except ReplyTimeout:
             return
 
     async def _wait(
@@ -210,7 +203,7 @@ class AsyncMovingClient(AsyncClient):
                 step = steps.send(outcome)
         except StopIteration:
             return
-        except errors.MotionTimeout as error:
+        except MotionTimeout as error:
             if error.stopped:
                 # This arm needs no further stop for the error; others that it ends do.
                 self._stopped_for = error
@@ -230,6 +223,6 @@ class AsyncMovingClient(AsyncClient):
         else:
             try:
                 result = await self._call(step.request, step.longest)
-            except errors.ReplyTimeout:
+            except ReplyTimeout:
                 result = None
         return motion.Outcome(now(), result)

@@ -3,28 +3,36 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from contextlib import suppress
+from copy import copy
 from math import inf
+from types import TracebackType
+from typing import Any, ClassVar, Self
 
-from cobotwire.protocol.light import TYPE_CHECKING
-
-# Imported when a client is opened, or when it needs them. So a program that only imports a client
-# loads neither the session nor the table of an edition.
-if TYPE_CHECKING:
-    from collections.abc import Callable
-    from types import TracebackType
-    from typing import Any, ClassVar, Self
-
-    from cobotwire import codec as codecs
-    from cobotwire.client.event_streams import EventStream
-    from cobotwire.client.events import EventHandler, EventT
-    from cobotwire.client.opening import OnError, RecordPath
-    from cobotwire.client.streaming import Stream
-    from cobotwire.client.traffic import TrafficListener
-    from cobotwire.protocol.limits import Limits
-    from cobotwire.protocol.messages import Request, Result
-    from cobotwire.protocol.table import Table
-    from cobotwire.session import RetryPolicy
-    from cobotwire.transport import Transport
+from cobotwire import codec as codecs
+from cobotwire.client.connection import Connection
+from cobotwire.client.event_streams import EventStream
+from cobotwire.client.events import EventHandler, EventQueue, EventT, Wanted
+from cobotwire.client.opening import (
+    OnError,
+    PortOpener,
+    RecordPath,
+    check_deadline,
+    check_on_error,
+    check_seconds,
+    settings,
+)
+from cobotwire.client.streaming import Stream
+from cobotwire.client.traffic import TrafficListener
+from cobotwire.protocol.addresses import find_address, named_address
+from cobotwire.protocol.errors import CaptureError, CobotwireError
+from cobotwire.protocol.limits import Limits
+from cobotwire.protocol.messages import Request, Result
+from cobotwire.protocol.table import Table
+from cobotwire.session import Exchange, RetryPolicy
+from cobotwire.session.request import RequestEncoder, check_acknowledged
+from cobotwire.transport import Transport
 
 
 class Client:
@@ -88,12 +96,6 @@ class Client:
             UsageError: an argument is not allowed, or the file of the recording exists already.
             LinkError: the port does not exist, or cannot be opened.
         """
-        from cobotwire.client.connection import Connection
-        from cobotwire.client.opening import PortOpener, check_deadline, check_on_error, settings
-        from cobotwire.protocol.addresses import find_address
-        from cobotwire.session.exchange import Exchange
-        from cobotwire.session.request import RequestEncoder
-
         self._settings = settings(self.table, timeout, retry, codec, limits)
         self._stops = check_on_error(on_error) == "stop"
         self._stopped_for: BaseException | None = None
@@ -154,11 +156,6 @@ class Client:
         Raises:
             UsageError: the edition has no such address.
         """
-        from copy import copy
-
-        from cobotwire.protocol.addresses import named_address
-        from cobotwire.session.request import RequestEncoder
-
         wanted = named_address(self.table, address)
         if wanted == self._address:
             return self
@@ -212,11 +209,6 @@ class Client:
         Raises:
             UsageError: an argument is not allowed, or is not a query; nothing was sent.
         """
-        from cobotwire.protocol.lazy import import_aside
-
-        import_aside("cobotwire.client.streaming")
-        from cobotwire.client.streaming import Stream
-
         settings = self._settings.for_stream(timeout)
         return Stream(self._connection, settings, self._encoder, requests, rate)
 
@@ -242,13 +234,6 @@ class Client:
         Raises:
             UsageError: an argument is not allowed, or the edition has no such event.
         """
-        from cobotwire.protocol.lazy import import_aside
-
-        import_aside("cobotwire.client.event_streams")
-        from cobotwire.client.event_streams import EventStream
-        from cobotwire.client.events import EventQueue, Wanted
-        from cobotwire.client.opening import check_seconds
-
         check_seconds("timeout", timeout)
         queue = EventQueue(Wanted(self.table, types, self._address), capacity)
         return EventStream(self._connection, queue, timeout)
@@ -267,8 +252,6 @@ class Client:
         Raises:
             UsageError: the edition has no such event, or the handler is not a function.
         """
-        from cobotwire.client.events import EventHandler, Wanted
-
         made = EventHandler(Wanted(self.table, (event,), self._address), handler)
         made.start(self._connection.listeners.add)
         return made
@@ -278,10 +261,6 @@ class Client:
         try:
             self.close()
         except BaseException as failed:
-            from contextlib import suppress
-
-            from cobotwire.protocol.errors import CaptureError
-
             with suppress(Exception):
                 # What is closed already stays so.
                 self._connection.close()
@@ -314,8 +293,6 @@ class Client:
         stop = self.table.find_role("stop")
         if not self._stops or stop is None or error is self._stopped_for:
             return False
-        from cobotwire.protocol.errors import CobotwireError
-
         sent = True
         try:
             # That it is sent matters more than when.
@@ -362,9 +339,6 @@ class Client:
         ``deadline`` is another one than that of the client.
         """
         if ack_within is not None:
-            from cobotwire.client.opening import check_seconds
-            from cobotwire.session.request import check_acknowledged
-
             check_seconds("ack_within", ack_within)
         encoded = self._encoder.encode_request(request)
         if ack_within is not None:

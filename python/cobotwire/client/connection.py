@@ -5,21 +5,17 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 from math import inf
-from typing import TYPE_CHECKING
 
 from cobotwire.client.leading import CHECK_SECONDS
 from cobotwire.client.opening import PortOpener
 from cobotwire.client.port_memory import PortMemory
+from cobotwire.client.slots import Slots
 from cobotwire.client.steps import SLICE_SECONDS, TURN_SECONDS, Steps
 from cobotwire.client.traffic import TrafficListener, TrafficListeners
-from cobotwire.protocol.lazy import import_aside
 from cobotwire.session import EncodedRequest, Exchange, PendingRequest, RetryPolicy
 from cobotwire.session.exchange import DRAIN_SECONDS
 from cobotwire.transport import forks
 from cobotwire.transport.timing import times_of
-
-if TYPE_CHECKING:
-    from cobotwire.client.slots import Slots
 
 
 class Connection:
@@ -104,9 +100,6 @@ class Connection:
 
     def slots(self, closed: Callable[[], bool]) -> Slots:
         """Return what sends the requests of a stream until ``closed`` returns True."""
-        import_aside("cobotwire.client.slots")
-        from cobotwire.client.slots import Slots
-
         return Slots(self.now, self.sleep, self.request, closed)
 
     def listen(self, seconds: float, done: Callable[[], bool] | None = None) -> None:

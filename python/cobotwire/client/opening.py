@@ -3,23 +3,19 @@
 from __future__ import annotations
 
 import os
-from importlib import import_module
 from math import inf
-from typing import TYPE_CHECKING, Literal, NamedTuple, TypedDict
+from typing import Literal, NamedTuple, TypedDict
 
 from cobotwire import codec as codecs
+from cobotwire.capture import Recording
 from cobotwire.codec.interface import Codec
 from cobotwire.protocol.errors import UsageError
 from cobotwire.protocol.lazy import load_parts
+from cobotwire.protocol.limits import Limits, limited
 from cobotwire.protocol.table import Command, Table
 from cobotwire.session import RetryPolicy
 from cobotwire.transport import Transport, open_transport
 from cobotwire.transport.tapped import tapped
-
-if TYPE_CHECKING:
-    from cobotwire.capture import Recording
-    from cobotwire.protocol.limits import Limits
-
 
 OnError = Literal["stop", "leave"]
 RecordPath = str | os.PathLike[str]
@@ -76,28 +72,15 @@ def settings(
     if retry is not None and not isinstance(retry, RetryPolicy):
         raise UsageError("retry", retry, "a RetryPolicy")
     if limits is not None:
-        # Imported here: few programs have limits of their own, and all of them import this.
-        from cobotwire.protocol.limits import Limits, limited
-
         if not isinstance(limits, Limits):
             raise UsageError("limits", limits, "Limits")
         table = limited(table, limits)
-    _load_for_calls(table)
-    return Settings(codecs.load(table, codec), timeout, retry or RetryPolicy())
-
-
-def _load_for_calls(table: Table) -> None:
-    """Import what calls need besides the session: no call imports anything."""
-    for module in (
-        "copy",
-        "cobotwire.client.events",
-        "cobotwire.protocol.roles",
-        "cobotwire.session.motion",
-    ):
-        import_module(module)
+    # No call imports anything: Ctrl-C in an import could leave one of its locks held.
     package = table.commands[0].package if table.commands else ""
     if package:
         load_parts(f"{package}.messages")
+    # Made again: _replace() of a policy checks nothing.
+    return Settings(codecs.load(table, codec), timeout, RetryPolicy(*(retry or ())))
 
 
 def check_seconds(argument: str, value: float | None) -> None:
@@ -207,9 +190,6 @@ class PortOpener(NamedTuple):
         transport = open_port(self.port, self.baudrate)
         if self.record is None:
             return OpenPort(transport, None)
-        # Imported here: few programs record, and all of them import this.
-        from cobotwire.capture import Recording
-
         try:
             recording = Recording(
                 self.record, self.codec, url=transport.url, baudrate=self.baudrate

@@ -9,6 +9,7 @@ removed with a warning.
 from __future__ import annotations
 
 import binascii
+import json
 import os
 import stat
 import threading
@@ -41,8 +42,6 @@ def write_note(key: str, state: PersistedState) -> None:
     Raises:
         OSError: it cannot be written, or this user has no folder for it.
     """
-    import json
-
     note = {
         "port": key,
         "boot": _boot(),
@@ -68,8 +67,6 @@ def take_note(key: str) -> PersistedState:
         return PersistedState()
     except (OSError, ValueError) as error:
         return _unusable(error)
-    import json
-
     try:
         return _read(json.loads(text), key)
     # Nothing that a file can hold may keep a port from being opened.

@@ -4,13 +4,11 @@
 from __future__ import annotations
 
 from types import TracebackType
-from typing import TYPE_CHECKING, Generic, Self, TypeVar, Unpack
+from typing import Generic, Self, TypeVar, Unpack
 
 from cobotwire.client.blocking import Client
+from cobotwire.client.opening import SharedOptions
 from cobotwire.transport import Transport
-
-if TYPE_CHECKING:
-    from cobotwire.client.opening import SharedOptions
 
 ArmT = TypeVar("ArmT", bound=Client)
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import ClassVar
 
 from cobotwire.codec.interface import Codec, Listening, NoiseReason
@@ -11,7 +12,6 @@ from cobotwire.diagnose.frames import DIRECTIONS, FrameStarts
 from cobotwire.diagnose.panic import PANIC
 from cobotwire.diagnose.residue import Residue, Verdict, Wait
 from cobotwire.diagnose.servo import packet_size
-from cobotwire.protocol.records import record
 
 # What is wrong, by the framer's reason.
 _DAMAGES = {
@@ -23,7 +23,7 @@ _DAMAGES = {
 _SLACK = (0, -1, 1, -2, 2)
 
 
-@record(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True, kw_only=True)
 class DamagedFrame(Finding):
     """The header and id of a command without a legal frame.
 

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass, fields
 from typing import Any, ClassVar, NamedTuple
 
 from cobotwire.codec.interface import NoiseReason
 from cobotwire.protocol.counted import counted
-from cobotwire.protocol.records import record
 
 # The number of characters of a text that are shown.
 SHOWN = 60
@@ -23,7 +23,7 @@ class Span(NamedTuple):
     data: bytes
 
 
-@record(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Finding:
     """Noise that belongs together. Each class of noise is a subclass, listed in ``registry``.
 
@@ -93,7 +93,5 @@ class Finding:
     @property
     def facts(self) -> dict[str, Any]:
         """Return the attributes that are specific to the kind, by name."""
-        from dataclasses import fields
-
         common = len(fields(Finding))
         return {field.name: getattr(self, field.name) for field in fields(self)[common:]}

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import re
+from dataclasses import dataclass
 from typing import ClassVar
 
 from cobotwire.diagnose.findings import CHECK_CONTROLLER, SHOWN, Finding
 from cobotwire.diagnose.panic import PANIC, READABLE, recognise_panic
 from cobotwire.diagnose.recogniser import Recogniser
 from cobotwire.diagnose.residue import Residue, Verdict, Wait
-from cobotwire.protocol.records import record
 
 # This many readable bytes in a row are text; in random bytes one place in 300 starts as many.
 TEXT_MINIMUM = 6
@@ -22,7 +22,7 @@ _LINE = re.compile(rb"[\r\n]*[^\r\n]*")
 _RESET = re.compile(r"\brst:0x[0-9a-fA-F]+ \((\w+)\)")
 
 
-@record(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Text(Finding):
     """A line of readable text, with its line end if it has one."""
 
@@ -50,7 +50,7 @@ class Text(Finding):
         return repr(text if len(text) <= SHOWN else text[: SHOWN - 3] + "...")
 
 
-@record(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True, kw_only=True)
 class CommandError(Finding):
     """The firmware's ``cmd_len error``: it received a damaged request, or two at once."""
 
@@ -76,7 +76,7 @@ class CommandError(Finding):
         return f"the firmware reported cmd_len error{times}"
 
 
-@record(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Boot(Finding):
     """The boot loader's line with the cause of the boot, such as ``SW_CPU_RESET``."""
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections import deque
+from dataclasses import dataclass
 from typing import ClassVar
 
 from cobotwire.codec.interface import Codec, Frame, Framer, Listening, NoiseReason
@@ -11,7 +12,6 @@ from cobotwire.diagnose.findings import Finding, Span
 from cobotwire.diagnose.recogniser import Recogniser
 from cobotwire.diagnose.residue import Residue, Verdict, Wait
 from cobotwire.protocol.frame_index import FrameIndex
-from cobotwire.protocol.records import record
 from cobotwire.protocol.table import Direction
 
 DIRECTIONS: tuple[Direction, ...] = ("request", "reply")
@@ -20,7 +20,7 @@ REMEMBERED = 8
 _OTHER: dict[Listening, Direction] = {"request": "reply", "reply": "request"}
 
 
-@record(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True, kw_only=True)
 class OppositeFrame(Finding):
     """A frame that is legal in the direction that the framer does not listen to.
 
@@ -46,7 +46,7 @@ class OppositeFrame(Finding):
         return f"a reply, {self.command}"
 
 
-@record(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True, kw_only=True)
 class UnlistedFrame(Finding):
     """A complete frame with an id that the edition lacks in that direction.
 

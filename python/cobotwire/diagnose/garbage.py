@@ -9,13 +9,13 @@ the slower one, garbage looks like data. Hence the finding is a guess.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from math import comb
 from typing import ClassVar
 
 from cobotwire.codec.interface import NoiseReason
 from cobotwire.diagnose.findings import SHOWN, Finding, Span
 from cobotwire.diagnose.nuls import nuls
-from cobotwire.protocol.records import record
 
 # Unrecognised bytes are reported in pieces of this size.
 PIECE_LIMIT = 256
@@ -34,7 +34,7 @@ _FITTING = frozenset(
 )
 
 
-@record(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Garbage(Finding):
     """Bytes that may have been sent at a lower baud rate; this is a guess.
 
@@ -63,7 +63,7 @@ class Garbage(Finding):
         return self.data[: SHOWN // 4].hex(" ")
 
 
-@record(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Unrecognised(Finding):
     """Bytes in which no recogniser found anything, and that do not look stretched."""
 

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import ClassVar
 
 from cobotwire.codec.interface import NoiseReason
 from cobotwire.diagnose.findings import CHECK_CONTROLLER, Finding, Span
 from cobotwire.diagnose.recogniser import Recogniser
 from cobotwire.diagnose.residue import Residue, Verdict, Wait
-from cobotwire.protocol.records import record
 
 # This many NULs in a row are a finding, also inside other noise.
 NUL_MINIMUM = 4
@@ -18,7 +18,7 @@ NUL_LIMIT = 4096
 REBOOT_NULS = 64
 
 
-@record(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Nuls(Finding):
     """NUL bytes in a row; from ``REBOOT_NULS`` on they mean that the controller restarts."""
 

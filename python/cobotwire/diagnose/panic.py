@@ -8,12 +8,12 @@ address, ``Rebooting...``. Older versions print ``of type LoadProhibited occurre
 from __future__ import annotations
 
 import re
+from dataclasses import dataclass
 from typing import ClassVar
 
 from cobotwire.diagnose.findings import CHECK_CONTROLLER, Finding
 from cobotwire.diagnose.residue import Residue, Verdict, Wait
 from cobotwire.protocol.printable import printable
-from cobotwire.protocol.records import record
 
 # Bytes of text; ESC starts a colour of ESP-IDF's log.
 READABLE = rb"\t\n\r\x1b -~"
@@ -35,7 +35,7 @@ _ADDRESS = re.compile(r"\bEXCVADDR\s*:\s*0x([0-9a-fA-F]{8})")
 _BACKTRACE = re.compile(r"Backtrace:((?:\s*0x[0-9a-fA-F]{8}:0x[0-9a-fA-F]{8})*)")
 
 
-@record(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Panic(Finding):
     """An ESP32 panic dump; what it does not contain is None."""
 

@@ -7,13 +7,13 @@ the byte after LEN, and the error bits of a status packet may have the value of 
 from __future__ import annotations
 
 import re
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar, Literal
 
 from cobotwire.codec.interface import Codec, Listening
 from cobotwire.diagnose.findings import Finding
 from cobotwire.diagnose.recogniser import Recogniser
 from cobotwire.diagnose.residue import Residue, Verdict, Wait
-from cobotwire.protocol.records import record
 
 if TYPE_CHECKING:
     from cobotwire.diagnose.servo_bus import ServoBusReader
@@ -27,7 +27,7 @@ STARTS = rb"\xff(?:\xff(?:[^\xff]|\Z)|\Z)"
 _START = re.compile(STARTS, re.DOTALL)
 
 
-@record(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True, kw_only=True)
 class ServoPacket(Finding):
     """A packet of the servo bus with a right checksum.
 

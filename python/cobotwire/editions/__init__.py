@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
-from cobotwire.protocol.light import TYPE_CHECKING
+import os
+import sys
+from importlib import import_module
+from importlib.util import find_spec
+from pkgutil import iter_modules
+from typing import TYPE_CHECKING, Any, Protocol
+
+from cobotwire.protocol.errors import UsageError, did_you_mean
 
 if TYPE_CHECKING:
-    from typing import Any, Protocol
-
     from cobotwire.client import Client
     from cobotwire.client.aio import AsyncClient
     from cobotwire.protocol.table import Table
-else:
-    # Only type checkers compare packages with it.
-    Protocol = object
 
 DEFAULT = "mycobot280"
 
@@ -27,8 +29,6 @@ class Edition(Protocol):
 
 def names() -> list[str]:
     """Return the names of the editions that come with cobotwire."""
-    from pkgutil import iter_modules
-
     return sorted(module.name for module in iter_modules(__path__) if module.ispkg)
 
 
@@ -40,24 +40,14 @@ def load(name: str = DEFAULT) -> Edition:
     Raises:
         UsageError: there is no edition of that name, or the package is not an edition.
     """
-    # Imported here, because importing an edition directly runs this module but not this search.
-    from importlib import import_module
-    from importlib.util import find_spec
-
     # Looking for one package takes a tenth of the time that listing all of them takes.
     found = find_spec(f"{__name__}.{name}") if name.isidentifier() else None
     if found is not None and found.submodule_search_locations:
         edition: Any = import_module(found.name)
         return edition  # type: ignore[no-any-return]
-    import sys
-    from pathlib import Path
-
-    from cobotwire.protocol.errors import UsageError, did_you_mean
-
-    folder = Path(name)
-    if (folder / "__init__.py").is_file():
-        sys.path.insert(0, str(folder.resolve().parent))
-        name = folder.resolve().name
+    if os.path.isfile(os.path.join(name, "__init__.py")):
+        folder, name = os.path.split(os.path.realpath(name))
+        sys.path.insert(0, folder)
     package: Any
     try:
         package = import_module(name)

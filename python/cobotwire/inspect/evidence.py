@@ -211,7 +211,7 @@ def _ranges(table: Table) -> list[tuple[float, float]]:
         return []
     variant = command.request[0]
     numbers = variant.fields[row_index(variant)].cases[0].numbers
-    return [(float(n.exact(n.minimum)), float(n.exact(n.maximum))) for n in numbers]
+    return [(n.physical(n.minimum), n.physical(n.maximum)) for n in numbers]
 
 
 def _command(table: Table, name: str) -> Command | None:

@@ -8,8 +8,6 @@ LEN). A test feeds all probes to the parser of every edition: it finds queries o
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 from cobotwire import editions
 from cobotwire.protocol.frame_format import FrameFormat
 from cobotwire.protocol.table import Table
@@ -34,7 +32,7 @@ def with_same_frames(names: list[str], table: Table) -> list[str]:
 
 def _same_frames(one: Table, other: Table) -> bool:
     first, second = one.frame, other.frame
-    return replace(first, maximum_length=second.maximum_length) == second
+    return first._replace(maximum_length=second.maximum_length) == second
 
 
 class Probes:

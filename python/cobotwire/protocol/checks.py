@@ -5,8 +5,6 @@ from __future__ import annotations
 from functools import cache
 from typing import Literal, NamedTuple
 
-from cobotwire.protocol.records import record
-
 ByteOrder = Literal["big", "little"]
 Algorithm = Literal["sum", "inverted-sum", "negated-sum", "xor", "fletcher", "fletcher-16", "crc"]
 CoveredFrom = Literal["header", "address", "length", "command", "data"]
@@ -65,8 +63,7 @@ def _reversed(value: int, width: int) -> int:
     return int(f"{value:0{width}b}"[::-1], 2)
 
 
-@record(frozen=True, slots=True)
-class Check:
+class Check(NamedTuple):
     """A number of ``width`` bytes that is computed from the frame.
 
     It covers all bytes from the part ``covers_from`` to the end of the data. A Fletcher checksum is

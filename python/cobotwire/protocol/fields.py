@@ -7,28 +7,26 @@ number in units.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any, Literal
+from functools import cached_property
+from typing import Any, Literal, NamedTuple
 
 from cobotwire.protocol.arguments import Row
 from cobotwire.protocol.errors import UsageError
 from cobotwire.protocol.numbers import Number
-from cobotwire.protocol.records import record
 
 FieldKind = Literal["number", "flag", "enum", "bytes", "text"]
 # The raw values of a message, by field and element.
 RawRows = Sequence[Sequence[int]]
 
 
-@record(frozen=True, slots=True)
-class Case:
+class Case(NamedTuple):
     """The numbers of a field if its selector is one of ``when``; ``()`` if it has no selector."""
 
     when: tuple[int, ...]
     numbers: tuple[Number, ...]
 
 
-@record(frozen=True, slots=True)
-class Field:
+class Field(NamedTuple):
     """One argument of a request or one part of a reply.
 
     ``many`` fields are tuples with one element for each number. ``choices`` lists all legal raw
@@ -176,23 +174,17 @@ class Field:
         return lowest <= min(number.maximum, other_number.maximum)
 
 
-class _Named:
-    """Has a place for the names of a variant's fields, which are no part of the record."""
-
-    __slots__ = ("names",)
-
-    names: tuple[str, ...]
-
-
-@record(frozen=True, slots=True)
-class Variant(_Named):
-    """The data bytes of one variant of a message; ``names`` are those of its fields."""
-
+class _VariantFields(NamedTuple):
     fields: tuple[Field, ...]
 
-    def __post_init__(self) -> None:
-        # Every decoded message needs them.
-        object.__setattr__(self, "names", tuple([field.name for field in self.fields]))
+
+class Variant(_VariantFields):
+    """The data bytes of one variant of a message: its ``fields``."""
+
+    @cached_property
+    def names(self) -> tuple[str, ...]:
+        """The names of the fields; every decoded message needs them."""
+        return tuple([field.name for field in self.fields])
 
     @property
     def size(self) -> int:

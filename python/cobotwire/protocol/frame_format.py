@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
+from functools import cached_property
 from typing import Literal, NamedTuple
 
 from cobotwire.protocol.checks import ByteOrder, Check
-from cobotwire.protocol.records import field, record
 
 FixedPart = Literal["address", "length", "command"]
 CountedPart = Literal["header", "address", "length", "command", "data", "check", "footer"]
@@ -25,29 +25,7 @@ class Unsigned(NamedTuple):
 _BYTE = Unsigned()
 
 
-@record(frozen=True, slots=True)
-class FrameFormat:
-    """``header``, the fixed parts in the order of ``layout``, data, ``check``, ``footer``.
-
-    The fixed parts are the address byte, LEN and the command id. If ``addresses`` is empty, frames
-    have no address byte; otherwise it is one of them, and the first one is sent unless the caller
-    chooses another. LEN is the size of the parts in ``counted``. ``check`` is None if only the
-    footer detects damage.
-
-    Without ``reply_has_id`` a reply carries no command id: its data take the id's place, so ``id``
-    is the number there. The id then is the last fixed part, and a reply has at least its size.
-
-    Attributes:
-        length_at: the offset of LEN.
-        id_at: the offset of the command id.
-        address_at: the offset of the address byte; None if there is none.
-        data_at: the offset of the data after a command id.
-        head_size: the number of bytes up to LEN and id, whichever is later.
-        overhead: the number of bytes that LEN does not count.
-        check_size: the number of bytes of check and footer.
-        check_from: the offset of the first byte that the check covers.
-    """
-
+class _FrameFields(NamedTuple):
     header: bytes
     footer: bytes
     maximum_length: int
@@ -58,17 +36,23 @@ class FrameFormat:
     length_number: Unsigned = _BYTE
     id_number: Unsigned = _BYTE
     reply_has_id: bool = True
-    length_at: int = field(init=False, repr=False, compare=False)
-    id_at: int = field(init=False, repr=False, compare=False)
-    address_at: int | None = field(init=False, repr=False, compare=False)
-    data_at: int = field(init=False, repr=False, compare=False)
-    head_size: int = field(init=False, repr=False, compare=False)
-    overhead: int = field(init=False, repr=False, compare=False)
-    check_size: int = field(init=False, repr=False, compare=False)
-    check_from: int = field(init=False, repr=False, compare=False)
 
-    def __post_init__(self) -> None:
-        sizes = {
+
+class FrameFormat(_FrameFields):
+    """``header``, the fixed parts in the order of ``layout``, data, ``check``, ``footer``.
+
+    The fixed parts are the address byte, LEN and the command id. If ``addresses`` is empty, frames
+    have no address byte; otherwise it is one of them, and the first one is sent unless the caller
+    chooses another. LEN is the size of the parts in ``counted``. ``check`` is None if only the
+    footer detects damage.
+
+    Without ``reply_has_id`` a reply carries no command id: its data take the id's place, so ``id``
+    is the number there. The id then is the last fixed part, and a reply has at least its size.
+    """
+
+    @cached_property
+    def _sizes(self) -> dict[CountedPart, int]:
+        return {
             "header": len(self.header),
             "address": 1 if self.addresses else 0,
             "length": self.length_number.width,
@@ -77,25 +61,51 @@ class FrameFormat:
             "check": self.check.width if self.check else 0,
             "footer": len(self.footer),
         }
-        offsets, at = {"header": 0}, sizes["header"]
-        for part in self.layout:
-            offsets[part] = at
-            at += sizes[part]
-        offsets["data"] = at
-        derived = {
-            "length_at": offsets["length"],
-            "id_at": offsets["command"],
-            "address_at": offsets["address"] if self.addresses else None,
-            "data_at": at,
-            "head_size": max(
-                offsets["length"] + sizes["length"], offsets["command"] + sizes["command"]
-            ),
-            "overhead": sum(sizes.values()) - sum(sizes[part] for part in set(self.counted)),
-            "check_size": sizes["check"] + sizes["footer"],
-            "check_from": offsets[self.check.covers_from] if self.check else 0,
-        }
-        for name, value in derived.items():
-            object.__setattr__(self, name, value)
+
+    def _offset(self, part: CountedPart) -> int:
+        """Return the offset of the header, of a fixed part, or of the data after them."""
+        order: tuple[CountedPart, ...] = ("header", *self.layout, "data")
+        return sum([self._sizes[each] for each in order[: order.index(part)]])
+
+    @cached_property
+    def length_at(self) -> int:
+        """The offset of LEN."""
+        return self._offset("length")
+
+    @cached_property
+    def id_at(self) -> int:
+        """The offset of the command id."""
+        return self._offset("command")
+
+    @cached_property
+    def address_at(self) -> int | None:
+        """The offset of the address byte; None if there is none."""
+        return self._offset("address") if self.addresses else None
+
+    @cached_property
+    def data_at(self) -> int:
+        """The offset of the data after a command id."""
+        return self._offset("data")
+
+    @cached_property
+    def head_size(self) -> int:
+        """The number of bytes up to LEN and id, whichever is later."""
+        return max(self.length_at + self.length_number.width, self.id_at + self.id_number.width)
+
+    @cached_property
+    def overhead(self) -> int:
+        """The number of bytes that LEN does not count."""
+        return sum([size for part, size in self._sizes.items() if part not in self.counted])
+
+    @cached_property
+    def check_size(self) -> int:
+        """The number of bytes of check and footer."""
+        return self._sizes["check"] + self._sizes["footer"]
+
+    @cached_property
+    def check_from(self) -> int:
+        """The offset of the first byte that the check covers."""
+        return self._offset(self.check.covers_from) if self.check else 0
 
     def length(self, data_size: int, direction: Direction = "request") -> int:
         """Return LEN of a frame with ``data_size`` data bytes."""

@@ -9,7 +9,8 @@ from typing import Any
 def as_json_value(value: Any) -> Any:
     """Return a result as JSON values.
 
-    Named tuples become objects, enum members their names, and bytes pairs of hex digits.
+    Named tuples become objects, also inside of others, enum members their names, and bytes pairs
+    of hex digits.
     """
     if hasattr(value, "_asdict"):
         return {name: as_json_value(part) for name, part in value._asdict().items()}
@@ -17,4 +18,4 @@ def as_json_value(value: Any) -> Any:
         return value.name
     if isinstance(value, bytes):
         return value.hex(" ").upper()
-    return list(value) if isinstance(value, tuple) else value
+    return [as_json_value(part) for part in value] if isinstance(value, tuple) else value

@@ -7,20 +7,20 @@ is sent. With other limits the codec checks other ranges, so no other code has t
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
-from fractions import Fraction
-from math import ceil, floor, isfinite
+from math import isfinite
+from typing import NamedTuple
 
 from cobotwire.protocol.errors import UsageError
 from cobotwire.protocol.roles import picked, row_index
 from cobotwire.protocol.table import Case, Command, Field, Number, Role, Table, Variant
 
+# No number on the wire is that large, and scaling it does not overflow.
+BEYOND = 1e100
 Range = tuple[float, float]
 Ranges = Sequence[Range | None]
 
 
-@dataclass(frozen=True, slots=True)
-class Limits:
+class Limits(NamedTuple):
     """The lowest and the highest target of each joint and coordinate.
 
     None keeps the edition's limit of one part, or of all parts. Only targets are limited. Commands
@@ -55,7 +55,7 @@ def limited(table: Table, limits: Limits) -> Table:
         _command(command, rules[command.role]) if command.role in rules else command
         for command in table.commands
     )
-    return replace(table, commands=tuple(commands))
+    return table._replace(commands=tuple(commands))
 
 
 class _Rule:
@@ -81,13 +81,13 @@ class _Rule:
         lowest, highest = _raw_range(number, given)
         inside = number.raw_range if self._wider else (number.minimum, number.maximum)
         if lowest < inside[0] or highest > inside[1] or lowest > highest:
-            low, high = (float(number.exact(bound)) for bound in inside)
+            low, high = map(number.physical, inside)
             why = (
                 "what the wire carries" if self._wider else "the edition's; wider=True allows more"
             )
             allowed = f"a range inside {low:g}..{high:g} {number.units}, {why}"
             raise UsageError(f"limits.{self._what}[{part}]", given, allowed)
-        return replace(number, minimum=lowest, maximum=highest)
+        return number._replace(minimum=lowest, maximum=highest)
 
     def _checked(self, part: int, given: object) -> Range | None:
         if given is None:
@@ -100,7 +100,7 @@ class _Rule:
 
 def _command(command: Command, rule: _Rule) -> Command:
     narrow = _row if command.role in _ROWS else _single
-    return replace(command, request=tuple(narrow(variant, rule) for variant in command.request))
+    return command._replace(request=tuple(narrow(variant, rule) for variant in command.request))
 
 
 _ROWS: tuple[Role, ...] = ("joint targets", "coordinate targets")
@@ -111,7 +111,7 @@ def _row(variant: Variant, rule: _Rule) -> Variant:
     at = row_index(variant)
     row = variant.fields[at]
     numbers = (rule.number(part, number) for part, number in enumerate(row.cases[0].numbers))
-    return _with(variant, at, replace(row, cases=(Case((), tuple(numbers)),)))
+    return _with(variant, at, row._replace(cases=(Case((), tuple(numbers)),)))
 
 
 def _single(variant: Variant, rule: _Rule) -> Variant:
@@ -124,12 +124,12 @@ def _single(variant: Variant, rule: _Rule) -> Variant:
         case = target.case(value)
         assert case is not None, f"{name} has a case"
         cases.append(Case((value,), (rule.number(part, case.numbers[0]),)))
-    return _with(variant, at, replace(target, cases=tuple(cases), selector=picker_at))
+    return _with(variant, at, target._replace(cases=tuple(cases), selector=picker_at))
 
 
 def _with(variant: Variant, at: int, field: Field) -> Variant:
     fields = variant.fields
-    return replace(variant, fields=(*fields[:at], field, *fields[at + 1 :]))
+    return variant._replace(fields=(*fields[:at], field, *fields[at + 1 :]))
 
 
 def _value_of(picker: Field, name: str, part: int) -> int:
@@ -139,13 +139,14 @@ def _value_of(picker: Field, name: str, part: int) -> int:
 
 
 def _raw_range(number: Number, given: Range) -> tuple[int, int]:
-    """Return a range as raw values, rounded inwards; a decimal text is exact: 0.1 is one tenth."""
+    """Return a range as raw values, rounded inwards; 0.1 is one tenth, not the float next to it."""
     low, high = given
     if number.encoding == "float":
         # A lower limit of zero includes -0.0.
         return number.raw(low or -0.0), number.raw(high or 0.0)
-    step = number.exact(1)
-    return ceil(Fraction(str(low)) / step), floor(Fraction(str(high)) / step)
+    low, high = (min(max(end, -BEYOND), BEYOND) for end in given)
+    lowest, highest = number.raw(low), number.raw(high)
+    return lowest + (number.physical(lowest) < low), highest - (number.physical(highest) > high)
 
 
 def _is_number(value: object) -> bool:

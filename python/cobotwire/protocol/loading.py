@@ -229,9 +229,7 @@ class _Reader:
             if counted:
                 field = self._field({**record, "const": counts[counted]}, names)
                 sizes = self._sizes(by_name[counted])
-                from dataclasses import replace
-
-                field = replace(field, sizes=sizes, counts=counted)
+                field = field._replace(sizes=sizes, counts=counted)
             elif "type" in record and self._types.record(record["type"])["kind"] in SHAPED:
                 field = self._shaped(record, counts.get(record["name"]))
             else:

@@ -4,21 +4,16 @@ from __future__ import annotations
 
 import struct
 from math import inf
-from typing import TYPE_CHECKING, Literal
+from typing import Literal, NamedTuple
 
-from cobotwire.protocol.records import record
 from cobotwire.protocol.units import PLURALS
-
-if TYPE_CHECKING:
-    from fractions import Fraction
 
 Encoding = Literal["integer", "float"]
 # The formats of ``struct``: the float, and the signed integer of its bits.
 _FORMATS = {4: ("f", "i"), 8: ("d", "q")}
 
 
-@record(frozen=True, slots=True)
-class Number:
+class Number(NamedTuple):
     """One number on the wire: ``width`` bytes, a sign rule, and a scale as an exact rational.
 
     The bytes are an unsigned integer ``u``. The raw value is ``u - 256**width`` if
@@ -122,15 +117,6 @@ class Number:
         if self.encoding == "float":
             return float_of_raw(raw, self.width)
         return raw * self.multiply / self.divide if self.scaled else raw
-
-    def exact(self, raw: int) -> Fraction:
-        """Return the physical value of a raw value without rounding; floats: of a finite one."""
-        # Imported here, because only checks and other encoders need exact values.
-        from fractions import Fraction
-
-        if self.encoding == "float":
-            return Fraction(float_of_raw(raw, self.width))
-        return Fraction(raw * self.multiply, self.divide)
 
     def steps(self, physical: float) -> float:
         """Return the raw value of a physical value, not yet rounded to an integer.

@@ -120,7 +120,7 @@ def reject_radians(error: UsageError, field: Field, given: Any) -> UsageError:
         whole = error.argument == field.name
         return UsageError(field.name, given, error.allowed) if whole else error
     number = field.cases[0].numbers[at]
-    bounds = number.exact(number.minimum), number.exact(number.maximum)
+    bounds = number.physical(number.minimum), number.physical(number.maximum)
     # Rounded inwards, so that the bounds themselves are allowed.
     low, high = (math.trunc(math.radians(bound) * 1e4) / 1e4 for bound in bounds)
     value = list(given)[at] if field.many else given

@@ -9,6 +9,7 @@ a message and the rules for reading them.
 from __future__ import annotations
 
 from collections.abc import Mapping
+from functools import cached_property
 from typing import Any, Literal, NamedTuple
 
 from cobotwire.protocol.checks import Check, Crc
@@ -24,7 +25,6 @@ from cobotwire.protocol.made_messages import (
 )
 from cobotwire.protocol.messages import Reply, Request
 from cobotwire.protocol.numbers import Number
-from cobotwire.protocol.records import field, record
 from cobotwire.protocol.robot import UNSTATED, Robot
 
 __all__ = [
@@ -72,8 +72,7 @@ Role = Literal[
 ]
 
 
-@record(frozen=True, slots=True)
-class TextReply:
+class TextReply(NamedTuple):
     """A reply that is text outside any frame: ``prefixes[i]`` comes before ``fields[i]``.
 
     It ends when no byte has come for ``silence_ms``.
@@ -85,8 +84,7 @@ class TextReply:
     suffix: str = ""
 
 
-@record(frozen=True, slots=True)
-class TextRequest:
+class TextRequest(NamedTuple):
     """Text after the frame of a request, built as in ``TextReply``; it ends with ``suffix``."""
 
     prefixes: tuple[str, ...]
@@ -94,8 +92,7 @@ class TextRequest:
     suffix: str
 
 
-@record(frozen=True, slots=True)
-class ReadBack:
+class ReadBack(NamedTuple):
     """The query that reads back what a command has set.
 
     ``fields`` pairs each field of the query's reply with the argument of the command that it
@@ -108,20 +105,7 @@ class ReadBack:
     fields: tuple[tuple[str, str | int], ...]
 
 
-@record(frozen=True, slots=True)
-class Command:
-    """One command: its id, its request and its reply.
-
-    ``request`` and ``reply`` hold the variants of the message, the full one first. Without
-    ``reply`` and ``text`` the request is one-way. With ``ack`` the reply is an acknowledgement: it
-    may come late or never, and by default no call waits for it. Hand-written code finds the command
-    by its ``role``. ``read_by`` names the query that reads back what the command has set.
-    ``samples`` lists, by argument, the raw values that a conformance run may send, for the first
-    variant with these arguments; if it is empty, the run may send all legal values. ``agrees_with``
-    names the queries that report the same quantity while the arm rests. ``arguments`` is the order
-    of the method's arguments; if it is empty, they have the order of the wire.
-    """
-
+class _CommandFields(NamedTuple):
     id: int
     name: str
     title: str
@@ -142,9 +126,22 @@ class Command:
     arguments: tuple[str, ...] = ()
     event: bool = False
     accepted: tuple[int, ...] = ()
-    package: str = field(default="", compare=False, repr=False)
-    """The generated package that holds the message types; empty if there is none."""
-    _types: list[MessageTypes] = field(default_factory=list, init=False, compare=False, repr=False)
+    package: str = ""
+
+
+class Command(_CommandFields):
+    """One command: its id, its request and its reply.
+
+    ``request`` and ``reply`` hold the variants of the message, the full one first. Without
+    ``reply`` and ``text`` the request is one-way. With ``ack`` the reply is an acknowledgement: it
+    may come late or never, and by default no call waits for it. Hand-written code finds the command
+    by its ``role``. ``read_by`` names the query that reads back what the command has set.
+    ``samples`` lists, by argument, the raw values that a conformance run may send, for the first
+    variant with these arguments; if it is empty, the run may send all legal values. ``agrees_with``
+    names the queries that report the same quantity while the arm rests. ``arguments`` is the order
+    of the method's arguments; if it is empty, they have the order of the wire.
+    ``package`` is the generated package that holds the message types; empty if there is none.
+    """
 
     @property
     def argument_names(self) -> tuple[str, ...]:
@@ -155,27 +152,24 @@ class Command:
     @property
     def request_type(self) -> type[Request[Any]]:
         """The class of the request."""
-        return self._message_types()[0]
+        return self._message_types[0]
 
     @property
     def reply_type(self) -> type[Reply[Any]] | None:
         """The class of the reply; None for a one-way request."""
-        return self._message_types()[1]
+        return self._message_types[1]
 
+    @cached_property
     def _message_types(self) -> MessageTypes:
-        if not self._types:
-            if self.package:
-                found = generated_types(self.package, self.name)
-            else:
-                texts = self.request_text.fields if self.request_text else ()
-                request = request_shape(self.request, texts, self.argument_names)
-                reply = None
-                if self.reply or self.text:
-                    texts = self.text.fields if self.text else ()
-                    reply = reply_shape(self.reply, texts, self.ack)
-                found = made_types(self.name, request, reply, self.event)
-            self._types.append(found)
-        return self._types[0]
+        if self.package:
+            return generated_types(self.package, self.name)
+        texts = self.request_text.fields if self.request_text else ()
+        request = request_shape(self.request, texts, self.argument_names)
+        reply = None
+        if self.reply or self.text:
+            texts = self.text.fields if self.text else ()
+            reply = reply_shape(self.reply, texts, self.ack)
+        return made_types(self.name, request, reply, self.event)
 
     @property
     def starts_motion(self) -> bool:
@@ -243,8 +237,7 @@ class Address(NamedTuple):
     joints: int = 0
 
 
-@record(frozen=True, slots=True)
-class Table:
+class Table(NamedTuple):
     """One edition of the protocol.
 
     ``robot`` is what the edition states apart from its messages. ``addresses`` describes the

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from cobotwire.protocol.light import TYPE_CHECKING
+from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from cobotwire.transport.serial.ports import Port

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from math import inf
-from typing import Any
+from typing import Any, NamedTuple, Self
 
 from cobotwire.codec.interface import Codec, DecodedMessage, Frame, Noise
 from cobotwire.protocol.errors import (
@@ -14,7 +14,6 @@ from cobotwire.protocol.errors import (
     UsageError,
     WaitedFor,
 )
-from cobotwire.protocol.records import record
 from cobotwire.protocol.table import Command
 from cobotwire.session.events import FrameEvent
 from cobotwire.session.received import ReceivedMeanwhile
@@ -30,8 +29,13 @@ def _is_number(value: object) -> bool:
     return isinstance(value, int | float) and not isinstance(value, bool)
 
 
-@record(frozen=True, slots=True)
-class RetryPolicy:
+class _RetryFields(NamedTuple):
+    attempts: int
+    shortest_attempt: float
+    grace: float
+
+
+class RetryPolicy(_RetryFields):
     """Splits the ``timeout`` of a query into attempts. Only queries are ever sent again.
 
     On real lines a reply comes within some 30 ms or never, so sending again beats waiting longer.
@@ -46,19 +50,20 @@ class RetryPolicy:
             has come: it may be a copy.
     """
 
-    attempts: int = 3
-    shortest_attempt: float = 0.1
-    grace: float = GRACE_SECONDS
+    __slots__ = ()
 
-    def __post_init__(self) -> None:
+    def __new__(
+        cls, attempts: int = 3, shortest_attempt: float = 0.1, grace: float = GRACE_SECONDS
+    ) -> Self:
         """Check the values."""
-        if not _is_number(self.attempts) or self.attempts not in range(1, MOST_ATTEMPTS + 1):
-            raise UsageError("retry.attempts", self.attempts, f"a whole number 1..{MOST_ATTEMPTS}")
-        if not _is_number(self.shortest_attempt) or not 0 < self.shortest_attempt < 3600:
+        if not _is_number(attempts) or attempts not in range(1, MOST_ATTEMPTS + 1):
+            raise UsageError("retry.attempts", attempts, f"a whole number 1..{MOST_ATTEMPTS}")
+        if not _is_number(shortest_attempt) or not 0 < shortest_attempt < 3600:
             allowed = "seconds above 0 and below 3600"
-            raise UsageError("retry.shortest_attempt", self.shortest_attempt, allowed)
-        if not _is_number(self.grace) or not 0 <= self.grace < 3600:
-            raise UsageError("retry.grace", self.grace, "seconds from 0 to below 3600")
+            raise UsageError("retry.shortest_attempt", shortest_attempt, allowed)
+        if not _is_number(grace) or not 0 <= grace < 3600:
+            raise UsageError("retry.grace", grace, "seconds from 0 to below 3600")
+        return super().__new__(cls, attempts, shortest_attempt, grace)
 
     def attempts_of(self, command: Command, wait: float) -> int:
         """Return into how many attempts the ``wait`` of a request is split.

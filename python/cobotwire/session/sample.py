@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import Any, Generic, NamedTuple, TypeVar
 
 from cobotwire.protocol.messages import Request
-from cobotwire.protocol.records import record
 
 Result = TypeVar("Result")
 
@@ -25,7 +24,6 @@ class Reading(NamedTuple, Generic[Result]):
     """When its reply was read."""
 
 
-@record(frozen=True, slots=True)
 class Sample:
     """The results of a stream's requests in one of its slots.
 
@@ -38,10 +36,22 @@ class Sample:
         readings: a reading for each request.
     """
 
-    number: int
-    slot: int
-    requests: tuple[Request[Any], ...]
-    readings: tuple[Reading[Any], ...]
+    __slots__ = ("number", "readings", "requests", "slot")
+
+    def __init__(
+        self,
+        number: int,
+        slot: int,
+        requests: tuple[Request[Any], ...],
+        readings: tuple[Reading[Any], ...],
+    ) -> None:
+        self.number = number
+        self.slot = slot
+        self.requests = requests
+        self.readings = readings
+
+    def __repr__(self) -> str:
+        return f"Sample(number={self.number}, slot={self.slot}, values={self.values})"
 
     @property
     def requested_at(self) -> float:

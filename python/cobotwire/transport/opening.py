@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from cobotwire.protocol.errors import UsageError
-from cobotwire.protocol.light import TYPE_CHECKING
 from cobotwire.transport.interface import OpenedTransport
 
 if TYPE_CHECKING:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 from cobotwire import editions
 from cobotwire.protocol.table import Case, Command, Table, Variant
 from conformance.device.testing import bad, prepared
@@ -15,10 +13,9 @@ def _ten_times_finer(command: Command, field: str) -> Command:
     def finer(variant: Variant) -> Variant:
         return Variant(
             tuple(
-                replace(
-                    f,
+                f._replace(
                     cases=tuple(
-                        Case(c.when, tuple(replace(n, divide=n.divide * 10) for n in c.numbers))
+                        Case(c.when, tuple(n._replace(divide=n.divide * 10) for n in c.numbers))
                         for c in f.cases
                     ),
                 )
@@ -28,12 +25,11 @@ def _ten_times_finer(command: Command, field: str) -> Command:
             )
         )
 
-    return replace(command, reply=tuple(map(finer, command.reply)))
+    return command._replace(reply=tuple(map(finer, command.reply)))
 
 
 def _wrong(name: str, field: str) -> Table:
-    return replace(
-        TABLE,
+    return TABLE._replace(
         commands=tuple(_ten_times_finer(c, field) if c.name == name else c for c in TABLE.commands),
     )
 

@@ -7,7 +7,6 @@ import os
 import signal
 import subprocess
 import time
-from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
 
@@ -51,7 +50,7 @@ def test_picture_states_joint_angles_and_flange_position(tmp_path: Path) -> None
 def test_pose_of_an_arm_with_unknown_geometry_is_rejected(tmp_path: Path) -> None:
     with pytest.raises(UsageError, match="edition mine: the geometry of this arm is not known"):
         draw_pose(
-            replace(TABLE, edition="mine", robot=Robot()), [0] * 6, str(tmp_path / "pose.png")
+            TABLE._replace(edition="mine", robot=Robot()), [0] * 6, str(tmp_path / "pose.png")
         )
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
 from typing import Any
 
 from cobotwire.codec.reference import ReferenceCodec
@@ -165,22 +164,22 @@ def _unbounded(table: Table, lists: bool) -> Table:
 
     def number(n: Number) -> Number:
         low, high = n.raw_range
-        return replace(n, minimum=low, maximum=high)
+        return n._replace(minimum=low, maximum=high)
 
     def field(f: Field) -> Field:
         if bool(f.choices) != lists:
             return f
         cases = tuple(Case(c.when, tuple(map(number, c.numbers))) for c in f.cases)
         kind = "number" if lists else f.kind
-        return replace(f, cases=cases, choices=(), labels=(), kind=kind)
+        return f._replace(cases=cases, choices=(), labels=(), kind=kind)
 
     def widened(variants: tuple[Variant, ...]) -> tuple[Variant, ...]:
         return tuple(Variant(tuple(map(field, variant.fields))) for variant in variants)
 
     commands = (
-        replace(c, request=widened(c.request), reply=widened(c.reply)) for c in table.commands
+        c._replace(request=widened(c.request), reply=widened(c.reply)) for c in table.commands
     )
-    return replace(table, commands=tuple(commands))
+    return table._replace(commands=tuple(commands))
 
 
 def _with_length(step: int) -> Callable[[Table, bytes], bytes]:

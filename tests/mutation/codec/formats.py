@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import replace
 
 from cobotwire.codec.reference import ReferenceCodec
 from cobotwire.conformance.codec.questions.our_codec import OurCodec
@@ -32,23 +31,23 @@ def _check_with(change: Callable[[Check], Check]) -> Make:
 
     def make(table: Table) -> OurCodec:
         assert table.frame.check is not None, "only formats with a check have this fault"
-        frame = replace(table.frame, check=change(table.frame.check))
-        return OurCodec(ReferenceCodec(replace(table, frame=frame)))
+        frame = table.frame._replace(check=change(table.frame.check))
+        return OurCodec(ReferenceCodec(table._replace(frame=frame)))
 
     return make
 
 
 def _other_start(check: Check) -> Check:
-    return replace(check, covers_from="data" if check.covers_from == "command" else "command")
+    return check._replace(covers_from="data" if check.covers_from == "command" else "command")
 
 
 def _other_order(check: Check) -> Check:
-    return replace(check, order="little" if check.order == "big" else "big")
+    return check._replace(order="little" if check.order == "big" else "big")
 
 
 def _other_init(check: Check) -> Check:
     assert check.crc is not None, "only a CRC begins with a value"
-    return replace(check, crc=check.crc._replace(init=check.crc.init ^ 1))
+    return check._replace(crc=check.crc._replace(init=check.crc.init ^ 1))
 
 
 def _right_address(table: Table, data: bytes) -> bytes:

@@ -137,13 +137,13 @@ ALTERATIONS = (
         "width",
         "in one byte each",
         lambda _, n: n.width > 1,
-        _written(lambda number: replace(number, width=1)),
+        _written(lambda number: number._replace(width=1)),
     ),
     Alteration(
         "width",
         "with a byte more each",
         lambda *_: True,
-        _written(lambda number: replace(number, width=number.width + 1)),
+        _written(lambda number: number._replace(width=number.width + 1)),
     ),
     Alteration(
         "order",
@@ -161,7 +161,7 @@ ALTERATIONS = (
         "endianness",
         "low byte first",
         lambda _, n: n.width > 1,
-        _written(lambda n: replace(n, order="little" if n.order == "big" else "big")),
+        _written(lambda n: n._replace(order="little" if n.order == "big" else "big")),
     ),
     Alteration(
         "range",

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import Any, NamedTuple
 
 from cobotwire import codec as codecs
@@ -47,9 +46,9 @@ KINDS = {
 _names = {kind.command for kind in KINDS.values()} - {"get_digital_input"}
 _known = [command for command in mycobot280.TABLE.commands if command.name in _names]
 # With its role, the exchange would know from the start when motions are acknowledged.
-_event = replace(pro400.TABLE.command("motion_ended"), role="")
+_event = pro400.TABLE.command("motion_ended")._replace(role="")
 _commands = (*_known, mycobot.TABLE.command("get_digital_input"), _event)
-CODEC = codecs.load(replace(mycobot280.TABLE, commands=_commands), "native")
+CODEC = codecs.load(mycobot280.TABLE._replace(commands=_commands), "native")
 _encode = RequestEncoder(CODEC).encode
 REQUESTS = {name: _encode(kind.command, kind.values) for name, kind in KINDS.items()}
 REPLIES = {

@@ -101,7 +101,7 @@ def _messages(jinja: Environment, common: dict[str, Any]) -> Files:
 def _client(jinja: Environment, common: dict[str, Any], way: Way) -> Files:
     """Return the client for one way of calling; the same templates generate every client."""
     sharing: Sharing = common["sharing"]
-    imports = ["from cobotwire.protocol.light import TYPE_CHECKING, later_table"]
+    imports = ["from cobotwire.protocol.table import Table"]
     if python_api.moves(sharing.edition):
         imports.append(f"from {way.moving_module} import {way.prefix}MovingClient")
     made: Files = {}
@@ -118,7 +118,8 @@ def _client(jinja: Environment, common: dict[str, Any], way: Way) -> Files:
     if made:
         index = jinja.get_template("python/commands/__init__.py.j2")
         made[PurePosixPath(f"{way.folder}/__init__.py")] = index.render(common, way=way)
-    lines = [*sorted(imports), *([""] if own else []), *sorted(own)]
+    own.append("from .table import TABLE")
+    lines = [*sorted(imports), "", *sorted(own)]
     client = jinja.get_template("python/client.py.j2").render(common, way=way, imports=lines)
     made[PurePosixPath("client.py" if way is BLOCKING else f"{way.folder}_client.py")] = client
     return made

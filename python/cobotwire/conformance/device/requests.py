@@ -172,8 +172,8 @@ def revealing(rows: Sequence[Sequence[Pair]], present: Sequence[Sequence[Any]]) 
 
 def _revealing(pair: Pair, sample: int, place: int, keep: float | None) -> Any:
     step = max(map(_step, pair))
-    low = max(number.exact(number.minimum) for number in pair)
-    high = min(number.exact(number.maximum) for number in pair)
+    low = max(_exact(number, number.minimum) for number in pair)
+    high = min(_exact(number, number.maximum) for number in pair)
     if keep is not None and low < 0 < high and sample == BEYOND:
         return _value(pair[0], step if keep < 0 else -step)
     if keep is not None and low < 0 < high:
@@ -192,8 +192,15 @@ def _revealing(pair: Pair, sample: int, place: int, keep: float | None) -> Any:
 def _step(number: Number) -> Fraction:
     """Return the distance between two samples: a raw step, or a part of the range of a float."""
     if number.encoding == "float":
-        return (number.exact(number.maximum) - number.exact(number.minimum)) / 1024
-    return number.exact(1)
+        return (_exact(number, number.maximum) - _exact(number, number.minimum)) / 1024
+    return _exact(number, 1)
+
+
+def _exact(number: Number, raw: int) -> Fraction:
+    """Return the physical value of a raw value without rounding; floats: of a finite one."""
+    if number.encoding == "float":
+        return Fraction(number.physical(raw))
+    return Fraction(raw * number.multiply, number.divide)
 
 
 def _value(number: Number, value: Fraction) -> Any:

@@ -3,13 +3,15 @@
 
 from __future__ import annotations
 
+from typing import ClassVar
+
 from cobotwire.client.aio_moving import AsyncMovingClient
 from cobotwire.editions.mycobot280.aio.frames import AsyncFramesCommands
 from cobotwire.editions.mycobot280.aio.io import AsyncIoCommands
 from cobotwire.editions.mycobot280.aio.kinematics import AsyncKinematicsCommands
 from cobotwire.editions.mycobot280.aio.network import AsyncNetworkCommands
 from cobotwire.editions.mycobot280.aio.system import AsyncSystemCommands
-from cobotwire.protocol.light import TYPE_CHECKING, later_table
+from cobotwire.protocol.table import Table
 
 from .aio.accessories import AsyncAccessoriesCommands
 from .aio.coords import AsyncCoordsCommands
@@ -18,11 +20,7 @@ from .aio.jog import AsyncJogCommands
 from .aio.motion import AsyncMotionCommands
 from .aio.power import AsyncPowerCommands
 from .aio.servo import AsyncServoCommands
-
-if TYPE_CHECKING:
-    from typing import ClassVar
-
-    from cobotwire.protocol.table import Table
+from .table import TABLE
 
 
 class AsyncMechArm270(
@@ -55,7 +53,7 @@ class AsyncMechArm270(
     waits for the acknowledgement and raises ReplyTimeout if none comes in that time.
     """
 
-    table: ClassVar[Table] = later_table(__package__)
+    table: ClassVar[Table] = TABLE
 
 
 ASYNC_CLIENT = AsyncMechArm270

@@ -3,13 +3,15 @@
 
 from __future__ import annotations
 
+from typing import ClassVar
+
 from cobotwire.client.moving import MovingClient
 from cobotwire.editions.mycobot280.commands.frames import FramesCommands
 from cobotwire.editions.mycobot280.commands.io import IoCommands
 from cobotwire.editions.mycobot280.commands.kinematics import KinematicsCommands
 from cobotwire.editions.mycobot280.commands.network import NetworkCommands
 from cobotwire.editions.mycobot280.commands.system import SystemCommands
-from cobotwire.protocol.light import TYPE_CHECKING, later_table
+from cobotwire.protocol.table import Table
 
 from .commands.accessories import AccessoriesCommands
 from .commands.coords import CoordsCommands
@@ -18,11 +20,7 @@ from .commands.jog import JogCommands
 from .commands.motion import MotionCommands
 from .commands.power import PowerCommands
 from .commands.servo import ServoCommands
-
-if TYPE_CHECKING:
-    from typing import ClassVar
-
-    from cobotwire.protocol.table import Table
+from .table import TABLE
 
 
 class MechArm270(
@@ -55,7 +53,7 @@ class MechArm270(
     waits for the acknowledgement and raises ReplyTimeout if none comes in that time.
     """
 
-    table: ClassVar[Table] = later_table(__package__)
+    table: ClassVar[Table] = TABLE
 
 
 CLIENT = MechArm270

@@ -3,13 +3,15 @@
 
 from __future__ import annotations
 
+from typing import ClassVar
+
 from cobotwire.client.aio_moving import AsyncMovingClient
 from cobotwire.editions.mercury_a1.aio.drag import AsyncDragCommands
 from cobotwire.editions.mercury_a1.aio.frames import AsyncFramesCommands
 from cobotwire.editions.mercury_a1.aio.io import AsyncIoCommands
 from cobotwire.editions.mercury_a1.aio.planning import AsyncPlanningCommands
 from cobotwire.editions.mercury_a1.aio.serial import AsyncSerialCommands
-from cobotwire.protocol.light import TYPE_CHECKING, later_table
+from cobotwire.protocol.table import Table
 
 from .aio.base import AsyncBaseCommands
 from .aio.body import AsyncBodyCommands
@@ -20,11 +22,7 @@ from .aio.motion import AsyncMotionCommands
 from .aio.power import AsyncPowerCommands
 from .aio.servo import AsyncServoCommands
 from .aio.system import AsyncSystemCommands
-
-if TYPE_CHECKING:
-    from typing import ClassVar
-
-    from cobotwire.protocol.table import Table
+from .table import TABLE
 
 
 class AsyncMercuryB1(
@@ -60,7 +58,7 @@ class AsyncMercuryB1(
     waits for the acknowledgement and raises ReplyTimeout if none comes in that time.
     """
 
-    table: ClassVar[Table] = later_table(__package__)
+    table: ClassVar[Table] = TABLE
 
 
 ASYNC_CLIENT = AsyncMercuryB1

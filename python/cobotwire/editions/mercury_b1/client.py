@@ -3,13 +3,15 @@
 
 from __future__ import annotations
 
+from typing import ClassVar
+
 from cobotwire.client.moving import MovingClient
 from cobotwire.editions.mercury_a1.commands.drag import DragCommands
 from cobotwire.editions.mercury_a1.commands.frames import FramesCommands
 from cobotwire.editions.mercury_a1.commands.io import IoCommands
 from cobotwire.editions.mercury_a1.commands.planning import PlanningCommands
 from cobotwire.editions.mercury_a1.commands.serial import SerialCommands
-from cobotwire.protocol.light import TYPE_CHECKING, later_table
+from cobotwire.protocol.table import Table
 
 from .commands.base import BaseCommands
 from .commands.body import BodyCommands
@@ -20,11 +22,7 @@ from .commands.motion import MotionCommands
 from .commands.power import PowerCommands
 from .commands.servo import ServoCommands
 from .commands.system import SystemCommands
-
-if TYPE_CHECKING:
-    from typing import ClassVar
-
-    from cobotwire.protocol.table import Table
+from .table import TABLE
 
 
 class MercuryB1(
@@ -60,7 +58,7 @@ class MercuryB1(
     waits for the acknowledgement and raises ReplyTimeout if none comes in that time.
     """
 
-    table: ClassVar[Table] = later_table(__package__)
+    table: ClassVar[Table] = TABLE
 
 
 CLIENT = MercuryB1

@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+from typing import ClassVar
+
 from cobotwire.client.aio_moving import AsyncMovingClient
 from cobotwire.editions.mercury_a1.aio.drag import AsyncDragCommands
 from cobotwire.editions.mercury_a1.aio.frames import AsyncFramesCommands
@@ -18,12 +20,9 @@ from cobotwire.editions.mercury_b1.aio.motion import AsyncMotionCommands
 from cobotwire.editions.mercury_b1.aio.power import AsyncPowerCommands
 from cobotwire.editions.mercury_b1.aio.servo import AsyncServoCommands
 from cobotwire.editions.mercury_b1.aio.system import AsyncSystemCommands
-from cobotwire.protocol.light import TYPE_CHECKING, later_table
+from cobotwire.protocol.table import Table
 
-if TYPE_CHECKING:
-    from typing import ClassVar
-
-    from cobotwire.protocol.table import Table
+from .table import TABLE
 
 
 class AsyncMercuryX1(
@@ -59,7 +58,7 @@ class AsyncMercuryX1(
     waits for the acknowledgement and raises ReplyTimeout if none comes in that time.
     """
 
-    table: ClassVar[Table] = later_table(__package__)
+    table: ClassVar[Table] = TABLE
 
 
 ASYNC_CLIENT = AsyncMercuryX1

@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+from typing import ClassVar
+
 from cobotwire.client.moving import MovingClient
 from cobotwire.editions.mercury_a1.commands.drag import DragCommands
 from cobotwire.editions.mercury_a1.commands.frames import FramesCommands
@@ -18,12 +20,9 @@ from cobotwire.editions.mercury_b1.commands.motion import MotionCommands
 from cobotwire.editions.mercury_b1.commands.power import PowerCommands
 from cobotwire.editions.mercury_b1.commands.servo import ServoCommands
 from cobotwire.editions.mercury_b1.commands.system import SystemCommands
-from cobotwire.protocol.light import TYPE_CHECKING, later_table
+from cobotwire.protocol.table import Table
 
-if TYPE_CHECKING:
-    from typing import ClassVar
-
-    from cobotwire.protocol.table import Table
+from .table import TABLE
 
 
 class MercuryX1(
@@ -59,7 +58,7 @@ class MercuryX1(
     waits for the acknowledgement and raises ReplyTimeout if none comes in that time.
     """
 
-    table: ClassVar[Table] = later_table(__package__)
+    table: ClassVar[Table] = TABLE
 
 
 CLIENT = MercuryX1

@@ -3,7 +3,9 @@
 
 from __future__ import annotations
 
-from cobotwire.protocol.light import TYPE_CHECKING, later_table
+from typing import ClassVar
+
+from cobotwire.protocol.table import Table
 
 from .aio.io import AsyncIoCommands
 from .aio.motion import AsyncMotionCommands
@@ -11,11 +13,7 @@ from .aio.parameters import AsyncParametersCommands
 from .aio.power import AsyncPowerCommands
 from .aio.servo import AsyncServoCommands
 from .aio.system import AsyncSystemCommands
-
-if TYPE_CHECKING:
-    from typing import ClassVar
-
-    from cobotwire.protocol.table import Table
+from .table import TABLE
 
 
 class AsyncMyArmC650(
@@ -41,7 +39,7 @@ class AsyncMyArmC650(
     waits for the acknowledgement and raises ReplyTimeout if none comes in that time.
     """
 
-    table: ClassVar[Table] = later_table(__package__)
+    table: ClassVar[Table] = TABLE
 
 
 ASYNC_CLIENT = AsyncMyArmC650

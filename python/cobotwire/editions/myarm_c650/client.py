@@ -3,7 +3,9 @@
 
 from __future__ import annotations
 
-from cobotwire.protocol.light import TYPE_CHECKING, later_table
+from typing import ClassVar
+
+from cobotwire.protocol.table import Table
 
 from .commands.io import IoCommands
 from .commands.motion import MotionCommands
@@ -11,11 +13,7 @@ from .commands.parameters import ParametersCommands
 from .commands.power import PowerCommands
 from .commands.servo import ServoCommands
 from .commands.system import SystemCommands
-
-if TYPE_CHECKING:
-    from typing import ClassVar
-
-    from cobotwire.protocol.table import Table
+from .table import TABLE
 
 
 class MyArmC650(
@@ -41,7 +39,7 @@ class MyArmC650(
     waits for the acknowledgement and raises ReplyTimeout if none comes in that time.
     """
 
-    table: ClassVar[Table] = later_table(__package__)
+    table: ClassVar[Table] = TABLE
 
 
 CLIENT = MyArmC650

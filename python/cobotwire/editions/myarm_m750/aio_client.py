@@ -3,20 +3,18 @@
 
 from __future__ import annotations
 
+from typing import ClassVar
+
 from cobotwire.client.aio_moving import AsyncMovingClient
 from cobotwire.editions.myarm_c650.aio.parameters import AsyncParametersCommands
-from cobotwire.protocol.light import TYPE_CHECKING, later_table
+from cobotwire.protocol.table import Table
 
 from .aio.io import AsyncIoCommands
 from .aio.motion import AsyncMotionCommands
 from .aio.power import AsyncPowerCommands
 from .aio.servo import AsyncServoCommands
 from .aio.system import AsyncSystemCommands
-
-if TYPE_CHECKING:
-    from typing import ClassVar
-
-    from cobotwire.protocol.table import Table
+from .table import TABLE
 
 
 class AsyncMyArmM750(
@@ -44,7 +42,7 @@ class AsyncMyArmM750(
     waits for the acknowledgement and raises ReplyTimeout if none comes in that time.
     """
 
-    table: ClassVar[Table] = later_table(__package__)
+    table: ClassVar[Table] = TABLE
 
 
 ASYNC_CLIENT = AsyncMyArmM750

@@ -3,9 +3,11 @@
 
 from __future__ import annotations
 
+from typing import ClassVar, Self
+
 from cobotwire.client.aio_moving import AsyncMovingClient
 from cobotwire.editions.mycobot.aio.gripper import AsyncGripperCommands
-from cobotwire.protocol.light import TYPE_CHECKING, later_table
+from cobotwire.protocol.table import Table
 
 from .aio.base import AsyncBaseCommands
 from .aio.coords import AsyncCoordsCommands
@@ -16,11 +18,7 @@ from .aio.motion import AsyncMotionCommands
 from .aio.power import AsyncPowerCommands
 from .aio.servo import AsyncServoCommands
 from .aio.system import AsyncSystemCommands
-
-if TYPE_CHECKING:
-    from typing import ClassVar, Self
-
-    from cobotwire.protocol.table import Table
+from .table import TABLE
 
 
 class AsyncMyBuddy(
@@ -52,7 +50,7 @@ class AsyncMyBuddy(
     waits for the acknowledgement and raises ReplyTimeout if none comes in that time.
     """
 
-    table: ClassVar[Table] = later_table(__package__)
+    table: ClassVar[Table] = TABLE
 
     ALL: ClassVar[int] = 0
     LEFT: ClassVar[int] = 1

@@ -3,9 +3,11 @@
 
 from __future__ import annotations
 
+from typing import ClassVar, Self
+
 from cobotwire.client.moving import MovingClient
 from cobotwire.editions.mycobot.commands.gripper import GripperCommands
-from cobotwire.protocol.light import TYPE_CHECKING, later_table
+from cobotwire.protocol.table import Table
 
 from .commands.base import BaseCommands
 from .commands.coords import CoordsCommands
@@ -16,11 +18,7 @@ from .commands.motion import MotionCommands
 from .commands.power import PowerCommands
 from .commands.servo import ServoCommands
 from .commands.system import SystemCommands
-
-if TYPE_CHECKING:
-    from typing import ClassVar, Self
-
-    from cobotwire.protocol.table import Table
+from .table import TABLE
 
 
 class MyBuddy(
@@ -52,7 +50,7 @@ class MyBuddy(
     waits for the acknowledgement and raises ReplyTimeout if none comes in that time.
     """
 
-    table: ClassVar[Table] = later_table(__package__)
+    table: ClassVar[Table] = TABLE
 
     ALL: ClassVar[int] = 0
     LEFT: ClassVar[int] = 1

@@ -3,8 +3,10 @@
 
 from __future__ import annotations
 
+from typing import ClassVar
+
 from cobotwire.client.moving import MovingClient
-from cobotwire.protocol.light import TYPE_CHECKING, later_table
+from cobotwire.protocol.table import Table
 
 from .commands.coords import CoordsCommands
 from .commands.frames import FramesCommands
@@ -15,11 +17,7 @@ from .commands.motion import MotionCommands
 from .commands.network import NetworkCommands
 from .commands.power import PowerCommands
 from .commands.servo import ServoCommands
-
-if TYPE_CHECKING:
-    from typing import ClassVar
-
-    from cobotwire.protocol.table import Table
+from .table import TABLE
 
 
 class MyCobot(
@@ -49,7 +47,7 @@ class MyCobot(
     waits for the acknowledgement and raises ReplyTimeout if none comes in that time.
     """
 
-    table: ClassVar[Table] = later_table(__package__)
+    table: ClassVar[Table] = TABLE
 
 
 CLIENT = MyCobot

@@ -3,12 +3,14 @@
 
 from __future__ import annotations
 
+from typing import ClassVar
+
 from cobotwire.client.aio_moving import AsyncMovingClient
 from cobotwire.editions.mycobot280.aio.drag import AsyncDragCommands
 from cobotwire.editions.mycobot280.aio.frames import AsyncFramesCommands
 from cobotwire.editions.mycobot280.aio.jog import AsyncJogCommands
 from cobotwire.editions.mycobot280.aio.kinematics import AsyncKinematicsCommands
-from cobotwire.protocol.light import TYPE_CHECKING, later_table
+from cobotwire.protocol.table import Table
 
 from .aio.accessories import AsyncAccessoriesCommands
 from .aio.coords import AsyncCoordsCommands
@@ -18,11 +20,7 @@ from .aio.motion import AsyncMotionCommands
 from .aio.power import AsyncPowerCommands
 from .aio.servo import AsyncServoCommands
 from .aio.system import AsyncSystemCommands
-
-if TYPE_CHECKING:
-    from typing import ClassVar
-
-    from cobotwire.protocol.table import Table
+from .table import TABLE
 
 
 class AsyncMyCobot280RDKX5(
@@ -56,7 +54,7 @@ class AsyncMyCobot280RDKX5(
     waits for the acknowledgement and raises ReplyTimeout if none comes in that time.
     """
 
-    table: ClassVar[Table] = later_table(__package__)
+    table: ClassVar[Table] = TABLE
 
 
 ASYNC_CLIENT = AsyncMyCobot280RDKX5

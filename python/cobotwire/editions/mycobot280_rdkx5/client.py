@@ -3,12 +3,14 @@
 
 from __future__ import annotations
 
+from typing import ClassVar
+
 from cobotwire.client.moving import MovingClient
 from cobotwire.editions.mycobot280.commands.drag import DragCommands
 from cobotwire.editions.mycobot280.commands.frames import FramesCommands
 from cobotwire.editions.mycobot280.commands.jog import JogCommands
 from cobotwire.editions.mycobot280.commands.kinematics import KinematicsCommands
-from cobotwire.protocol.light import TYPE_CHECKING, later_table
+from cobotwire.protocol.table import Table
 
 from .commands.accessories import AccessoriesCommands
 from .commands.coords import CoordsCommands
@@ -18,11 +20,7 @@ from .commands.motion import MotionCommands
 from .commands.power import PowerCommands
 from .commands.servo import ServoCommands
 from .commands.system import SystemCommands
-
-if TYPE_CHECKING:
-    from typing import ClassVar
-
-    from cobotwire.protocol.table import Table
+from .table import TABLE
 
 
 class MyCobot280RDKX5(
@@ -56,7 +54,7 @@ class MyCobot280RDKX5(
     waits for the acknowledgement and raises ReplyTimeout if none comes in that time.
     """
 
-    table: ClassVar[Table] = later_table(__package__)
+    table: ClassVar[Table] = TABLE
 
 
 CLIENT = MyCobot280RDKX5

@@ -3,12 +3,14 @@
 
 from __future__ import annotations
 
+from typing import ClassVar
+
 from cobotwire.client.aio_moving import AsyncMovingClient
 from cobotwire.editions.mercury_a1.aio.frames import AsyncFramesCommands
 from cobotwire.editions.mercury_a1.aio.gripper import AsyncGripperCommands
 from cobotwire.editions.mercury_a1.aio.io import AsyncIoCommands
 from cobotwire.editions.mercury_a1.aio.serial import AsyncSerialCommands
-from cobotwire.protocol.light import TYPE_CHECKING, later_table
+from cobotwire.protocol.table import Table
 
 from .aio.coords import AsyncCoordsCommands
 from .aio.drag import AsyncDragCommands
@@ -18,11 +20,7 @@ from .aio.planning import AsyncPlanningCommands
 from .aio.power import AsyncPowerCommands
 from .aio.servo import AsyncServoCommands
 from .aio.system import AsyncSystemCommands
-
-if TYPE_CHECKING:
-    from typing import ClassVar
-
-    from cobotwire.protocol.table import Table
+from .table import TABLE
 
 
 class AsyncPro630(
@@ -55,7 +53,7 @@ class AsyncPro630(
     waits for the acknowledgement and raises ReplyTimeout if none comes in that time.
     """
 
-    table: ClassVar[Table] = later_table(__package__)
+    table: ClassVar[Table] = TABLE
 
 
 ASYNC_CLIENT = AsyncPro630

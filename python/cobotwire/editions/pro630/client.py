@@ -3,12 +3,14 @@
 
 from __future__ import annotations
 
+from typing import ClassVar
+
 from cobotwire.client.moving import MovingClient
 from cobotwire.editions.mercury_a1.commands.frames import FramesCommands
 from cobotwire.editions.mercury_a1.commands.gripper import GripperCommands
 from cobotwire.editions.mercury_a1.commands.io import IoCommands
 from cobotwire.editions.mercury_a1.commands.serial import SerialCommands
-from cobotwire.protocol.light import TYPE_CHECKING, later_table
+from cobotwire.protocol.table import Table
 
 from .commands.coords import CoordsCommands
 from .commands.drag import DragCommands
@@ -18,11 +20,7 @@ from .commands.planning import PlanningCommands
 from .commands.power import PowerCommands
 from .commands.servo import ServoCommands
 from .commands.system import SystemCommands
-
-if TYPE_CHECKING:
-    from typing import ClassVar
-
-    from cobotwire.protocol.table import Table
+from .table import TABLE
 
 
 class Pro630(
@@ -55,7 +53,7 @@ class Pro630(
     waits for the acknowledgement and raises ReplyTimeout if none comes in that time.
     """
 
-    table: ClassVar[Table] = later_table(__package__)
+    table: ClassVar[Table] = TABLE
 
 
 CLIENT = Pro630

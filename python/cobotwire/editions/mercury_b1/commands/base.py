@@ -3,16 +3,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from cobotwire.client import Client
-from cobotwire.protocol.light import TYPE_CHECKING
 
 from .. import messages
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from ..enums import Axis, Direction, RotationAxis
-    from ..values import Coords
+from ..enums import Axis, Direction, RotationAxis
+from ..values import Coords
 
 
 class BaseCommands(Client):

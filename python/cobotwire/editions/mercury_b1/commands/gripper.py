@@ -3,15 +3,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from cobotwire.client import Client
-from cobotwire.protocol.light import TYPE_CHECKING
 
 from .. import messages
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from ..enums import GripperMode, GripperState
+from ..enums import GripperMode, GripperState
 
 
 class GripperCommands(Client):

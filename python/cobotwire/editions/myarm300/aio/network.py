@@ -4,13 +4,10 @@
 from __future__ import annotations
 
 from cobotwire.client.aio import AsyncClient
-from cobotwire.protocol.light import TYPE_CHECKING
 
 from .. import messages
-
-if TYPE_CHECKING:
-    from ..enums import TransponderMode
-    from ..values import WifiAccount
+from ..enums import TransponderMode
+from ..values import WifiAccount
 
 
 class AsyncNetworkCommands(AsyncClient):

@@ -4,12 +4,9 @@
 from __future__ import annotations
 
 from cobotwire.client.aio import AsyncClient
-from cobotwire.protocol.light import TYPE_CHECKING
 
 from .. import messages
-
-if TYPE_CHECKING:
-    from ..values import JointErrors
+from ..values import JointErrors
 
 
 class AsyncSystemCommands(AsyncClient):

@@ -4,20 +4,17 @@
 from __future__ import annotations
 
 from cobotwire.client.aio import AsyncClient
-from cobotwire.protocol.light import TYPE_CHECKING
 
 from .. import messages
-
-if TYPE_CHECKING:
-    from ..values import (
-        Encoders,
-        GetServosEncoderDragResult,
-        ServoCurrents,
-        ServoSpeeds,
-        ServoStatuses,
-        ServoTemperatures,
-        ServoVoltages,
-    )
+from ..values import (
+    Encoders,
+    GetServosEncoderDragResult,
+    ServoCurrents,
+    ServoSpeeds,
+    ServoStatuses,
+    ServoTemperatures,
+    ServoVoltages,
+)
 
 
 class AsyncServoCommands(AsyncClient):

@@ -4,12 +4,9 @@
 from __future__ import annotations
 
 from cobotwire.client import Client
-from cobotwire.protocol.light import TYPE_CHECKING
 
 from .. import messages
-
-if TYPE_CHECKING:
-    from ..values import Angles, Coords
+from ..values import Angles, Coords
 
 
 class MotionCommands(Client):

@@ -3,23 +3,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from cobotwire.client import Client
-from cobotwire.protocol.light import TYPE_CHECKING
 
 from .. import messages
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from ..values import (
-        Encoders,
-        GetServosEncoderDragResult,
-        ServoCurrents,
-        ServoSpeeds,
-        ServoStatuses,
-        ServoTemperatures,
-        ServoVoltages,
-    )
+from ..values import (
+    Encoders,
+    GetServosEncoderDragResult,
+    ServoCurrents,
+    ServoSpeeds,
+    ServoStatuses,
+    ServoTemperatures,
+    ServoVoltages,
+)
 
 
 class ServoCommands(Client):

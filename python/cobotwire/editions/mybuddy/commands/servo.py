@@ -3,17 +3,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import overload
 
 from cobotwire.client import Client
-from cobotwire.protocol.light import TYPE_CHECKING
 
 from .. import messages
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from ..values import Encoders, ServoSpeeds, ServoStatuses, ServoTemperatures, ServoVoltages
+from ..values import Encoders, ServoSpeeds, ServoStatuses, ServoTemperatures, ServoVoltages
 
 
 class ServoCommands(Client):

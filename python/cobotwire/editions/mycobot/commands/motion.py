@@ -3,16 +3,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from cobotwire.client import Client
-from cobotwire.protocol.light import TYPE_CHECKING
 
 from .. import messages
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from ..enums import FreshMode, TargetKind
-    from ..values import Angles
+from ..enums import FreshMode, TargetKind
+from ..values import Angles
 
 
 class MotionCommands(Client):

@@ -3,15 +3,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from cobotwire.client.aio import AsyncClient
-from cobotwire.protocol.light import TYPE_CHECKING
 
 from .. import messages
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from ..values import Angles, Coords
+from ..values import Angles, Coords
 
 
 class AsyncKinematicsCommands(AsyncClient):

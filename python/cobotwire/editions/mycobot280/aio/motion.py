@@ -3,16 +3,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from cobotwire.client.aio import AsyncClient
-from cobotwire.protocol.light import TYPE_CHECKING
 
 from .. import messages
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from ..enums import FreshMode, MovementType, TargetKind
-    from ..values import Angles, Radians
+from ..enums import FreshMode, MovementType, TargetKind
+from ..values import Angles, Radians
 
 
 class AsyncMotionCommands(AsyncClient):

@@ -4,13 +4,10 @@
 from __future__ import annotations
 
 from cobotwire.client.aio import AsyncClient
-from cobotwire.protocol.light import TYPE_CHECKING
 
 from .. import messages
-
-if TYPE_CHECKING:
-    from ..enums import FusionParameter, FusionSetting, MovementType, Planned
-    from ..values import PositionPairs
+from ..enums import FusionParameter, FusionSetting, MovementType, Planned
+from ..values import PositionPairs
 
 
 class AsyncPlanningCommands(AsyncClient):

@@ -3,16 +3,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from cobotwire.client.aio import AsyncClient
-from cobotwire.protocol.light import TYPE_CHECKING
 
 from .. import messages
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from ..enums import EndType, ReferenceFrame
-    from ..values import Coords
+from ..enums import EndType, ReferenceFrame
+from ..values import Coords
 
 
 class AsyncFramesCommands(AsyncClient):

@@ -4,13 +4,10 @@
 from __future__ import annotations
 
 from cobotwire.client.aio import AsyncClient
-from cobotwire.protocol.light import TYPE_CHECKING
 
 from .. import messages
-
-if TYPE_CHECKING:
-    from ..enums import ExternalBus
-    from ..values import GetBaseExternalConfigResult, GetDigitalInputsResult
+from ..enums import ExternalBus
+from ..values import GetBaseExternalConfigResult, GetDigitalInputsResult
 
 
 class AsyncIoCommands(AsyncClient):

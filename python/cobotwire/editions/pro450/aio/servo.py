@@ -4,22 +4,19 @@
 from __future__ import annotations
 
 from cobotwire.client.aio import AsyncClient
-from cobotwire.protocol.light import TYPE_CHECKING
 
 from .. import messages
-
-if TYPE_CHECKING:
-    from ..values import (
-        Encoders,
-        IsInitCalibrationResult,
-        JointCompensations,
-        JointFlags,
-        JointPercents,
-        MotorCurrents,
-        MotorErrors,
-        MotorSpeeds,
-        Temperatures,
-    )
+from ..values import (
+    Encoders,
+    IsInitCalibrationResult,
+    JointCompensations,
+    JointFlags,
+    JointPercents,
+    MotorCurrents,
+    MotorErrors,
+    MotorSpeeds,
+    Temperatures,
+)
 
 
 class AsyncServoCommands(AsyncClient):

@@ -4,12 +4,9 @@
 from __future__ import annotations
 
 from cobotwire.client.aio import AsyncClient
-from cobotwire.protocol.light import TYPE_CHECKING
 
 from .. import messages
-
-if TYPE_CHECKING:
-    from ..enums import PowerState
+from ..enums import PowerState
 
 
 class AsyncPowerCommands(AsyncClient):

@@ -4,13 +4,10 @@
 from __future__ import annotations
 
 from cobotwire.client.aio import AsyncClient
-from cobotwire.protocol.light import TYPE_CHECKING
 
 from .. import messages
-
-if TYPE_CHECKING:
-    from ..enums import ErrorKind, LimitCheck
-    from ..values import GetLimitSwitchResult, GetRobotStatusResult, MotorErrors
+from ..enums import ErrorKind, LimitCheck
+from ..values import GetLimitSwitchResult, GetRobotStatusResult, MotorErrors
 
 
 class AsyncSystemCommands(AsyncClient):

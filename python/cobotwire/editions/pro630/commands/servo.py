@@ -4,20 +4,17 @@
 from __future__ import annotations
 
 from cobotwire.client import Client
-from cobotwire.protocol.light import TYPE_CHECKING
 
 from .. import messages
-
-if TYPE_CHECKING:
-    from ..values import (
-        Encoders,
-        IsInitCalibrationResult,
-        JointFlags,
-        JointPercents,
-        MotorCurrents,
-        MotorErrors,
-        MotorSpeeds,
-    )
+from ..values import (
+    Encoders,
+    IsInitCalibrationResult,
+    JointFlags,
+    JointPercents,
+    MotorCurrents,
+    MotorErrors,
+    MotorSpeeds,
+)
 
 
 class ServoCommands(Client):
