@@ -7,28 +7,26 @@ import sys
 from collections.abc import Callable
 from contextlib import ExitStack
 from functools import partial
-from typing import TYPE_CHECKING
 
 import click
 
 from cobotwire import codec as codecs
 from cobotwire import editions
 from cobotwire.cli.shared.completers import complete_scenarios
+from cobotwire.cli.shared.joint_table import JointTable
 from cobotwire.cli.shared.line_output import LineOutput
 from cobotwire.cli.shared.serving import serve
 from cobotwire.cli.shared.simulator_output import JsonLines, Lines
+from cobotwire.inspect.plot.live_pose import LivePose
 from cobotwire.protocol.errors import UsageError
-from cobotwire.protocol.table import Table
 from cobotwire.session.device import DeviceEvent
 from cobotwire.simulator import PtyServer, RunningClock, Server, SimulatedArm, TcpServer
 from cobotwire.simulator.behaviour.external import named
+from cobotwire.simulator.faults import AppliedFault, Scenario, find, shipped
 from cobotwire.simulator.local import local_server
 from cobotwire.simulator.motion.hand import read_points
 from cobotwire.simulator.peer import Peer
 from cobotwire.simulator.tcp import address
-
-if TYPE_CHECKING:
-    from cobotwire.simulator.faults import AppliedFault, Scenario
 
 FASTEST = 1e6
 
@@ -37,8 +35,6 @@ def _list_scenarios(context: click.Context, option: click.Parameter, wanted: boo
     """Print the fault scenarios that come with cobotwire, and exit."""
     if not wanted or context.resilient_parsing:
         return
-    from cobotwire.simulator.faults import find, shipped
-
     names = shipped()
     width = max(map(len, names))
     for name in names:
@@ -138,31 +134,19 @@ def sim(
     )
     if led is not None:
         arm.lead(read_points(led, package.TABLE.joints))
-    faults = None if scenario is None else _scenario(scenario, package.TABLE)
+    faults = None if scenario is None else find(scenario, package.TABLE)
     peers = _Peers(arm, clock, faults, seed, None if quiet else output, lines)
     server = _server(peers, clock, on_pty, tcp)
     with ExitStack() as stack:
         between: list[Callable[[], None]] = [] if quiet else [lines.flush]
         stack.callback(lines.close)
         if sys.stdout.isatty() and not (quiet or as_json):
-            # Imported here, as below: most runs need neither a table nor a plot.
-            from cobotwire.cli.shared.joint_table import JointTable
-
             table = stack.enter_context(JointTable(package, arm, clock))
             lines.redirect(table.add_line)
             between.append(table.update)
         if view is not None:
-            from cobotwire.inspect.plot.live_pose import LivePose
-
             between.append(stack.enter_context(LivePose(package, arm, clock, view)).update)
         serve(server, output.serving(server.url), between)
-
-
-def _scenario(name: str, table: Table) -> Scenario:
-    # Imported here: most runs inject no faults.
-    from cobotwire.simulator.faults import find
-
-    return find(name, table)
 
 
 def _server(peers: _Peers, clock: RunningClock, on_pty: bool, tcp: str | None) -> Server:

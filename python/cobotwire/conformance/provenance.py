@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import platform
 from functools import cache
+from hashlib import sha256
 
 import cobotwire
 from cobotwire import editions
 from cobotwire.conformance.catalogue import VERSION, code_digest
 from cobotwire.conformance.report import Environment, Report
-from cobotwire.protocol.loading import load_digest
+from cobotwire.protocol.loading import stored_table
 
 
 def identify(report: Report, edition: str, *, port: str = "") -> None:
@@ -30,7 +31,8 @@ def identify(report: Report, edition: str, *, port: str = "") -> None:
 def edition_digest(edition: str) -> str:
     """Return the SHA-256 of an edition's table; empty if it is not stored as such."""
     try:
-        return load_digest(getattr(editions.load(edition), "__name__", ""))
+        package = getattr(editions.load(edition), "__name__", "")
+        return sha256(stored_table(package)[1]).hexdigest()
     except (KeyError, OSError):
         return ""
 

@@ -42,7 +42,7 @@ class StreamCounts:
     @cached_property
     def findings(self) -> Summary:
         """The findings, counted by kind."""
-        # Imported here, because most bytes that are typed in are frames.
+        # Imported here: few streams have noise, and its classes take long to load.
         from cobotwire.diagnose.summary import Summary
 
         return Summary()

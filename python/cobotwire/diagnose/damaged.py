@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import ClassVar
+from dataclasses import dataclass, replace
+from typing import ClassVar, Self
 
 from cobotwire.codec.interface import Codec, Listening, NoiseReason
 from cobotwire.diagnose.findings import Finding, Span
@@ -39,6 +39,10 @@ class DamagedFrame(Finding):
         "from this port"
     )
     summary_noun: ClassVar[str] = "damaged frame"
+
+    def of_command(self, name: str) -> Self:
+        """Return the finding with the name of the command that it belongs to."""
+        return replace(self, command=name)
 
     def describe(self) -> str:
         """Describe the damage."""

@@ -9,6 +9,7 @@ from cobotwire import editions
 from cobotwire.capture.export.plan import Forward
 from cobotwire.codec.interface import Codec
 from cobotwire.inspect.recorded_edition import codec_of_recording
+from cobotwire.simulator.kinematics import coords_of, geometry_of
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,8 +28,6 @@ class InstalledEditions:
 
     def forward(self, name: str) -> Forward | None:
         """Return the kinematics of the edition's arm; None if its geometry is not known."""
-        from cobotwire.simulator.kinematics import coords_of, geometry_of
-
         geometry = geometry_of(self.codec(name).table)
         if geometry is None:
             return None

@@ -1,4 +1,4 @@
-"""Say where an ``edition.json`` is damaged. It is imported only when one is."""
+"""Say where an ``edition.json`` is damaged."""
 
 from __future__ import annotations
 

@@ -8,9 +8,9 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Mapping, Sequence
+from difflib import get_close_matches
 from typing import Any, Literal, NamedTuple
 
-from cobotwire.protocol.lazy import import_aside
 from cobotwire.protocol.printable import printable
 
 # The name of an argument in ``angles[2]``, ``coords.x``, ``len(data)`` and ``account, password``.
@@ -19,9 +19,6 @@ _FIRST_NAME = re.compile(r"(?<![\w.\[])(?!len\()[A-Za-z_]\w*")
 
 def did_you_mean(given: object, known: Iterable[str]) -> str:
     """Return a hint for a misspelt word, such as ``; did you mean late?``, or an empty text."""
-    import_aside("difflib")  # rarely needed, slow to import
-    from difflib import get_close_matches
-
     near = get_close_matches(given, list(known), n=1) if isinstance(given, str) else []
     return f"; did you mean {near[0]}?" if near else ""
 

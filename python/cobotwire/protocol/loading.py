@@ -10,6 +10,7 @@ from collections.abc import Iterator
 from itertools import product
 from typing import Any
 
+from cobotwire.protocol.damage import damage_of
 from cobotwire.protocol.errors import UsageError
 from cobotwire.protocol.robot import load_robot
 from cobotwire.protocol.table import (
@@ -53,7 +54,7 @@ def load_table(package: str, checksum: str | None = "") -> Table:
     Raises:
         UsageError: the file is missing or damaged, or another version of cobotwire-gen made it.
     """
-    path, data = _stored(package)
+    path, data = stored_table(package)
     found = checksum_of(data)
     if checksum in (found, None):
         document: Record = json.loads(data)
@@ -63,8 +64,6 @@ def load_table(package: str, checksum: str | None = "") -> Table:
     elif not checksum:
         reason = "another version of cobotwire-gen made the package: it states no checksum"
     else:
-        from cobotwire.protocol.damage import damage_of
-
         damage = damage_of(data, lambda document: table_of(document, package))
         reason = f"{damage}; its checksum is {found}, not {checksum}"
     message = f"{path}: {reason}; generate the package again with cobotwire-gen"
@@ -134,18 +133,11 @@ def load_places(package: str) -> dict[str, str]:
 
     The table of the package was loaded before, so its file is as it was written.
     """
-    document: Record = json.loads(_stored(package)[1])
+    document: Record = json.loads(stored_table(package)[1])
     return {record["name"]: record["place"] for record in document["commands"]}
 
 
-def load_digest(package: str) -> str:
-    """Return the SHA-256 of a package's ``edition.json``."""
-    from hashlib import sha256  # only reports need it
-
-    return sha256(_stored(package)[1]).hexdigest()
-
-
-def _stored(package: str) -> tuple[str, bytes]:
+def stored_table(package: str) -> tuple[str, bytes]:
     """Return the path and bytes of a package's ``edition.json``, also from inside a zip file.
 
     Raises:

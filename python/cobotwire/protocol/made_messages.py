@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import namedtuple
 from collections.abc import Callable, Sequence  # noqa: F401  (annotations use Sequence)
 from functools import cache, lru_cache
 from importlib import import_module
@@ -140,6 +141,4 @@ def _body(shape: MessageShape, doc: str) -> Callable[[dict[str, Any]], None]:
 
 
 def _named_tuple(name: str, results: tuple[str, ...]) -> Any:
-    from collections import namedtuple
-
     return namedtuple(f"{name}Result", results)

@@ -76,12 +76,9 @@ def _diagnoses(
 ) -> Iterator[str]:
     """Yield for each span what begins in it, as a sentence; empty where nothing is recognised."""
     # Imported here: most programs never need it.
-    import_aside("dataclasses")
     import_aside(
         "cobotwire.diagnose", "DamagedFrame", "Diagnoser", "Finding", "Summary", "Unrecognised"
     )
-    from dataclasses import replace
-
     from cobotwire.diagnose import DamagedFrame, Diagnoser, Finding, Summary, Unrecognised
 
     diagnoser = Diagnoser(codec, "reply")
@@ -90,7 +87,7 @@ def _diagnoses(
     findings = [i for i in found if isinstance(i, Finding) and not isinstance(i, Unrecognised)]
     # Of the commands that share an id, the user knows the one that was called.
     findings = [
-        replace(found, command=command.name)
+        found.of_command(command.name)
         if isinstance(found, DamagedFrame) and found.id == command.id
         else found
         for found in findings

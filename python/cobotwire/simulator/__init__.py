@@ -1,6 +1,6 @@
 """A simulated arm: state for every command, on a pseudo-terminal, over TCP or in memory."""
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 __all__ = [
     "ArmConnection",
@@ -27,27 +27,19 @@ if TYPE_CHECKING:
 else:
     # Each name is imported on first use: every pytest run imports the plugin in ``testing``, and
     # must not import the arm and the servers with it.
-    _MODULES = {
-        "ArmConnection": "arm_connection",
-        "MemoryTransport": "memory",
-        "PtyServer": "pty",
-        "ReplayedArm": "replayed",
-        "ReplayedRequest": "replayed",
-        "RunningClock": "clock",
-        "Server": "server",
-        "SimulatedArm": "arm",
-        "SteppedClock": "clock",
-        "TcpServer": "tcp",
-    }
+    from cobotwire.protocol.lazy import lazy_names
 
-    def __getattr__(name: str) -> Any:
-        if name not in _MODULES:
-            raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-        from importlib import import_module
-
-        found = getattr(import_module(f"{__name__}.{_MODULES[name]}"), name)
-        globals()[name] = found
-        return found
-
-    def __dir__() -> list[str]:
-        return sorted({*globals(), *__all__})
+    __getattr__, __dir__ = lazy_names(
+        __name__,
+        {
+            ".arm": ["SimulatedArm"],
+            ".arm_connection": ["ArmConnection"],
+            ".clock": ["RunningClock", "SteppedClock"],
+            ".memory": ["MemoryTransport"],
+            ".pty": ["PtyServer"],
+            ".replayed": ["ReplayedArm", "ReplayedRequest"],
+            ".server": ["Server"],
+            ".tcp": ["TcpServer"],
+        },
+        (),
+    )

@@ -137,7 +137,7 @@ def test_it():
         "cobotwire.conformance.report",
         "cobotwire.conformance.suite",
         "cobotwire.protocol",
-        "cobotwire.protocol.light",
+        "cobotwire.protocol.lazy",
         "cobotwire.simulator",
         "cobotwire.simulator.testing",
         "cobotwire.simulator.testing.plugin",

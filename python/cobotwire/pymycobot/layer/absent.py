@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from functools import lru_cache
-from importlib.resources import files
+from pkgutil import get_data
 
 # The names that no class of ours has.
 _ALL = "*"
@@ -30,6 +30,7 @@ def _names(kind: type) -> list[str]:
 @lru_cache
 def _reasons() -> dict[str, dict[str, str]]:
     # A program may have imported this package under the name of the library, without its folder.
-    text = files("cobotwire").joinpath("pymycobot", "absent.json").read_text("utf-8")
-    found: dict[str, dict[str, str]] = json.loads(text)
+    data = get_data("cobotwire", "pymycobot/absent.json")
+    assert data is not None, "the loader of the package reads files"
+    found: dict[str, dict[str, str]] = json.loads(data)
     return found

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Literal, TypeVar
 
 from cobotwire.client import Client
 from cobotwire.protocol.errors import ProtocolError, ReplyTimeout, UsageError
+from cobotwire.pymycobot.layer.absent import why_absent
 from cobotwire.pymycobot.layer.policy import policy
 from cobotwire.pymycobot.layer.results import plain
 
@@ -46,8 +47,6 @@ class CompatibleClient:
 
         def __getattr__(self, name: str) -> Any:
             """Say why a name of the maker's class has no counterpart."""
-            from cobotwire.pymycobot.layer.absent import why_absent
-
             message = f"{type(self).__name__!r} object has no attribute {name!r}"
             why = why_absent(type(self), name)
             raise AttributeError(f"{message}: {why}" if why else message, name=name, obj=self)

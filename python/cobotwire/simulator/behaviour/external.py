@@ -8,6 +8,8 @@ from __future__ import annotations
 
 import sys
 from functools import cache
+from importlib import import_module
+from importlib.metadata import entry_points
 from pathlib import Path
 from typing import Any
 
@@ -25,9 +27,6 @@ def installed(edition: str) -> Behaviours:
     Raises:
         UsageError: an entry point does not refer to a ``Behaviours``.
     """
-    # Imported here, since it takes longer than all other imports of the simulator's core.
-    from importlib.metadata import entry_points
-
     found = Behaviours()
     for point in entry_points(group=GROUP, name=edition):
         found |= _checked(point.load(), f"the entry point {point.name} = {point.value}")
@@ -40,8 +39,6 @@ def named(module: str) -> Behaviours:
     Raises:
         UsageError: there is no such module, or it has no ``Behaviours`` of that name.
     """
-    from importlib import import_module
-
     name, path = module, Path(module)
     if path.suffix == ".py":
         if not path.is_file():

@@ -12,6 +12,7 @@ from cobotwire.codec.interface import Codec
 from cobotwire.protocol.errors import UsageError, did_you_mean
 from cobotwire.protocol.table import Table
 from cobotwire.simulator.clock import Clock
+from cobotwire.simulator.faults import find
 from cobotwire.simulator.peer import Peer
 
 TRANSPORTS = ("memory", "pty", "tcp")
@@ -55,9 +56,6 @@ class ArmOptions:
         """
         if not isinstance(self.scenario, str):
             return self.scenario
-        # Imported here: most tests use an arm without faults.
-        from cobotwire.simulator.faults import find
-
         beside = self.folder / self.scenario
         return find(str(beside) if beside.is_file() else self.scenario, table)
 

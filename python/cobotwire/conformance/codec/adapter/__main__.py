@@ -7,6 +7,7 @@ import sys
 from cobotwire import codec as codecs
 from cobotwire import editions
 from cobotwire.conformance.codec.adapter.loop import Answer, serve
+from cobotwire.conformance.codec.adapter.pymycobot import Pymycobot
 from cobotwire.conformance.codec.questions.our_codec import OurCodec
 from cobotwire.conformance.codec.questions.question import Json
 from cobotwire.protocol.errors import UsageError
@@ -30,8 +31,6 @@ class Adapter:
     def _of_edition(self, edition: str) -> Answer:
         table = editions.load(edition).TABLE
         if self._name == "pymycobot":
-            from cobotwire.conformance.codec.adapter.pymycobot import Pymycobot
-
             return Pymycobot(table).ask
         if self._name not in ("native", "reference"):
             raise UsageError("adapter", self._name, "native, reference or pymycobot")
