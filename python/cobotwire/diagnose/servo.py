@@ -8,13 +8,15 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass
-from typing import ClassVar, Literal
+from typing import TYPE_CHECKING, ClassVar, Literal
 
 from cobotwire.codec.interface import Codec, Listening
 from cobotwire.diagnose.findings import Finding
 from cobotwire.diagnose.recogniser import Recogniser
 from cobotwire.diagnose.residue import Residue, Verdict, Wait
-from cobotwire.diagnose.servo_bus import servo_bus
+
+if TYPE_CHECKING:
+    from cobotwire.diagnose.servo_bus import ServoBusReader
 
 # Servo id to the register and number of bytes that its next status packet holds.
 Expected = dict[int, tuple[int, int]]
@@ -87,6 +89,13 @@ class ServoPacket(Finding):
 
     def _errors_text(self) -> str:
         return f", with errors: {', '.join(self.errors)}" if self.errors else ""
+
+
+def servo_bus() -> ServoBusReader:
+    """Return the reader of packets; it is imported with the reference codec, which it uses."""
+    from cobotwire.diagnose import servo_bus
+
+    return servo_bus.servo_bus()
 
 
 def packet_size(data: bytes, at: int) -> int | None:

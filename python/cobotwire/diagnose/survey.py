@@ -17,8 +17,7 @@ from cobotwire.diagnose.diagnoser import REACH, Diagnoser, Item
 from cobotwire.diagnose.findings import Finding, Span
 from cobotwire.diagnose.firmware import CommandError
 from cobotwire.diagnose.frames import Frames
-from cobotwire.diagnose.servo import Expected, ServoBus
-from cobotwire.diagnose.servo_bus import servo_bus
+from cobotwire.diagnose.servo import Expected, ServoBus, servo_bus
 
 if TYPE_CHECKING:
     from cobotwire.codec.native import NativeSurvey

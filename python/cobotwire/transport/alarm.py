@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import io
 import os
-import socket
 import sys
 from contextlib import suppress
 from typing import Protocol
@@ -50,6 +49,9 @@ class _PairAlarm:
     """An alarm of two sockets: every platform can wait for these, but not for a pipe."""
 
     def __init__(self) -> None:
+        # Imported here: on Linux no serial port needs sockets.
+        import socket
+
         self._in, self._out = socket.socketpair()
         self._out.setblocking(False)
         self.descriptor = self._in.fileno()

@@ -5,13 +5,15 @@ from __future__ import annotations
 import os
 from collections.abc import Sequence
 from contextlib import closing
+from typing import TYPE_CHECKING
 
 import click
 
-from cobotwire.capture import CaptureReader, Direction, is_capture, read
 from cobotwire.capture.byte_source import hex_arguments
-from cobotwire.capture.capture_file import open_capture
 from cobotwire.protocol.errors import CobotwireError
+
+if TYPE_CHECKING:
+    from cobotwire.capture import CaptureReader, Direction
 
 ARROWS: dict[Direction, str] = {"sent": ">", "received": "<", "unknown": "?"}
 
@@ -30,6 +32,10 @@ def recording_named(arguments: Sequence[str]) -> CaptureReader | None:
     single = len(arguments) == 1 and hex_arguments(arguments) is None
     if not single or not os.path.isfile(arguments[0]):
         return None
+    # Imported here, because bytes in hex need nothing of it.
+    from cobotwire.capture import is_capture, read
+    from cobotwire.capture.capture_file import open_capture
+
     try:
         with closing(open_capture(arguments[0])) as file:
             first = file.read(12)
