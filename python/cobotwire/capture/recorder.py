@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 import threading
 import time
 from collections import deque
@@ -14,13 +15,12 @@ from cobotwire.codec.interface import Codec, Event, Framer, Noise
 from cobotwire.protocol.errors import CaptureError
 from cobotwire.protocol.printable import printable
 from cobotwire.transport import forks
-from cobotwire.transport.log import Log
 
 # An incomplete frame is written after this pause. The longest pause seen within a reply is 0.1 s;
 # a cut that is too early splits a frame into two packets, but loses no byte.
 IDLE_NS = 500_000_000
 
-_log = Log("cobotwire.capture")
+_log = logging.getLogger("cobotwire.capture")
 
 
 class Moment(Protocol):
@@ -196,4 +196,4 @@ class Recorder:
             # A closed file raises ValueError.
             except (OSError, ValueError) as error:
                 self._failure = error
-                _log.load().error("recording to %s stopped: %s", printable(self._name), error)
+                _log.error("recording to %s stopped: %s", printable(self._name), error)

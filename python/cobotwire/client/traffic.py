@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING
+from logging import DEBUG, INFO, getLogger
 
 from cobotwire.codec.interface import Noise
 from cobotwire.protocol.errors import LinkError
@@ -21,10 +21,8 @@ from cobotwire.session import (
     UnexpectedFrame,
 )
 from cobotwire.session.events import as_traffic
-from cobotwire.transport.log import DEBUG, INFO, Log
 
-if TYPE_CHECKING:
-    from logging import Logger
+_log = getLogger("cobotwire.traffic")
 
 TrafficListener = Callable[[Traffic], None]
 
@@ -53,9 +51,6 @@ class TrafficListeners:
     def __init__(
         self, first: TrafficListener | None, url: str, now: Callable[[], float] = time.monotonic
     ) -> None:
-        self._log = Log("cobotwire.traffic")
-        # None as long as the program does not import ``logging``.
-        self._logger = self._log.find()
         self.listeners: tuple[TrafficListener, ...] = () if first is None else (first,)
         self._url = url
         self._now = now
@@ -79,18 +74,16 @@ class TrafficListeners:
         self._sent(request)
 
     def _sent(self, data: bytes) -> None:
-        logger = self._logger or self._found()
-        if logger is not None and logger.isEnabledFor(DEBUG):
-            logger.debug("%s > %s", self._url, _hex(data))
+        if _log.isEnabledFor(DEBUG):
+            _log.debug("%s > %s", self._url, _hex(data))
         if self.listeners:
             self._report(Traffic(self._now(), "sent", data))
 
     def received(self, events: Sequence[SessionEvent], now: float) -> None:
         """Report what the session made of the bytes that were read at ``now``."""
-        logger = self._logger or self._found()
-        if logger is not None and logger.isEnabledFor(INFO):
+        if _log.isEnabledFor(INFO):
             for event in events:
-                self._log_event(logger, event)
+                self._log_event(event)
         if self.listeners:
             for event in events:
                 traffic = as_traffic(event, now)
@@ -99,29 +92,25 @@ class TrafficListeners:
 
     def lost(self, error: LinkError) -> None:
         """Report that the transport is gone."""
-        self._log.load().warning("%s", error)
+        _log.warning("%s", error)
 
     def _report(self, traffic: Traffic) -> None:
         for listener in self.listeners:
             listener(traffic)
 
-    def _found(self) -> Logger | None:
-        self._logger = self._log.find()
-        return self._logger
-
-    def _log_event(self, log: Logger, event: SessionEvent) -> None:
+    def _log_event(self, event: SessionEvent) -> None:
         url = self._url
         if isinstance(event, Noise):
-            log.info("%s < noise (%s) %s", url, event.reason, _hex(event.data))
+            _log.info("%s < noise (%s) %s", url, event.reason, _hex(event.data))
         elif isinstance(event, RequestExpired):
-            log.info("%s: no reply to %s, attempts: %d", url, event.command.name, event.attempts)
+            _log.info("%s: no reply to %s, attempts: %d", url, event.command.name, event.attempts)
         elif isinstance(event, LateReply):
             name = event.command.name
-            log.info("%s < late reply to %s: %s", url, name, _hex(event.frame.data))
+            _log.info("%s < late reply to %s: %s", url, name, _hex(event.frame.data))
         elif isinstance(event, ReplyRejected):
-            log.info("%s < illegal reply to %s: %s", url, event.command.name, event.error)
-        elif event.frame is not None and log.isEnabledFor(DEBUG):
-            log.debug("%s < %s (%s)", url, _hex(event.frame.data), KINDS[type(event)])
+            _log.info("%s < illegal reply to %s: %s", url, event.command.name, event.error)
+        elif event.frame is not None and _log.isEnabledFor(DEBUG):
+            _log.debug("%s < %s (%s)", url, _hex(event.frame.data), KINDS[type(event)])
 
 
 def _hex(data: bytes) -> str:
