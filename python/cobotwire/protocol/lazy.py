@@ -2,7 +2,7 @@
 
 Calls import nothing. If Ctrl-C ended an import in the main thread, a lock of the import system
 could stay held, and every thread that imports the same module would wait for ever. So a client
-calls :func:`load_parts` when it opens, and what few programs need is imported by
+calls :func:`load_parts` when it opens, and the diagnosis of noise is imported by
 :func:`import_aside`.
 """
 
@@ -10,16 +10,10 @@ from __future__ import annotations
 
 import sys
 import threading
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from importlib import import_module
-
-# As in `light`, which refers to the table, while errors need this module.
-TYPE_CHECKING = False
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
-    from typing import Any
-
+from typing import Any
 
 # The modules of each package that :func:`lazy_names` was called for.
 _parts: dict[str, tuple[str, ...]] = {}
