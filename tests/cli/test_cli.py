@@ -171,10 +171,10 @@ def test_help_of_call_keeps_the_lines_of_its_examples() -> None:
 
 def test_commands_prints_text_of_the_spec_without_markup() -> None:
     script = (
-        "import dataclasses, cobotwire.editions.mycobot280 as e\n"
+        "import cobotwire.editions.mycobot280 as e\n"
         "word = 'the [bold]first[/] of :warning: [/nothing]'\n"
-        "stop = dataclasses.replace(e.TABLE.command('stop'), title=word, doc=word, notes=(word,))\n"
-        "e.TABLE = dataclasses.replace(e.TABLE, commands=(stop,))\n"
+        "stop = e.TABLE.command('stop')._replace(title=word, doc=word, notes=(word,))\n"
+        "e.TABLE = e.TABLE._replace(commands=(stop,))\n"
         "from cobotwire.cli import main; main()"
     )
     for words in (["commands"], ["commands", "stop"]):
@@ -231,7 +231,7 @@ def test_help_describes_each_verb_as_the_verb_does(
         (["--help"], set()),
         (["decode", "FE FE 02 12 FA"], set()),
         (["conform", "cases", "--help"], {"cobotwire.cli.conform_device"}),
-        (["sim", "--help"], {"cobotwire.simulator.faults", "cobotwire.editions.mercury_a1"}),
+        (["sim", "--help"], {"cobotwire.editions.mercury_a1"}),
     ],
 )
 def test_start_imports_only_what_the_words_need(words: list[str], further: set[str]) -> None:
@@ -244,9 +244,9 @@ def test_start_imports_only_what_the_words_need(words: list[str], further: set[s
         check=True,
     )
     imported = {line.split("|")[-1].strip() for line in done.stderr.splitlines()}
-    unwanted = {"rich.console", "cobotwire.capture.reader", "cobotwire.cli.replay", *further}
+    unwanted = {"rich.console", "cobotwire.cli.replay", *further}
     if words[0] not in ("conform", "sim"):
         unwanted |= {"cobotwire.session", "cobotwire.client", "cobotwire.cli.sim"}
-        unwanted |= {"cobotwire.codec.reference"}
+        unwanted |= {"cobotwire.codec.reference", "cobotwire.capture.reader"}
     assert not imported & unwanted
     assert "click" in imported

@@ -13,11 +13,9 @@ import click
 from cobotwire import codec as codecs
 from cobotwire import editions
 from cobotwire.cli.shared.completers import complete_scenarios
-from cobotwire.cli.shared.joint_table import JointTable
 from cobotwire.cli.shared.line_output import LineOutput
 from cobotwire.cli.shared.serving import serve
 from cobotwire.cli.shared.simulator_output import JsonLines, Lines
-from cobotwire.inspect.plot.live_pose import LivePose
 from cobotwire.protocol.errors import UsageError
 from cobotwire.session.device import DeviceEvent
 from cobotwire.simulator import PtyServer, RunningClock, Server, SimulatedArm, TcpServer
@@ -141,10 +139,15 @@ def sim(
         between: list[Callable[[], None]] = [] if quiet else [lines.flush]
         stack.callback(lines.close)
         if sys.stdout.isatty() and not (quiet or as_json):
+            # Imported here, as below: most runs need neither a table nor a plot.
+            from cobotwire.cli.shared.joint_table import JointTable
+
             table = stack.enter_context(JointTable(package, arm, clock))
             lines.redirect(table.add_line)
             between.append(table.update)
         if view is not None:
+            from cobotwire.inspect.plot.live_pose import LivePose
+
             between.append(stack.enter_context(LivePose(package, arm, clock, view)).update)
         serve(server, output.serving(server.url), between)
 
