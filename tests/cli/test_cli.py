@@ -206,7 +206,8 @@ def test_commands_describes_one_command_byte_by_byte() -> None:
         assert words in result.stdout
     assert "Disputed" in result.stdout
     assert "<ssid>" in run("commands", "get_ssid_pwd").stdout
-    assert json.loads(run("commands", "stop", "--json").stdout)[0]["id"] == 0x29
+    [command] = json.loads(run("commands", "send_coord", "--json").stdout)
+    assert (command["id"], command["request"][0]["fields"][0]["name"]) == (0x24, "axis")
 
 
 def test_unknown_edition_gets_a_suggestion() -> None:

@@ -77,6 +77,7 @@ def test_wider_limits_must_be_explicit_and_fit_the_wire(codec: codecs.CodecName)
         ([(1, 0), *REST], "limits.joints[0]"),
         ([(0, math.nan), *REST], "limits.joints[0]"),
         ([(0, math.inf), *REST], "limits.joints[0]"),
+        ([(0, 1e308), *REST], "limits.joints[0]"),
         ([(True, False), *REST], "limits.joints[0]"),
         ([None, "90", *REST[1:]], "limits.joints[1]"),
         ([5, *REST], "limits.joints[0]"),

@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from cobotwire import codec as codecs
+from cobotwire.client.opening import settings
 from cobotwire.codec.interface import Codec
 from cobotwire.editions.mycobot import TABLE
 from cobotwire.editions.mycobot280 import TABLE as TABLE_280
@@ -104,6 +105,8 @@ def test_only_queries_are_ever_repeated() -> None:
 def test_policy_error_names_the_wrong_value(wrong: dict[str, float]) -> None:
     with pytest.raises(UsageError, match=f"retry.{next(iter(wrong))}"):
         RetryPolicy(**wrong)  # type: ignore[arg-type]
+    with pytest.raises(UsageError, match=f"retry.{next(iter(wrong))}"):
+        settings(TABLE, None, RetryPolicy()._replace(**wrong), None, None)  # type: ignore[arg-type]
 
 
 def test_one_way_request_is_sent_at_once_while_another_request_waits(exchange: Exchange) -> None:
