@@ -51,6 +51,13 @@ def package_of(text: str, folder: Path) -> Iterator[Any]:
     """Yield the imported package of a spec, which has no problems."""
     edition, problems = edition_of(text, folder)
     assert problems == []
+    with imported(edition, folder) as package:
+        yield package
+
+
+@contextmanager
+def imported(edition: Edition, folder: Path) -> Iterator[Any]:
+    """Yield the imported package of an edition, generated into a folder."""
     name = f"trial_{next(_numbers)}"
     write(Target(folder / name, render_python(edition)))
     sys.path.insert(0, str(folder))

@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-import importlib
-import sys
 from collections.abc import Iterator
 from typing import Any
 
 import pytest
 
-import vectors
 from cobotwire import codec as codecs
 from cobotwire.conformance.client import Referee, ScriptLine, faulty_replies
 from cobotwire.conformance.codec import Run, derive_questions
@@ -17,24 +14,16 @@ from cobotwire.conformance.codec.questions.our_codec import OurCodec
 from cobotwire.conformance.codec.questions.question import Json, Question
 from cobotwire.conformance.report import Report
 from cobotwire.simulator import MemoryTransport, SteppedClock
-from cobotwire_codegen.build import build_edition
-from cobotwire_codegen.emit import Target, write
-from cobotwire_codegen.render import render_python
 from conformance.device.testing import Altered, prepared
-
-FAMILIES = vectors.ROOT / "tests" / "codegen" / "families"
+from random_editions import SENSOR
+from trial_specs import imported
 
 
 @pytest.fixture(scope="module")
 def sensor(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Any]:
     """Yield the generated package of the sensor."""
-    folder = tmp_path_factory.mktemp("conform")
-    edition = build_edition(FAMILIES / "sensor.yaml", FAMILIES)
-    write(Target(folder / "conform_sensor", render_python(edition)))
-    sys.path.insert(0, str(folder))
-    importlib.invalidate_caches()
-    yield importlib.import_module("conform_sensor")
-    sys.path.remove(str(folder))
+    with imported(SENSOR, tmp_path_factory.mktemp("conform")) as package:
+        yield package
 
 
 @pytest.fixture(scope="module")

@@ -8,7 +8,6 @@ from pathlib import Path
 
 from cobotwire.conformance import Report
 from cobotwire.conformance.device import (
-    ALL_PERMISSIONS,
     DeviceConnection,
     Permissions,
     Step,
@@ -18,9 +17,9 @@ from cobotwire.conformance.device.started import StartedDevice
 from cobotwire.editions.mycobot import TABLE
 from cobotwire.protocol.errors import LinkError
 from cobotwire.simulator.clock import SteppedClock
-from cobotwire.simulator.memory import MemoryTransport
 from cobotwire.transport import Transport
 from cobotwire_codegen.build import build_edition
+from conformance.device.testing import on_peer
 from defects.arm.planted import arm_with
 from stalls import unstalled
 from targets.c.compiled import compile_c, scratch, sources
@@ -47,14 +46,7 @@ class _Tester(Tester):
 def report_on_arm(defect: str = "") -> Report:
     """Test the arm in plain Python, in stepped time, with all permissions."""
     clock = SteppedClock()
-    connection = DeviceConnection(MemoryTransport(arm_with(clock, defect), clock), clock)
-    allowed = Permissions.of(
-        ALL_PERMISSIONS,
-        joints=6,
-        max_speed=60,
-        workspace=dict.fromkeys(range(1, 7), (-60.0, 60.0)),
-    )
-    return _Tester(connection, TABLE, permissions=allowed).run()
+    return on_peer(arm_with(clock, defect), clock, TABLE, _Tester).run()
 
 
 def report_on_firmware(defect: str = "") -> Report:

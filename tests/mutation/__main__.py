@@ -11,21 +11,20 @@ import sys
 import time
 
 from mutation.listing import lines, table
-from mutation.running import run
-from mutation.suites import NAMES
+from mutation.running import SUITES, TESTERS, run
 
 
 def main() -> int:
     """Run the suites and print the figures; return 1 if a tester missed something."""
     given = _arguments()
-    places = [
-        place
-        for place, name in enumerate(NAMES)
-        if not given.suites or any(word in name.split(", ") for word in given.suites)
+    suites = [
+        suite
+        for suite in SUITES
+        if not given.suites or suite.edition in given.suites or suite.tester in given.suites
     ]
     began = time.monotonic()
     found = []
-    for verdicts in run(places, given.processes, given.sample, given.seed):
+    for verdicts in run(suites, given.processes, given.sample, given.seed):
         found.append(verdicts)
         print("\n".join(lines(verdicts)), flush=True)
     print(table(found))
@@ -35,9 +34,8 @@ def main() -> int:
 
 def _arguments() -> argparse.Namespace:
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument(
-        "suites", nargs="*", help="editions, or device, client with a script, codec; default: all"
-    )
+    names = f"editions, or {', '.join(TESTERS)}; default: all"
+    parser.add_argument("suites", nargs="*", help=names)
     parser.add_argument("--processes", type=int, default=2)
     parser.add_argument("--sample", type=int, help="at most this many mutants of each kind")
     parser.add_argument("--seed", type=int, default=1)

@@ -2,52 +2,56 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
+from typing import NamedTuple
 
-from mutation.running import Verdicts
-from mutation.suite import Outcome, by_kind, total
+from mutation.running import TESTERS, Verdicts
+from mutation.suite import Outcome
+
+
+class Counts(NamedTuple):
+    """How many mutants are killed and excused, and how many there are."""
+
+    killed: int
+    excused: int
+    every: int
+
+    def __str__(self) -> str:
+        return f"{self.killed} + {self.excused} of {self.every}"
+
+
+def counted(outcomes: Sequence[Outcome]) -> Counts:
+    """Count the outcomes of some mutants."""
+    killed = sum(bool(outcome.killed_by) for outcome in outcomes)
+    excused = sum(bool(not outcome.killed_by and outcome.reason) for outcome in outcomes)
+    return Counts(killed, excused, len(outcomes))
 
 
 def table(all_verdicts: Iterable[Verdicts]) -> str:
     """Return a row for each edition: what each tester killed + what is excused, of all mutants."""
-    cells: dict[str, dict[str, str]] = {}
-    for verdicts in all_verdicts:
-        tester, _, edition = verdicts.name.partition(", ")
-        killed, excused, count = total(verdicts.outcomes)
-        cells.setdefault(edition, {})[tester] = f"{killed} + {excused} of {count}"
-    testers = ("device", "client with a script", "client without a script", "codec")
-    widths = [max(len(tester), 20) for tester in testers]
-    rows: list[tuple[str, tuple[str, ...]]] = [("edition", testers)]
-    rows += [
-        (name, tuple(row.get(tester, "") for tester in testers)) for name, row in cells.items()
-    ]
+    rows: dict[str, dict[str, str]] = {"edition": {tester: tester for tester in TESTERS}}
+    for suite, outcomes, _ in all_verdicts:
+        rows.setdefault(suite.edition, {})[suite.tester] = str(counted(outcomes))
     return "\n".join(
-        f"{name:18}" + "".join(f"{cell:>{width + 2}}" for cell, width in zip(row, widths))
-        for name, row in rows
+        f"{name:18}" + "".join(f"{row.get(tester, ''):>25}" for tester in TESTERS)
+        for name, row in rows.items()
     )
 
 
 def lines(verdicts: Verdicts) -> Iterator[str]:
-    """Yield the result of a suite for a terminal."""
-    killed, excused, count = total(verdicts.outcomes)
-    yield f"{verdicts.name}: {killed} / {count} killed, {excused} unobservable"
-    for kind, outcomes in by_kind(verdicts.outcomes):
-        some, none, all_of_them = total(outcomes)
-        yield f"  {kind:<24}{some:>5} / {all_of_them:<5}{none or '':>5}"
-    for outcome in survivors(verdicts):
-        yield f"  survived  {outcome.case.id}"
+    """Yield the result of a suite for a terminal; the survivors without a reason come first."""
+    suite, outcomes, right_runs = verdicts
+    yield f"{suite}: {counted(outcomes)} killed + indistinguishable"
+    for kind in dict.fromkeys(outcome.kind for outcome in outcomes):
+        yield f"  {kind:<24}{counted([each for each in outcomes if each.kind == kind])}"
+    survivors = [outcome for outcome in outcomes if not outcome.killed_by]
+    for outcome in sorted(survivors, key=lambda outcome: bool(outcome.reason)):
+        yield f"  survived  {outcome.id}"
         yield f"            {_why(outcome)}"
-    passed = [run for run in verdicts.right_runs if run.passed]
-    yield f"  correct subject passed in {len(passed)} of {len(verdicts.right_runs)} runs"
-    for run in verdicts.right_runs:
-        if not run.passed:
-            yield f"  REJECTED  {run.name}: {run.text}"
-
-
-def survivors(verdicts: Verdicts) -> list[Outcome]:
-    """Return the survivors, those without a reason first."""
-    left = [outcome for outcome in verdicts.outcomes if not outcome.killed_by]
-    return sorted(left, key=lambda outcome: bool(outcome.reason))
+    failed = [run for run in right_runs if run.failure]
+    passed = len(right_runs) - len(failed)
+    yield f"  correct subject passed in {passed} of {len(right_runs)} runs"
+    yield from (f"  REJECTED  {run.name}: {run.failure}" for run in failed)
 
 
 def _why(outcome: Outcome) -> str:

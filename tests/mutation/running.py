@@ -2,84 +2,101 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from functools import cache
 from random import Random
 from typing import NamedTuple
 
-from mutation.suite import Case, Outcome, RightRun, Suite
-from mutation.suites import SUITES
+from cobotwire import editions
+from cobotwire.protocol.table import Table
+from mutation.client.suite import ClientSuite, ScriptlessSuite
+from mutation.codec.suite import CodecSuite
+from mutation.device.suite import DeviceSuite
+from mutation.suite import Outcome, RightRun, Suite, missed
 
+TESTERS: dict[str, Callable[[Table], Suite]] = {
+    "device": DeviceSuite,
+    "client with a script": ClientSuite,
+    "client without a script": ScriptlessSuite,
+    "codec": CodecSuite,
+}
+# Without a script, the referee judges only whether requests are legal: one edition shows that.
+WITHOUT_SCRIPT = "mycobot280"
 # Mutants per task: few, so that all processes end at about the same time.
 CHUNK = 8
+
+
+class Key(NamedTuple):
+    """The names of a tester and an edition, which make a suite."""
+
+    tester: str
+    edition: str
+
+    def __str__(self) -> str:
+        return f"{self.tester}, {self.edition}"
+
+
+# The suites that `make conform` runs: up to four for each edition.
+SUITES = tuple(
+    Key(tester, edition)
+    for edition in editions.names()
+    for tester in TESTERS
+    if tester != "client without a script" or edition == WITHOUT_SCRIPT
+)
 
 
 class Verdicts(NamedTuple):
     """The outcomes of a suite."""
 
-    name: str
+    suite: Key
     outcomes: list[Outcome]
     right_runs: list[RightRun]
 
     @property
     def sound(self) -> bool:
         """Whether every mutant is killed or excused, and every correct subject passed."""
-        found = all(outcome.killed_by or outcome.reason for outcome in self.outcomes)
-        return found and all(run.passed for run in self.right_runs)
+        return not missed(self.outcomes) and not any(run.failure for run in self.right_runs)
 
 
-class _Task(NamedTuple):
-    suite: int
-    case: Case
-
-
-class _RightTask(NamedTuple):
-    suite: int
-    run: str
-
-
-def run(suites: Sequence[int], processes: int, sample: int | None, seed: int) -> Iterator[Verdicts]:
-    """Run suites by their index in ``SUITES``, with at most ``sample`` mutants of each kind."""
+def run(
+    suites: Sequence[Key], processes: int, sample: int | None = None, seed: int = 1
+) -> Iterator[Verdicts]:
+    """Run suites, with at most ``sample`` mutants of each kind."""
     with ProcessPoolExecutor(processes) as pool:
-        for place in suites:
-            suite = _suite(place)
-            cases = sampled(suite.cases(), sample, seed)
-            tasks = [_Task(place, case) for case in cases]
-            rights = [_RightTask(place, name) for name in suite.right_runs()]
+        for key in suites:
+            suite = made(key)
+            tasks = [(key, id) for id in sampled(suite, sample, seed)]
+            rights = [(key, name) for name in suite.right_runs]
             if sample is not None:
                 rights = rights[:: max(1, len(rights) // 2)]
-            right_runs = list(pool.map(_accept, rights, chunksize=1))
-            outcomes = list(pool.map(_judge, tasks, chunksize=CHUNK))
-            yield Verdicts(suite.name, outcomes, right_runs)
+            right_runs = list(pool.map(_accepted, rights, chunksize=1))
+            yield Verdicts(key, list(pool.map(_judged, tasks, chunksize=CHUNK)), right_runs)
 
 
-def sampled(cases: Sequence[Case], most: int | None, seed: int) -> list[Case]:
-    """Return at most ``most`` cases of each kind, drawn with a seed; all if it is None."""
+def sampled(suite: Suite, most: int | None, seed: int) -> list[str]:
+    """Return the ids of at most ``most`` mutants of each kind, drawn with a seed; None: all."""
     if most is None:
-        return list(cases)
+        return list(suite.mutants)
     random = Random(seed)
-    kinds = dict.fromkeys(case.kind for case in cases)
-    chosen = {
-        case
-        for kind in kinds
-        for case in _some([case for case in cases if case.kind == kind], most, random)
-    }
-    return [case for case in cases if case in chosen]
-
-
-def _some(cases: list[Case], most: int, random: Random) -> list[Case]:
-    return random.sample(cases, min(most, len(cases)))
+    kinds: dict[str, list[str]] = {}
+    for mutant in suite.mutants.values():
+        kinds.setdefault(mutant.kind, []).append(mutant.id)
+    chosen = {id for ids in kinds.values() for id in random.sample(ids, min(most, len(ids)))}
+    return [id for id in suite.mutants if id in chosen]
 
 
 @cache
-def _suite(place: int) -> Suite:
-    return SUITES[place]()
+def made(key: Key) -> Suite:
+    """Return a suite, made once in each process."""
+    return TESTERS[key.tester](editions.load(key.edition).TABLE)
 
 
-def _judge(task: _Task) -> Outcome:
-    return _suite(task.suite).judge(task.case)
+def _judged(task: tuple[Key, str]) -> Outcome:
+    key, id = task
+    return made(key).judge(id)
 
 
-def _accept(task: _RightTask) -> RightRun:
-    return _suite(task.suite).accept(task.run)
+def _accepted(task: tuple[Key, str]) -> RightRun:
+    key, name = task
+    return RightRun(name, made(key).failure(name))

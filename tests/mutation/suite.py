@@ -1,16 +1,11 @@
-"""The interface of the suites, so that one run counts all mutants."""
+"""A suite: one tester, one edition, and the mutants that the tester must kill."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from typing import NamedTuple, Protocol
+from collections.abc import Iterable, Sequence
+from typing import Any, NamedTuple
 
-
-class Case(NamedTuple):
-    """A mutant, by its id within its suite and the kind of its fault."""
-
-    id: str
-    kind: str
+from cobotwire.protocol.table import Table
 
 
 class Outcome(NamedTuple):
@@ -20,58 +15,59 @@ class Outcome(NamedTuple):
     ``crash`` describes how the tester crashed on it, which nothing excuses.
     """
 
-    case: Case
+    id: str
+    kind: str
     killed_by: str
     reason: str = ""
     crash: str = ""
 
 
 class RightRun(NamedTuple):
-    """A run of the tester on a correct subject; ``text`` lists the failures it reported."""
+    """A run of the tester on a correct subject; ``failure`` is what it reported, if anything."""
 
     name: str
-    passed: bool
-    text: str = ""
+    failure: str
 
 
-class Suite(Protocol):
+class Suite:
     """One tester and one edition: the mutants, and whether the tester kills them.
 
-    Each process makes its own suite, so its cases must be the same each time.
+    Each mutant has the ``kind`` of its fault, and an ``id`` that is unique in its suite. Each
+    process makes its own suite, so its mutants must be the same each time.
     """
 
-    @property
-    def name(self) -> str:
-        """The name in tables (``device, mycobot280``)."""
-        ...
+    # The names of the runs on a correct subject, which must pass.
+    right_runs: Sequence[str]
 
-    def cases(self) -> Sequence[Case]:
-        """Return every mutant."""
-        ...
+    def __init__(self, table: Table, mutants: Iterable[Any]) -> None:
+        self.table = table
+        every = list(mutants)
+        self.mutants = {mutant.id: mutant for mutant in every}
+        assert len(self.mutants) == len(every), "ids are unique"
 
-    def judge(self, case: Case) -> Outcome:
-        """Run the tester on one mutant."""
-        ...
+    def judge(self, id: str) -> Outcome:
+        """Run the tester on a mutant; if it survives, let the oracle give the reason."""
+        mutant = self.mutants[id]
+        try:
+            killer = self.killer(mutant)
+            return Outcome(id, mutant.kind, killer, "" if killer else self.reason(mutant))
+        except Exception as error:
+            # No subject, whatever it does, may crash the tester or the oracle.
+            return Outcome(id, mutant.kind, "", "", f"{type(error).__name__}: {error}")
 
-    def right_runs(self) -> Sequence[str]:
-        """Return the names of the runs on a correct subject, which must pass."""
-        ...
+    def killer(self, mutant: Any) -> str:
+        """Return the first failure that the tester reports; empty if there is none."""
+        raise NotImplementedError
 
-    def accept(self, run: str) -> RightRun:
-        """Run the tester on a correct subject."""
-        ...
+    def reason(self, mutant: Any) -> str:
+        """Return why no test case can find a mutant; empty if one could."""
+        raise NotImplementedError
 
-
-def total(outcomes: Sequence[Outcome]) -> tuple[int, int, int]:
-    """Return how many are killed, how many are excused, and how many there are."""
-    killed = sum(bool(outcome.killed_by) for outcome in outcomes)
-    excused = sum(bool(not outcome.killed_by and outcome.reason) for outcome in outcomes)
-    return killed, excused, len(outcomes)
+    def failure(self, run: str) -> str:
+        """Return what the tester reports on a correct subject; empty if it passes."""
+        raise NotImplementedError
 
 
-def by_kind(outcomes: Sequence[Outcome]) -> Iterator[tuple[str, list[Outcome]]]:
-    """Yield the outcomes of each kind, in the order of the cases."""
-    kinds: dict[str, list[Outcome]] = {}
-    for outcome in outcomes:
-        kinds.setdefault(outcome.case.kind, []).append(outcome)
-    yield from kinds.items()
+def missed(outcomes: Iterable[Outcome]) -> list[Outcome]:
+    """Return what survived without a reason."""
+    return [outcome for outcome in outcomes if not (outcome.killed_by or outcome.reason)]

@@ -28,10 +28,10 @@ class WrongTable(NamedTuple):
     table: Table
 
     @property
-    def id(self) -> str:
-        """The name, unique within an edition."""
+    def name(self) -> str:
+        """The place and the fault."""
         command, direction, variant, _ = self.place
-        return f"{self.kind}: {command} {direction} {variant + 1}: {self.text}"
+        return f"{command} {direction} {variant + 1}: {self.text}"
 
 
 def wrong_tables(table: Table, directions: tuple[Direction, ...] = DIRECTIONS) -> list[WrongTable]:
@@ -58,7 +58,8 @@ def _of_variant(table: Table, place: Place, variant: Variant) -> Iterator[WrongT
             yield WrongTable(kind, at, f"{field.name} {text}", _with_field(table, at, wrong))
     for first in range(len(variant.fields) - 1):
         a, b = variant.fields[first : first + 2]
-        if a.selector < 0 and b.selector < 0 and not _chosen(variant, first, first + 1):
+        selectors = {field.selector for field in variant.fields}
+        if max(a.selector, b.selector) < 0 and not {first, first + 1} & selectors:
             fields = (*variant.fields[:first], b, a, *variant.fields[first + 2 :])
             text = f"{b.name} before {a.name}"
             yield WrongTable("order", place, text, _with_variant(table, place, Variant(fields)))
@@ -76,11 +77,6 @@ def _of_message(table: Table, place: Place) -> Iterator[WrongTable]:
     rest = (*variants[: place.variant], *variants[place.variant + 1 :])
     wrong = with_command(table, command, _with_variants(command, place.direction, rest))
     yield WrongTable("variant", place, "without this variant", wrong)
-
-
-def _chosen(variant: Variant, *indices: int) -> bool:
-    """Return whether one of the variant's fields selects the case of another one."""
-    return any(field.selector in indices for field in variant.fields)
 
 
 def _of_field(field: Field) -> Iterator[tuple[str, str, Field]]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 from cobotwire_codegen.load import Mapping, Node, Scalar, Sequence
 
@@ -11,26 +12,22 @@ Path = tuple[str | int, ...]
 
 def changed(root: Node, path: Path, new: Node | None) -> Node:
     """Return a tree with another node at ``path``; None removes the node."""
-    step, rest = path[0], path[1:]
-    if isinstance(root, Mapping) and isinstance(step, str):
-        entries = dict(root.entries)
-        if rest:
-            entries[step] = changed(entries[step], rest, new)
-        elif new is None:
-            del entries[step]
-        else:
-            entries[step] = new
-        return replace(root, entries=entries)
+    if isinstance(root, Mapping):
+        return replace(root, entries=_with_child(dict(root.entries), path, new))
     assert isinstance(root, Sequence)
-    assert isinstance(step, int)
-    items = list(root.items)
+    items = _with_child(dict(enumerate(root.items)), path, new)
+    return replace(root, items=tuple(items.values()))
+
+
+def _with_child(children: dict[Any, Node], path: Path, new: Node | None) -> dict[Any, Node]:
+    step, rest = path[0], path[1:]
     if rest:
-        items[step] = changed(items[step], rest, new)
+        children[step] = changed(children[step], rest, new)
     elif new is None:
-        del items[step]
+        del children[step]
     else:
-        items[step] = new
-    return replace(root, items=tuple(items))
+        children[step] = new
+    return children
 
 
 def with_key(root: Mapping, old: str, new: str) -> Mapping:

@@ -10,6 +10,7 @@ from cobotwire.protocol.errors import UsageError
 from cobotwire.simulator.clock import SteppedClock
 from cobotwire.simulator.faults import Late, Scenario
 from cobotwire.simulator.faults.noise import COMMAND_ERROR, LEAKS
+from conformance.client.playing import play
 
 REQUEST, REPLY = bytes.fromhex("FEFE0212FA"), bytes.fromhex("FEFE031201FA")
 SERVO_PACKET = LEAKS["status"]
@@ -19,20 +20,8 @@ def _replies(*faults: str, every: int = 1, requests: int = 1) -> list[tuple[floa
     """Send a request each second; return the time and the bytes of each reply."""
     clock = SteppedClock()
     referee = Referee(TABLE, scenario=faulty_replies(0.008, faults, every), clock=clock)
-    received: list[tuple[float, bytes]] = []
-    for _ in range(requests):
-        end = clock() + 1.0
-        data = referee.receive(REQUEST)
-        while True:
-            if data:
-                received.append((round(clock(), 3), data))
-            wait = referee.wait
-            if wait is None or clock() + wait > end:
-                break
-            clock.sleep(wait)
-            data = referee.flush()
-        clock.sleep(end - clock())
-    return received
+    writes = [(float(number > 0), REQUEST) for number in range(requests)]
+    return play(referee, clock, [*writes, (1.0, b"")])
 
 
 def test_good_reply_arrives_whole_after_the_delay() -> None:
@@ -77,14 +66,8 @@ def test_late_reply_to_an_equal_request_ends_the_wait(next_at: float, *, waits: 
     scenario = Scenario(name="late", faults=(Late(seconds=0.008), late))
     referee = Referee(TABLE, scenario=scenario, clock=clock)
     # The first request has its reply after 208 ms, the third would have it after 213 ms.
-    for at, request in ((0.0, REQUEST), (0.1, REQUEST), (0.205, REQUEST), (next_at, GET_ANGLES)):
-        while (wait := referee.wait) is not None and clock() + wait <= at:
-            clock.sleep(wait)
-            referee.flush()
-        clock.sleep(at - clock())
-        referee.receive(request)
-    clock.sleep(1.0)
-    referee.flush()
+    writes = [(0.0, REQUEST), (0.1, REQUEST), (0.105, REQUEST), (next_at - 0.205, GET_ANGLES)]
+    play(referee, clock, [*writes, (1.0, b"")])
     failed = {result.case for result in referee.finish().failures}
     assert failed == (set() if waits else {"reply-awaited"})
 

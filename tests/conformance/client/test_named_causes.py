@@ -20,31 +20,6 @@ def only(report: Report, case: str) -> Result:
     return found
 
 
-def test_wrong_len_names_command_allowed_len_and_whole_frame() -> None:
-    found = only(judged(spaced(bytes.fromhex("FEFE032000FA"))), "frame-length")
-    assert found.command == "get_angles"
-    assert "LEN is 03, but get_angles or get_radians has LEN 02" in found.reason
-    assert "FE FE [LEN 03] [id 20] 00 FA" in found.reason
-    assert found.evidence[-1].data == bytes.fromhex("FEFE032000FA")
-
-
-def test_unknown_id_is_shown_with_its_whole_frame() -> None:
-    found = only(judged(spaced(bytes.fromhex("FEFE049A0102FA"))), "frame-id")
-    assert "no command with the id 9A: FE FE [LEN 04] [id 9A] 01 02 FA" in found.reason
-
-
-@pytest.mark.parametrize(
-    ("sent", "case", "words"),
-    [
-        ("FEFE0220FB", "frame-footer", "the footer FA after 4 bytes: FE FE [LEN 02] [id 20] [foo"),
-        ("FEFE062101", "frame-whole", "send_angle breaks off: 4 more bytes follow LEN 06"),
-        ("010203", "stray-bytes", "bytes outside any frame: 01 02 03"),
-    ],
-)
-def test_other_broken_frames_are_shown_whole(sent: str, case: str, words: str) -> None:
-    assert words in only(judged(spaced(bytes.fromhex(sent))), case).reason
-
-
 def test_frame_in_pieces_is_one_occurrence_and_shown_whole() -> None:
     pieces = [(1.2, bytes.fromhex("FEFE03")), (0.05, bytes.fromhex("2000")), (0.05, b"\xfa")]
     found = only(judged(pieces), "frame-length")
@@ -109,8 +84,7 @@ def test_stop_pause_resume_and_clear_queue_are_legal_without_power(off: bytes, f
 
 
 @pytest.mark.parametrize("motion", [STEP, bytes.fromhex("FEFE02D4FA")])
-def test_motion_without_power_or_with_released_joints_fails(motion: bytes) -> None:
-    assert "switched off" in only(judged(spaced(POWER_OFF, motion)), "motion-powered").reason
+def test_motion_with_released_joints_fails(motion: bytes) -> None:
     assert "released" in only(judged(spaced(RELEASE_ALL, motion)), "motion-powered").reason
 
 

@@ -6,9 +6,10 @@ import sys
 
 import pytest
 
-from cobotwire.conformance.codec import Program, Run, derive_questions
+from cobotwire.conformance.codec import Program, Run
 from cobotwire.conformance.report import Report, Verdict
 from cobotwire.editions.mycobot280 import TABLE
+from conformance.codec.questions import questions_of
 
 COMMANDS = ("send_angle", "get_angles", "get_encoder", "get_coords", "set_color", "get_radians")
 
@@ -16,7 +17,7 @@ COMMANDS = ("send_angle", "get_angles", "get_encoder", "get_coords", "set_color"
 @pytest.fixture(scope="module")
 def report() -> Report:
     adapter = [sys.executable, "-m", "cobotwire.conformance.codec.adapter", "pymycobot"]
-    questions = [q for q in derive_questions(TABLE) if q.command in COMMANDS]
+    questions = [q for q in questions_of("mycobot280") if q.command in COMMANDS]
     with Program(adapter) as program:
         return Run(TABLE, program).ask_all(questions)
 

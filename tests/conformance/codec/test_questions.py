@@ -4,21 +4,16 @@ from __future__ import annotations
 
 import json
 from collections import Counter
-from functools import lru_cache
 
 import pytest
 
 from cobotwire import codec as codecs
-from cobotwire.conformance.codec import Question, Run, derive_questions
+from cobotwire.conformance.codec import Run, derive_questions
 from cobotwire.conformance.codec.questions.frames import variants_of
 from cobotwire.conformance.codec.questions.our_codec import OurCodec
 from cobotwire.conformance.report import Verdict
+from conformance.codec.questions import questions_of
 from strategies import TABLES
-
-
-@lru_cache
-def questions_of(edition: str) -> list[Question]:
-    return list(derive_questions(TABLES[edition]))
 
 
 @pytest.mark.parametrize("name", ["native", "reference"])
@@ -44,7 +39,7 @@ def test_every_variant_is_encoded_decoded_and_framed(edition: str) -> None:
 
 
 def test_questions_are_the_same_every_time_and_have_unique_names() -> None:
-    first, again = questions_of("mycobot280"), list(derive_questions(TABLES["mycobot280"]))
+    first, again = questions_of("mycobot"), list(derive_questions(TABLES["mycobot"]))
     assert first == again
     assert len({question.name for question in first}) == len(first)
 

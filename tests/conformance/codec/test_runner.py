@@ -20,15 +20,15 @@ from cobotwire.conformance.codec import (
     Program,
     Question,
     Run,
-    derive_questions,
     read_expectations,
 )
 from cobotwire.conformance.codec.questions.our_codec import OurCodec
 from cobotwire.conformance.codec.questions.question import Json
-from cobotwire.conformance.report import Cause, Report, Result, Verdict
+from cobotwire.conformance.report import Cause, Report
 from cobotwire.conformance.reports import from_json, to_html, to_json, to_junit
 from cobotwire.editions.mycobot import TABLE
 from cobotwire.protocol.errors import LinkError, UsageError
+from conformance.codec.questions import questions_of
 
 HELLO = (
     "import json, sys, time\n"
@@ -41,7 +41,7 @@ ASKED = "asked = json.loads(input())\n"
 
 @pytest.fixture(scope="module")
 def questions() -> list[Question]:
-    return [q for q in derive_questions(TABLE) if q.command == "get_angles"]
+    return [q for q in questions_of("mycobot") if q.command == "get_angles"]
 
 
 @pytest.fixture(scope="module")
@@ -51,10 +51,6 @@ def decoding(questions: list[Question]) -> list[Question]:
 
 def _program(source: str, timeout: float = 5.0) -> Program:
     return Program([sys.executable, "-c", HELLO + source], timeout=timeout)
-
-
-def _failed(report: Report) -> list[Result]:
-    return [result for result in report.results if result.verdict is Verdict.FAIL]
 
 
 @pytest.mark.parametrize(
@@ -73,7 +69,7 @@ def test_command_without_an_answer_fails_and_is_asked_again_until_it_died_five_t
 ) -> None:
     with _program(source) as program:
         report = Run(TABLE, program).ask_all(decoding[:8])
-    [failure] = _failed(report)
+    [failure] = report.failures
     assert failure.case == "answers"
     assert message in failure.reason
     assert failure.reason.endswith("(5 of 5 failed)")
@@ -85,7 +81,7 @@ def test_command_that_hangs_fails_after_its_timeout(decoding: list[Question]) ->
     began = time.monotonic()
     with _program(ASKED + "time.sleep(60)", timeout=0.2) as program:
         report = Run(TABLE, program).ask_all(decoding[:1])
-    assert "no answer within 0.2 s" in _failed(report)[0].reason
+    assert "no answer within 0.2 s" in report.failures[0].reason
     assert time.monotonic() - began < 10
 
 
@@ -158,7 +154,7 @@ def test_wrong_value_fails_with_its_field_and_both_values(questions: list[Questi
         fields = {name: [v * 10 for v in row] for name, row in answer["fields"].items()}
         return {**answer, "fields": fields}
 
-    [failure] = _failed(Run(TABLE, _Changed(tenfold)).ask_all(questions))
+    [failure] = Run(TABLE, _Changed(tenfold)).ask_all(questions).failures
     assert (failure.case, failure.command) == ("decode-values", "get_angles")
     assert "angles: expected [" in failure.reason
     assert [exchange.direction for exchange in failure.evidence] == ["sent", "received"]
@@ -174,7 +170,7 @@ def test_answer_may_omit_an_echo_but_no_other_field() -> None:
 
     about = [
         t
-        for t in derive_questions(TABLE)
+        for t in questions_of("mycobot")
         if t.name.startswith("decode-values/get_joint_min_angle/rep")
     ]
     assert about
@@ -214,7 +210,7 @@ def test_expected_failure_is_excused_with_its_reason(questions: list[Question]) 
 def test_expectation_that_is_not_met_fails(
     questions: list[Question], line: str, message: str
 ) -> None:
-    [failure] = _failed(_run_with(line, questions, lambda answer: answer))
+    [failure] = _run_with(line, questions, lambda answer: answer).failures
     assert failure.case == "expected-failure"
     assert message in failure.reason
 
@@ -279,7 +275,7 @@ JSON = st.recursive(
 )
 
 
-ONE_OF_EACH_CASE = list({q.case: q for q in derive_questions(TABLE)}.values())
+ONE_OF_EACH_CASE = list({q.case: q for q in questions_of("mycobot")}.values())
 
 
 @given(st.lists(JSON, min_size=1, max_size=6))
@@ -310,7 +306,7 @@ def test_answer_that_is_nested_deeply_is_babbling(
     answer = f"print('{{\"id\": %d, \"fields\": %s}}' % (asked['id'], {nested}), flush=True)\n"
     with _program(ASKED + answer + "time.sleep(2)") as program:
         report = Run(TABLE, program).ask_all(decoding[:1])
-    [failure] = [result for result in _failed(report) if "nested" in result.reason]
+    [failure] = [result for result in report.failures if "nested" in result.reason]
     assert "is nested too deeply" in failure.reason
 
 

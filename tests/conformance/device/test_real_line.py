@@ -13,11 +13,13 @@ from pathlib import Path
 
 import pytest
 
+import in_process
 import vectors
 from cobotwire import editions
+from cobotwire.cli.app import app
 from cobotwire.conformance import Verdict
 from cobotwire.conformance.device import DeviceConnection, Permissions, Tester
-from cobotwire.conformance.reports import from_json, to_json
+from cobotwire.conformance.reports import from_json
 from cobotwire.simulator import PtyServer, SimulatedArm
 from cobotwire.transport import open_transport
 from conformance.device.testing import prepared
@@ -67,31 +69,17 @@ def test_ctrl_c_stops_the_arm_restores_settings_and_writes_a_report(tmp_path: Pa
     assert (arm.state.minimum, arm.state.maximum) == limits
 
 
-def _run(*words: str) -> subprocess.CompletedProcess[str]:
-    return subprocess.run(words, capture_output=True, text=True, check=False, cwd=vectors.ROOT)
-
-
 def test_exit_code_shows_whether_the_device_conforms() -> None:
-    assert _run(*WORDS, "--simulated").returncode == 0
-    assert _run(*WORDS, "/dev/no-such-port").returncode == 2
-    refused = _run(*WORDS, "--simulated", "--allow", "motion")
+    def run(edition: str, *words: str) -> in_process.Ended:
+        words = ("--edition", edition, "conform", "device", *words)
+        return in_process.run(app, "cobotwire", *words)
+
+    refused = run("mycobot280", "--simulated", "--allow", "motion")
     assert refused.returncode == 2
     assert "max_speed" in refused.stderr
     # The document's edition has commands that today's firmware lacks.
-    other = [*VERB, "--edition", "mycobot", "conform", "device"]
     with PtyServer(SimulatedArm(TABLE)) as server:
-        assert _run(*other, server.url).returncode == 1
-
-
-def test_report_of_a_step_survives_json() -> None:
-    with PtyServer(SimulatedArm(TABLE)) as server:
-        transport = open_transport(server.url, TABLE.baudrate)
-        tester = Tester(DeviceConnection(transport), TABLE)
-        tester.report.results += tester.results(next(tester.steps()))
-        transport.close()
-    again = from_json(to_json(tester.report))
-    assert to_json(again) == to_json(tester.report)
-    assert again.results[0].verdict is Verdict.PASS
+        assert run("mycobot", server.url).returncode == 1
 
 
 def test_plugin_without_a_device_is_a_usage_error(tmp_path: Path) -> None:

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from copy import deepcopy
+from typing import Any
 
-from cobotwire.conformance import Report, Result
+from cobotwire.conformance import Result
 from cobotwire.conformance.device import ALL_PERMISSIONS, DeviceConnection, Permissions, Tester
 from cobotwire.protocol.table import Table
 from cobotwire.simulator import SimulatedArm
@@ -16,26 +17,37 @@ from cobotwire.simulator.peer import Peer
 Wrap = Callable[[SimulatedArm], Peer]
 
 
-def permissions(*classes: str, joints: int = 6) -> Permissions:
+def permissions(*classes: str, joints: int = 6, max_speed: int = 60) -> Permissions:
     """Return permissions, with a small workspace if motion is among them."""
     space = {joint: (-60.0, 60.0) for joint in range(1, joints + 1)}
-    return Permissions.of(classes, joints=joints, max_speed=60, workspace=space)
+    return Permissions.of(classes, joints=joints, max_speed=max_speed, workspace=space)
+
+
+def on_peer(
+    peer: Peer, clock: SteppedClock, table: Table, tester: type[Tester] = Tester, **options: Any
+) -> Tester:
+    """Return a tester of a peer that uses the clock; by default with all permissions."""
+    options.setdefault("permissions", permissions(*ALL_PERMISSIONS, joints=table.joints))
+    line = DeviceConnection(MemoryTransport(peer, clock), clock)
+    return tester(line, table, **options)
 
 
 def prepared(
-    table: Table, wrap: Wrap = lambda arm: arm, *, device: Table | None = None, **options: object
+    table: Table, wrap: Wrap = lambda arm: arm, *, device: Table | None = None, **options: Any
 ) -> Tester:
     """Return a tester for an edition; the arm has the edition of ``device``, and is wrapped."""
     clock = SteppedClock()
-    peer = wrap(SimulatedArm(device or table, clock=clock))
-    allowed = options.pop("permissions", permissions(*ALL_PERMISSIONS))
-    line = DeviceConnection(MemoryTransport(peer, clock), clock)
-    return Tester(line, table, permissions=allowed, **options)  # type: ignore[arg-type]  # as they come
+    return on_peer(wrap(SimulatedArm(device or table, clock=clock)), clock, table, **options)
 
 
-def bad(report: Report) -> list[Result]:
-    """Return the failures."""
-    return report.failures
+def results_of(tester: Tester, *commands: str) -> list[Result]:
+    """Run only the steps of some commands, and those of the line as a whole if one is empty."""
+    return [
+        result
+        for step in tester.steps()
+        if (step.command.name if step.command else "") in commands
+        for result in tester.results(step)
+    ]
 
 
 class Altered:

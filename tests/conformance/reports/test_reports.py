@@ -126,8 +126,7 @@ def test_report_with_a_wrong_value_is_rejected_or_can_be_compared(
     except UsageError:
         return
     found.kind = report.kind
-    compare(report, found)
-    compare(found, report)
+    assert len(compare(report, found).changes) == len(compare(found, report).changes)
     to_html(found).encode()
     to_junit(found).encode()
 

@@ -153,6 +153,20 @@ static void say(mycobot_message_t message, const void *numbers)
         say(MYCOBOT_##name##_REPLY, &out); \
         break
 
+/* A query of one joint or pin, which the reply repeats. */
+#define PART(name, type, part, member, value) \
+    case MYCOBOT_##name##_REQUEST: \
+        i = (int)in->type##_request.part; \
+        out.type##_reply.part = i; \
+        out.type##_reply.member = (value); \
+        say(MYCOBOT_##name##_REPLY, &out); \
+        break
+
+#define SET(name, target, value) \
+    case MYCOBOT_##name##_REQUEST: \
+        target = (int)(value); \
+        break
+
 static void set_row(int32_t to[6], const mycobot_raw_t *from)
 {
     int i;
@@ -233,42 +247,17 @@ static void query(mycobot_message_t message, const mycobot_any_t *in)
         say_row(MYCOBOT_GET_WORLD_REFERENCE_REPLY, out.get_world_reference_reply.coords,
             arm.references[WORLD]);
         break;
-    case MYCOBOT_GET_JOINT_MIN_ANGLE_REQUEST:
-        i = (int)in->get_joint_min_angle_request.joint;
-        out.get_joint_min_angle_reply.joint = i;
-        out.get_joint_min_angle_reply.angle = arm.minimum[i - 1];
-        say(MYCOBOT_GET_JOINT_MIN_ANGLE_REPLY, &out);
-        break;
-    case MYCOBOT_GET_JOINT_MAX_ANGLE_REQUEST:
-        i = (int)in->get_joint_max_angle_request.joint;
-        out.get_joint_max_angle_reply.joint = i;
-        out.get_joint_max_angle_reply.angle = arm.maximum[i - 1];
-        say(MYCOBOT_GET_JOINT_MAX_ANGLE_REPLY, &out);
-        break;
-    case MYCOBOT_IS_SERVO_ENABLE_REQUEST:
-        i = (int)in->is_servo_enable_request.joint;
-        out.is_servo_enable_reply.joint = i;
-        out.is_servo_enable_reply.enabled = arm.enabled[i - 1];
-        say(MYCOBOT_IS_SERVO_ENABLE_REPLY, &out);
-        break;
+    PART(GET_JOINT_MIN_ANGLE, get_joint_min_angle, joint, angle, arm.minimum[i - 1]);
+    PART(GET_JOINT_MAX_ANGLE, get_joint_max_angle, joint, angle, arm.maximum[i - 1]);
+    PART(IS_SERVO_ENABLE, is_servo_enable, joint, enabled, arm.enabled[i - 1]);
+    PART(GET_DIGITAL_INPUT, get_digital_input, pin, high, arm.pins[0][i]);
+    PART(GET_BASIC_INPUT, get_basic_input, pin, high, arm.pins[1][i]);
     case MYCOBOT_IS_ALL_SERVO_ENABLE_REQUEST:
         out.is_all_servo_enable_reply.enabled = 1;
         for (i = 0; i < JOINTS; i++) {
             out.is_all_servo_enable_reply.enabled &= arm.enabled[i];
         }
         say(MYCOBOT_IS_ALL_SERVO_ENABLE_REPLY, &out);
-        break;
-    case MYCOBOT_GET_DIGITAL_INPUT_REQUEST:
-        i = (int)in->get_digital_input_request.pin;
-        out.get_digital_input_reply.pin = i;
-        out.get_digital_input_reply.high = arm.pins[0][i];
-        say(MYCOBOT_GET_DIGITAL_INPUT_REPLY, &out);
-        break;
-    case MYCOBOT_GET_BASIC_INPUT_REQUEST:
-        i = (int)in->get_basic_input_request.pin;
-        out.get_basic_input_reply.pin = i;
-        out.get_basic_input_reply.high = arm.pins[1][i];
-        say(MYCOBOT_GET_BASIC_INPUT_REPLY, &out);
         break;
     default:
         break;
@@ -297,43 +286,28 @@ static void change(mycobot_message_t message, const mycobot_any_t *in)
     case MYCOBOT_RELEASE_ALL_SERVOS_REQUEST:
         hold_all(0);
         break;
-    case MYCOBOT_RELEASE_SERVO_REQUEST:
-        arm.enabled[in->release_servo_request.joint - 1] = 0;
-        break;
-    case MYCOBOT_FOCUS_SERVO_REQUEST:
-        arm.enabled[in->focus_servo_request.joint - 1] = 1;
-        break;
-    case MYCOBOT_SET_FREE_MODE_REQUEST:
-        arm.free_mode = (int)in->set_free_mode_request.free;
-        break;
-    case MYCOBOT_SET_SPEED_REQUEST:
-        arm.speed = (int)in->set_speed_request.speed;
-        break;
-    case MYCOBOT_SET_REFERENCE_FRAME_REQUEST:
-        arm.frame = (int)in->set_reference_frame_request.frame;
-        break;
-    case MYCOBOT_SET_END_TYPE_REQUEST:
-        arm.end = (int)in->set_end_type_request.end;
-        break;
+    SET(RELEASE_SERVO, arm.enabled[in->release_servo_request.joint - 1], 0);
+    SET(FOCUS_SERVO, arm.enabled[in->focus_servo_request.joint - 1], 1);
+    SET(SET_FREE_MODE, arm.free_mode, in->set_free_mode_request.free);
+    SET(SET_SPEED, arm.speed, in->set_speed_request.speed);
+    SET(SET_REFERENCE_FRAME, arm.frame, in->set_reference_frame_request.frame);
+    SET(SET_END_TYPE, arm.end, in->set_end_type_request.end);
     case MYCOBOT_SET_TOOL_REFERENCE_REQUEST:
         set_row(arm.references[TOOL], in->set_tool_reference_request.coords);
         break;
     case MYCOBOT_SET_WORLD_REFERENCE_REQUEST:
         set_row(arm.references[WORLD], in->set_world_reference_request.coords);
         break;
-    case MYCOBOT_SET_JOINT_MIN_REQUEST:
-        arm.minimum[in->set_joint_min_request.joint - 1]
-            = (int)lround(in->set_joint_min_request.angle / 10.0);
-        break;
-    case MYCOBOT_SET_JOINT_MAX_REQUEST:
-        arm.maximum[in->set_joint_max_request.joint - 1]
-            = (int)lround(in->set_joint_max_request.angle / 10.0);
-        break;
-    case MYCOBOT_SET_SERVO_DATA_REQUEST:
+    SET(SET_JOINT_MIN, arm.minimum[in->set_joint_min_request.joint - 1],
+        lround(in->set_joint_min_request.angle / 10.0));
+    SET(SET_JOINT_MAX, arm.maximum[in->set_joint_max_request.joint - 1],
+        lround(in->set_joint_max_request.angle / 10.0));
+    SET(SET_SERVO_DATA,
         arm.registers[in->set_servo_data_request.joint - 1]
-                     [in->set_servo_data_request.register_ - 20]
-            = (int)in->set_servo_data_request.value;
-        break;
+                     [in->set_servo_data_request.register_ - 20],
+        in->set_servo_data_request.value);
+    SET(SET_BASIC_OUTPUT, arm.pins[1][in->set_basic_output_request.pin],
+        in->set_basic_output_request.high);
     case MYCOBOT_SET_DIGITAL_OUTPUT_REQUEST:
 #ifdef DEFECT_PIN_INDEX
         if (in->set_digital_output_request.pin > 63) {
@@ -345,9 +319,6 @@ static void change(mycobot_message_t message, const mycobot_any_t *in)
 #ifdef DEFECT_TRUE_IS_MINUS_ONE
         arm.pins[0][in->set_digital_output_request.pin] *= -1;
 #endif
-        break;
-    case MYCOBOT_SET_BASIC_OUTPUT_REQUEST:
-        arm.pins[1][in->set_basic_output_request.pin] = (int)in->set_basic_output_request.high;
         break;
     default:
         break;

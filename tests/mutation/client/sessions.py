@@ -1,23 +1,46 @@
-"""Short sessions about one request: the request, with a query before and after it."""
+"""Short sessions about one request, with a query before and after it; and clients with a fault."""
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+from functools import cached_property
 from typing import Any, NamedTuple
 
 from cobotwire.codec.reference import ReferenceCodec
 from cobotwire.conformance.client import ScriptLine
 from cobotwire.conformance.codec.questions.frames import frame_of
-from cobotwire.conformance.samples import (
-    RawValues,
-    ordinary,
-    physical_values,
-)
+from cobotwire.conformance.samples import RawValues, ordinary, physical_values
 from cobotwire.protocol.table import Command, Table, Variant
 from cobotwire.session import text
-from mutation.client.mutant import PAUSE, Sent
+
+# Longer than any reply takes, and longer than a session waits for a late one.
+PAUSE = 1.2
 
 
-class Session(NamedTuple):
+class Sent(NamedTuple):
+    """A write, ``after`` seconds after the previous one."""
+
+    after: float
+    data: bytes
+
+
+class ClientMutant(NamedTuple):
+    """A client with a fault. ``script`` is what it should send; if ``lost``, it gets no reply."""
+
+    kind: str
+    text: str
+    script: tuple[ScriptLine, ...]
+    writes: tuple[Sent, ...]
+    lost: bool = False
+
+    @property
+    def id(self) -> str:
+        """The name in tables."""
+        return f"{self.kind}: {self.text}"
+
+
+@dataclass(frozen=True)
+class Session:
     """A request with its bytes, and the queries around it."""
 
     table: Table
@@ -31,7 +54,7 @@ class Session(NamedTuple):
         """The session's name in mutant ids."""
         return f"{self.command.name} {self.position + 1}"
 
-    @property
+    @cached_property
     def frame(self) -> bytes:
         """The unchanged request."""
         return self.frame_with(self.raw_values)
@@ -40,7 +63,7 @@ class Session(NamedTuple):
         """Return the request with other raw values."""
         return frame_of(self.table, self.command.id, self.variant.pack(raw_values))
 
-    @property
+    @cached_property
     def text(self) -> bytes:
         """The text that follows the request, if it has one."""
         request_text = self.command.request_text
@@ -48,7 +71,7 @@ class Session(NamedTuple):
             return b""
         return text.encode(request_text, {name: "word" for name in request_text.fields})
 
-    @property
+    @cached_property
     def other(self) -> Command:
         """A query with another id and without arguments, such as that of the power."""
         roles = ("powered", "joints")
@@ -60,20 +83,32 @@ class Session(NamedTuple):
             c for c in queries if c.id != self.command.id and not any(v.fields for v in c.request)
         )
 
-    @property
+    @cached_property
     def query(self) -> bytes:
         """The bytes of the query."""
         return frame_of(self.table, self.other.id, b"")
 
-    def script(self, *between: ScriptLine) -> tuple[ScriptLine, ...]:
-        """Return the script: query, request, query."""
+    @cached_property
+    def line(self) -> ScriptLine:
+        """The line of a script with the request."""
         values = tuple(physical_values(self.variant, self.raw_values).values())
-        query_line = ScriptLine(self.other, (), "before")
-        return (query_line, ScriptLine(self.command, values, "the call"), *between, query_line)
+        return ScriptLine(self.command, values, "the call")
 
-    def writes(self, *frames: bytes) -> tuple[Sent, ...]:
-        """Return the queries with other writes in place of the request."""
-        return tuple(Sent(PAUSE, data) for data in (self.query, *frames, self.query))
+    @cached_property
+    def whole(self) -> bytes:
+        """The unchanged request with its text."""
+        return self.frame + self.text
+
+    def mutant(self, kind: str, text: str, *frames: bytes) -> ClientMutant:
+        """Return a client that sends something else in place of the request."""
+        writes = [Sent(PAUSE, data) for data in (self.query, *frames, self.query)]
+        return self.timed(kind, text, *writes)
+
+    def timed(self, kind: str, text: str, *writes: Sent) -> ClientMutant:
+        """Return a client that writes at other times; ``text`` follows the session's name."""
+        query = ScriptLine(self.other, (), "before")
+        script = (query, self.line, query)
+        return ClientMutant(kind, f"{self.place}: {text}", script, writes)
 
 
 def sessions(table: Table) -> list[Session]:

@@ -1,8 +1,8 @@
-"""The suite of the referee: broken and correct clients, with or without a script."""
+"""The suites of the referee: broken and correct clients, with or without a script."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from random import Random
 
 from cobotwire.codec.reference import ReferenceCodec
@@ -18,58 +18,41 @@ from cobotwire.protocol.errors import ProtocolError
 from cobotwire.protocol.table import Table
 from cobotwire.simulator.clock import SteppedClock
 from cobotwire.simulator.faults import Scenario
+from conformance.client.playing import play
 from mutation.client.frames import wrong_frames, wrong_times, wrong_turns
-from mutation.client.mutant import PAUSE, ClientMutant, Sent
-from mutation.client.sessions import sessions
+from mutation.client.sessions import PAUSE, ClientMutant, Sent, sessions
 from mutation.client.values import wrong_values
-from mutation.suite import Case, Outcome, RightRun
+from mutation.suite import Suite
 
 RUNS = 20
 
 
-class ClientSuite:
-    """See :class:`mutation.suite.Suite`."""
+class ClientSuite(Suite):
+    """Broken clients, and a correct one on good lines and with each fault."""
 
-    def __init__(self, table: Table, with_script: bool) -> None:
-        self._table = table
+    def __init__(self, table: Table, *, with_script: bool = True) -> None:
+        super().__init__(table, client_mutants(table))
         self._with_script = with_script
-        self._mutants = {mutant.id: mutant for mutant in client_mutants(table)}
         self._codec = ReferenceCodec(table)
-        how = "with" if with_script else "without"
-        self.name = f"client {how} a script, {table.edition}"
+        lines = ("good", "no-acks", *possible_faults(table))
+        self.right_runs = [f"{lines[number % len(lines)]} {number}" for number in range(RUNS)]
 
-    def cases(self) -> Sequence[Case]:
-        """Return every mutant of a client of the edition."""
-        return [Case(mutant.id, mutant.kind) for mutant in self._mutants.values()]
-
-    def judge(self, case: Case) -> Outcome:
+    def killer(self, mutant: ClientMutant) -> str:
         """Let the referee judge a mutant."""
-        mutant = self._mutants[case.id]
         scenario = faulty_replies(DELAY_SECONDS, ("lost",), 1) if mutant.lost else None
-        found = first_failure(
-            self._table, mutant.writes, mutant.script if self._with_script else None, scenario
-        )
-        return Outcome(case, found, "" if found else self._reason(mutant))
+        return self._first_failure(mutant.writes, mutant.script, scenario)
 
-    def right_runs(self) -> Sequence[str]:
-        """Return the names of a correct client's runs: on good lines and with each fault."""
-        lines = ("good", "no-acks", *possible_faults(self._table))
-        return [f"{lines[number % len(lines)]} {number}" for number in range(RUNS)]
-
-    def accept(self, run: str) -> RightRun:
+    def failure(self, run: str) -> str:
         """Let the referee judge a correct client: every request once, in a random order."""
         line, number = run.split()
-        every = sessions(self._table)
-        off = [s for s in every if s.command.safety == "power"]
-        every = [s for s in every if s not in off]
+        every = [s for s in sessions(self.table) if s.command.safety != "power"]
         Random(int(number)).shuffle(every)
         scenario = faulty_replies(DELAY_SECONDS, [line], 2) if line in FAULTS else None
-        writes = tuple(Sent(PAUSE, s.frame + s.text) for s in every)
-        script = [s.script()[1] for s in every] if self._with_script else None
-        found = first_failure(self._table, writes, script, scenario, acks=line != "no-acks")
-        return RightRun(run, not found, found)
+        writes = [Sent(PAUSE, session.whole) for session in every]
+        script = [session.line for session in every]
+        return self._first_failure(writes, script, scenario, acks=line != "no-acks")
 
-    def _reason(self, mutant: ClientMutant) -> str:
+    def reason(self, mutant: ClientMutant) -> str:
         """Return why a mutant without a script cannot be found; empty if it can."""
         if self._with_script:
             return ""
@@ -95,42 +78,37 @@ class ClientSuite:
             return False
         return True
 
+    def _first_failure(
+        self,
+        writes: Sequence[Sent],
+        script: Sequence[ScriptLine],
+        scenario: Scenario | None,
+        acks: bool = True,
+    ) -> str:
+        clock = SteppedClock()
+        referee = Referee(
+            self.table,
+            scenario=scenario,
+            script=script if self._with_script else None,
+            acks=acks,
+            clock=clock,
+        )
+        play(referee, clock, [*writes, Sent(PAUSE, b"")])
+        report = referee.finish()
+        return next((f"{result.case}: {result.reason}" for result in report.failures), "")
 
-def client_mutants(table: Table) -> list[ClientMutant]:
-    """Return every mutant of a client in a fixed order, with unique ids."""
+
+class ScriptlessSuite(ClientSuite):
+    """The same clients; the referee judges only whether requests are legal."""
+
+    def __init__(self, table: Table) -> None:
+        super().__init__(table, with_script=False)
+
+
+def client_mutants(table: Table) -> Iterator[ClientMutant]:
+    """Yield every mutant of a client in a fixed order, with unique ids."""
     every = sessions(table)
-    found = [
-        mutant
-        for session in every
-        for make in (wrong_values, wrong_frames, wrong_times)
-        for mutant in make(session)
-    ]
-    return [*found, *wrong_turns(table, every)]
-
-
-def first_failure(
-    table: Table,
-    writes: Sequence[Sent],
-    script: Sequence[ScriptLine] | None,
-    scenario: Scenario | None,
-    acks: bool = True,
-) -> str:
-    """Return the first failure that the referee reports; empty if there is none."""
-    clock = SteppedClock()
-    referee = Referee(table, scenario=scenario, script=script, acks=acks, clock=clock)
-    for sent in writes:
-        _pass_time(referee, clock, sent.after)
-        if sent.data:
-            referee.receive(sent.data)
-    _pass_time(referee, clock, PAUSE)
-    report = referee.finish()
-    return next((f"{result.case}: {result.reason}" for result in report.failures), "")
-
-
-def _pass_time(referee: Referee, clock: SteppedClock, seconds: float) -> None:
-    """Let time pass as a server does, which flushes the referee whenever it is due."""
-    end = clock() + seconds
-    while referee.wait is not None and clock() + referee.wait <= end:
-        clock.sleep(referee.wait)
-        referee.flush()
-    clock.sleep(end - clock())
+    for session in every:
+        for make in (wrong_values, wrong_frames, wrong_times):
+            yield from make(session)
+    yield from wrong_turns(every)

@@ -7,8 +7,7 @@ from collections.abc import Iterator
 from cobotwire.conformance.codec.questions.frames import frame_of
 from cobotwire.conformance.samples import beyond, with_one
 from cobotwire.protocol.table import Field, Number, Variant
-from mutation.client.mutant import ClientMutant
-from mutation.client.sessions import Session
+from mutation.client.sessions import ClientMutant, Session
 from mutation.tables import wrong_tables
 
 
@@ -18,9 +17,7 @@ def wrong_values(session: Session) -> Iterator[ClientMutant]:
     for kind, text, frame in _frames(session):
         if frame not in seen:
             seen.add(frame)
-            name = f"{kind}: {session.place}: {text}"
-            writes = session.writes(frame + session.text)
-            yield ClientMutant(kind, name, session.script(), writes)
+            yield session.mutant(kind, text, frame + session.text)
 
 
 def _frames(session: Session) -> Iterator[tuple[str, str, bytes]]:
@@ -79,14 +76,7 @@ def _variants(session: Session) -> Iterator[tuple[str, str, bytes]]:
 
 
 def _misread(session: Session) -> Iterator[tuple[str, str, Variant]]:
-    one = session.table.__class__(
-        session.table.edition,
-        session.table.title,
-        session.table.joints,
-        session.table.baudrate,
-        session.table.frame,
-        (session.command,),
-    )
+    one = session.table._replace(commands=(session.command,))
     for wrong in wrong_tables(one, ("request",)):
         if wrong.kind == "width" and wrong.place.variant == session.position:
             variant = wrong.table.commands[0].request[session.position]

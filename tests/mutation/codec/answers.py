@@ -1,15 +1,20 @@
-"""Codecs with wrong single frames: missing checks, wrong rounding, rows in another order."""
+"""Codecs with wrong single frames: missing checks, wrong rounding, rows in another order.
+
+Some faults need frames with a check value, or with an address.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from functools import partial
 from typing import Any
 
 from cobotwire.codec.reference import ReferenceCodec
 from cobotwire.conformance.codec.questions.our_codec import OurCodec
 from cobotwire.conformance.codec.questions.question import Json, hexed
+from cobotwire.protocol.checks import Check
 from cobotwire.protocol.table import Case, Field, Number, Table, Variant
-from mutation.device.cells import checked
+from mutation.device.cells import Edit, with_address, with_length
 
 
 class Altered(OurCodec):
@@ -32,45 +37,35 @@ class Altered(OurCodec):
 Make = Callable[[Table], OurCodec]
 
 
-def decoding(change: Callable[[Table, bytes], bytes]) -> Make:
+def _decoding(change: Edit) -> Make:
     """Make a codec that decodes other bytes than it is given."""
 
-    def make(table: Table) -> OurCodec:
-        def question(question: Json) -> Json:
-            if question["do"] != "decode":
-                return question
-            data = bytes.fromhex(question["bytes"])
-            return {**question, "bytes": change(table, data).hex()}
+    def decoded(table: Table, question: Json) -> Json:
+        if question["do"] != "decode":
+            return question
+        return {**question, "bytes": change(table, bytes.fromhex(question["bytes"])).hex()}
 
-        return Altered(table, question)
-
-    return make
+    return lambda table: Altered(table, partial(decoded, table))
 
 
 def _rejecting(change: Callable[[Json], Json]) -> Make:
     """Make a codec that reports rejections incorrectly."""
 
-    def make(table: Table) -> OurCodec:
-        def answer(question: Json, answer: Json) -> Json:
-            return change(answer) if question["do"] == "decode" and "error" in answer else answer
+    def rejected(question: Json, answer: Json) -> Json:
+        return change(answer) if question["do"] == "decode" and "error" in answer else answer
 
-        return Altered(table, answer=answer)
-
-    return make
+    return lambda table: Altered(table, answer=rejected)
 
 
-def encoding(change: Callable[[Table, bytes], bytes]) -> Make:
+def _encoding(change: Edit) -> Make:
     """Make a codec that encodes other bytes."""
 
-    def make(table: Table) -> OurCodec:
-        def answer(question: Json, answer: Json) -> Json:
-            if "bytes" not in answer:
-                return answer
-            return {"bytes": change(table, bytes.fromhex(answer["bytes"])).hex()}
+    def encoded(table: Table, question: Json, answer: Json) -> Json:
+        if "bytes" not in answer:
+            return answer
+        return {"bytes": change(table, bytes.fromhex(answer["bytes"])).hex()}
 
-        return Altered(table, answer=answer)
-
-    return make
+    return lambda table: Altered(table, answer=partial(encoded, table))
 
 
 def _right_end(table: Table, data: bytes) -> bytes:
@@ -182,26 +177,16 @@ def _unbounded(table: Table, lists: bool) -> Table:
     return table._replace(commands=tuple(commands))
 
 
-def _with_length(step: int) -> Callable[[Table, bytes], bytes]:
-    """Change LEN, and the check that covers it."""
-
-    def change(table: Table, data: bytes) -> bytes:
-        frame = table.frame
-        return checked(frame, frame.with_length(data, frame.read_length(data) + step))
-
-    return change
-
-
 def _shifted(answer: Json) -> Json:
     return {**answer, "offset": answer.get("offset", 0) + 1}
 
 
 ANSWERS: tuple[tuple[str, Make], ...] = (
-    ("ignores check and footer", decoding(_right_end)),
-    ("ignores the header", decoding(_right_header)),
-    ("ignores LEN", decoding(_right_length)),
-    ("ignores bytes after the frame", decoding(_no_rest)),
-    ("searches the bytes for the frame", decoding(_first_header)),
+    ("ignores check and footer", _decoding(_right_end)),
+    ("ignores the header", _decoding(_right_header)),
+    ("ignores LEN", _decoding(_right_length)),
+    ("ignores bytes after the frame", _decoding(_no_rest)),
+    ("searches the bytes for the frame", _decoding(_first_header)),
     ("ignores the command that the bytes must be", _unnamed),
     ("reports the byte after the wrong one", _rejecting(_shifted)),
     ("reports one reason for all", _rejecting(lambda answer: {**answer, "error": "bad-value"})),
@@ -209,13 +194,46 @@ ANSWERS: tuple[tuple[str, Make], ...] = (
     ("rounds ties away from zero", _rounding(_half_up)),
     ("ignores bounds", lambda t: OurCodec(ReferenceCodec(_unbounded(t, lists=False)))),
     ("ignores lists", lambda t: OurCodec(ReferenceCodec(_unbounded(t, lists=True)))),
-    ("writes another last byte", encoding(lambda _, data: data[:-1] + bytes([data[-1] ^ 1]))),
-    ("leaves the last byte out", encoding(lambda _, data: data[:-1])),
-    ("counts the header in LEN", encoding(_with_length(2))),
-    ("counts a byte too few in LEN", encoding(_with_length(-1))),
-    ("writes one header byte", encoding(lambda _, data: data[1:])),
-    ("writes one byte too many", encoding(lambda _, data: data + data[-1:])),
+    ("writes another last byte", _encoding(lambda _, data: data[:-1] + bytes([data[-1] ^ 1]))),
+    ("leaves the last byte out", _encoding(lambda _, data: data[:-1])),
+    ("counts the header in LEN", _encoding(with_length(2))),
+    ("counts a byte too few in LEN", _encoding(with_length(-1))),
+    ("writes one header byte", _encoding(lambda _, data: data[1:])),
+    ("writes one byte too many", _encoding(lambda _, data: data + data[-1:])),
 )
+
+
+def wrong_formats(table: Table) -> Iterator[tuple[str, Make]]:
+    """Yield each fault in the parts of a frame that not every edition has."""
+    check, addresses = table.frame.check, table.frame.addresses
+    if check is not None:
+        other = check._replace(covers_from="data" if check.covers_from == "command" else "command")
+        yield "computes the check from another byte on", _with(other)
+    if check is not None and check.width > 1:
+        other = check._replace(order="little" if check.order == "big" else "big")
+        yield "swaps the bytes of the check", _with(other)
+    if check is not None and check.crc is not None:
+        crc = check.crc._replace(init=check.crc.init ^ 1)
+        yield "begins the CRC with another value", _with(check._replace(crc=crc))
+    if addresses:
+        yield "ignores the address", _decoding(_right_address)
+        unused = next(byte for byte in range(256) if byte not in addresses)
+        yield "writes an address that the edition lacks", _encoding(with_address(unused))
+
+
+def _with(check: Check) -> Make:
+    """Make a codec with another check."""
+    return lambda table: OurCodec(
+        ReferenceCodec(table._replace(frame=table.frame._replace(check=check)))
+    )
+
+
+def _right_address(table: Table, data: bytes) -> bytes:
+    """Return the bytes with an address of the edition in place of another one."""
+    at, addresses = table.frame.address_at, table.frame.addresses
+    if at is None or len(data) <= at or data[at] in addresses:
+        return data
+    return with_address(addresses[0])(table, data)
 
 
 def turned(table: Table, command: str, direction: str, name: str, first_two: bool) -> OurCodec:

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import ClassVar
+from collections.abc import Callable, Iterator
+from functools import partial
+from typing import NamedTuple
 
 from cobotwire.codec.events import Event, Frame, Noise, NoiseReason, Read
 from cobotwire.codec.interface import Data, Listening
@@ -13,311 +14,239 @@ from cobotwire.codec.reference.judge import Heading, Judge
 from cobotwire.protocol.table import Table
 
 Verdict = int | NoiseReason
+Change = Callable[["BrokenFramer", Event], list[Event]]
+# The correct methods, which a flaw may call.
+RightJudge = Callable[[bytes, int], Verdict]
+RightFeed = Callable[[Data], list[Event]]
+RightFlush = Callable[[], list[Event]]
 
 
-class _Broken(ReferenceFramer):
-    """A framer with ``flaw`` in it, or in the legality check that it uses."""
+class Flaw(NamedTuple):
+    """What is wrong with a framer. Without a flaw, each hook does what is right."""
 
-    flaw: ClassVar[str]
-    judging: ClassVar[type[Judge]] = Judge
+    text: str
+    judge: Callable[[Judge, RightJudge, bytes, int], Verdict] = lambda _, right, data, at: right(
+        data, at
+    )
+    forgives: NoiseReason | None = None
+    skip: Callable[[Judge, bytes, int, NoiseReason], int] = lambda *_: 1
+    feed: Callable[[BrokenFramer, RightFeed, Data], list[Event]] = lambda _, right, data: right(
+        data
+    )
+    flush: Callable[[BrokenFramer, RightFlush], list[Event]] = lambda _, right: right()
+    event: Change = lambda _, event: [event]
 
-    def __init__(self, right: Judge, read: Read) -> None:
-        super().__init__(self.judging(right.frame, right.indexes, right.accept_unknown), read)
 
-    def _claimed(self, data: bytes, start: int) -> int:
-        """Return how many bytes a header claims."""
-        return _claimed(self._judge, data, start)
+class _BrokenJudge(Judge):
+    def __init__(self, right: Judge, flaw: Flaw) -> None:
+        super().__init__(right.frame, right.indexes, right.accept_unknown)
+        self._flaw = flaw
 
-    def _forget(self) -> None:
+    def judge(self, data: bytes, start: int = 0) -> Verdict:
+        return self._flaw.judge(self, super().judge, data, start)
+
+    def refute(self, heading: Heading) -> NoiseReason | None:
+        reason = super().refute(heading)
+        return None if reason == self._flaw.forgives else reason
+
+
+class BrokenFramer(ReferenceFramer):
+    """A framer with a flaw, which may be in the legality check that it uses."""
+
+    def __init__(self, right: Judge, read: Read, flaw: Flaw) -> None:
+        super().__init__(_BrokenJudge(right, flaw), read)
+        self._flaw = flaw
+
+    def feed(self, data: Data) -> list[Event]:
+        """Take bytes; return the events that the flaw lets through."""
+        return self._changed(self._flaw.feed(self, super().feed, data))
+
+    def flush(self) -> list[Event]:
+        """Stop waiting, as far as the flaw permits."""
+        return self._changed(self._flaw.flush(self, super().flush))
+
+    def _changed(self, events: list[Event]) -> list[Event]:
+        return [changed for event in events for changed in self._flaw.event(self, event)]
+
+    def _refuted_size(self, data: bytes, start: int, reason: NoiseReason) -> int:
+        return self._flaw.skip(self._judge, data, start, reason)
+
+    def forget(self) -> list[Event]:
         """Drop the waiting bytes without an event."""
         end = self._state.offset + self.pending
         self._state = self._state._replace(waiting=b"", offset=end)
+        return []
 
-    def _restart(self) -> None:
+    def restart(self) -> list[Event]:
         """Count offsets from here on."""
         self._state = self._state._replace(offset=0)
-
-
-def _claimed(judge: Judge, data: bytes, start: int) -> int:
-    return judge.frame.overhead + data[start + judge.frame.length_at]
-
-
-class _NoFooterJudge(Judge):
-    def judge(self, data: bytes, start: int = 0) -> Verdict:
-        verdict = super().judge(data, start)
-        return _claimed(self, data, start) if verdict == "bad-check" else verdict
-
-
-class _NoFooter(_Broken):
-    flaw = "ignores the footer"
-    judging = _NoFooterJudge
-
-
-class _AnyIdJudge(Judge):
-    def refute(self, heading: Heading) -> NoiseReason | None:
-        reason = super().refute(heading)
-        return None if reason == "unknown-id" else reason
-
-
-class _AnyId(_Broken):
-    flaw = "accepts ids that the edition lacks"
-    judging = _AnyIdJudge
-
-
-class _AnyLengthJudge(Judge):
-    def refute(self, heading: Heading) -> NoiseReason | None:
-        reason = super().refute(heading)
-        return None if reason == "bad-length" else reason
-
-
-class _AnyLength(_Broken):
-    flaw = "accepts any LEN of the edition for any id"
-    judging = _AnyLengthJudge
-
-
-class _HalfHeaderJudge(Judge):
-    def judge(self, data: bytes, start: int = 0) -> Verdict:
-        head = self.frame.header
-        if data[start : start + 1] == head[:1] and len(data) > start + 1:
-            data = data[:start] + head + data[start + len(head) :]
-        return super().judge(data, start)
-
-
-class _HalfHeader(_Broken):
-    flaw = "checks only the first byte of the header"
-    judging = _HalfHeaderJudge
-
-
-class _SkipsClaimed(_Broken):
-    flaw = "skips the whole claimed frame if its footer is wrong"
-
-    def _refuted_size(self, data: bytes, start: int, reason: NoiseReason) -> int:
-        return self._claimed(data, start) if reason == "bad-check" else 1
-
-
-class _SkipsHeader(_Broken):
-    flaw = "skips the whole header of a refuted frame"
-
-    def _refuted_size(self, data: bytes, start: int, reason: NoiseReason) -> int:
-        return 1 if reason == "no-header" else len(self._judge.frame.header)
-
-
-class _SkipsTruncated(_Broken):
-    flaw = "reports all waiting bytes as noise at a silence"
-
-    def _refuted_size(self, data: bytes, start: int, reason: NoiseReason) -> int:
-        return len(data) - start if reason == "truncated" else 1
-
-
-class _SilenceLoses(_Broken):
-    flaw = "forgets the waiting bytes at a silence"
-
-    def flush(self) -> list[Event]:
-        self._forget()
         return []
 
-
-class _SilenceDoesNothing(_Broken):
-    flaw = "continues to wait at a silence"
-
-    def flush(self) -> list[Event]:
-        return []
-
-
-class _SilenceRestarts(_Broken):
-    flaw = "restarts offsets after a silence"
-
-    def flush(self) -> list[Event]:
-        events = super().flush()
-        self._restart()
-        return events
-
-
-class _ChunkForgets(_Broken):
-    flaw = "forgets the waiting bytes when a new chunk arrives"
-
-    def feed(self, data: Data) -> list[Event]:
-        self._forget()
-        return super().feed(data)
-
-
-class _ChunkDecides(_Broken):
-    flaw = "treats the end of a chunk as a silence"
-
-    def feed(self, data: Data) -> list[Event]:
-        return super().feed(data) + super().flush()
-
-
-class _ChunkRestarts(_Broken):
-    flaw = "restarts offsets in each chunk"
-
-    def feed(self, data: Data) -> list[Event]:
-        if not self.pending:
-            self._restart()
-        return super().feed(data)
-
-
-class _Late(_Broken):
-    flaw = "returns a frame only after the next byte"
-
-    def feed(self, data: Data) -> list[Event]:
+    def hold_back(self, right: RightFeed, data: Data) -> list[Event]:
+        """Take bytes; treat the last one as if it had not come yet."""
         bytes_so_far = self._state.waiting + bytes(data)
         self._state = self._state._replace(waiting=bytes_so_far[:-1])
-        events = super().feed(b"")
+        events = right(b"")
         self._state = self._state._replace(waiting=self._state.waiting + bytes_so_far[-1:])
         return events
 
-
-class _Impatient(_Broken):
-    flaw = "flushes as soon as more than ten bytes wait"
-
-    def feed(self, data: Data) -> list[Event]:
-        events = super().feed(data)
-        return events + (super().flush() if self.pending > 10 else [])
+    def at_len(self, event: Frame) -> Frame:
+        """Return the frame at the offset of its LEN."""
+        offset = event.offset + self._judge.frame.length_at
+        return Frame(offset, event.data, event.command, self._read)
 
 
-class _Rewriting(_Broken):
-    """A framer that changes the events it returns."""
-
-    def _changed(self, event: Event) -> list[Event]:
-        raise NotImplementedError
-
-    def feed(self, data: Data) -> list[Event]:
-        return [changed for event in super().feed(data) for changed in self._changed(event)]
-
-    def flush(self) -> list[Event]:
-        return [changed for event in super().flush() for changed in self._changed(event)]
+def _claimed(judge: Judge, data: bytes, start: int) -> int:
+    """Return how many bytes a header claims."""
+    return judge.frame.overhead + data[start + judge.frame.length_at]
 
 
-class _NoNoise(_Rewriting):
-    flaw = "does not report noise"
-
-    def _changed(self, event: Event) -> list[Event]:
-        return [] if isinstance(event, Noise) else [event]
+def _no_footer(judge: Judge, right: RightJudge, data: bytes, start: int) -> Verdict:
+    verdict = right(data, start)
+    return _claimed(judge, data, start) if verdict == "bad-check" else verdict
 
 
-class _OneReason(_Rewriting):
-    flaw = "gives the same reason for all noise"
-
-    def _changed(self, event: Event) -> list[Event]:
-        return [event._replace(reason="no-header") if isinstance(event, Noise) else event]
-
-
-class _OtherReason(_Rewriting):
-    flaw = "reports bad-check for truncated frames"
-
-    def _changed(self, event: Event) -> list[Event]:
-        truncated = isinstance(event, Noise) and event.reason == "truncated"
-        return [event._replace(reason="bad-check") if truncated else event]  # type: ignore[union-attr]
+def _half_header(judge: Judge, right: RightJudge, data: bytes, start: int) -> Verdict:
+    head = judge.frame.header
+    if data[start : start + 1] == head[:1] and len(data) > start + 1:
+        data = data[:start] + head + data[start + len(head) :]
+    return right(data, start)
 
 
-class _NoiseShifted(_Rewriting):
-    flaw = "counts the offsets of noise from one"
-
-    def _changed(self, event: Event) -> list[Event]:
-        return [event._replace(offset=event.offset + 1) if isinstance(event, Noise) else event]
-
-
-class _FrameShifted(_Rewriting):
-    flaw = "reports the offset of LEN as a frame's offset"
-
-    def _changed(self, event: Event) -> list[Event]:
-        if isinstance(event, Noise):
-            return [event]
-        return [
-            Frame(event.offset + self._judge.frame.length_at, event.data, event.command, self._read)
-        ]
+def _inner_first(judge: Judge, right: RightJudge, data: bytes, start: int) -> Verdict:
+    verdict = right(data, start)
+    if isinstance(verdict, int):
+        for inside in range(start + 1, start + verdict):
+            if isinstance(right(data[: start + verdict], inside), int):
+                return "bad-check"
+    return verdict
 
 
-class _NoiseCut(_Rewriting):
-    flaw = "drops the last byte of a span of noise"
-
-    def _changed(self, event: Event) -> list[Event]:
-        return [event._replace(data=event.data[:-1]) if isinstance(event, Noise) else event]
+def _low_half(judge: Judge, right: RightJudge, data: bytes, start: int) -> Verdict:
+    verdict = right(data, start)
+    return "bad-length" if isinstance(verdict, int) and verdict > 16 else verdict
 
 
-class _Twice(_Rewriting):
-    flaw = "returns each frame twice"
-
-    def _changed(self, event: Event) -> list[Event]:
-        return [event] if isinstance(event, Noise) else [event, event]
+def _restarted(framer: BrokenFramer, right: RightFeed, data: Data) -> list[Event]:
+    return (framer.restart() if not framer.pending else []) + right(data)
 
 
-class _InnerFirstJudge(Judge):
-    def judge(self, data: bytes, start: int = 0) -> Verdict:
-        verdict = super().judge(data, start)
-        if isinstance(verdict, int):
-            for inside in range(start + 1, start + verdict):
-                if isinstance(super().judge(data[: start + verdict], inside), int):
-                    return "bad-check"
-        return verdict
+def _impatient(framer: BrokenFramer, right: RightFeed, data: Data) -> list[Event]:
+    events = right(data)
+    return events + (ReferenceFramer.flush(framer) if framer.pending > 10 else [])
 
 
-class _InnerFirst(_Broken):
-    flaw = "prefers a frame inside another one"
-    judging = _InnerFirstJudge
+def _of_noise(
+    change: Callable[[Noise], list[Event]],
+) -> Change:
+    """Change only noise."""
+    return lambda _, event: change(event) if isinstance(event, Noise) else [event]
 
 
-class _LowHalfJudge(Judge):
-    def judge(self, data: bytes, start: int = 0) -> Verdict:
-        verdict = super().judge(data, start)
-        return "bad-length" if isinstance(verdict, int) and verdict > 16 else verdict
+def _of_frames(
+    change: Callable[[BrokenFramer, Frame], list[Event]],
+) -> Change:
+    """Change only frames."""
+    return lambda framer, event: [event] if isinstance(event, Noise) else change(framer, event)
 
 
-class _LowHalf(_Broken):
-    flaw = "rejects frames longer than sixteen bytes"
-    judging = _LowHalfJudge
-
-
-BROKEN: tuple[type[_Broken], ...] = (
-    *(_NoFooter, _AnyId, _AnyLength, _HalfHeader, _SkipsClaimed, _SkipsHeader, _SkipsTruncated),
-    *(_SilenceLoses, _SilenceDoesNothing, _SilenceRestarts, _ChunkForgets, _ChunkDecides),
-    *(_ChunkRestarts, _Late, _Impatient, _NoNoise, _OneReason, _OtherReason, _NoiseShifted),
-    *(_FrameShifted, _NoiseCut, _Twice, _InnerFirst, _LowHalf),
+FLAWS = (
+    Flaw("ignores the footer", judge=_no_footer),
+    Flaw("accepts ids that the edition lacks", forgives="unknown-id"),
+    Flaw("accepts any LEN of the edition for any id", forgives="bad-length"),
+    Flaw("checks only the first byte of the header", judge=_half_header),
+    Flaw(
+        "skips the whole claimed frame if its footer is wrong",
+        skip=lambda judge, data, start, reason: (
+            _claimed(judge, data, start) if reason == "bad-check" else 1
+        ),
+    ),
+    Flaw(
+        "skips the whole header of a refuted frame",
+        skip=lambda judge, data, start, reason: (
+            1 if reason == "no-header" else len(judge.frame.header)
+        ),
+    ),
+    Flaw(
+        "reports all waiting bytes as noise at a silence",
+        skip=lambda _, data, start, reason: len(data) - start if reason == "truncated" else 1,
+    ),
+    Flaw("forgets the waiting bytes at a silence", flush=lambda framer, _: framer.forget()),
+    Flaw("continues to wait at a silence", flush=lambda *_: []),
+    Flaw(
+        "restarts offsets after a silence",
+        flush=lambda framer, right: right() + framer.restart(),
+    ),
+    Flaw(
+        "forgets the waiting bytes when a new chunk arrives",
+        feed=lambda framer, right, data: framer.forget() + right(data),
+    ),
+    Flaw(
+        "treats the end of a chunk as a silence",
+        feed=lambda framer, right, data: right(data) + ReferenceFramer.flush(framer),
+    ),
+    Flaw("restarts offsets in each chunk", feed=_restarted),
+    Flaw("returns a frame only after the next byte", feed=BrokenFramer.hold_back),
+    Flaw("flushes as soon as more than ten bytes wait", feed=_impatient),
+    Flaw("does not report noise", event=_of_noise(lambda _: [])),
+    Flaw(
+        "gives the same reason for all noise",
+        event=_of_noise(lambda noise: [noise._replace(reason="no-header")]),
+    ),
+    Flaw(
+        "reports bad-check for truncated frames",
+        event=_of_noise(
+            lambda noise: [
+                noise._replace(reason="bad-check") if noise.reason == "truncated" else noise
+            ]
+        ),
+    ),
+    Flaw(
+        "counts the offsets of noise from one",
+        event=_of_noise(lambda noise: [noise._replace(offset=noise.offset + 1)]),
+    ),
+    Flaw(
+        "reports the offset of LEN as a frame's offset",
+        event=_of_frames(lambda framer, frame: [framer.at_len(frame)]),
+    ),
+    Flaw(
+        "drops the last byte of a span of noise",
+        event=_of_noise(lambda noise: [noise._replace(data=noise.data[:-1])]),
+    ),
+    Flaw("returns each frame twice", event=_of_frames(lambda _, frame: [frame, frame])),
+    Flaw("prefers a frame inside another one", judge=_inner_first),
+    Flaw("rejects frames longer than sixteen bytes", judge=_low_half),
 )
 
 
 class FramingCodec(ReferenceCodec):
-    """The reference codec with a framer that is broken for one direction only."""
+    """The reference codec with a flawed framer for one direction, or one of another direction."""
 
-    def __init__(self, table: Table, kind: type[_Broken], listening: Listening) -> None:
+    def __init__(
+        self, table: Table, listening: Listening, flaw: Flaw | None, used: Listening
+    ) -> None:
         super().__init__(table)
-        self._kind, self._listening = kind, listening
+        self._listening, self._flaw, self._used = listening, flaw, used
 
     def framer(self, listening: Listening, *, accept_unknown: bool = False) -> ReferenceFramer:
         """Return a framer, broken for the direction of this codec."""
-        right = super().framer(listening, accept_unknown=accept_unknown)
         if listening != self._listening:
-            return right
-        return self._kind(right._judge, right._read)
-
-
-class DeafCodec(ReferenceCodec):
-    """A codec with a framer that listens to another direction than requested."""
-
-    def __init__(self, table: Table, requested: Listening, used: Listening) -> None:
-        super().__init__(table)
-        self._requested, self._used = requested, used
-
-    def framer(self, listening: Listening, *, accept_unknown: bool = False) -> ReferenceFramer:
-        """Return a framer, for another direction than the one requested."""
-        used = self._used if listening == self._requested else listening
-        return super().framer(used, accept_unknown=accept_unknown)
+            return super().framer(listening, accept_unknown=accept_unknown)
+        right = super().framer(self._used, accept_unknown=accept_unknown)
+        return BrokenFramer(right._judge, right._read, self._flaw) if self._flaw else right
 
 
 Broken = Callable[[Table], ReferenceCodec]
 LISTENING: tuple[Listening, ...] = ("request", "reply", "both")
 
 
-def broken_framers() -> list[tuple[str, Broken]]:
-    """Return each fault in each direction, and framers that listen to another direction."""
-    found: list[tuple[str, Broken]] = []
+def broken_framers() -> Iterator[tuple[str, Broken]]:
+    """Yield each fault in each direction, and framers that listen to another direction."""
     for listening in LISTENING:
-        for kind in BROKEN:
-            name = f"{listening}: {kind.flaw}"
-            found.append((name, lambda t, k=kind, way=listening: FramingCodec(t, k, way)))  # type: ignore[misc]
+        for flaw in FLAWS:
+            broken = partial(FramingCodec, listening=listening, flaw=flaw, used=listening)
+            yield f"{listening}: {flaw.text}", broken
         for other in LISTENING:
             if other != listening:
-                name = f"{listening}: listens to {other}"
-                found.append((name, lambda t, a=listening, b=other: DeafCodec(t, a, b)))  # type: ignore[misc]
-    return found
+                broken = partial(FramingCodec, listening=listening, flaw=None, used=other)
+                yield f"{listening}: listens to {other}", broken

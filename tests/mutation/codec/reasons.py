@@ -16,30 +16,22 @@ from cobotwire.conformance.samples import (
 )
 from cobotwire.protocol.errors import ProtocolError, UsageError
 from cobotwire.protocol.table import Field, Number, Table
-from mutation.codec.mutant import CodecMutant
-from mutation.tables import Place, variant_at
+from mutation.tables import Place, WrongTable, variant_at
 
 # A number of three bytes or more has too many values to try all, so nothing excuses its mutant.
 MOST_VALUES = 65536
 
 
-def reason(table: Table, mutant: CodecMutant) -> str:
-    """Return why a mutant equals the correct codec for every raw value; empty if they differ."""
+def reason(table: Table, mutant: WrongTable) -> str:
+    """Return why a wrong table equals the correct one for every raw value; empty if they differ."""
     place = mutant.place
-    if place is None or mutant.table is None:
-        return ""
     if place.field < 0:
         return _shadowed(table, place)
     right, wrong = ReferenceCodec(table), ReferenceCodec(mutant.table)
-    field = variant_at(table, place).fields[place.field]
-    count = 0
-    for raw_values in _all_samples(table, place, field):
-        count += 1
-        if not _alike(table, right, wrong, place, raw_values):
-            return ""
-    if not count:
+    samples = _all_samples(table, place, variant_at(table, place).fields[place.field])
+    if not samples or not all(_alike(table, right, wrong, place, each) for each in samples):
         return ""
-    return f"equal results for {count} raw values: all of the field, and one beyond each end"
+    return f"equal results for {len(samples)} raw values: all of the field, and one beyond each end"
 
 
 def _shadowed(table: Table, place: Place) -> str:

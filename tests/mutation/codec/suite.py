@@ -2,61 +2,70 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from functools import cached_property
+from collections.abc import Callable, Iterator
+from functools import cached_property, partial
+from typing import NamedTuple
 
 from cobotwire import codec as codecs
 from cobotwire.codec.reference import ReferenceCodec
-from cobotwire.conformance.codec import Question, Run, derive_questions
+from cobotwire.conformance.codec import Implementation, Question, Run
 from cobotwire.conformance.codec.questions.our_codec import OurCodec
-from cobotwire.conformance.report import Report
 from cobotwire.protocol.table import Table
-from mutation.codec.answers import ANSWERS, turned
-from mutation.codec.formats import wrong_formats
+from conformance.codec.questions import questions_of
+from mutation.codec.answers import ANSWERS, turned, wrong_formats
 from mutation.codec.framers import broken_framers
-from mutation.codec.mutant import CodecMutant
 from mutation.codec.reasons import reason
-from mutation.suite import Case, Outcome, RightRun
-from mutation.tables import wrong_tables
-
-RUNS = 10
+from mutation.suite import Suite
+from mutation.tables import WrongTable, wrong_tables
 
 
-class CodecSuite:
-    """See :class:`mutation.suite.Suite`."""
+class CodecMutant(NamedTuple):
+    """A codec with one fault; ``make`` returns a new one.
+
+    ``wrong`` is its table, if that is wrong. The questions about ``command`` come first; if it is
+    empty, all questions are asked in order.
+    """
+
+    kind: str
+    text: str
+    command: str
+    make: Callable[[], Implementation]
+    wrong: WrongTable | None = None
+
+    @property
+    def id(self) -> str:
+        """The name in tables."""
+        return f"{self.kind}: {self.text}"
+
+
+class CodecSuite(Suite):
+    """Broken codecs, and our own two, which are correct."""
+
+    right_runs: tuple[codecs.CodecName, ...] = ("native", "reference")
 
     def __init__(self, table: Table) -> None:
-        self._table = table
-        self._mutants = {mutant.id: mutant for mutant in codec_mutants(table)}
-        self.name = f"codec, {table.edition}"
+        super().__init__(table, codec_mutants(table))
 
-    def cases(self) -> Sequence[Case]:
-        """Return every mutant of the edition's codec."""
-        return [Case(mutant.id, mutant.kind) for mutant in self._mutants.values()]
+    def killer(self, mutant: CodecMutant) -> str:
+        """Ask questions until a test case fails."""
+        return self._complaint(mutant.make(), self._about(mutant.command))
 
-    def judge(self, case: Case) -> Outcome:
-        """Ask questions until a test case fails; if none fails, state the reason."""
-        mutant = self._mutants[case.id]
-        found = _complaint(
-            Run(self._table, mutant.make()).ask_all(self._about(mutant.command), until_failure=True)
-        )
-        return Outcome(case, found, "" if found else reason(self._table, mutant))
+    def reason(self, mutant: CodecMutant) -> str:
+        """Return why the table of a mutant equals the correct one; empty if it does not."""
+        return reason(self.table, mutant.wrong) if mutant.wrong else ""
 
-    def right_runs(self) -> Sequence[str]:
-        """Return the names of the runs with our own codecs, which are correct."""
-        names = ("native", "reference")
-        return [f"{name} {number}" for name in names for number in range(RUNS)]
-
-    def accept(self, run: str) -> RightRun:
+    def failure(self, run: str) -> str:
         """Ask a correct codec every question."""
-        name = "native" if run.startswith("native") else "reference"
-        codec = OurCodec(codecs.load(self._table, name))  # type: ignore[arg-type]
-        found = _complaint(Run(self._table, codec).ask_all(self._questions))
-        return RightRun(run, not found, found)
+        [name] = [name for name in self.right_runs if name == run]
+        return self._complaint(OurCodec(codecs.load(self.table, name)), iter(self._questions))
 
-    @cached_property
+    def _complaint(self, codec: Implementation, questions: Iterator[Question]) -> str:
+        report = Run(self.table, codec).ask_all(questions, until_failure=True)
+        return next((result.case for result in report.failures), "")
+
+    @property
     def _questions(self) -> list[Question]:
-        return list(derive_questions(self._table))
+        return questions_of(self.table.edition)
 
     @cached_property
     def _by_command(self) -> dict[str, list[Question]]:
@@ -74,59 +83,30 @@ class CodecSuite:
         yield from self._by_command.get("", [])
 
 
-def codec_mutants(table: Table) -> list[CodecMutant]:
-    """Return every mutant of an edition's codec in a fixed order, with unique ids."""
-    return [*_of_tables(table), *_of_rows(table), *_of_framers(table), *_of_answers(table)]
-
-
-def _of_tables(table: Table) -> Iterator[CodecMutant]:
+def codec_mutants(table: Table) -> Iterator[CodecMutant]:
+    """Yield every mutant of an edition's codec in a fixed order, with unique ids."""
     for wrong in wrong_tables(table):
-        yield CodecMutant(
-            wrong.kind,
-            wrong.id,
-            wrong.place.command,
-            lambda found=wrong.table: OurCodec(ReferenceCodec(found)),  # type: ignore[misc]
-            wrong.place,
-            wrong.table,
-        )
-
-
-def _of_rows(table: Table) -> Iterator[CodecMutant]:
+        make = partial(_reading, wrong.table)
+        yield CodecMutant(wrong.kind, wrong.name, wrong.place.command, make, wrong)
     for command in table.commands:
         for direction in ("request", "reply"):
-            names = {
-                field.name
-                for variant in command.variants(direction)
-                for field in variant.fields
-                if field.many
-            }
-            for name in sorted(names):
+            variants = command.variants(direction)
+            fields = [field for variant in variants for field in variant.fields if field.many]
+            for name in sorted({field.name for field in fields}):
                 for first_two in (False, True):
                     how = "first two swapped" if first_two else "last element first"
-                    yield CodecMutant(
-                        "order",
-                        f"order: {command.name} {direction}: {name} {how}",
-                        command.name,
-                        lambda c=command.name, d=direction, n=name, f=first_two: turned(  # type: ignore[misc]
-                            table, c, d, n, f
-                        ),
-                    )
-
-
-def _of_framers(table: Table) -> Iterator[CodecMutant]:
+                    text = f"{command.name} {direction}: {name} {how}"
+                    make = partial(turned, table, command.name, direction, name, first_two)
+                    yield CodecMutant("order", text, command.name, make)
     for name, broken in broken_framers():
-        yield CodecMutant(
-            "framing",
-            f"framing: {name}",
-            "",
-            lambda make=broken: OurCodec(make(table)),  # type: ignore[misc]
-        )
+        yield CodecMutant("framing", name, "", partial(_framing, broken, table))
+    for name, wrong_answers in (*ANSWERS, *wrong_formats(table)):
+        yield CodecMutant("check", name, "", partial(wrong_answers, table))
 
 
-def _of_answers(table: Table) -> Iterator[CodecMutant]:
-    for name, make in (*ANSWERS, *wrong_formats(table)):
-        yield CodecMutant("check", f"check: {name}", "", lambda m=make: m(table))  # type: ignore[misc]
+def _reading(table: Table) -> OurCodec:
+    return OurCodec(ReferenceCodec(table))
 
 
-def _complaint(report: Report) -> str:
-    return next((result.case for result in report.failures), "")
+def _framing(broken: Callable[[Table], ReferenceCodec], table: Table) -> OurCodec:
+    return OurCodec(broken(table))

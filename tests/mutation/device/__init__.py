@@ -3,14 +3,10 @@
 from __future__ import annotations
 
 from cobotwire.protocol.table import Table
-from mutation.device.acks import wrong_acks
+from mutation.device.broken import Mutant
 from mutation.device.fields import wrong_fields
-from mutation.device.framing import wrong_frames
-from mutation.device.malformed import breaks_on_malformed
-from mutation.device.memory import loses_state, stale_replies
-from mutation.device.setters import wrong_setters
-from mutation.device.timing import wrong_times
-from mutation.mutant import Mutant
+from mutation.device.replies import stale_replies, wrong_acks, wrong_frames, wrong_times
+from mutation.device.requests import breaks_on_malformed, loses_state, wrong_setters
 
 MAKERS = (
     *(wrong_fields, wrong_frames, wrong_times, wrong_acks, wrong_setters, breaks_on_malformed),

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import heapq
+from collections.abc import Callable
+from functools import partial
 from typing import NamedTuple
 
 from cobotwire.codec.interface import Codec, DecodedMessage, Noise
-from cobotwire.protocol.table import Table
+from cobotwire.protocol.table import Command, Table
 from cobotwire.session import DeviceSession, RequestReceived, TextReceived
 from cobotwire.session.device import DeviceEvent
 from cobotwire.simulator.arm import SimulatedArm
@@ -43,6 +45,56 @@ class Fault:
     def forgets(self, kind: Stimulus) -> bytes:
         """Return a request that the arm carries out by itself after malformed input."""
         return b""
+
+
+# Takes the table, the request and what the correct arm sends; returns what is sent.
+Change = Callable[[Table, DecodedMessage, bytes], bytes | list[TimedBytes]]
+
+
+class WrongReply(Fault):
+    """What one command gets in reply is changed; silence only if ``also_silence``."""
+
+    def __init__(self, command: Command, change: Change, *, also_silence: bool = False) -> None:
+        self._command = command
+        self._change = change
+        self._also_silence = also_silence
+
+    def reply(self, codec: Codec, request: DecodedMessage, data: bytes) -> list[TimedBytes]:
+        """Return the changed reply."""
+        changed: bytes | list[TimedBytes] = data
+        if request.command is self._command and (data or self._also_silence):
+            changed = self._change(codec.table, request, data)
+        return [TimedBytes(0.0, changed)] if isinstance(changed, bytes) else changed
+
+
+class Mutant(NamedTuple):
+    """A device with one fault.
+
+    ``kind`` is the class of fault (``scale``), ``text`` what the device does wrong, and ``fault``
+    makes the fault. ``command`` and ``field`` are its place; both are empty if it concerns the
+    whole line.
+    """
+
+    kind: str
+    text: str
+    fault: Callable[[], Fault]
+    command: str = ""
+    field: str = ""
+
+    @property
+    def id(self) -> str:
+        """The name in tables, unique within a suite."""
+        place = ".".join(part for part in (self.command, self.field) if part)
+        return ": ".join(part for part in (self.kind, place, self.text) if part)
+
+    def make(self, table: Table, clock: Clock) -> BrokenArm:
+        """Return a new device with the fault."""
+        return BrokenArm(table, self.fault(), clock)
+
+
+def mutant_of(kind: str, text: str, command: Command, change: Change, field: str = "") -> Mutant:
+    """Return a device with a wrong reply to one command."""
+    return Mutant(kind, text, partial(WrongReply, command, change), command.name, field)
 
 
 class BrokenArm(ArmConnection):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
 from cobotwire.codec.interface import DecodedMessage
@@ -61,3 +61,28 @@ def checked(frame: FrameFormat, data: bytes) -> bytes:
     """Return a whole frame with the right check and footer at its end."""
     body = data[: len(data) - frame.check_size]
     return body + frame.end(body)
+
+
+# Takes the table and a correct frame; returns a wrong one.
+Edit = Callable[[Table, bytes], bytes]
+
+
+def with_length(step: int) -> Edit:
+    """Change only LEN, and the check that covers it."""
+
+    def edit(table: Table, data: bytes) -> bytes:
+        frame = table.frame
+        return checked(frame, frame.with_length(data, frame.read_length(data) + step))
+
+    return edit
+
+
+def with_address(address: int) -> Edit:
+    """Change only the address, and the check if it covers it."""
+
+    def edit(table: Table, data: bytes) -> bytes:
+        at = table.frame.address_at
+        assert at is not None, "only formats with addresses have this fault"
+        return checked(table.frame, data[:at] + bytes([address]) + data[at + 1 :])
+
+    return edit

@@ -8,6 +8,7 @@ from random import Random
 from cobotwire import codec as codecs
 from cobotwire.protocol.errors import ProtocolError
 from cobotwire.protocol.table import Command, Field, Table, Variant
+from mutation.device.cells import Cell
 from mutation.device.legal import draw_request
 
 DRAWS = 8
@@ -72,3 +73,12 @@ def pickers(table: Table) -> set[str]:
 
 def _has_scale(field: Field) -> bool:
     return any(number.scaled for case in field.cases for number in case.numbers)
+
+
+def next_value(field: Field, cell: Cell) -> int:
+    """Return the next legal raw value, or the first one after the last."""
+    if field.choices:
+        at = field.choices.index(cell.raw) if cell.raw in field.choices else -1
+        return field.choices[(at + 1) % len(field.choices)]
+    after = cell.raw + 1
+    return after if after <= cell.number.maximum else cell.number.minimum

@@ -3,87 +3,104 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
+from functools import partial
+from typing import NamedTuple
 
-from cobotwire.codec.interface import Codec, DecodedMessage
-from cobotwire.protocol.table import Command, Field, Number, Table
-from mutation.device.broken import BrokenArm, Fault, TimedBytes
+from cobotwire import codec as codecs
+from cobotwire.codec.interface import DecodedMessage
+from cobotwire.protocol.table import Field, Number, Table
+from mutation.device.broken import Mutant, mutant_of
 from mutation.device.cells import Cell, framed, joined, take_apart
-from mutation.device.exchanges import distinct, reply_fields
-from mutation.mutant import Mutant
+from mutation.device.exchanges import distinct, next_value, reply_fields
 
 Cells = list[Cell]
-Alter = Callable[[Cells], Cells]
+Fits = Callable[[Field, Number], bool]
 
 
-@dataclass(frozen=True, slots=True)
-class Alteration:
+class Alteration(NamedTuple):
     """A way to send a wrong field; ``fits`` decides whether it applies to a field."""
 
     kind: str
     text: str
-    fits: Callable[[Field, Number], bool]
+    fits: Fits
     alter: Callable[[Field, Cells], Cells]
 
+    def in_reply(self, wanted: Field, table: Table, request: DecodedMessage, data: bytes) -> bytes:
+        """Return a reply with a field altered, in a correct frame.
 
-class WrongField(Fault):
-    """One field of one command's reply is altered."""
-
-    def __init__(self, command: Command, field: Field, alteration: Alteration) -> None:
-        self._command = command
-        self._field = field
-        self._alteration = alteration
-
-    def reply(self, codec: Codec, request: DecodedMessage, data: bytes) -> list[TimedBytes]:
-        """Return the reply with its field altered, in a correct frame."""
-        if request.command is not self._command or not data:
-            return [TimedBytes(0.0, data)]
-        frame = codec.table.frame
-        decoded = codec.decode("reply", data, of=request.command.name)
-        fields = take_apart(frame, decoded, data)
+        The text in which an arm states that it lacks the reply has no fields.
+        """
+        if not data.startswith(table.frame.header):
+            return data
+        decoded = codecs.load(table).decode("reply", data, of=request.command.name)
+        fields = take_apart(table.frame, decoded, data)
         for at, field in enumerate(decoded.variant.fields):
-            if field.name == self._field.name:
-                fields[at] = self._alteration.alter(self._field, fields[at])
-        wrong = framed(frame, request.command.id, joined(fields), decoded.address)
-        return [TimedBytes(0.0, wrong)]
+            if field.name == wanted.name:
+                fields[at] = self.alter(wanted, fields[at])
+        return framed(table.frame, request.command.id, joined(fields), decoded.address)
 
 
 def wrong_fields(table: Table) -> Iterator[Mutant]:
     """Yield a mutant for each field of each required reply and each way to send it wrong."""
     for command in distinct(table):
         for field in reply_fields(command) if command.requires_reply else ():
-            number = field.cases[0].numbers[0]
-            for alteration in ECHOES if field.echo else ALTERATIONS:
-                if alteration.fits(field, number):
-                    yield _mutant(table, command, field, alteration)
+            for wrong in ECHOES if field.echo else ALTERATIONS:
+                if wrong.fits(field, field.cases[0].numbers[0]):
+                    change = partial(wrong.in_reply, field)
+                    yield mutant_of(wrong.kind, wrong.text, command, change, field.name)
 
 
-def _mutant(table: Table, command: Command, field: Field, alteration: Alteration) -> Mutant:
-    return Mutant(
-        alteration.kind,
-        command.name,
-        field.name,
-        alteration.text,
-        lambda clock: BrokenArm(table, WrongField(command, field, alteration), clock),
-    )
-
-
-def _change_raw(change: Callable[[Number, int], int]) -> Callable[[Field, Cells], Cells]:
+def _raw(change: Callable[[Number, int], int]) -> Callable[[Field, Cells], Cells]:
     """Change the raw value of each number of the field."""
     return lambda _, cells: [replace(c, raw=change(c.number, c.raw)) for c in cells]
 
 
-def _written(change: Callable[[Number], Number]) -> Callable[[Field, Cells], Cells]:
+def _encoded(change: Callable[[Number], Number]) -> Callable[[Field, Cells], Cells]:
     """Change how each number of the field is encoded."""
     return lambda _, cells: [replace(cell, number=change(cell.number)) for cell in cells]
+
+
+def _each(change: Callable[[Field, Cell], int]) -> Callable[[Field, Cells], Cells]:
+    """Replace each raw value of the field by another one."""
+    return lambda field, cells: [replace(cell, raw=change(field, cell)) for cell in cells]
+
+
+def _always(field: Field, number: Number) -> bool:
+    return True
 
 
 def _is_number(field: Field, number: Number) -> bool:
     return not field.choices
 
 
-def _signed(field: Field, number: Number) -> bool:
+def _is_listed(field: Field, number: Number) -> bool:
+    return bool(field.choices)
+
+
+def _is_row(field: Field, number: Number) -> bool:
+    return field.many
+
+
+def _is_wide(field: Field, number: Number) -> bool:
+    return number.width > 1
+
+
+def _may_be_negative(field: Field, number: Number) -> bool:
+    return _is_number(field, number) and _signed(number)
+
+
+def _signed(number: Number) -> bool:
     return number.signed_at < (1 << 8 * number.width) - 1
+
+
+def _has_room_above(field: Field, number: Number) -> bool:
+    return max(field.choices or (number.maximum,)) < number.signed_at
+
+
+def _has_room_below(field: Field, number: Number) -> bool:
+    lowest = number.signed_at + 1 - 256**number.width if _signed(number) else 0
+    return min(field.choices or (number.minimum,)) > lowest
 
 
 def _magnitude(number: Number, raw: int) -> int:
@@ -91,96 +108,53 @@ def _magnitude(number: Number, raw: int) -> int:
     return 256**number.width // 2 + abs(raw) if raw < 0 else raw
 
 
-def _room_above(field: Field, number: Number) -> bool:
-    return max(field.choices or (number.maximum,)) < number.signed_at
+def _lowest(field: Field, cell: Cell) -> int:
+    return min(field.choices or (cell.number.minimum,))
 
 
-def _room_below(field: Field, number: Number) -> bool:
-    lowest = number.signed_at + 1 - 256**number.width if _signed(field, number) else 0
-    return min(field.choices or (number.minimum,)) > lowest
+def _highest(field: Field, cell: Cell) -> int:
+    return max(field.choices or (cell.number.maximum,))
 
 
-def _next_choice(field: Field, cells: Cells) -> Cells:
-    """Replace each number by the next legal one, the last by the first."""
-    return [replace(cell, raw=_next(field, cell)) for cell in cells]
-
-
-def _next(field: Field, cell: Cell) -> int:
-    if field.choices:
-        at = field.choices.index(cell.raw) if cell.raw in field.choices else -1
-        return field.choices[(at + 1) % len(field.choices)]
-    at = cell.raw + 1
-    return at if at <= cell.number.maximum else cell.number.minimum
-
-
-def _first(field: Field, cells: Cells) -> Cells:
-    return [replace(c, raw=min(field.choices or (c.number.minimum,))) for c in cells]
-
-
-ALTERATIONS = (
-    Alteration(
-        "sign",
-        "without its sign",
-        lambda f, n: _is_number(f, n) and _signed(f, n),
-        _change_raw(lambda _, raw: abs(raw)),
-    ),
-    Alteration(
-        "sign",
-        "as sign and magnitude",
-        lambda f, n: _is_number(f, n) and _signed(f, n),
-        _change_raw(_magnitude),
-    ),
-    Alteration("sign", "with the other sign", _is_number, _change_raw(lambda _, raw: -raw)),
-    Alteration("scale", "ten times as large", _is_number, _change_raw(lambda _, raw: raw * 10)),
-    Alteration("scale", "a tenth as large", _is_number, _change_raw(lambda _, raw: raw // 10)),
-    Alteration(
-        "width",
-        "in one byte each",
-        lambda _, n: n.width > 1,
-        _written(lambda number: number._replace(width=1)),
-    ),
-    Alteration(
-        "width",
-        "with a byte more each",
-        lambda *_: True,
-        _written(lambda number: number._replace(width=number.width + 1)),
-    ),
-    Alteration(
-        "order",
-        "last element first",
-        lambda field, _: field.many,
-        lambda _, cells: cells[::-1],
-    ),
-    Alteration(
-        "order",
-        "its first two elements swapped",
-        lambda field, _: field.many,
-        lambda _, cells: [cells[1], cells[0], *cells[2:]],
-    ),
-    Alteration(
-        "endianness",
-        "low byte first",
-        lambda _, n: n.width > 1,
-        _written(lambda n: n._replace(order="little" if n.order == "big" else "big")),
-    ),
-    Alteration(
-        "range",
-        "one above the largest legal number",
-        _room_above,
-        lambda f, cells: [replace(c, raw=max(f.choices or (c.number.maximum,)) + 1) for c in cells],
-    ),
-    Alteration(
-        "range",
-        "one below the smallest legal number",
-        _room_below,
-        lambda f, cells: [replace(c, raw=min(f.choices or (c.number.minimum,)) - 1) for c in cells],
-    ),
-    Alteration("value", "the next legal value", lambda f, _: bool(f.choices), _next_choice),
-    Alteration("value", "always the first legal value", lambda f, _: bool(f.choices), _first),
-    Alteration("value", "always zero", _is_number, _change_raw(lambda *_: 0)),
+_wider = _encoded(lambda number: number._replace(width=number.width + 1))
+_low_first = _encoded(lambda n: n._replace(order="little" if n.order == "big" else "big"))
+ALTERATIONS = tuple(
+    Alteration(*row)
+    for row in (
+        ("sign", "without its sign", _may_be_negative, _raw(lambda _, raw: abs(raw))),
+        ("sign", "as sign and magnitude", _may_be_negative, _raw(_magnitude)),
+        ("sign", "with the other sign", _is_number, _raw(lambda _, raw: -raw)),
+        ("scale", "ten times as large", _is_number, _raw(lambda _, raw: raw * 10)),
+        ("scale", "a tenth as large", _is_number, _raw(lambda _, raw: raw // 10)),
+        ("width", "in one byte each", _is_wide, _encoded(lambda n: n._replace(width=1))),
+        ("width", "with a byte more each", _always, _wider),
+        ("order", "last element first", _is_row, lambda _, cells: cells[::-1]),
+        (
+            "order",
+            "its first two elements swapped",
+            _is_row,
+            lambda _, cells: [cells[1], cells[0], *cells[2:]],
+        ),
+        ("endianness", "low byte first", _is_wide, _low_first),
+        (
+            "range",
+            "one above the largest legal number",
+            _has_room_above,
+            _each(lambda field, cell: _highest(field, cell) + 1),
+        ),
+        (
+            "range",
+            "one below the smallest legal number",
+            _has_room_below,
+            _each(lambda field, cell: _lowest(field, cell) - 1),
+        ),
+        ("value", "the next legal value", _is_listed, _each(next_value)),
+        ("value", "always the first legal value", _is_listed, _each(_lowest)),
+        ("value", "always zero", _is_number, _raw(lambda *_: 0)),
+    )
 )
 ECHOES = (
-    Alteration("echo", "the next legal value", lambda *_: True, _next_choice),
-    Alteration("echo", "always the first legal value", lambda *_: True, _first),
-    Alteration("width", "with a byte more", lambda *_: True, ALTERATIONS[6].alter),
+    Alteration("echo", "the next legal value", _always, _each(next_value)),
+    Alteration("echo", "always the first legal value", _always, _each(_lowest)),
+    Alteration("width", "with a byte more", _always, _wider),
 )

@@ -8,17 +8,16 @@ from typing import NamedTuple
 
 from cobotwire import editions
 from cobotwire.cli.shared.subject_connection import Lacking
-from cobotwire.conformance.device import ALL_PERMISSIONS, DeviceConnection, Permissions, Tester
+from cobotwire.conformance.device import ALL_PERMISSIONS
 from cobotwire.conformance.report import Cause, Result, Verdict
 from cobotwire.protocol.addresses import devices_of
 from cobotwire.protocol.table import Table
 from cobotwire.simulator.arm import SimulatedArm
 from cobotwire.simulator.clock import SteppedClock
-from cobotwire.simulator.memory import MemoryTransport
 from cobotwire.simulator.peer import Peer
+from conformance.device.testing import on_peer, permissions
 
-# Each joint may move this far (degrees), at full speed: a simulated arm cannot be damaged.
-WORKSPACE = (-60.0, 60.0)
+# A simulated arm cannot be damaged.
 FASTEST = 100
 QUERY_REPLIED = "query-replied"
 
@@ -43,23 +42,14 @@ def complaints(
 
     A run that ends early is a complaint too: its report says that the device stopped replying.
     """
-    for result in results(table, peer, clock, only, address):
+    address = address or tested_addresses(table)[0]
+    # What the simulated arm states that it does not support is no failure.
+    lacking = on_correct_arm(table, address).lacking
+    for result in _results(table, peer, clock, only, address, lacking):
         if result.verdict is Verdict.FAIL:
             yield Complaint(result.command, result.case, result.reason)
         elif result.cause is Cause.RUN_ENDED:
             yield Complaint("", "run ended", result.reason)
-
-
-def results(
-    table: Table, peer: Peer, clock: SteppedClock, only: str = "", address: str | None = None
-) -> Iterator[Result]:
-    """Yield the results of a whole run step by step, or of the steps of one command.
-
-    What the simulated arm states that it does not support is no failure.
-    """
-    address = address or tested_addresses(table)[0]
-    lacking = on_correct_arm(table, address).lacking
-    yield from _results(table, peer, clock, only, address, lacking)
 
 
 class OnCorrectArm(NamedTuple):
@@ -129,19 +119,8 @@ def _results(
     address: str | None,
     lacking: dict[str, str],
 ) -> Iterator[Result]:
-    permissions = Permissions.of(
-        ALL_PERMISSIONS,
-        joints=table.joints,
-        max_speed=FASTEST,
-        workspace=dict.fromkeys(range(1, table.joints + 1), WORKSPACE),
-    )
-    tester = Tester(
-        DeviceConnection(MemoryTransport(peer, clock), clock),
-        table,
-        permissions=permissions,
-        address=address,
-        lacking=lacking,
-    )
+    allowed = permissions(*ALL_PERMISSIONS, joints=table.joints, max_speed=FASTEST)
+    tester = on_peer(peer, clock, table, permissions=allowed, address=address, lacking=lacking)
     for step in tester.steps():
         if not only or (step.command is not None and step.command.name == only):
             yield from tester.results(step)

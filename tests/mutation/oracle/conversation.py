@@ -1,8 +1,11 @@
-"""Have long random conversations with a device, with legal and malformed requests."""
+"""Have long random conversations with a device, and repeat them with a mutant.
+
+They have legal and malformed requests.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from random import Random
 from typing import NamedTuple
 
@@ -14,13 +17,19 @@ from cobotwire.simulator.arm import SimulatedArm
 from cobotwire.simulator.clock import SteppedClock
 from cobotwire.simulator.memory import TICK_SECONDS
 from cobotwire.simulator.peer import Peer
+from mutation.device.broken import Mutant
 from mutation.device.cells import checked, framed, take_apart
 from mutation.device.legal import draw_request, shape
+from mutation.device.stimulus import kind_of
 
 # Long enough for a late reply, and for the longest motion of a joint.
 PAUSES = (0.0, 0.0, 0.001, 0.02, 0.05, 0.3, 1.0, 8.0)
 PART_LEGAL = 0.9
 PART_CUT = 0.1
+ROUNDS = 24
+STEPS = 250
+# One in this many commands takes part in a conversation.
+SHARE = 4
 
 
 class Step(NamedTuple):
@@ -162,3 +171,61 @@ def _damage(table: Table, random: Random, data: bytes) -> bytes:
             framed(frame, frame.read_id(data), other, frame.address(data)),
         )
     )
+
+
+def conversations(table: Table, command: str, rounds: int = ROUNDS) -> Iterator[Conversation]:
+    """Yield the conversations for a mutant of a command; the same ones each time."""
+    known = (table.edition, command)
+    if known not in _kept:
+        # Mutants of one command are judged one after another, so its conversations are cached.
+        _kept.clear()
+        _kept[known] = []
+    kept = _kept[known]
+    for seed in range(rounds):
+        if seed == len(kept):
+            kept.append(_conversation(table, command, seed))
+        yield kept[seed]
+
+
+_kept: dict[tuple[str, str], list[Conversation]] = {}
+
+
+def _conversation(table: Table, command: str, seed: int) -> Conversation:
+    """Return a conversation about some of the commands, drawn at random.
+
+    If all commands took part, one that stops the arm for good would hide all motion.
+    """
+    random = Random(f"{table.edition} {command} {seed}")
+    # Nothing is sent for an event.
+    sent = [command for command in table.commands if command.request]
+    some = random.sample(sent, len(sent) // SHARE)
+    about = []
+    if command:
+        broken = table.command(command)
+        family = [c for c in sent if c.family == broken.family]
+        about = [broken] * 4 + random.sample(family, min(4, len(family)))
+    conversation = Conversation(table, random, [*some, *about], about)
+    conversation.have(STEPS)
+    return conversation
+
+
+def replies_of(table: Table, mutant: Mutant, conversation: Conversation) -> list[Received]:
+    """Return what a mutant sends when a conversation with the correct device is repeated."""
+    clock = SteppedClock()
+    return conversation.again(mutant.make(table, clock), clock)
+
+
+def only_legal(table: Table, received: list[Received]) -> bool:
+    """Return whether everything received is a frame that the edition allows, or its text."""
+    codec = codecs.load(table)
+    framer = codec.framer("reply")
+    data = b"".join(piece.data for piece in received)
+    try:
+        for event in (*framer.feed(data), *framer.flush()):
+            if isinstance(event, Frame):
+                codec.decode("reply", event.data)
+            elif kind_of(table, event.data) != "noise":
+                return False
+    except ProtocolError:
+        return False
+    return True

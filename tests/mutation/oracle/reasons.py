@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 
 from cobotwire.protocol.table import Command, Field, Table
+from mutation.device.broken import Mutant
 from mutation.device.exchanges import reply_fields, request_fields
 from mutation.device.testing import is_judged, lacking
-from mutation.mutant import Mutant
-from mutation.oracle.compare import conversations, only_legal, replies_of, values_of
-from mutation.oracle.conversation import Conversation
+from mutation.oracle.conversation import Conversation, conversations, only_legal, replies_of
 from mutation.oracle.undefined import (
     ERRORS,
     LEFT_OPEN,
@@ -31,7 +30,7 @@ def reason(table: Table, mutant: Mutant) -> str:
     known = known and not lacks
     had, differs = [], False
     for conversation in conversations(table, mutant.command):
-        replied = replies_of(mutant, conversation)
+        replied = replies_of(table, mutant, conversation)
         had.append(conversation)
         if replied != conversation.received:
             differs = True
@@ -52,23 +51,11 @@ def reason(table: Table, mutant: Mutant) -> str:
 
 
 def _alike(table: Table, mutant: Mutant, had: Sequence[Conversation]) -> str:
-    """Return how the mutant was compared, and the values that it could have sent wrongly."""
+    """Return how the mutant was compared, and what the simulated arm lacks."""
     requests = sum(len(conversation.steps) for conversation in had)
     same = f"no byte differs in {len(had)} conversations with {requests} writes in all"
-    field = _field(table, mutant)
-    why = lacking(table, mutant.command)
-    if why:
-        short, _, _ = why.partition(":")
-        return f"{same}: no reply of the simulated arm shows the fault, because {short}"
-    if field is None:
-        return f"{same}: no reply shows the effect of the fault"
-    seen = {
-        value
-        for conversation in had
-        for reported in values_of(table, mutant.command, field.name, conversation.received)
-        for value in _numbers(reported)
-    }
-    return f"{same}: `{field.name}` was {_range(seen)}, which both devices encode equally"
+    why, _, _ = lacking(table, mutant.command).partition(":")
+    return f"{same}, because {why}" if why else same
 
 
 # What the edition leaves undefined, by the unit or the labels of a request's field.
@@ -123,25 +110,6 @@ def _unsafe(command: Command) -> str:
 def _replied(table: Table, name: str) -> list[str]:
     command = table.command(name)
     return [field.name for field in reply_fields(command)] if command.requires_reply else []
-
-
-def _numbers(reported: object) -> Iterator[int | float | str]:
-    """Yield the numbers of a value: those of each group, those of each byte; a text is whole."""
-    if isinstance(reported, tuple | list | bytes):
-        for part in reported:
-            yield from _numbers(part)
-    elif isinstance(reported, int | float | str):
-        yield reported
-
-
-def _range(values: set[int | float | str]) -> str:
-    if not values:
-        return "never reported"
-    numbers = [value for value in values if not isinstance(value, str)]
-    if not numbers:
-        return f"always {', '.join(sorted(map(repr, values)))}"
-    low, high = min(numbers), max(numbers)
-    return f"always {low:g}" if low == high else f"between {low:g} and {high:g}"
 
 
 def _field(table: Table, mutant: Mutant) -> Field | None:

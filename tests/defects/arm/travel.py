@@ -1,0 +1,50 @@
+"""Numbers on their way to their goals."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+
+class Travel:
+    """Numbers on their way to their goals, all at the same rate, which a pause holds."""
+
+    _held_at: float | None
+
+    def __init__(self, clock: Callable[[], float], start: Sequence[float]) -> None:
+        self._clock = clock
+        self.put(start)
+
+    def put(self, place: Sequence[float]) -> None:
+        """Be there, at rest."""
+        self._start, self.goal, self._rate = list(place), list(place), 1.0
+        self._since, self._held_at = self._clock(), None
+
+    def go(self, goal: Sequence[float], rate: float) -> None:
+        """Leave for a goal."""
+        self._start, self.goal, self._rate = self.place(), list(goal), rate
+        self._since, self._held_at = self._clock(), None
+
+    def place(self) -> list[float]:
+        """Return where the numbers are now."""
+        until = self._clock() if self._held_at is None else self._held_at
+        most = self._rate * (until - self._since)
+        return [a + max(-most, min(most, b - a)) for a, b in zip(self._start, self.goal)]
+
+    def hold(self) -> None:
+        """Stay here for now."""
+        self._held_at = self._clock()
+
+    def resume(self) -> None:
+        """Leave for the same goal again."""
+        if self._held_at is not None:
+            self.go(self.goal, self._rate)
+
+    @property
+    def moves(self) -> bool:
+        """Whether any number is on its way."""
+        return self._held_at is None and self.place() != self.goal
+
+    @property
+    def held(self) -> bool:
+        """Whether a pause holds the numbers."""
+        return self._held_at is not None
