@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pickle
 from itertools import pairwise
 from typing import Any
 
@@ -134,3 +135,13 @@ def test_sample_holds_the_result_of_each_request() -> None:
     assert sample.requested_at == 0.0
     with pytest.raises(KeyError):
         sample[encoder(1)]
+
+
+def test_sample_is_a_value_that_cannot_be_changed() -> None:
+    reading = Reading(1, 0.0, 0.1)
+    sample = Sample(0, 3, (encoder(2),), (reading,))
+    assert pickle.loads(pickle.dumps(sample)) == sample == Sample(0, 3, (encoder(2),), (reading,))
+    assert sample != Sample(0, 4, (encoder(2),), (reading,))
+    assert len({sample, Sample(0, 3, (encoder(2),), (reading,))}) == 1
+    with pytest.raises(AttributeError, match="read-only; cannot set slot"):
+        sample.slot = 4

@@ -24,7 +24,7 @@ class Reading(NamedTuple, Generic[Result]):
     """When its reply was read."""
 
 
-class Sample:
+class Sample:  # not a tuple: its keys are requests
     """The results of a stream's requests in one of its slots.
 
     ``sample[GetAngles()]`` is the result of one request, with its precise type.
@@ -36,7 +36,11 @@ class Sample:
         readings: a reading for each request.
     """
 
-    __slots__ = ("number", "readings", "requests", "slot")
+    __slots__ = ("number", "slot", "requests", "readings")  # noqa: RUF023  (as __init__ takes them)
+    number: int
+    slot: int
+    requests: tuple[Request[Any], ...]
+    readings: tuple[Reading[Any], ...]
 
     def __init__(
         self,
@@ -45,10 +49,23 @@ class Sample:
         requests: tuple[Request[Any], ...],
         readings: tuple[Reading[Any], ...],
     ) -> None:
-        self.number = number
-        self.slot = slot
-        self.requests = requests
-        self.readings = readings
+        for name, value in zip(self.__slots__, (number, slot, requests, readings)):
+            object.__setattr__(self, name, value)
+
+    def __setattr__(self, name: str, value: object) -> None:
+        raise AttributeError(f"a sample is read-only; cannot set {name}")
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Sample) and self._key() == other._key()
+
+    def __hash__(self) -> int:
+        return hash(self._key())
+
+    def __reduce__(self) -> tuple[type[Sample], tuple[object, ...]]:
+        return Sample, self._key()
+
+    def _key(self) -> tuple[object, ...]:
+        return self.number, self.slot, self.requests, self.readings
 
     def __repr__(self) -> str:
         return f"Sample(number={self.number}, slot={self.slot}, values={self.values})"
