@@ -55,11 +55,13 @@ def example_frame(edition: Edition, command: Command, direction: Direction, size
     return next((frame for frame in fitting if len(frame) == size), b"")
 
 
-def example_lines(edition: Edition, command: Command) -> str:
-    """Return the lines of the document that print the examples of a page; empty if none does."""
+def source_lines(edition: Edition, command: Command) -> str:
+    """Return the lines of the document about a command and with its examples; empty if none."""
+    stated = f"document, {lines(command.source)}" if command.source else ""
     found = sorted({v.line for v in examples(edition, command).values() if v.line})
     one = "an example" if len(found) == 1 else "examples"
-    return f"; {one} in {lines(tuple((line, line) for line in found))}" if found else ""
+    shown = f"{one} in {lines(tuple((line, line) for line in found))}" if found else ""
+    return "; ".join(filter(None, (stated, shown)))
 
 
 def derived(edition: Edition, command: Command) -> list[Vector]:

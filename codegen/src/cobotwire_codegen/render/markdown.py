@@ -26,6 +26,11 @@ from cobotwire_codegen.render.escape_markdown import code as code
 from cobotwire_codegen.render.words import decimal, span
 
 
+def robot(edition: Edition) -> str:
+    """Return the name of the edition's robot, without what its title adds to it."""
+    return edition.title.partition(":")[0]
+
+
 def wire_variant(type: Type) -> str:
     """Return how a type is encoded, in words."""
     if isinstance(type, Shaped):
@@ -125,8 +130,7 @@ def source_words(
         (errata, f"{mistakes} in the document"),
         (derived, "where the example comes from"),
     )
-    words = "; ".join(text for found, text in parts if found)
-    return words[:1].upper() + words[1:]
+    return "; ".join(text for found, text in parts if found)
 
 
 def linked(text: str) -> str:
