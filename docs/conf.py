@@ -3,16 +3,21 @@
 from __future__ import annotations
 
 import re
+import sys
 import tomllib
-from fnmatch import fnmatch
 from importlib.metadata import version as version_of
 from pathlib import Path
 from typing import Any
 
+from docutils import nodes
 from sphinx.application import Sphinx
 
 from cobotwire_codegen.emit import write
 from cobotwire_codegen.project import SITE, editions, products
+
+sys.path.insert(0, str(Path(__file__).parent))
+from robot_picture import picture
+from site_search import UserWords, name_commands
 
 project = "cobotwire"
 author = "the cobotwire engineers"
@@ -52,6 +57,8 @@ html_title = f"cobotwire {version}"
 html_static_path = ["_static", "pictures"]
 html_css_files = ["site.css"]
 ROOT = Path(__file__).parents[1]
+EDITIONS = editions(ROOT)
+COMMANDS = {each.name: each.by_name for each in EDITIONS}
 _PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))
 REPOSITORY = _PROJECT["project"]["urls"]["Repository"]
 html_theme_options = {
@@ -61,24 +68,49 @@ html_theme_options = {
     "source_directory": "docs/",
 }
 html_show_sphinx = False
+# The search and the sidebar find what these list.
+html_use_index = html_domain_indices = False
+html_search_scorer = str(Path(__file__).with_name("search_order.js"))
 # Each page links to its source in the repository.
 html_copy_source = False
 
 
-def _add_pages(app: Sphinx, page: str, source: list[str]) -> None:
-    """List below the front page of each edition the other pages of its folder."""
-    if fnmatch(page, "reference/*/README"):
-        source[0] += "\n```{toctree}\n:hidden:\n:glob:\n\n*\n```\n"
+def _add_robots(app: Sphinx, page: str, source: list[str]) -> None:
+    """List the page of each robot below their overview, and draw the arm of each."""
+    if page == "robots":
+        source[0] += "\n```{toctree}\n:hidden:\n:glob:\n\nrobots/mycobot280\nrobots/*\n```\n"
+    if page.startswith("robots/"):
+        name = page.rpartition("/")[2]
+        source[0] = re.sub("^<!-- picture -->$", lambda _: picture(name), source[0], flags=re.M)
+
+
+def _name_commands(app: Sphinx, document: nodes.document) -> None:
+    """Add what each command of an edition does to the search index."""
+    folder, _, rest = app.env.docname.partition("/")
+    if folder == "reference" and (commands := COMMANDS.get(rest.partition("/")[0])):
+        name_commands(document, commands)
 
 
 def _collapse(app: Sphinx, page: str, template: str, context: dict[str, Any], tree: object) -> None:
-    """Show the pages of an edition only to readers of that edition.
+    """Fold the sections of the sidebar, and show the pages of a robot only to its readers.
 
-    Otherwise each page has a link to every page of every edition, and the build takes longer.
+    Otherwise each page has a link to every page of every robot, and the build takes longer.
     """
     whole = context.get("toctree")
     if whole is not None:
-        context["toctree"] = lambda **options: whole(**{**options, "collapse": True})
+        context["toctree"] = lambda **options: _folded(whole(**{**options, "collapse": True}))
+
+
+def _folded(tree: str) -> str:
+    """Return the sidebar with a fold for each section; that of the page is open, or the first two."""
+    caption = r'<p class="caption".*?<span class="caption-text">(.*?)</span></p>'
+    _, *parts = re.split(caption, tree)
+    sections = list(zip(parts[::2], parts[1::2]))
+    current = [n for n, (_, links) in enumerate(sections) if 'class="current"' in links] or [0, 1]
+    return "".join(
+        f"<details{' open' * (n in current)}><summary>{name}</summary>{links}</details>"
+        for n, (name, links) in enumerate(sections)
+    )
 
 
 def _edit_spec(
@@ -111,11 +143,13 @@ def _section(found: re.Match[str]) -> str:
 
 def setup(app: Sphinx) -> None:
     """Write the generated pages; change all pages before the theme (priority 500) writes them."""
-    for target in products(ROOT, editions(ROOT), SITE):
+    for target in products(ROOT, EDITIONS, SITE):
         write(target)
+    app.add_search_language(UserWords)
     app.connect("autodoc-process-signature", _without_noise)
     # Before napoleon (priority 500) reads the docstring.
     app.connect("autodoc-process-docstring", _as_sections, priority=400)
     app.connect("html-page-context", _edit_spec, priority=400)
-    app.connect("source-read", _add_pages)
+    app.connect("source-read", _add_robots)
+    app.connect("doctree-read", _name_commands)
     app.connect("html-page-context", _collapse, priority=400)

@@ -30,7 +30,8 @@ ROOT = Path(__file__).parents[2]
 def pages() -> list[str]:
     """Return the pages that people write; generated ones have examples of another form."""
     found = [page.relative_to(ROOT).as_posix() for page in (ROOT / "docs").rglob("*.md")]
-    written = [page for page in found if not page.startswith(("docs/reference/", "docs/_build/"))]
+    generated = ("docs/reference/", "docs/robots/", "docs/_build/")
+    written = [page for page in found if not page.startswith(generated)]
     return ["README.md", *sorted(written)]
 
 

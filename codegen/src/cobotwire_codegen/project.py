@@ -21,6 +21,7 @@ from cobotwire_codegen.render import (
     render_vectors,
     with_used_types,
 )
+from cobotwire_codegen.render.robot_page import robot_pages
 from cobotwire_codegen.render.sharing import Sharing
 from cobotwire_codegen.render.unit_module import render_clients, render_units
 from cobotwire_codegen.suite_pages import suite_pages
@@ -136,11 +137,13 @@ def _reference(root: Path, found: Sequence[Edition]) -> Files:
 
 RUST_DATA = "rust/core/tests/data"
 REFERENCE = "docs/reference"
+ROBOTS = "docs/robots"
 # What docs/conf.py writes before it builds the site.
-SITE = (REFERENCE, "docs/_static/decoder/editions")
+SITE = (REFERENCE, ROBOTS, "docs/_static/decoder/editions")
 # Build products by their folder. Git ignores them; users generate the ones that they need.
 PRODUCTS: dict[str, Callable[[Path, Sequence[Edition]], Files]] = {
     REFERENCE: _reference,
+    ROBOTS: lambda _, found: robot_pages(found),
     "docs/_static/decoder/editions": lambda _, found: render_decoder(found),
     RUST_DATA: lambda _, found: _every_vectors(found),
     "targets/c": lambda _, found: _every_c(found),

@@ -1,0 +1,78 @@
+"""Prepares the page of a robot: its first program, limits, evidence and commands."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from pathlib import PurePosixPath
+
+from cobotwire_codegen.model import Dispute, Edition, Evidence, Quantity, Value
+from cobotwire_codegen.render import Files, environment, python_api
+from cobotwire_codegen.render.escape_markdown import escaped
+from cobotwire_codegen.render.words import allowed, decimal, lines, units
+
+# How a source is named that reports what an arm did.
+_REAL_ARM = re.compile(r"\breal arms?\b|\bfield reports?\b|\bcapture\b")
+_ABOUT_THE_SPEC = re.compile(r"(?:^| )[^.]*stated as the difference[^.]*\.")
+
+
+def robot_pages(editions: list[Edition]) -> Files:
+    """Return a page for each robot; docs/conf.py draws its arm in place of the comment."""
+    template = environment().get_template("markdown/robot.md.j2")
+    made: Files = {}
+    for edition in map(escaped, editions):
+        text = template.render(
+            edition=edition,
+            about=_ABOUT_THE_SPEC.sub("", edition.doc),
+            own=next((each.name for each in edition.frame.addresses if each.replies == "own"), ""),
+            moves=python_api.moves(edition),
+            limits=list(_limits(edition)),
+            speed=_speed(edition),
+            seen=list(_seen(edition)),
+            captured=_captured(edition),
+            disputed=[command.name for command in edition.commands if command.disputed],
+        )
+        made[PurePosixPath(f"{edition.name}.md")] = text
+    return made
+
+
+def _limits(edition: Edition) -> Iterator[tuple[str, str]]:
+    """Yield each joint and axis with the targets that the edition permits."""
+    for name in ("send_angles", "send_coords"):
+        command = edition.by_name.get(name)
+        for field in command.requests[0] if command else ():
+            if isinstance(field.type, Value) and not field.type.varies:
+                yield from ((part, _range(item)) for part, item in field.type.items)
+
+
+def _range(item: object) -> str:
+    if not isinstance(item, Quantity) or item.range is None:
+        return "no source states a limit"
+    lowest, highest = item.range
+    return f"{decimal(lowest)} to {decimal(highest)} {units(item.unit)}"
+
+
+def _speed(edition: Edition) -> str:
+    command = edition.by_name.get("send_angles")
+    fields = command.requests[0] if command else ()
+    return next((allowed(field) for field in fields if field.name == "speed"), "")
+
+
+def _seen(edition: Edition) -> Iterator[tuple[str, Dispute, str]]:
+    """Yield the facts about which a real arm is a source, with what it showed."""
+    for thing in (*edition.commands, *edition.types, *edition.wires):
+        for dispute in getattr(thing, "disputed", ()):
+            shown = [_words(each) for each in dispute.evidence if _REAL_ARM.search(each.source)]
+            if shown:
+                yield thing.name, dispute, "; ".join(shown)
+
+
+def _words(evidence: Evidence) -> str:
+    place = f", {lines(evidence.lines)}" if evidence.lines else ""
+    return f"{evidence.source}{place}: {evidence.says}"
+
+
+def _captured(edition: Edition) -> list[str]:
+    """Return the commands with a frame that was captured from an arm, each once."""
+    found = (v.command for v in edition.vectors if v.name.startswith("captured-"))
+    return list(dict.fromkeys(found))
