@@ -102,7 +102,10 @@ def _collapse(app: Sphinx, page: str, template: str, context: dict[str, Any], tr
 
 
 def _folded(tree: str) -> str:
-    """Return the sidebar with a fold for each section; that of the page is open, or the first two."""
+    """Return the sidebar with a fold for each section.
+
+    The section of the page is open; the first two are on a page that is in none.
+    """
     caption = r'<p class="caption".*?<span class="caption-text">(.*?)</span></p>'
     _, *parts = re.split(caption, tree)
     sections = list(zip(parts[::2], parts[1::2]))
@@ -117,7 +120,7 @@ def _edit_spec(
     app: Sphinx, page: str, template: str, context: dict[str, Any], tree: object
 ) -> None:
     """Let "edit this page" lead to the spec if the page is generated from it."""
-    if page.startswith("reference/") and context.get("page_source_suffix"):
+    if page.startswith(("reference/", "robots/")) and context.get("page_source_suffix"):
         context["theme_source_edit_link"] = f"{REPOSITORY}/tree/main/spec"
 
 

@@ -4,13 +4,13 @@
 const Order = {
   // Where readers look first, and what few of them want.
   folders: [
-    [/^reference\/test-suite\//, -80],
+    [/^reference\/test-suite\//, -200],
     [/^reference\/(language|pymycobot)$/, -15],
     [/^guide\//, 6],
     [/^api\//, -10],
     [/^reference\/.*\/README$/, -5],
     [/^(reference|robots)\/mycobot280(\/|$)/, 6],
-    [/^(reference|robots)\//, -4],
+    [/^(reference|robots)\//, -8],
   ],
 
   /* Return the score of a result, and make it lead to the section that fits the query best. */
@@ -64,7 +64,7 @@ const Order = {
         if (id === null) continue;
         const [entry, main] = commands.get(`${page}#${id}`) ?? ["", false];
         const [does, more] = entry.split(" | ");
-        const section = { heading, anchor: `#${id}`, does: does || null, main: main ? 8 : 0 };
+        const section = { heading, anchor: `#${id}`, does: does || null, main: main ? 10 : 0 };
         section.own = Order.words(`${heading} ${does}`);
         section.further = Order.words(more ?? "");
         Order._sections.get(page).push(section);

@@ -25,7 +25,8 @@ class UserWords(SearchEnglish):
     js_splitter_code = f"""
 const SAME = {json.dumps(SAME)};
 var splitQuery = (query) =>
-  (query.match(/{NUMBERED}|[\\p{{L}}\\p{{N}}]+/giu) ?? []).map((word) => SAME[word.toLowerCase()] ?? word);
+  (query.match(/{NUMBERED}|[\\p{{L}}\\p{{N}}]+/giu) ?? [])
+    .map((word) => SAME[word.toLowerCase()] ?? word);
 """
 
     def split(self, input: str) -> list[str]:

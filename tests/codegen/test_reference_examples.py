@@ -19,7 +19,8 @@ from cobotwire.simulator import MemoryTransport, SteppedClock
 from cobotwire_codegen.render import render_reference
 
 SECTION = re.compile(r"^## (\w+)$(.*?)(?=^## |\Z)", re.DOTALL | re.MULTILINE)
-CALL = re.compile(r"^```pycon\n>>> (arm\..*)\n(?:(.*)\n)?```$", re.MULTILINE)
+# The first thing of a section.
+CALL = re.compile(r"\n\n```pycon\n>>> (arm\..*)\n(?:(.*)\n)?```$", re.MULTILINE)
 # A message without fields is its only frame; others have the example's bytes below the boxes.
 MESSAGE = re.compile(
     r"^\*\*(Request|Reply)\*\*(?: \([\w ]+\))?(?:: `([0-9A-F ]+)`$|\n\n```text\n(.*?)```)",
@@ -42,7 +43,7 @@ class Example(NamedTuple):
 def examples(edition: str) -> Iterator[Example]:
     for page in render_reference(vectors.edition(edition)).values():
         for section in SECTION.finditer(page):
-            if call := CALL.search(section[2]):
+            if call := CALL.match(section[2]):
                 yield Example(
                     call[1],
                     call[2] or "",
