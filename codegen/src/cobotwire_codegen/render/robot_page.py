@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import PurePosixPath
 
 from cobotwire_codegen.model import Dispute, Edition, Evidence, Quantity, Value
@@ -16,7 +16,7 @@ _REAL_ARM = re.compile(r"\breal arms?\b|\bfield reports?\b|\bcapture\b")
 _ABOUT_THE_SPEC = re.compile(r"(?:^| )[^.]*stated as the difference[^.]*\.")
 
 
-def robot_pages(editions: list[Edition]) -> Files:
+def robot_pages(editions: Sequence[Edition]) -> Files:
     """Return a page for each robot; docs/conf.py draws its arm in place of the comment."""
     template = environment().get_template("markdown/robot.md.j2")
     made: Files = {}
