@@ -15,6 +15,7 @@ from functools import cache
 from itertools import chain
 from typing import Any, NamedTuple
 
+from pymycobot_classes import RobotLimit
 from robots.comparison import calls_of
 from robots.robot import Call, Robot
 
@@ -80,19 +81,19 @@ def _variations(
             return
         yield from (("[shorter]", given[:-1]), ("[longer]", [*given, *given[-1:]]))
         for index in sorted({0, len(given) // 2, len(given) - 1} - {-1}):
-            for value in sorted({*_stated(kind, method, name, index), *EDGES, *OFF_STEP}):
+            for value in sorted({*stated(kind, method, name, index), *EDGES, *OFF_STEP}):
                 yield f"[{index}]={value}", [*given[:index], value, *given[index + 1 :]]
     elif not isinstance(given, str):
-        stated = _stated(kind, method, name)
+        found = stated(kind, method, name)
         small = SMALL if _LISTED.search(name) else ()
-        for value in sorted({*stated, *EDGES, *small, *OFF_STEP} if wide else stated):
+        for value in sorted({*found, *EDGES, *small, *OFF_STEP} if wide else found):
             yield value, value
         if wide:
             yield None, None
 
 
 @cache
-def _stated(kind: Any, method: str, name: str, index: int | None = None) -> frozenset[float]:
+def stated(kind: Any, method: str, name: str, index: int | None = None) -> frozenset[float]:
     """Return the numbers that the library states for a parameter, and their neighbours.
 
     For an element of a list, ``index`` says which; the table of limits has a number for each.
@@ -111,8 +112,6 @@ def _stated(kind: Any, method: str, name: str, index: int | None = None) -> froz
 @cache
 def _limits(kind: Any, index: int | None) -> set[float]:
     """Return the numbers of the library's table of limits for a class, or those of an index."""
-    from pymycobot.robot_info import RobotLimit
-
     rows = [r for r in RobotLimit.robot_limit.get(kind.__name__, {}).values() if _is_row(r)]
     which = slice(None) if index is None else slice(index, index + 1)
     return {float(each) for row in rows for each in row[which]}

@@ -11,9 +11,8 @@ from cobotwire.protocol.errors import UsageError
 from differences import Difference
 from drawn_values import Drawn, drawn
 from layer_comparison import Compared, chosen, class_of, is_missing
-from pymycobot_classes import REJECTIONS
 from pymycobot_ports import RecordingPort, RecordingTransport, Written
-from robots.comparison import is_truncated, raised
+from robots.comparison import is_truncated
 from robots.driving import stepped
 from robots.robot import Robot
 
@@ -64,22 +63,16 @@ def _layer(robot: Robot) -> Any:
 
 def _sent(who: Any, call: Drawn) -> bytes | str:
     """Return the first bytes that a call sends, or why it sends nothing."""
-    theirs = not type(who).__module__.startswith("cobotwire")
-    rejections = (AssertionError, *REJECTIONS, *raised()) if theirs else (UsageError,)
     try:
         getattr(who, call.method)(**call.arguments)
     except Written as port:
         return port.data
-    except TypeError as error:
-        # Our methods of requests with several variants raise it for a missing argument.
-        if not theirs and not is_missing(error):
-            return Crashed(f"TypeError: {error}")
-        return Rejected(_without_numbers(str(error)))
-    except rejections as error:
-        return Rejected(_without_numbers(str(error)))
     except Exception as error:
         text = f"{type(error).__name__}: {error}"
-        return Rejected(_without_numbers(text)) if theirs else Crashed(text)
+        theirs = not type(who).__module__.startswith("cobotwire")
+        # Our methods of requests with several variants raise TypeError for a missing argument.
+        rejects = theirs or isinstance(error, UsageError) or is_missing(error)
+        return Rejected(_without_numbers(text)) if rejects else Crashed(text)
     return SILENT
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import struct
 import sys
 import threading
 import warnings
@@ -22,18 +21,10 @@ with warnings.catch_warnings():
     import pymycobot
     from pymycobot import CommandGenerator, MyArmC, MyArmM, MyCobot, MyCobot280, MyPalletizer260
     from pymycobot.common import DataProcessor, read, write
-    from pymycobot.error import (
-        MechArmDataException,
-        MyArmCDataException,
-        MyArmDataException,
-        MyArmMDataException,
-        MyCobot280DataException,
-        MyCobot320DataException,
-        MyCobotDataException,
-        calibration_parameters,
-    )
+    from pymycobot.error import calibration_parameters
+    from pymycobot.robot_info import RobotLimit
 
-__all__ = ["CLASSES", "REJECTIONS", "MyCobot", "MyCobot280", "MyPalletizer260"]
+__all__ = ["CLASSES", "MyCobot", "MyCobot280", "MyPalletizer260", "RobotLimit"]
 __all__ += ["peer_on", "recording_client", "without_port", "written"]
 
 CLASSES: dict[str, type[Any]] = {
@@ -42,21 +33,6 @@ CLASSES: dict[str, type[Any]] = {
     "Mercury (A1)": pymycobot.Mercury,
     "Mercury (B1, X1)": pymycobot.Mercury,
 }
-
-# Exceptions that a call raises before it writes: on purpose, for an argument outside its limits; or
-# by accident, for a number that does not fit into its bytes (pyserial raises the last of these).
-REJECTIONS = (
-    MechArmDataException,
-    MyArmDataException,
-    MyArmCDataException,
-    MyArmMDataException,
-    MyCobotDataException,
-    MyCobot280DataException,
-    MyCobot320DataException,
-    struct.error,
-    TypeError,
-    ValueError,
-)
 
 
 def library(name: str) -> Any:

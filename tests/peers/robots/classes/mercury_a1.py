@@ -94,14 +94,17 @@ LACKING = {
     "get_hand_gripper": "a method for each register",
 }
 WHOLE = "any step of the wire here; the maker takes whole numbers only"
-_LIMIT = "a captured frame sets -178 degrees; the maker wants a limit inside the limits of targets"
+_LIMIT = (
+    "a captured frame sets -178 degrees, and any tenth is legal here; the maker wants a whole "
+    "number inside the limits of targets"
+)
 RULINGS = {
     "drag_teach_execute": [
         Ruling("fe fe 03 47", "the maker asks first whether points are recorded")
     ],
     "set_limit_switch": [Ruling("fe fe 03 12", "the maker asks first whether the arm has power")],
-    "set_joint_min_angle": [Ruling("angle value not right", _LIMIT)],
-    "set_joint_max_angle": [Ruling("angle value not right", _LIMIT)],
+    "set_joint_min_angle": [Ruling("rejected", _LIMIT)],
+    "set_joint_max_angle": [Ruling("rejected", _LIMIT)],
     "set_pos_over_shoot": [Ruling("'float' object is not iterable", WHOLE)],
     "write_move_c_r": [Ruling("'float' object is not iterable", WHOLE)],
     "tool_serial_set_baud": [

@@ -5,16 +5,27 @@ It sends requests of the document's edition, and some that only newer firmware h
 
 from __future__ import annotations
 
-from pymycobot_differences import DIFFERENCES
-from robots.robot import GPIO, LOCAL, SERVO_BUS, Call, Robot, Ruling
+from robots.robot import GPIO, LOCAL, SERVO_BUS, Arguments, Call, Robot, Ruling
 from robots.rulings import PORT, REACHED, RETRIED, SIGN, SPEED, limits
 
 _ZERO = [0] * 6
 _LIMITS = "this edition states no limits of the joints; the maker checks those of a 280"
 _ZERO_SPEED = Ruling("speed is 0", SPEED)
 _SIGN = Ruling("'h' format", SIGN)
-_RANGE = Ruling("angle value", _LIMITS)
+_RANGE = [Ruling("angle value", _LIMITS), _ZERO_SPEED]
 _BYTE = "0x3A: no speed byte in this edition; mycobot280 has one"
+_FORWARD = "0x23 has no data here; with six words it is mycobot280's forward kinematics"
+_EVERY = "0x57: joints are 1..6; newer firmware takes 0 as all of them"
+_MODE = "0x25: LEN 10 with a mode here; newer firmware also takes LEN 0F without"
+_TRAILING = "this edition has no such trailing byte; mycobot280 has it as an optional one"
+_WITH_ANOTHER_BYTE: dict[str, Arguments] = {
+    "release_all_servos": (),
+    "release_servo": (1,),
+    "set_gripper_state": (0, 50),
+    "set_gripper_value": (9, 50),
+    "get_servo_data": (1, 24),
+    "set_servo_data": (1, 24, 9),
+}
 _REFERENCES = ("tool_reference", "world_reference", "reference_frame", "end_type")
 ROBOT = Robot(
     "MyCobot",
@@ -31,12 +42,17 @@ ROBOT = Robot(
     ),
     calls=[
         Call("go_home", (), "send_angles", (_ZERO, 10)),
+        Call("send_angle", (1, 0, 0), "send_angle", (1, 0, 0)),
+        Call("send_angles", (_ZERO, 0), "send_angles", (_ZERO, 0)),
         Call("sync_send_angles", (_ZERO, 50), "send_angles", (_ZERO, 50)),
         Call("sync_send_coords", (_ZERO, 50, 1), "send_coords", (_ZERO, 50, 1)),
+        Call("set_encoder", (4, 9, 50), "set_encoder", (4, 9), why=_BYTE),
+        Call("angles_to_coords", (_ZERO,), "get_coords", (), why=_FORWARD),
+        Call("focus_all_servos", (), "focus_servo", (6,), why=_EVERY),
+        Call("send_coords", (_ZERO, 50), "send_coords", (_ZERO, 50, 0), why=_MODE),
         *(
-            Call(each.method, each.theirs, command, each.ours, why=each.ruling)
-            for (command, peer, _), each in DIFFERENCES.items()
-            if peer == "MyCobot"
+            Call(method, (*given, 1), method, given, why=_TRAILING)
+            for method, given in _WITH_ANOTHER_BYTE.items()
         ),
     ],
     rulings={
@@ -44,8 +60,8 @@ ROBOT = Robot(
         "jog_angle": [_ZERO_SPEED],
         "jog_coord": [_ZERO_SPEED],
         "jog_increment": [_ZERO_SPEED, _SIGN],
-        "send_angle": [_RANGE],
-        "send_angles": [_RANGE],
+        "send_angle": _RANGE,
+        "send_angles": _RANGE,
         "send_coord": [_ZERO_SPEED, _SIGN],
         "send_coords": [_ZERO_SPEED, _SIGN],
         "set_encoders": [_ZERO_SPEED],

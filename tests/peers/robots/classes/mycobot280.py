@@ -2,22 +2,26 @@
 
 from __future__ import annotations
 
-from pymycobot_280_differences import DIFFERENCES
-from pymycobot_280_requests import COMPOSED
 from robots.robot import DRIVEN, GPIO, LOCAL, Call, Robot, Ruling
 from robots.rulings import EMPTY, REACHED, SETTERS, SPAN, limits
 
+_LOWEST = [-168, -140, -150, -150, -155, -180]
+# Header and footer inside the data: FE FE and 00 FA.
+_COORDS = [-25.8, 25.0, -0.1, -2.58, 2.5, 0.1]
 ROBOT = Robot(
     "MyCobot280",
     "mycobot280",
     local=LOCAL | GPIO,
     lacking={"jog_stop": "a command of the document's edition, which the 280 keeps"},
     calls=[
-        *(Call(theirs, given, ours, arguments) for theirs, given, ours, arguments in COMPOSED),
-        *(
-            Call(each.method, each.theirs, command, each.ours, why=each.ruling)
-            for (command, _), each in DIFFERENCES.items()
-        ),
+        Call("is_in_position", (_LOWEST,), "is_in_position", (_LOWEST, 0)),
+        Call("set_color", (), "set_color", (0, 0, 0)),
+        Call("go_home", (), "send_angles", ([0] * 6, 10)),
+        Call("gripper_stop", (), "set_gripper_value", (0, 0, 1, 1)),
+        Call("is_torque_gripper", (), "get_servo_data", (7, 1)),
+        Call("sync_send_angles", (_LOWEST, 50), "send_angles", (_LOWEST, 50)),
+        Call("sync_send_coords", (_COORDS, 50), "send_coords", (_COORDS, 50, 0)),
+        Call("sync_send_coords", (_COORDS, 50, 1), "send_coords", (_COORDS, 50, 1)),
     ],
     rulings={
         **SETTERS,

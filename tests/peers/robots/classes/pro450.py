@@ -69,7 +69,10 @@ _ZERO = [0] * 6
 _FIRST = "the maker asks first whether a new target replaces the present one"
 _JOG = [Ruling("fe fe 03 17", _FIRST)]
 _BYTES = "the maker's class returns the nine bytes of the reply"
-_LIMIT = "the firmware's limit is wider here; the maker wants a limit inside the limits of targets"
+_LIMIT = (
+    "the firmware's limit is wider here, and any tenth is legal; the maker wants a whole number "
+    "inside the limits of targets"
+)
 _USUAL = "a value with USUAL is sent here; the maker rejects it"
 _NO_VALUE = "the value may be left out here; the maker wants one for each limit but USUAL"
 _NEGATIVE = "a byte in two's complement; the maker's class fails by mistake below 0"
@@ -109,8 +112,8 @@ ROBOT = Robot(
     rulings={
         **dict.fromkeys(("jog_angle", "jog_coord", "jog_rpy"), _JOG),
         **dict.fromkeys(("jog_increment_angle", "jog_increment_coord"), _JOG),
-        "set_joint_min_angle": [Ruling("angle value not right", _LIMIT)],
-        "set_joint_max_angle": [Ruling("angle value not right", _LIMIT)],
+        "set_joint_min_angle": [Ruling("rejected", _LIMIT)],
+        "set_joint_max_angle": [Ruling("rejected", _LIMIT)],
         "set_fusion_parameters": [
             Ruling("restores default parameters", _USUAL),
             Ruling("value is required", _NO_VALUE),
