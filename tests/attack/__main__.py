@@ -14,8 +14,7 @@ from pathlib import Path
 
 from attack.profiles import PROFILES
 from attack.running import campaign
-from attack.table import limits, markdown, text
-from attack.tally import Tally
+from attack.tally import Tally, markdown, text, total
 
 
 def main() -> int:
@@ -29,14 +28,17 @@ def main() -> int:
         runs += 1
         tallies[plan.profile.name].add(tally)
         if given.verbose:
-            print(f"{plan}: {tally.calls} calls, {tally.forbidden} forbidden", file=sys.stderr)
+            print(
+                f"{plan}: {tally.counts['calls']} calls, {tally.forbidden} forbidden",
+                file=sys.stderr,
+            )
         for failure in tally.failures:
             print(f"FAILED {failure}\n", file=sys.stderr, flush=True)
-    found = [tally for tally in tallies.values() if tally.calls]
+    found = [tally for tally in tallies.values() if tally.counts["calls"]]
     seconds = time.monotonic() - began
     summary = f"{runs} runs from seed {given.seed} in {seconds:.0f} s"
     print(text(found))
-    print(f"limits: {limits(found)}")
+    print(f"limits: {dict(sorted(total(found).limits.items()))}")
     print(summary)
     if given.json:
         rows = [tally.as_json() for tally in found]

@@ -15,7 +15,7 @@ from typing import Any
 from attack.calls import Drawn
 from attack.record import open_observed
 from attack.setting import Setting
-from cobotwire import CobotwireError, LinkError
+from cobotwire import LinkError
 
 JOIN_SECONDS = 1.0
 
@@ -175,7 +175,7 @@ def _user(shared: Shared, user: int, interrupts: Interrupts | None = None) -> No
 
 def _call(shared: Shared, user: int, random: Random, interrupts: Interrupts | None) -> bool:
     """Make one call and note how it ended; return False after a LinkError."""
-    setting, record = shared.setting, shared.setting.record
+    setting = shared.setting
     drawn = setting.draw(random)
     method = getattr(shared.client, drawn.name)
     options = {} if drawn.ack_within is None else {"ack_within": drawn.ack_within}
@@ -188,15 +188,7 @@ def _call(shared: Shared, user: int, random: Random, interrupts: Interrupts | No
         finally:
             if interrupts is not None:
                 interrupts.armed = False
-    except KeyboardInterrupt:
-        record.end(call, "interrupted", None)
-    except LinkError as error:
-        record.end(call, "error", f"LinkError: {error}")
-        return False
-    except CobotwireError as error:
-        setting.note_error(call, error)
     except BaseException as error:
-        record.end(call, "exception", f"{type(error).__name__}: {error}")
-    else:
-        record.end(call, "value", value)
+        return setting.note_error(call, error)
+    setting.record.end(call, "value", value)
     return True

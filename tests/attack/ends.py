@@ -11,7 +11,6 @@ import tty
 from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
-from typing import Protocol
 
 READ_SIZE = 4096
 SMALL_BUFFER = 1024
@@ -20,53 +19,16 @@ LARGE = 1 << 20
 NO_LINGER = struct.pack("ii", 1, 0)
 
 
-class End(Protocol):
-    """One end of a line. An OSError of ``read`` and ``write`` says that nobody is connected.
+class PtyEnd:
+    """The master of a pty; the URL is a link, since each new pty has another name.
+
+    An OSError of ``read`` and ``write`` says that nobody is connected.
 
     Attributes:
         url: what clients open.
         descriptor: what to read and write; -1: nobody is connected.
         waiting: what is ready when a client connects; -1: clients connect without it.
     """
-
-    url: str
-    descriptor: int
-    waiting: int
-
-    def accept(self, wanted: bool) -> None:
-        """Take the client that connects, or refuse it."""
-        ...
-
-    def read(self) -> bytes:
-        """Return what has come."""
-        ...
-
-    def write(self, data: bytes) -> int:
-        """Send as much as is taken; return how many bytes."""
-        ...
-
-    def plug(self) -> None:
-        """Let clients open the URL."""
-        ...
-
-    def drop(self) -> None:
-        """Disconnect the client."""
-        ...
-
-    def fill(self, room: int, receive: Callable[[bytes], None]) -> int:
-        """Fill the unread line but for some room, if it can be; return with how many bytes.
-
-        ``receive`` is called with what is read meanwhile.
-        """
-        ...
-
-    def close(self) -> None:
-        """Release everything."""
-        ...
-
-
-class PtyEnd:
-    """The master of a pty; the URL is a link, since each new pty has another name."""
 
     waiting = -1
 
@@ -79,6 +41,7 @@ class PtyEnd:
         self.plug()
 
     def plug(self) -> None:
+        """Let clients open the URL."""
         self.descriptor, self._slave = os.openpty()
         tty.setraw(self._slave)
         for descriptor in (self.descriptor, self._slave):
@@ -102,6 +65,10 @@ class PtyEnd:
             self.descriptor = self._slave = -1
 
     def fill(self, room: int, receive: Callable[[bytes], None]) -> int:
+        """Fill the unread line but for some room; return with how many bytes.
+
+        ``receive`` is called with what is read meanwhile.
+        """
         if self.descriptor < 0:
             return 0
         filled = 0
@@ -177,3 +144,6 @@ class TcpEnd:
     def close(self) -> None:
         self.drop()
         self._listening.close()
+
+
+End = PtyEnd | TcpEnd

@@ -68,26 +68,26 @@ class Judge:
     def judge(self) -> Tally:
         """Return the counts of the run, and its failures in words."""
         for call in sorted(self._calls, key=lambda call: call.ended):
-            self.tally.calls += 1
+            self.tally.counts["calls"] += 1
             self._judge_call(call)
         self._judge_frames()
         return self.tally
 
     def _judge_call(self, call: Call) -> None:
-        tally = self.tally
+        counts = self.tally.counts
         if call.ending == "lost":
-            tally.lost += 1
+            counts["lost"] += 1
             self._fail(call, "lost: it never ended")
             return
         if call.ending == "error":
-            tally.honest += 1
+            counts["honest"] += 1
         elif call.ending == "interrupted":
-            tally.interrupted += 1
+            counts["interrupted"] += 1
         elif call.ending == "exception":
-            tally.exceptions += 1
+            counts["exceptions"] += 1
             self._fail(call, "an exception of an undocumented type")
         elif self._is_right(call):
-            tally.right += 1
+            counts["right"] += 1
         else:
             self._judge_wrong(call)
         self._judge_time(call)
@@ -110,9 +110,10 @@ class Judge:
     def _judge_wrong(self, call: Call) -> None:
         limit = self._evidence.limit_of(call, self._plan.restores)
         if limit:
-            self.tally.limits[limit] = self.tally.limits.get(limit, 0) + 1
+            self.tally.limits[limit] += 1
+            self.tally.counts["limited"] += 1
             return
-        self.tally.wrong += 1
+        self.tally.counts["wrong"] += 1
         self._fail(call, "silently wrong", *self._evidence.explain(call))
 
     def _judge_time(self, call: Call) -> None:
@@ -124,9 +125,9 @@ class Judge:
         excess = call.ended - due
         stalled = max(_stalled(call, stalls) for stalls in self._scene.stalls)
         if stalled >= excess:
-            self.tally.stalled += 1
+            self.tally.counts["stalled"] += 1
             return
-        self.tally.late += 1
+        self.tally.counts["late"] += 1
         self._fail(call, f"late by {excess:.3f} s; the machine stalled for {stalled:.3f} s")
 
     def _due(self, call: Call) -> float:
@@ -152,16 +153,16 @@ class Judge:
         )
         for frame, count in arrived.items():
             if frame not in called:
-                self.tally.merged += count
+                self.tally.counts["merged"] += count
                 self._fail_frame(frame, f"{count} times at the arm, and no call sent it")
             elif self._moves(frame) and count > called[frame]:
-                self.tally.duplicates += count - called[frame]
+                self.tally.counts["duplicates"] += count - called[frame]
                 self._fail_frame(frame, f"{count} times at the arm for {called[frame]} calls")
         if self._plan.restores:
             return
         for frame, count in safe.items():
             if arrived[frame] < count:
-                self.tally.wrong += count - arrived[frame]
+                self.tally.counts["wrong"] += count - arrived[frame]
                 text = f"{arrived[frame]} times at the arm for {count} calls without an error"
                 self._fail_frame(frame, text)
 

@@ -1,16 +1,13 @@
-"""Measure how long the machine kept a single thread, processor or pty from working, on Linux.
+"""Measure how long the machine kept a single thread or processor from working, on Linux.
 
 A :class:`stalls.StallMeter` sees what stops the whole process. The system may also stop one thread,
-and the host of a virtual machine one processor, while all others run. A thread of the system passes
-the bytes of all ptys on, and it may be stopped as well.
+and the host of a virtual machine one processor, while all others run.
 """
 
 from __future__ import annotations
 
-import os
 import threading
 import time
-import tty
 from contextlib import suppress
 from pathlib import Path
 
@@ -23,53 +20,36 @@ THREADS, PROCESSORS = Path("/proc/self/task"), Path("/proc/stat")
 
 
 class MachineMeter:
-    """Threads that measure while the ``with`` block runs.
+    """A thread that measures while the ``with`` block runs.
 
     Attributes:
-        stops: for each thread, for each processor and for a pty: when it had been stopped, and for
-            how many seconds.
+        stops: for each thread and each processor: when it had been stopped, and for how many
+            seconds.
     """
 
     def __init__(self) -> None:
         self.stops: dict[str, list[tuple[float, float]]] = {}
         self._over = threading.Event()
-        work = (self._measure_threads, self._measure_pty)
-        self._threads = [threading.Thread(target=each, daemon=True) for each in work]
+        self._thread = threading.Thread(target=self._measure, daemon=True)
 
     def __enter__(self) -> MachineMeter:
-        for thread in self._threads:
-            thread.start()
+        self._thread.start()
         return self
 
     def __exit__(self, *raised: object) -> None:
         self._over.set()
-        for thread in self._threads:
-            thread.join()
+        self._thread.join()
 
-    def _measure_threads(self) -> None:
+    def _measure(self) -> None:
         before = _stopped()
         while not self._over.wait(PERIOD):
             after = _stopped()
             now = time.monotonic()
             for name, seconds in after.items():
-                self._note(name, now, seconds - before.get(name, seconds))
+                stopped = seconds - before.get(name, seconds)
+                if stopped >= SHORTEST:
+                    self.stops.setdefault(name, []).append((now, stopped))
             before = after
-
-    def _measure_pty(self) -> None:
-        master, slave = os.openpty()
-        tty.setraw(slave)
-        while not self._over.wait(PERIOD):
-            before = time.monotonic()
-            os.write(slave, b"x")
-            os.read(master, 1)
-            now = time.monotonic()
-            self._note("pty", now, now - before)
-        os.close(master)
-        os.close(slave)
-
-    def _note(self, name: str, now: float, seconds: float) -> None:
-        if seconds >= SHORTEST:
-            self.stops.setdefault(name, []).append((now, seconds))
 
 
 def _stopped() -> dict[str, float]:

@@ -40,11 +40,8 @@ class Profile:
         stalls: whether the peer stops reading now and then.
         interrupts: whether Ctrl-C comes in the main thread.
         cancels: whether calls are cancelled.
-        holds: whether the calls are Stops of pages of `cobotwire studio`, while connections without
-            its token are held open.
         fresh: whether the users run in a fresh process.
         signals: whether Ctrl-C is a real signal; one of them ends the ``with`` block of the client.
-        notes: whether a stale or damaged note of an earlier session lies on the port.
         clients: which clients run it.
     """
 
@@ -59,10 +56,8 @@ class Profile:
     stalls: bool = False
     interrupts: bool = False
     cancels: bool = False
-    holds: bool = False
     fresh: bool = False
     signals: bool = False
-    notes: bool = False
     clients: tuple[Clients, ...] = field(default=("blocking", "asyncio"))
 
     @property
@@ -168,12 +163,6 @@ _ALL = (
         weight=1.5,
     ),
     Profile(
-        "held headers",
-        "connections to `cobotwire studio` that never send a whole request",
-        holds=True,
-        clients=("blocking",),
-    ),
-    Profile(
         "starts",
         "threads call in the first 0.1 s of a fresh process, among bytes of the servos",
         (ServoLeak(probability=0.6), Late(seconds=0.0, jitter_seconds=0.01, probability=0.2)),
@@ -193,14 +182,6 @@ _ALL = (
         signals=True,
         seconds=0.5,
         clients=("blocking",),
-        weight=0.5,
-    ),
-    Profile(
-        "notes",
-        "a stale or damaged note lies on the port when it is opened",
-        (Late(seconds=0.1, jitter_seconds=0.8, probability=0.1),),
-        notes=True,
-        seconds=0.5,
         weight=0.5,
     ),
 )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 from functools import partial
@@ -18,14 +19,13 @@ from attack.fresh import run_fresh
 from attack.judge import Judge, Scene
 from attack.line import HostileLine
 from attack.machine import MachineMeter
-from attack.notes import leave_note
-from attack.pages import attack_studio
 from attack.plans import Plan, plan
 from attack.profiles import PROFILES
 from attack.setting import Setting, table_of
 from attack.tally import Tally
 from attack.tasks import run_tasks
 from cobotwire import codec as codecs
+from machine_stalls import PtyMeter
 from stalls import StallMeter
 
 Event = tuple[Plan, Tally]
@@ -40,19 +40,20 @@ class Closable(Protocol):
 
 def attack(chosen: Plan, change: Callable[[Any], Any] | None = None) -> Tally:
     """Run a plan and judge it; ``change`` makes another client of the edition's."""
-    if chosen.profile.holds:
-        return attack_studio(chosen)
     codec = codecs.load(table_of(chosen), "reference")
     peer = HostilePeer(codec, chosen.faults, chosen.seed)
     end = TcpEnd(small=chosen.profile.stalls) if chosen.tcp else PtyEnd()
     line = HostileLine(peer, codec, end)
-    with StallMeter(listed=True) as meter, MachineMeter() as machine, line:
+    with (
+        StallMeter(listed=True) as meter,
+        PtyMeter(0.02, listed=True) as ptys,
+        MachineMeter() as machine,
+        line,
+    ):
         setting = Setting(chosen, line.url)
         if change is not None:
             setting.client = change(setting.client)
         settle, failed = partial(_settle, line, setting), ""
-        if chosen.profile.notes:
-            leave_note(line.url, Random(f"{chosen.seed} note"))
         if chosen.profile.fresh and change is None:
             failed = run_fresh(setting, settle)
         else:
@@ -60,8 +61,9 @@ def attack(chosen: Plan, change: Callable[[Any], Any] | None = None) -> Tally:
             run(setting, partial(_happen, line, setting), settle)
     if failed:
         # Its calls are not known; at least one of them was lost.
-        return Tally(chosen.profile.name, calls=1, lost=1, failures=[f"{chosen}\n{failed}"])
-    stalls = [meter.late, line.stalls, *machine.stops.values()]
+        counts = Counter(calls=1, lost=1)
+        return Tally(chosen.profile.name, counts, failures=[f"{chosen}\n{failed}"])
+    stalls = [meter.late, ptys.late, line.stalls, *machine.stops.values()]
     return Judge(Scene(setting, line, peer, stalls)).judge()
 
 
@@ -128,7 +130,7 @@ def campaign(
             done, _ = wait(running, return_when=FIRST_COMPLETED)
             for future in done:
                 tally = future.result()
-                made += tally.calls
+                made += tally.counts["calls"]
                 yield running.pop(future), tally
 
 

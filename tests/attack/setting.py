@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+from asyncio import CancelledError
 from importlib import import_module
 from random import Random
 from typing import Any
@@ -10,7 +11,7 @@ from typing import Any
 from attack.calls import Drawn, draw, draw_flood
 from attack.plans import Plan
 from attack.record import Call, Record
-from cobotwire import CobotwireError, ProtocolError, ReplyTimeout, RetryPolicy
+from cobotwire import LinkError, ProtocolError, ReplyTimeout, RetryPolicy
 from cobotwire import codec as codecs
 from cobotwire.protocol.table import Table
 from cobotwire.transport.descriptor import WRITE_SECONDS
@@ -21,7 +22,7 @@ CLASSES = {
     ("mycobot", "blocking"): "MyCobot",
     ("mycobot", "asyncio"): "AsyncMyCobot",
 }
-HONEST = (ReplyTimeout, ProtocolError)
+HONEST = (LinkError, ReplyTimeout, ProtocolError)
 
 
 class Setting:
@@ -75,10 +76,14 @@ class Setting:
         self.over |= call.number >= self.plan.calls
         return call
 
-    def note_error(self, call: Call, error: CobotwireError) -> None:
-        """Note an error that is not of the transport."""
-        text = f"{type(error).__name__}: {error}"
-        self.record.end(call, "error" if isinstance(error, HONEST) else "exception", text)
+    def note_error(self, call: Call, error: BaseException) -> bool:
+        """Note the error that ended a call; return False if the transport failed."""
+        if isinstance(error, KeyboardInterrupt | CancelledError):
+            self.record.end(call, "interrupted", None)
+        else:
+            text = f"{type(error).__name__}: {error}"
+            self.record.end(call, "error" if isinstance(error, HONEST) else "exception", text)
+        return not isinstance(error, LinkError)
 
 
 def table_of(plan: Plan) -> Table:

@@ -1,9 +1,29 @@
-"""The counts of a campaign: one row of the table a profile."""
+"""The counts of a campaign, a row for each profile, as text and as Markdown."""
 
 from __future__ import annotations
 
+from collections import Counter
+from collections.abc import Sequence
 from dataclasses import asdict, dataclass, field
 from typing import Any
+
+# What must never happen.
+FORBIDDEN = ("wrong", "exceptions", "duplicates", "lost", "late", "merged")
+# The counts, in the order of the table, by their headings; docs/attack.md explains them.
+COLUMNS = {
+    "calls": "calls",
+    "right": "right",
+    "honest error": "honest",
+    "interrupted": "interrupted",
+    "wrong, by a limit": "limited",
+    "**silently wrong**": "wrong",
+    "**exception**": "exceptions",
+    "**duplicate**": "duplicates",
+    "**lost**": "lost",
+    "**late**": "late",
+    "late, machine stalled": "stalled",
+    "**merged**": "merged",
+}
 
 
 @dataclass
@@ -12,52 +32,25 @@ class Tally:
 
     Attributes:
         profile: the name of the row.
-        calls: all calls.
-        right: got the value that the arm made for them, or did what they say.
-        honest: ended with a documented error.
-        interrupted: ended by Ctrl-C, or were cancelled.
-        limits: got a wrong value that a documented limit of the protocol explains, by its name.
-        wrong: got a wrong value, or sent nothing, without an error, and no limit explains it.
-        exceptions: ended with an exception of an undocumented type.
-        duplicates: motions and settings that arrived more often than they were called.
-        lost: never ended.
-        late: ended later than their deadline and 0.1 s.
-        stalled: likewise, but the machine stalled for as long.
-        merged: legal requests at the arm that no call sent.
+        counts: how often each happened, by the names in ``COLUMNS``.
+        limits: how often which limit of the protocol explains a wrong value.
         failures: the first failures of each run, in words.
     """
 
     profile: str
-    calls: int = 0
-    right: int = 0
-    honest: int = 0
-    interrupted: int = 0
-    limits: dict[str, int] = field(default_factory=dict)
-    wrong: int = 0
-    exceptions: int = 0
-    duplicates: int = 0
-    lost: int = 0
-    late: int = 0
-    stalled: int = 0
-    merged: int = 0
+    counts: Counter[str] = field(default_factory=Counter)
+    limits: Counter[str] = field(default_factory=Counter)
     failures: list[str] = field(default_factory=list)
 
     @property
     def forbidden(self) -> int:
         """How often happened what must never happen."""
-        return self.wrong + self.exceptions + self.duplicates + self.lost + self.late + self.merged
-
-    @property
-    def limited(self) -> int:
-        """How many calls a documented limit of the protocol made wrong."""
-        return sum(self.limits.values())
+        return sum(self.counts[name] for name in FORBIDDEN)
 
     def add(self, other: Tally) -> None:
         """Add the counts of another run."""
-        for name in ("calls", "right", "honest", "interrupted", *FORBIDDEN, "stalled"):
-            setattr(self, name, getattr(self, name) + getattr(other, name))
-        for limit, count in other.limits.items():
-            self.limits[limit] = self.limits.get(limit, 0) + count
+        self.counts += other.counts
+        self.limits += other.limits
         self.failures += other.failures
 
     def as_json(self) -> dict[str, Any]:
@@ -65,4 +58,35 @@ class Tally:
         return asdict(self)
 
 
-FORBIDDEN = ("wrong", "exceptions", "duplicates", "lost", "late", "merged")
+def rows(tallies: Sequence[Tally]) -> list[list[str]]:
+    """Return the cells of the table: its heading, a row for each profile and one for all."""
+    cells = [
+        [each.profile, *(f"{each.counts[name]:,}" for name in COLUMNS.values())]
+        for each in (*tallies, total(tallies))
+    ]
+    return [["profile", *COLUMNS], *cells]
+
+
+def total(tallies: Sequence[Tally]) -> Tally:
+    """Return the sum of the counts."""
+    found = Tally("all")
+    for tally in tallies:
+        found.add(tally)
+    return found
+
+
+def text(tallies: Sequence[Tally]) -> str:
+    """Return the table for a terminal; the columns that must be 0 have a star."""
+    headings, *cells = rows(tallies)
+    table = [[each.replace("**", "*", 1).replace("**", "") for each in headings], *cells]
+    widths = [max(map(len, column)) for column in zip(*table, strict=True)]
+    return "\n".join(
+        "  ".join([row[0].ljust(widths[0]), *map(str.rjust, row[1:], widths[1:])]) for row in table
+    )
+
+
+def markdown(tallies: Sequence[Tally]) -> str:
+    """Return the table for a page."""
+    headings, *cells = rows(tallies)
+    table = [headings, ["---", *["---:"] * len(COLUMNS)], *cells]
+    return "".join(f"| {' | '.join(row)} |\n" for row in table)

@@ -11,7 +11,7 @@ from typing import Any
 
 from attack.record import open_observed
 from attack.setting import Setting
-from cobotwire import CobotwireError, LinkError
+from cobotwire import LinkError
 
 
 class SharedInLoop:
@@ -97,7 +97,7 @@ async def _user(shared: SharedInLoop, user: int) -> None:
 
 async def _call(shared: SharedInLoop, user: int, random: Random) -> bool:
     """Make one call and note how it ended; return False after a LinkError."""
-    setting, record = shared.setting, shared.setting.record
+    setting = shared.setting
     drawn = setting.draw(random)
     method = getattr(shared.client, drawn.name)
     options = {} if drawn.ack_within is None else {"ack_within": drawn.ack_within}
@@ -110,19 +110,12 @@ async def _call(shared: SharedInLoop, user: int, random: Random) -> bool:
         timer = asyncio.get_running_loop().call_later(seconds, task.cancel)
     try:
         value = await method(*drawn.arguments, **options)
-    except asyncio.CancelledError:
-        record.end(call, "interrupted", None)
-        task.uncancel()
-    except LinkError as error:
-        record.end(call, "error", f"LinkError: {error}")
-        return False
-    except CobotwireError as error:
-        setting.note_error(call, error)
     except BaseException as error:
-        record.end(call, "exception", f"{type(error).__name__}: {error}")
-    else:
-        record.end(call, "value", value)
+        if isinstance(error, asyncio.CancelledError):
+            task.uncancel()
+        return setting.note_error(call, error)
     finally:
         if timer is not None:
             timer.cancel()
+    setting.record.end(call, "value", value)
     return True

@@ -8,12 +8,10 @@ from typing import Any
 
 import pytest
 
-from attack import notes
 from attack.plans import Plan, plan
 from attack.profiles import PROFILES
 from attack.running import attack
 from attack.tally import FORBIDDEN, Tally
-from cobotwire.client import port_notes
 from cobotwire.session.outstanding import OutstandingReplies
 from cobotwire.simulator.faults import Corrupted
 
@@ -37,14 +35,14 @@ def chosen(name: str = "benign", **changes: Any) -> Plan:
 
 def counts(tally: Tally) -> list[str]:
     """Return the forbidden columns that are not 0."""
-    return [name for name in FORBIDDEN if getattr(tally, name)]
+    return [name for name in FORBIDDEN if tally.counts[name]]
 
 
 @pytest.mark.parametrize("tcp", [False, True], ids=["pty", "tcp"])
 @pytest.mark.parametrize("client", ["blocking", "asyncio"])
 def test_correct_client_on_good_line_is_right_in_each_call(client: str, tcp: bool) -> None:
     tally = attack(chosen(client=client, tcp=tcp))
-    assert tally.right == tally.calls >= 100
+    assert tally.counts["right"] == tally.counts["calls"] >= 100
     assert counts(tally) == []
 
 
@@ -142,12 +140,6 @@ def test_call_that_never_ends_is_lost() -> None:
     assert counts(attack(chosen(users=1, seconds=0.3), change)) == ["lost"]
 
 
-def test_note_of_another_boot_that_is_believed_loses_calls(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(port_notes, "_boot", lambda: "another")
-    monkeypatch.setattr(notes, "KINDS", ("boot",))
-    assert "lost" in counts(attack(chosen("notes", seconds=0.5)))
-
-
 def test_process_that_fails_is_lost(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("sys.executable", "/bin/false")
     assert counts(attack(chosen("starts"))) == ["lost"]
@@ -159,5 +151,5 @@ def test_damaged_value_is_recognised_as_a_limit() -> None:
     damaging = replace(PROFILES["benign"], faults=faults, one_way=0.0)
     tally = attack(chosen(profile=damaging))
     assert tally.limits["damage"] >= 10
-    assert tally.limited == tally.limits["damage"]
+    assert tally.counts["limited"] == tally.limits["damage"]
     assert counts(tally) == []

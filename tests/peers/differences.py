@@ -1,70 +1,102 @@
 """What differs between the maker's classes and ours, and the rulings on it.
 
-``differences.txt`` has a section for each reason, and in it a row for each difference: method,
-part, what differs, and the classes that have it, separated by tabs.
+``differences.txt`` has a section for each reason. A row of it rules differences that show the same:
+its methods, its parts, what it shows and its classes, separated by tabs.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from functools import lru_cache
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from pymycobot_classes import CLASSES
+
 RULED = Path(__file__).with_name("differences.txt")
 # The reasons begin with this mark.
 SECTION = "## "
+ALL = 3
+CALLS, REPLIES = ("conversation",), ("of the edition", "documented", "with its number", "any")
 
 
 class Difference(NamedTuple):
-    """What differs in a method: ``part`` is a parameter, the frames or the result."""
+    """What differs in a method: ``part`` is a parameter, the conversation or a kind of reply."""
 
     method: str
     part: str
     shows: str
 
 
-class Ruled(NamedTuple):
-    """The reason for a difference."""
+class Ruling(NamedTuple):
+    """The reason for differences of some methods of some classes."""
 
     why: str
+    methods: frozenset[str]
+    parts: frozenset[str]
+    shows: str
     names: frozenset[str]
+
+    def rules(self, name: str, each: Difference) -> bool:
+        """Return whether a difference of a class has this reason."""
+        same = name in self.names and each.shows == self.shows
+        return same and each.method in self.methods and each.part in self.parts
 
 
 @lru_cache(maxsize=1)
-def rulings() -> dict[Difference, list[Ruled]]:
-    """Return the rulings by their difference; a difference may have another reason elsewhere."""
-    found: dict[Difference, list[Ruled]] = {}
-    why = ""
+def rulings() -> list[Ruling]:
+    """Return all rulings."""
+    found, why = [], ""
     for line in RULED.read_text().splitlines():
         if line.startswith(SECTION):
             why = line.removeprefix(SECTION)
         elif line and not line.startswith("#"):
-            method, part, shows, names = line.split("\t")
-            ruled = Ruled(why, frozenset(names.split("; ")))
-            found.setdefault(Difference(method, part, shows), []).append(ruled)
+            methods, parts, shows, names = line.split("\t")
+            lists = [frozenset(each.split("; ")) for each in (methods, parts, names)]
+            found.append(Ruling(why, *lists[:2], shows, lists[2]))
     return found
 
 
-def unruled(name: str, found: Iterable[Difference], methods: Iterable[str], part: str) -> list[str]:
-    """Return what has no ruling, and the rulings on these methods that nothing needs any more.
+def unruled(name: str, found: Iterable[Difference]) -> list[str]:
+    """Return the differences of a class that have no ruling."""
+    left = [each for each in found if not any(ruling.rules(name, each) for ruling in rulings())]
+    return [f"no ruling: {_text(name, each)}" for each in sorted(left)]
 
-    ``part`` says what was compared: ``values``, ``calls`` or ``replies``.
+
+def stale(
+    name: str, found: Collection[Difference], compared: Mapping[str, Collection[str]]
+) -> list[str]:
+    """Return the rulings that nothing of a class needs any more.
+
+    ``compared`` has the compared methods, by what was compared: ``values``, ``calls``, ``replies``.
+    Only if that is all three, rulings are found of which some methods were not compared.
     """
-    differing, compared = set(found), set(methods)
-    ruled = {
-        each
-        for each, reasons in rulings().items()
-        if any(name in reason.names for reason in reasons) and part_of(each) == part
-    }
-    gone = {each for each in ruled - differing if each.method in compared}
-    left = [f"no ruling: {_text(name, each)}" for each in sorted(differing - ruled)]
-    return left + [f"no longer differs: {_text(name, each)}" for each in sorted(gone)]
+    left = []
+    for ruling in rulings():
+        methods = ruling.methods & set(dir(CLASSES[name]))
+        parts = set(_comparisons(ruling))
+        is_compared = len(compared) == ALL or all(methods <= {*compared.get(p, ())} for p in parts)
+        is_needed = any(ruling.rules(name, each) for each in found)
+        if name in ruling.names and is_compared and not is_needed:
+            example = Difference(min(methods), min(ruling.parts), ruling.shows)
+            left.append(f"no longer differs: {_text(name, example)}")
+    return left
 
 
-def part_of(difference: Difference) -> str:
-    """Return which comparison shows a difference."""
-    return {"conversation": "calls", "reply": "replies"}.get(difference.part, "values")
+def unused(found: Collection[tuple[str, Difference]]) -> Iterator[str]:
+    """Yield methods and parts of rulings that no difference of any class needs any more."""
+    for ruling in rulings():
+        needed = [each for name, each in found if ruling.rules(name, each)]
+        methods = ruling.methods - {each.method for each in needed}
+        parts = ruling.parts - {each.part for each in needed}
+        for each in sorted(methods | parts):
+            yield f"no longer differs in any class: {each}, {ruling.shows}"
+
+
+def _comparisons(ruling: Ruling) -> Iterator[str]:
+    """Yield which comparisons show the differences of a ruling."""
+    for part in ruling.parts:
+        yield "calls" if part in CALLS else "replies" if part in REPLIES else "values"
 
 
 def _text(name: str, each: Difference) -> str:
@@ -76,7 +108,10 @@ def relation(theirs: Any, ours: Any) -> str:
     kinds = kind_of(theirs), kind_of(ours)
     if kinds[0] != kinds[1]:
         return f"{kinds[1]}, not {kinds[0]}"
-    pairs = [*zip(numbers_of(theirs), numbers_of(ours), strict=True)]
+    numbers = numbers_of(theirs), numbers_of(ours)
+    if len(numbers[0]) != len(numbers[1]):
+        return f"{kinds[0]} of other sizes"
+    pairs = [*zip(*numbers, strict=True)]
     for factor in (10, 100, 1000, 0.1, 0.01, 0.001):
         if pairs and all(abs(a - b * factor) < 1e-6 * max(1, abs(a)) for a, b in pairs):
             return f"{kinds[0]}, the library's times {factor}"
@@ -86,12 +121,11 @@ def relation(theirs: Any, ours: Any) -> str:
 
 
 def kind_of(result: Any) -> str:
-    """Return the type of a result and of its parts, in words."""
+    """Return the type of a result and of its parts, in words; of lists in it, only that."""
     if isinstance(result, list | tuple):
-        parts = [kind_of(each) for each in result]
-        if len(set(parts)) <= 1:
-            return f"{type(result).__name__} of {len(parts)} {parts[0] if parts else ''}".strip()
-        return f"{type(result).__name__} of {' '.join(parts)}"
+        parts = ["list" if isinstance(each, list) else kind_of(each) for each in result]
+        counts = ", ".join(f"{parts.count(part)} {part}" for part in dict.fromkeys(parts))
+        return f"{type(result).__name__} of {counts or 0}"
     if isinstance(result, str) and result.startswith(("the ", "rejected", "fail", "wait")):
         return result
     return str(result) if result is None or result in (-1,) else type(result).__name__

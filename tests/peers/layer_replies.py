@@ -14,6 +14,9 @@ from functools import cache
 from struct import pack
 from typing import Any, NamedTuple
 
+from hypothesis import assume
+from hypothesis import strategies as st
+
 from cobotwire import codec as codecs
 from cobotwire.codec.interface import Codec
 from cobotwire.protocol.errors import ProtocolError
@@ -36,6 +39,7 @@ from robots.arguments import corners, inside
 from robots.classes import ROBOTS
 from robots.comparison import calls_of
 from robots.robot import Call, Robot
+from strategies import legal_values
 
 # Of variants of many sizes, the smallest ones.
 MOST_VARIANTS = 3
@@ -82,18 +86,42 @@ def compare_replies(robot: Robot, which: int | str = 1) -> Compared:
     count, methods, found = 0, set(), set()
     by_method = _by_method(robot)
     for method in chosen(robot, list(by_method), which):
-        calls = by_method[method]
-        call = next((c for c in calls[:MOST_CALLS] if _is_accepted(robot, codec, c)), None)
+        call = _accepted(robot, codec, by_method[method])
         if call is None:
             continue
         methods.add(method)
         for reply in _replies(robot, codec, call):
-            frame = _frame(robot, call, reply.data)
-            theirs, ours = call_theirs(robot, call, frame), call_ours(robot, call, frame)
             count += 1
-            if shows := _shown(codec, call, reply, frame, theirs, ours):
-                found.add(Difference(method, "reply", f"{reply.kind}: {shows}"))
+            if shows := compare_reply(robot, codec, call, reply):
+                found.add(Difference(method, reply.kind, shows))
     return Compared(count, methods, found)
+
+
+def compare_reply(robot: Robot, codec: Codec, call: Call, reply: Reply) -> str:
+    """Return how the results of the two sides differ for a reply; empty if they do not."""
+    frame = _frame(robot, call, reply.data)
+    theirs, ours = call_theirs(robot, call, frame), call_ours(robot, call, frame)
+    return _shown(codec, call, reply, frame, theirs, ours)
+
+
+def _accepted(robot: Robot, codec: Codec, calls: list[Call]) -> Call | None:
+    """Return a call that both sides send when they get a reply of the edition."""
+    return next((call for call in calls[:MOST_CALLS] if _is_accepted(robot, codec, call)), None)
+
+
+@st.composite
+def drawn_reply(draw: st.DrawFn, robot: Robot, codec: Codec) -> tuple[Call, Reply]:
+    """Draw a call with a reply, and any legal reply to it."""
+    calls = draw(st.sampled_from(list(_by_method(robot).values())))
+    call = None if calls[0].command in DATA else _accepted(robot, codec, calls)
+    assume(call)
+    assert call is not None
+    command = _command(codec, call)
+    index = draw(st.integers(0, len(command.reply) - 1))
+    variant = command.reply[index]
+    values = _with_arguments(command, variant, draw(legal_values(variant)), call)
+    frame = codec.encode(call.command, "reply", values, variant=index)
+    return call, Reply(EDITION, codec.table.frame.data(frame, "reply"))
 
 
 def _shown(
@@ -112,7 +140,9 @@ def _shown(
     if reply.kind == DOCUMENTED and set(numbers_of(theirs.result)) != {reply.number}:
         # The library reads another number than the one that is documented.
         return ""
-    return relation(theirs.result, ours.result)
+    shows = relation(theirs.result, ours.result)
+    # How many numbers a reply of any size has is no matter of the two sides.
+    return re.sub(r"\d+ ", "", shows) if reply.kind == ANY else shows
 
 
 def _same(theirs: Any, ours: Any) -> bool:

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import re
-from collections.abc import Iterator
-from typing import Any
+from itertools import groupby
+from typing import Any, NamedTuple
 
 from cobotwire.editions import load
 from cobotwire.protocol.errors import UsageError
@@ -16,14 +15,20 @@ from robots.comparison import is_truncated
 from robots.driving import stepped
 from robots.robot import Robot
 
-# A longer list of values is counted.
-LONGEST = 60
 ONLY_OURS, ONLY_THEIRS, OTHER_BYTES = "only ours", "only theirs", "other bytes"
 SILENT = "nothing is written"
 
 
+class Tried(NamedTuple):
+    """A drawn value by its label, how both sides differ, and whether ours sends it."""
+
+    label: Any
+    side: str
+    is_sent: bool
+
+
 class Rejected(str):
-    """The text of an error that a call raised before it wrote; numbers are left out."""
+    """The text of an error that a call raised before it wrote."""
 
 
 class Crashed(str):
@@ -36,21 +41,18 @@ def compare_values(robot: Robot, which: int | str = 1) -> Compared:
     methods = [m for m in robot.public if callable(getattr(kind, m, None))]
     methods = chosen(robot, methods, which)
     peer = robot.on(RecordingPort())
-    found: dict[tuple[str, str, str], list[tuple[Any, str]]] = {}
-    count = 0
+    tried: dict[tuple[str, str], list[Tried]] = {}
     for each in drawn(robot, peer, methods):
-        count += 1
         with stepped():
             theirs, ours = _sent(peer, each), _sent(_layer(robot), each)
-        if side := _side(robot, theirs, ours):
-            why = theirs if side == ONLY_OURS else ours
-            labels = found.setdefault((each.method, each.parameter, side), [])
-            labels.append((each.label, why if isinstance(why, str) else ""))
+        found = Tried(each.label, _side(robot, theirs, ours), not isinstance(ours, Rejected))
+        tried.setdefault((each.method, each.parameter), []).append(found)
     shown = {
-        Difference(method, parameter, f"{side}: {_shown(labels)}")
-        for (method, parameter, side), labels in found.items()
+        Difference(method, parameter, f"{side}{_shown(side, values)}")
+        for (method, parameter), values in tried.items()
+        for side in {each.side for each in values} - {""}
     }
-    return Compared(count, set(methods), shown)
+    return Compared(sum(map(len, tried.values())), set(methods), shown)
 
 
 def _layer(robot: Robot) -> Any:
@@ -68,11 +70,10 @@ def _sent(who: Any, call: Drawn) -> bytes | str:
     except Written as port:
         return port.data
     except Exception as error:
-        text = f"{type(error).__name__}: {error}"
         theirs = not type(who).__module__.startswith("cobotwire")
         # Our methods of requests with several variants raise TypeError for a missing argument.
         rejects = theirs or isinstance(error, UsageError) or is_missing(error)
-        return Rejected(_without_numbers(text)) if rejects else Crashed(text)
+        return Rejected(error) if rejects else Crashed(f"{type(error).__name__}: {error}")
     return SILENT
 
 
@@ -90,26 +91,17 @@ def _side(robot: Robot, theirs: bytes | str, ours: bytes | str) -> str:
     return OTHER_BYTES
 
 
-def _without_numbers(text: str) -> str:
-    return re.sub(r"-?\d[\d.]*", "#", text)
-
-
-def _shown(labels: list[tuple[Any, str]]) -> str:
-    """Return values as ranges; of lists, the texts of the rejections."""
-    values = {label for label, _ in labels}
-    if any(isinstance(each, str) for each in values):
-        return "; ".join(sorted({why for _, why in labels}))
-    numbers = sorted(each for each in values if each is not None)
-    runs = [*_runs(numbers), *(["None"] if None in values else [])]
-    text = ", ".join(runs)
-    return text if len(text) <= LONGEST else f"{len(numbers)} values, {runs[0]} to {runs[-1]}"
-
-
-def _runs(numbers: list[float]) -> Iterator[str]:
-    """Return numbers as ranges of neighbours."""
-    while numbers:
-        size = 1
-        while size < len(numbers) and numbers[size] <= numbers[size - 1] + 1:
-            size += 1
-        yield f"{numbers[0]}..{numbers[size - 1]}" if size > 1 else str(numbers[0])
-        numbers = numbers[size:]
+def _shown(side: str, values: list[Tried]) -> str:
+    """Return what differs: of a list, its size or its numbers; else also what ours sends."""
+    labels = {each.label for each in values if each.side == side}
+    if any(isinstance(each, str) for each in labels):
+        kinds = {"numbers" if "=" in each else each.strip("[]") for each in labels}
+        return f": {', '.join(sorted(kinds))}"
+    if labels == {None}:
+        return ": None"
+    numbers = {each.label: each.is_sent for each in values if each.label is not None}
+    whole = (number for number in sorted(numbers) if number == int(number))
+    runs = [[*run] for is_sent, run in groupby(whole, numbers.__getitem__) if is_sent]
+    sent = ", ".join(dict.fromkeys((f"{run[0]}..{run[-1]}") for run in runs)) or "nothing"
+    decimals = any(numbers[each] for each in numbers if each != int(each))
+    return f"; ours sends {sent}{' with decimals' * decimals}{' (None, too)' * (None in labels)}"
