@@ -39,16 +39,43 @@ def codec_of(edition: str) -> Codec:
     return codec.load(load(edition).TABLE)
 
 
+class Silent:
+    """An arm that never replies."""
+
+    wait = None
+
+    def __init__(self, arm: SimulatedArm) -> None:
+        """Take the place of an arm."""
+
+    def receive(self, data: bytes) -> bytes:
+        return b""
+
+    def flush(self) -> bytes:
+        return b""
+
+
 def made(
-    name: str, edition: str = "", errors: Any = "raise", powered: bool = True, peer: Any = None
+    name: str,
+    edition: str = "",
+    errors: Any = "raise",
+    powered: bool = True,
+    peer: Any = None,
+    debug: bool = False,
+    robot: str = "",
+    **options: Any,
 ) -> tuple[Any, Any]:
-    """Return an arm of a class on a simulated robot in stepped time, and that robot."""
+    """Return an arm of a class on a simulated robot in stepped time, and that robot.
+
+    ``edition`` is the client's, and the robot's unless ``robot`` names another one. ``peer`` makes
+    what takes the robot's place on the line; ``options`` are those of the robot.
+    """
     kind = getattr(layer, name)
     native = load(edition).CLIENT if edition else kind.NATIVE
     clock = SteppedClock()
-    arm = SimulatedArm(native.table, clock=clock, powered=powered)
+    table = load(robot).TABLE if robot else native.table
+    arm = SimulatedArm(table, clock=clock, powered=powered, **options)
     found = object.__new__(kind)
     given = arm.connect() if peer is None else peer(arm)
-    found._open(partial(native, MemoryTransport(given, clock)), False, errors)
+    found._open(partial(native, MemoryTransport(given, clock)), debug, errors)
     found.clock, found._waits = clock, True
     return found, arm

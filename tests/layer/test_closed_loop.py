@@ -16,7 +16,7 @@ from cobotwire.protocol.errors import (
     UsageError,
 )
 from cobotwire.simulator import PtyServer, SimulatedArm
-from layer.arms import codec_of, made
+from layer.arms import Silent, codec_of, made
 
 HOME = [0, 0, 0, 0, 0, 90, 0]
 # The id of a request; the first bytes and the size of the frame that reports the end of a motion.
@@ -140,10 +140,6 @@ def test_order_that_cannot_work_says_why(method: str, arguments: tuple[Any, ...]
 
 
 def test_arm_that_is_silent_can_be_opened() -> None:
-    class Silent(Deaf):
-        def _without_ends(self, data: bytes) -> bytes:
-            return b""
-
     arm, _ = made("Mercury", "mercury_a1", errors="return", peer=Silent)
     assert arm.get_angles() == -1
 

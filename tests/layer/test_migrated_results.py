@@ -7,11 +7,11 @@ from typing import Any
 
 import pytest
 
-import cobotwire.pymycobot as maker
 from cobotwire import MyCobot280
 from cobotwire.pymycobot.migrate import migrate
-from cobotwire.simulator import MemoryTransport, SimulatedArm
+from cobotwire.simulator import SimulatedArm
 from cobotwire.simulator.clock import SteppedClock
+from layer_comparison import Recorded, layer_on
 
 HEAD = "from pymycobot import MyCobot280\n"
 OPENED = "mc = MyCobot280(port)\n"
@@ -113,16 +113,6 @@ SAME = [
 ]
 
 
-class Recorded(MemoryTransport):
-    """A transport to a simulated arm that keeps what is written."""
-
-    written = b""
-
-    def write(self, data: bytes) -> None:
-        self.written += data
-        super().write(data)
-
-
 def seen(text: str, client: Any) -> tuple[bytes, list[Any]]:
     """Run a program; return what it sent, and what it appended to ``out``."""
     clock, out = SteppedClock(), list[Any]()
@@ -131,13 +121,6 @@ def seen(text: str, client: Any) -> tuple[bytes, list[Any]]:
     transport.written = b""
     exec(text, {"port": "", "out": out, "MyCobot280": lambda *_: arm, "__name__": "program"})
     return transport.written, out
-
-
-def layer(transport: MemoryTransport) -> Any:
-    """Return an arm of the library's class on a transport."""
-    arm = object.__new__(maker.MyCobot280)
-    arm._open(partial(MyCobot280, transport), False, "raise")
-    return arm
 
 
 @pytest.mark.parametrize("program", LISTED)
@@ -151,5 +134,8 @@ def test_program_without_decision_does_the_same(program: str) -> None:
     assert found.decisions == ()
     imports, _, rewritten = found.text.partition("from cobotwire import MyCobot280\n")
     assert imports == ""
-    theirs, ours = seen(OPENED + program, layer), seen(rewritten, MyCobot280)
+    theirs, ours = (
+        seen(OPENED + program, partial(layer_on, "MyCobot280")),
+        seen(rewritten, MyCobot280),
+    )
     assert (ours, repr(ours)) == (theirs, repr(theirs))

@@ -3,25 +3,13 @@
 from __future__ import annotations
 
 import re
-from functools import partial
 from typing import Any
 
 import pytest
 
-import cobotwire.pymycobot as layer
 from cobotwire.protocol.errors import UsageError
 from cobotwire.pymycobot.migrate.calls import library
-from cobotwire.simulator import MemoryTransport, SimulatedArm
-from cobotwire.simulator.clock import SteppedClock
-
-
-def made(name: str) -> Any:
-    kind = getattr(layer, name)
-    clock = SteppedClock()
-    found = object.__new__(kind)
-    transport = MemoryTransport(SimulatedArm(kind.NATIVE.table, clock=clock), clock)
-    found._open(partial(kind.NATIVE, transport), False, None)
-    return found
+from layer.arms import made
 
 
 @pytest.mark.parametrize(
@@ -42,14 +30,14 @@ def test_error_names_what_the_caller_wrote(
     method: str, arguments: tuple[Any, ...], text: str
 ) -> None:
     with pytest.raises(UsageError) as raised:
-        getattr(made("MyCobot280"), method)(*arguments)
+        getattr(made("MyCobot280")[0], method)(*arguments)
     assert str(raised.value).startswith(text)
     assert raised.value.argument == text.partition(" is ")[0]
 
 
 @pytest.mark.parametrize("name", sorted(library()))
 def test_every_method_names_its_own_parameters(name: str) -> None:
-    arm, checked = made(name), 0
+    arm, checked = made(name)[0], 0
     for method, call in library()[name].methods.items():
         given = [each for each in call.parameters if each != "_async"]
         if not given or method.startswith("sync_"):

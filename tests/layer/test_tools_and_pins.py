@@ -3,14 +3,10 @@
 from __future__ import annotations
 
 import sys
-from functools import partial
-from types import SimpleNamespace
 from typing import Any
 
 import pytest
 
-import cobotwire.pymycobot as layer
-from cobotwire.editions import pro450
 from cobotwire.editions.pro450 import messages
 from cobotwire.protocol.errors import (
     ArmNotReady,
@@ -19,11 +15,10 @@ from cobotwire.protocol.errors import (
     UsageError,
 )
 from cobotwire.pymycobot.layer.modbus_gripper import check_of
-from cobotwire.simulator import MemoryTransport, SimulatedArm
 from cobotwire.simulator.behaviour import Behaviours, Sized
 from cobotwire.simulator.behaviour.registry import Unanswerable
-from cobotwire.simulator.clock import SteppedClock
 from layer.arms import Replies, made
+from recorded_pins import installed_pins
 
 
 def _frame(*data: int) -> bytes:
@@ -97,10 +92,7 @@ class Gripper:
 )
 def test_gripper_is_searched_at_two_speeds(baud: int, modbus: bool, found: bool) -> None:
     gripper = Gripper(baud, modbus)
-    clock = SteppedClock()
-    robot = SimulatedArm(pro450.TABLE, clock=clock, powered=True, behaviours=gripper.behaviours())
-    arm = object.__new__(layer.Pro450Client)
-    arm._open(partial(pro450.CLIENT, MemoryTransport(robot, clock)), False, "raise")
+    arm, _ = made("Pro450Client", behaviours=gripper.behaviours())
     assert arm.set_pro_gripper_init() is found
     assert gripper.modbus is (modbus or found)
     assert gripper.baud == (115200 if found else 9600)
@@ -114,34 +106,16 @@ def test_pro_450_jogs_only_if_targets_are_queued() -> None:
         arm.jog_angle(1, 1, 10)
 
 
-class Pins:
-    """Notes what is done with the pins of the computer inside of a Pro 630."""
-
-    BCM, IN, OUT, LOW, HIGH = "BCM", "in", "out", 0, 1
-
-    def __init__(self) -> None:
-        self.done: list[tuple[Any, ...]] = []
-
-    def __getattr__(self, name: str) -> Any:
-        def noted(*arguments: Any) -> int:
-            self.done.append((name, *arguments))
-            return 1
-
-        return noted
-
-
 def test_pro_630_switches_its_power_by_a_pin(monkeypatch: pytest.MonkeyPatch) -> None:
-    pins = Pins()
-    monkeypatch.setitem(sys.modules, "RPi", SimpleNamespace(GPIO=pins))
-    monkeypatch.setitem(sys.modules, "RPi.GPIO", pins)
+    pins = installed_pins(monkeypatch)
     arm, robot = made("Pro630", powered=False)
     assert arm.power_on(delay=0) == 1
     assert robot.state.powered
-    assert ("output", 4, 1) in pins.done
+    assert ("output", (4, 1)) in pins.called
     assert arm.get_basic_input(1) == 1
-    assert pins.done[-2:] == [("setup", 17, "in"), ("input", 17)]
+    assert pins.called[-2:] == [("setup", (17, "in")), ("input", (17,))]
     assert arm.power_off() == 1
-    assert pins.done[-1] == ("output", 4, 0)
+    assert pins.called[-1] == ("output", (4, 0))
 
 
 def test_pro_630_names_the_package_that_pins_need(monkeypatch: pytest.MonkeyPatch) -> None:

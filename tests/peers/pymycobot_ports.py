@@ -70,23 +70,3 @@ class ReplyingPort:
     def read(self, size: int = 1) -> bytes:
         data, self._waiting = self._waiting[:size], self._waiting[size:]
         return data
-
-
-class ReplyingTransport:
-    """A transport for our client; every write gets the same reply."""
-
-    url = "replying"
-
-    def __init__(self, reply: bytes) -> None:
-        self._reply = reply
-        self._waiting = b""
-
-    def write(self, data: bytes) -> None:
-        self._waiting += self._reply
-
-    def read(self, timeout: float) -> bytes:
-        data, self._waiting = self._waiting, b""
-        return data
-
-    def close(self) -> None:
-        """Do nothing: there is nothing to release."""

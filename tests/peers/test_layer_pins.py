@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import sys
-from types import ModuleType
 from typing import Any
 
 import pytest
@@ -11,6 +9,7 @@ import pytest
 from layer_comparison import layer_on
 from pymycobot_classes import peer_on
 from pymycobot_ports import RecordingPort, RecordingTransport
+from recorded_pins import installed_pins
 
 PINS = (*range(1, 17), "SCL0", "SDA0")
 CALLS: list[tuple[str, tuple[Any, ...]]] = [
@@ -26,31 +25,8 @@ CALLS: list[tuple[str, tuple[Any, ...]]] = [
 ]
 
 
-class Pins(ModuleType):
-    """Stands in for RPi.GPIO, which needs the hardware: it keeps what is called."""
-
-    OUT, IN, BCM = "out", "in", "bcm"
-
-    def __init__(self) -> None:
-        super().__init__("RPi.GPIO")
-        self.called: list[tuple[str, tuple[Any, ...]]] = []
-
-    def __getattr__(self, name: str) -> Any:
-        if name.startswith("__"):
-            raise AttributeError(name)
-
-        def call(*arguments: Any) -> Any:
-            self.called.append((name, arguments))
-            return self if name == "PWM" else 1
-
-        return call
-
-
 def _called(who: Any, monkeypatch: pytest.MonkeyPatch) -> list[Any]:
-    package, pins = ModuleType("RPi"), Pins()
-    package.GPIO = pins  # type: ignore[attr-defined]
-    monkeypatch.setitem(sys.modules, "RPi", package)
-    monkeypatch.setitem(sys.modules, "RPi.GPIO", pins)
+    pins = installed_pins(monkeypatch)
     for method, arguments in CALLS:
         getattr(who, method)(*arguments)
     return pins.called

@@ -15,9 +15,6 @@ from robots.robot import Call, Robot
 
 # It reads the language of the system in a way that Python deprecates.
 pytestmark = pytest.mark.filterwarnings("ignore:.*getdefaultlocale:DeprecationWarning")
-# The registers of a joint of the hand.
-HAND = {12: "get_hand_gripper_angle", 28: "get_hand_gripper_torque", **OF_A_JOINT}
-HAND |= {33: "get_hand_gripper_default_speed"}
 MERCURY = ("Mercury (A1)", "Mercury (B1, X1)", "MercurySocket")
 POWER = (*MERCURY, "Pro400", "Pro400Client", "Pro630", "Pro630Client", "Pro450Client")
 
@@ -63,36 +60,33 @@ def both(name: str, method: str, given: Sequence[Any], reply: bytes | None) -> l
 def replied(name: str, method: str, given: Sequence[Any], command: int, data: bytes) -> list[Any]:
     """Return the results of both for a reply."""
     robot = {**LAYER_ROBOTS, **CLOSED_LOOP}[name]
-    reply = frame(robot, command, data, given[0] if given else 0)
+    address = given[0] if given and isinstance(given[0], int) else 0
+    reply = frame(robot, command, data, address)
     return [each.result for each in both(name, method, given, reply)]
 
 
-BITS = words(0, 1, 2, 5, 0x4001, 0x7FFF)
-STATUS = bytes([0, 1, 2, 5, 48, 255])
+_WORDS = words(1234, -567, 89, 4500, -9000, 17999)
+_PLACE = [1, 2, 3, 4, 5, 6]
 
 
 @pytest.mark.parametrize(
     ("name", "method", "given", "command", "data"),
     [
-        ("MyCobot320", "get_robot_status", (), 0x19, BITS),
-        ("MyCobot320", "get_robot_status", (), 0x19, words(0, 0x8001, 0, 0, 0, 0)),
-        ("MyCobot320", "get_servo_data", (1, 21), 0x53, b"\x20"),
-        ("MyCobot320", "get_hand_gripper_angle", (3,), 0xE9, tool(12, 50)),
-        *((n, "get_robot_error_status", (), 0x15, BITS + bytes(4)) for n in ("MyArmM", "MyArmC")),
-        *((n, "get_servos_status", (), 0xE4, STATUS + b"\0\4") for n in ("MyArmM", "MyArmC")),
-        *(
-            (n, "is_all_servos_enabled", (), 0x51, bytes([1] * 7 + [0]))
-            for n in ("MyArmM", "MyArmC")
-        ),
-        *((n, "get_joint_angle", (2,), 0x1C, words(-1234)) for n in ("MyArmM", "MyArmC")),
-        *(("MyBuddy", "get_servo_status", (side,), 0xE4, STATUS) for side in (1, 2)),
-        ("MyBuddy", "get_radians", (1,), 0x20, words(1234, -17999, 9050, 1, 0, 99)),
-        ("MyArm", "get_servo_status", (), 0xE4, bytes([0, 1, 2, 5, 8, 15, 4])),
+        # What the simulated robot does not reply, for each limb and for lengths and angles.
+        ("MyBuddy", "get_coord", (1, 1), 0x2D, words(1234)),
+        ("MyBuddy", "get_coord", (2, 3), 0x2D, words(-1234)),
+        ("MyBuddy", "get_coord", (1, 4), 0x2D, words(4567)),
+        ("MyBuddy", "get_coord", (3, 1), 0x2D, words(4567)),
+        ("MyBuddy", "get_coords", (1,), 0x23, _WORDS),
+        ("MyBuddy", "get_base_coord", (2,), 0xF3, _WORDS),
+        ("MyBuddy", "get_base_coords", (), 0xF4, _WORDS + _WORDS[::-1]),
+        ("MyBuddy", "get_base_coords", (_PLACE, 1), 0xF0, _WORDS),
+        ("MyBuddy", "base_to_single_coords", (_PLACE, 0), 0xF1, _WORDS),
         *((name, "is_power_on", (), 0x12, bytes([state])) for name in POWER for state in range(3)),
     ],
 )
 def test_result_of_reply_equals_that_of_the_maker(
-    name: str, method: str, given: tuple[int, ...], command: int, data: bytes
+    name: str, method: str, given: tuple[Any, ...], command: int, data: bytes
 ) -> None:
     theirs, mine = replied(name, method, given, command, data)
     assert theirs not in (None, -1)
@@ -104,25 +98,9 @@ def test_result_of_reply_equals_that_of_the_maker(
     [
         # A read that failed is an error.
         ("MyCobot320", "get_servo_data", (1, 21), 0x53, b"\xff", -1, FAILED),
-        # No source shows a reply that names the joint; the library mixes it with the position. 50
-        # becomes 3, as if seven bytes were an error register.
-        *(
-            ("MyCobot320", method, (3,), 0xE9, tool(register, 3, 50), [3, 3], FAILED)
-            for register, method in HAND.items()
-        ),
-        *(
-            (name, "get_hand_gripper_angle", (3,), 0xD9, tool(12, 3, 50), [3, 0, 50], FAILED)
-            for name in MERCURY
-        ),
         # The library takes the faults of seven servos for error codes: 16, the angle, becomes 1.
         ("MyArm", "get_servo_status", (), 0xE4, bytes([16, 23, 32, 0, 1, 2, 5]),
          [1, 2, 3, 0, 1, 2, 5], [16, 23, 32, 0, 1, 2, 5]),
-        # The library reads the highest bit as a sign, and lists other bits then.
-        *(
-            (name, "get_robot_error_status", (), 0x15, words(-0x7FFF, *[0] * 7),
-             [[*range(16)], *[0] * 7], [[0, 15], *[0] * 7])
-            for name in ("MyArmM", "MyArmC")
-        ),
         # No joint has this angle, so the reply is damaged.
         *(
             (name, "get_angles", (), 0x20, words(*[18101] * joints), [181.01] * joints, FAILED)
@@ -185,14 +163,3 @@ def test_gripper_of_450_is_switched_by_the_makers_frame(
 ) -> None:
     theirs, mine = both("Pro450Client", "set_pro_gripper_modbus", (state, own, gripper), b"")
     assert mine.written[:20] == theirs.written[:20] != b""
-
-
-JOGS = ("jog_angle", "jog_coord", "jog_rpy", "jog_increment_angle", "jog_increment_coord")
-
-
-@pytest.mark.parametrize("method", JOGS)
-@pytest.mark.parametrize("given", [(9, 1, 50), (1, 1, 101), (0, 1, 50), (1, "1", 50)])
-def test_jog_of_450_with_wrong_argument_sends_nothing(method: str, given: tuple[Any, ...]) -> None:
-    assert both("Pro450Client", method, given, None)[1] == Called(b"", REJECTED)
-    if isinstance(given[1], int):
-        assert both("Pro450Client", method, given, None)[0].written == b""

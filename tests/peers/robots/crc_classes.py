@@ -14,23 +14,15 @@ from typing import Any
 
 from pymycobot_classes import CLASSES
 from pymycobot_ports import RecordingPort
+from recorded_pins import Pins
 
 # A port that is not one of the two arms of a Mercury B1 or X1; the class asks for the name.
 SINGLE = "/dev/ttyAMA1"
 
 
-class Pins(ModuleType):
-    """Stand in for the pins of the computer in a Pro 630, which exist there only."""
-
-    def __getattr__(self, name: str) -> Any:
-        # Hypothesis reads the __file__ of every module: this one has none.
-        if name.startswith("__"):
-            raise AttributeError(name)
-        return lambda *arguments: None
-
-
+# The pins of the computer in a Pro 630 exist there only.
 sys.modules.setdefault("RPi", ModuleType("RPi"))
-sys.modules.setdefault("RPi.GPIO", Pins("RPi.GPIO"))
+sys.modules.setdefault("RPi.GPIO", Pins())
 
 
 class ReadFrames(list[Any]):

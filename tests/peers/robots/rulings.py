@@ -15,7 +15,6 @@ FREE = "a query or a reference is not a motion; the maker applies the limits of 
 SPEED = "a speed of 0 is legal in this edition; the maker wants 1..100"
 SIGN = "the document's sign rule: words reach to 33000; the maker packs -32768..32767"
 SPAN = "a step may be as long as the wire allows; the maker compares it with the limits"
-NEAREST = "the nearest step; the maker truncates"
 RETRIED = "the maker sends the frame and the text up to three times, without an acknowledgement"
 
 
