@@ -11,7 +11,7 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from pymycobot_classes import CLASSES
+from pymycobot_classes import library
 
 RULED = Path(__file__).with_name("differences.txt")
 # The reasons begin with this mark.
@@ -52,9 +52,12 @@ def rulings() -> list[Ruling]:
             why = line.removeprefix(SECTION)
         elif line and not line.startswith("#"):
             methods, parts, shows, names = line.split("\t")
-            lists = [frozenset(each.split("; ")) for each in (methods, parts, names)]
-            found.append(Ruling(why, *lists[:2], shows, lists[2]))
+            found.append(Ruling(why, _list(methods), _list(parts), shows, _list(names)))
     return found
+
+
+def _list(text: str) -> frozenset[str]:
+    return frozenset(text.split("; "))
 
 
 def unruled(name: str, found: Iterable[Difference]) -> list[str]:
@@ -73,7 +76,7 @@ def stale(
     """
     left = []
     for ruling in rulings():
-        methods = ruling.methods & set(dir(CLASSES[name]))
+        methods = ruling.methods & set(dir(library(name)))
         parts = set(_comparisons(ruling))
         is_compared = len(compared) == ALL or all(methods <= {*compared.get(p, ())} for p in parts)
         is_needed = any(ruling.rules(name, each) for each in found)

@@ -34,7 +34,7 @@ from layer_comparison import (
     chosen,
     class_of,
 )
-from pymycobot_classes import CLASSES
+from pymycobot_classes import library
 from robots.arguments import corners, inside
 from robots.classes import ROBOTS
 from robots.comparison import calls_of
@@ -208,7 +208,7 @@ def _replies(robot: Robot, codec: Codec, call: Call) -> Iterator[Reply]:
 
 def _all_replies(robot: Robot, codec: Codec, call: Call) -> Iterator[Reply]:
     legal, command = list(_legal(codec, call)), _command(codec, call)
-    kind: Any = CLASSES[robot.peer]
+    kind: Any = library(robot.peer)
     yield from (Reply(EDITION, data) for data in legal)
     sizes = {variant.size for variant in command.reply if variant.size <= LARGEST}
     for number in () if command.ack else _documented(kind, call.method):

@@ -8,32 +8,10 @@ from dataclasses import replace
 from functools import partial
 from typing import Any
 
-from pymycobot_classes import CLASSES
+from pymycobot_classes import library
 from robots.classes import ROBOTS
 from robots.robot import Robot
-from robots.tcp_classes import opened_by_client
-
-
-class ArmSocket:
-    """The part of ``socket.socket`` that the maker's classes use, on a port in this process."""
-
-    def __init__(self, port: Any) -> None:
-        self._port = port
-
-    def fileno(self) -> int:
-        return 3
-
-    def settimeout(self, seconds: float) -> None:
-        """Do nothing: the port knows how long it waits."""
-
-    def sendall(self, data: bytes) -> None:
-        self._port.write(data)
-
-    def recv(self, size: int) -> bytes:
-        data: bytes = self._port.read(size)
-        if not data:
-            raise TimeoutError
-        return data
+from robots.tcp_classes import PortSocket, opened_by_client
 
 
 def on_socket(peer_class: str, port: Any) -> Any:
@@ -41,11 +19,11 @@ def on_socket(peer_class: str, port: Any) -> Any:
     from pymycobot.common import read, write
     from pymycobot.generate import CommandGenerator
 
-    kind = CLASSES[peer_class]
+    kind = library(peer_class)
     peer = object.__new__(kind)
     CommandGenerator.__init__(peer)
     peer.calibration_parameters = sys.modules[kind.__module__].calibration_parameters
-    peer.lock, peer.sock = threading.Lock(), ArmSocket(port)
+    peer.lock, peer.sock = threading.Lock(), PortSocket(port)
     if not hasattr(kind, "_write"):
         # Its constructor sets them.
         peer.thread_lock = True
@@ -57,7 +35,7 @@ def on_socket(peer_class: str, port: Any) -> Any:
 def _another(peer: str, of: str, **changes: Any) -> Robot:
     """Return the description of another class of a robot."""
     given = ROBOTS[of]
-    calls = [each for each in given.calls if hasattr(CLASSES[peer], each.method)]
+    calls = [each for each in given.calls if hasattr(library(peer), each.method)]
     return replace(given, peer=peer, further=(), calls=calls, **changes)
 
 

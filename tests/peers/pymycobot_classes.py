@@ -19,30 +19,22 @@ with warnings.catch_warnings():
     # that, and marks of pytest do not apply to imports.
     warnings.simplefilter("ignore")
     import pymycobot
-    from pymycobot import CommandGenerator, MyArmC, MyArmM, MyCobot, MyCobot280, MyPalletizer260
+    from pymycobot import CommandGenerator, MyArmC, MyArmM
     from pymycobot.common import DataProcessor, read, write
     from pymycobot.error import calibration_parameters
     from pymycobot.robot_info import RobotLimit
 
-__all__ = ["CLASSES", "MyCobot", "MyCobot280", "MyPalletizer260", "RobotLimit"]
-__all__ += ["peer_on", "recording_client", "without_port", "written"]
-
-CLASSES: dict[str, type[Any]] = {
-    **{name: found for name, found in vars(pymycobot).items() if isinstance(found, type)},
-    # The class serves three robots; two of them have the same messages.
-    "Mercury (A1)": pymycobot.Mercury,
-    "Mercury (B1, X1)": pymycobot.Mercury,
-}
+__all__ = ["RobotLimit", "library", "peer_on", "recording_client", "without_port", "written"]
 
 
 def library(name: str) -> Any:
-    """Return a class of the library by its name."""
-    return getattr(sys.modules["pymycobot"], name)
+    """Return a class of the library by its name; ``Mercury (A1)`` is the class Mercury."""
+    return getattr(pymycobot, name.partition(" ")[0])
 
 
 def peer_on(name: str, port: Any) -> Any:
     """Make an object of one of its classes, without opening a port or sleeping 1.5 s."""
-    kind = CLASSES[name]
+    kind = library(name)
     peer = object.__new__(kind)
     if issubclass(kind, CommandGenerator):
         CommandGenerator.__init__(peer)

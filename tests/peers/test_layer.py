@@ -135,7 +135,7 @@ def test_every_ruling_has_a_reason_and_names_classes_and_methods_that_exist() ->
     for ruling in rulings():
         assert ruling.why
         assert "NO REASON" not in ruling.why
-        offered = [set(dir(library(each.partition(" ")[0]))) for each in ruling.names]
+        offered = [set(dir(library(each))) for each in ruling.names]
         assert ruling.methods <= set().union(*offered)
         assert all(each & ruling.methods for each in offered)
 

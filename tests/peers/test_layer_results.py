@@ -10,7 +10,7 @@ import pytest
 from cobotwire.pymycobot.layer.registers import OF_A_JOINT
 from layer_comparison import FAILED, REJECTED, Called, call_ours, call_theirs
 from layer_robots import CLOSED_LOOP, LAYER_ROBOTS
-from pymycobot_classes import CLASSES
+from pymycobot_classes import library
 from robots.robot import Call, Robot
 
 # It reads the language of the system in a way that Python deprecates.
@@ -34,7 +34,7 @@ def frame(robot: Robot, command: int, data: bytes, address: int) -> bytes:
     head = b"\xfe\xfe"
     if robot.peer in CLOSED_LOOP:
         body = head + bytes([len(data) + 3, command]) + data
-        check = CLASSES[robot.peer].crc_check(body)
+        check = library(robot.peer).crc_check(body)
         return body + bytes(check)
     if robot.peer.startswith("MyBuddy"):
         return head + bytes([address, len(data) + 2, command]) + data + _sum(command, data)

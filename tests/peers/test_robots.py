@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from differences import rulings
-from pymycobot_classes import CLASSES
+from pymycobot_classes import library
 from robots.classes import ROBOTS
 from robots.comparison import OPEN, REJECTED, compare, difference
 from robots.drawing import drawn_call
@@ -80,7 +80,7 @@ def test_requests_of_the_document_that_its_class_lacks_equal_those_of_newer_clas
 def test_every_command_has_a_method_of_the_makers_class_or_a_reason(peer: str) -> None:
     robot = ROBOTS[peer]
     commands = [command for command in robot.table.commands if not command.event]
-    without = {c.name for c in commands if not hasattr(CLASSES[peer], robot.method(c))}
+    without = {c.name for c in commands if not hasattr(library(peer), robot.method(c))}
     assert set(robot.not_ours) <= set(robot.public)
     assert without == set(robot.lacking)
     assert all(robot.lacking.values())
@@ -96,7 +96,7 @@ def test_what_is_stated_about_a_class_names_its_methods_and_gives_reasons(peer: 
         assert set(listed) <= set(robot.public)
         assert all(listed.values())
     assert set(robot.kinds) <= set(robot.public)
-    names = {name for name in dir(CLASSES[peer]) if not name.startswith("_")}
+    names = {name for name in dir(library(peer)) if not name.startswith("_")}
     assert robot.local - SERVO_BUS <= names
 
 

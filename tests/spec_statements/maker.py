@@ -8,19 +8,21 @@ from collections.abc import Iterator
 from functools import lru_cache
 
 from cobotwire_codegen.model import Edition
-from pymycobot_classes import MyCobot280
+from pymycobot_classes import library
+
+MAKER = library("MyCobot280")
 
 
 @lru_cache(maxsize=1)
 def _baudrate() -> int:
     """Return the rate at which the library opens a port unless it is told another."""
-    return int(inspect.signature(MyCobot280.__init__).parameters["baudrate"].default)
+    return int(inspect.signature(MAKER.__init__).parameters["baudrate"].default)
 
 
 @lru_cache(maxsize=1)
 def _wait_ms() -> int:
     """Return how long the library waits for the reply to a request, unless it knows better."""
-    found = re.search(r"\belse:\s+wait_time = ([\d.]+)", inspect.getsource(MyCobot280._read))
+    found = re.search(r"\belse:\s+wait_time = ([\d.]+)", inspect.getsource(MAKER._read))
     assert found, "the library states its default wait"
     return round(float(found[1]) * 1000)
 
@@ -53,7 +55,7 @@ def defaults(edition: Edition) -> Iterator[str]:
 @lru_cache(maxsize=1024)
 def _defaults(name: str) -> tuple[int | None, ...]:
     """Return the defaults of a method of the library; None where an argument has none."""
-    method = getattr(MyCobot280, name, None)
+    method = getattr(MAKER, name, None)
     given = [] if method is None else list(inspect.signature(method).parameters.values())[1:]
     return tuple(None if p.default in (p.empty, None) else int(p.default) for p in given)
 

@@ -27,7 +27,7 @@ def arguments_of(command: Command) -> Iterator[Arguments]:
             yield as_called(command, variant, values)
 
 
-def as_called(command: Command, variant: Variant, values: Arguments) -> Arguments:
+def as_called(command: Command, variant: Variant, values: Arguments) -> Named:
     """Return decoded values as arguments: lists, integers, and radians; without constants."""
     pairs = zip(variant.fields, values, strict=True)
     fields = {f.name: value for f, value in pairs if f.const is None and not f.counts}

@@ -13,7 +13,7 @@ from cobotwire.codec.interface import Codec
 from cobotwire.editions import load
 from cobotwire.protocol.errors import ProtocolError, UsageError
 from cobotwire.protocol.table import Command
-from pymycobot_classes import CLASSES, recording_client, written
+from pymycobot_classes import library, recording_client, written
 from pymycobot_ports import RecordingPort, ReplyingPort
 from robots.arguments import Named, arguments_of
 from robots.robot import Call, Robot
@@ -59,7 +59,7 @@ def calls_of(robot: Robot) -> Iterator[Call]:
     for edition in (robot.edition, *robot.further):
         for command in load(edition).TABLE.commands:
             method = robot.method(command)
-            if command.event or method in have or not hasattr(CLASSES[robot.peer], method):
+            if command.event or method in have or not hasattr(library(robot.peer), method):
                 continue
             if method not in robot.not_ours:
                 yield from _calls_of(robot, command, method)

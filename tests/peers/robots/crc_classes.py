@@ -12,7 +12,7 @@ from collections.abc import Iterator
 from types import ModuleType
 from typing import Any
 
-from pymycobot_classes import CLASSES
+from pymycobot_classes import library
 from pymycobot_ports import RecordingPort
 from recorded_pins import Pins
 
@@ -54,7 +54,7 @@ def opened_as(name: str) -> Any:
         from pymycobot.close_loop import CloseLoop
         from pymycobot.mercury_api import MercuryCommandGenerator
 
-        kind = CLASSES[peer_class]
+        kind = library(peer_class)
         peer = object.__new__(kind)
         with warnings.catch_warnings():
             # It reads the language of the system in a way that Python deprecates.

@@ -8,7 +8,7 @@ from typing import Any
 from hypothesis import strategies as st
 
 from drawn_values import stated
-from pymycobot_classes import CLASSES
+from pymycobot_classes import library
 from robots.arguments import Named, as_called
 from robots.robot import Call, Robot
 from strategies import legal_values
@@ -29,13 +29,8 @@ def drawn_call(draw: st.DrawFn, robot: Robot, *, stated_by_maker: bool = False) 
     before = () if command.name in robot.without_address else robot.before[address]
     if stated_by_maker and arguments:
         at = draw(st.integers(0, len(arguments) - 1))
-        changed = Named(
-            (
-                *arguments[:at],
-                draw(_other(robot, method, len(before) + at, arguments[at])),
-                *arguments[at + 1 :],
-            )
-        )
+        other = draw(_other(robot, method, len(before) + at, arguments[at]))
+        changed = Named((*arguments[:at], other, *arguments[at + 1 :]))
         changed.names, arguments = arguments.names, changed
     return Call(method, (*before, *arguments), command.name, arguments, address)
 
@@ -46,7 +41,7 @@ def _commands(robot: Robot) -> list[Any]:
         command
         for command in robot.table.commands
         if not (command.event or command.request_text or command.name in robot.own_arguments)
-        and hasattr(CLASSES[robot.peer], robot.method(command))
+        and hasattr(library(robot.peer), robot.method(command))
         and robot.method(command) not in robot.not_ours
         and any(field.const is None for variant in command.request for field in variant.fields)
     ]
@@ -54,7 +49,7 @@ def _commands(robot: Robot) -> list[Any]:
 
 def _other(robot: Robot, method: str, at: int, given: Any) -> st.SearchStrategy[Any]:
     """Draw another value for an argument: of a list, for one of its numbers."""
-    kind: Any = CLASSES[robot.peer]
+    kind: Any = library(robot.peer)
     taken = [*inspect.signature(getattr(kind, method)).parameters][1:]
     name = taken[min(at, len(taken) - 1)]
     if isinstance(given, list):

@@ -18,7 +18,7 @@ import pytest
 from cobotwire.conformance.device.read_back import has_fixed_effect, settings_of
 from cobotwire.protocol.table import Command, Variant
 from cobotwire.simulator import SimulatedArm
-from pymycobot_classes import CLASSES
+from pymycobot_classes import library
 from robots.arguments import TEXTS, as_called, between
 from robots.robot import Arguments, Robot
 
@@ -196,7 +196,7 @@ def wrong_read_backs(robot: Robot) -> tuple[int, list[str]]:
             continue
         query = robot.table.command(back.query)
         if robot.method(query) in robot.unanswered or not hasattr(
-            CLASSES[robot.peer], robot.method(query)
+            library(robot.peer), robot.method(query)
         ):
             continue
         for address in robot.addresses(command):
@@ -243,7 +243,7 @@ def _methods(robot: Robot) -> Iterator[tuple[Command, str]]:
     """Return our commands that the class has a method for."""
     for command in robot.table.commands:
         method = robot.method(command)
-        if not command.event and hasattr(CLASSES[robot.peer], method):
+        if not command.event and hasattr(library(robot.peer), method):
             yield command, method
 
 

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 from cobotwire.editions import load
 from cobotwire.protocol.addresses import find_address, lacks_joints
 from cobotwire.protocol.table import Address, Command, Table
-from pymycobot_classes import CLASSES, peer_on
+from pymycobot_classes import library, peer_on
 
 Arguments = tuple[Any, ...]
 
@@ -125,7 +125,7 @@ class Robot:
     @property
     def public(self) -> list[str]:
         """The methods of the class that send a frame, in order."""
-        names = (name for name in dir(CLASSES[self.peer]) if not name.startswith("_"))
+        names = (name for name in dir(library(self.peer)) if not name.startswith("_"))
         return [name for name in names if name not in self.local]
 
     def method(self, command: Command) -> str:

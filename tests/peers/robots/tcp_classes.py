@@ -5,13 +5,13 @@ from __future__ import annotations
 import socket
 from typing import Any
 
-from pymycobot_classes import CLASSES
+from pymycobot_classes import library
 from pymycobot_ports import RecordingPort
 from robots.crc_classes import SINGLE, ReadFrames, opened_as
 
 
 class PortSocket:
-    """The part of a socket that the classes write to."""
+    """The part of a socket that the classes use."""
 
     # A class of the Mercury checks that it has a socket.
     __class__ = property(lambda self: socket.socket)
@@ -22,8 +22,17 @@ class PortSocket:
     def fileno(self) -> int:
         return 3
 
+    def settimeout(self, seconds: float) -> None:
+        """Do nothing: the port knows how long it waits."""
+
     def sendall(self, data: bytes) -> None:
         self._port.write(data)
+
+    def recv(self, size: int) -> bytes:
+        data: bytes = self._port.read(size)
+        if not data:
+            raise TimeoutError
+        return data
 
 
 class SteppedEvent:
@@ -50,7 +59,7 @@ def opened_on_socket(peer_class: str, port: Any) -> Any:
     """Return an object of the class with a socket that is a port in this process."""
     from pymycobot.pro450_close_loop import Pro450CloseLoop
 
-    peer = object.__new__(CLASSES[peer_class])
+    peer = object.__new__(library(peer_class))
     Pro450CloseLoop.__init__(peer)
     peer.language, peer.max_joint, peer.min_joint = "en_US", 0, 0
     peer.sock = PortSocket(port)
