@@ -13,12 +13,15 @@ from cobotwire.codec.interface import Codec
 from cobotwire.editions import load
 from cobotwire.protocol.errors import ProtocolError, UsageError
 from cobotwire.protocol.table import Command
+from differences import rulings
 from pymycobot_classes import library, recording_client, written
 from pymycobot_ports import RecordingPort, ReplyingPort
 from robots.arguments import Named, arguments_of
 from robots.robot import Call, Robot
 
 REJECTED, OPEN = "rejected: ", "open: "
+# `make layer` compares the class for it with the edition of newer firmware.
+OLDEST = "mycobot"
 # The sizes of a step of the scales that the maker's classes truncate to.
 STEPS = (0.1, 0.01, 0.001)
 
@@ -114,6 +117,14 @@ def _reason(robot: Robot, call: Call, theirs: bytes | str, ours: bytes | str) ->
             return ruling.why
     if isinstance(theirs, bytes) and isinstance(ours, bytes) and is_truncated(robot, theirs, ours):
         return "the nearest step; the maker truncates"
+    if robot.edition == OLDEST or isinstance(ours, str):
+        return ""
+    # What the class of the same name shows in `make layer`, which is compared with its edition.
+    side = "only ours" if isinstance(theirs, str) else "other bytes"
+    for each in rulings():
+        named = robot.peer in each.names and call.method in each.methods
+        if named and each.shows.startswith(side):
+            return each.why
     return ""
 
 

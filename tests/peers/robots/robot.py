@@ -88,7 +88,7 @@ class Robot:
         not_ours: methods of the class that we have no command for: why.
         own_arguments: for commands, arguments instead of those of the table.
         calls: further calls. With ``why``, the two sides differ.
-        rulings: for methods, the reasons why calls differ.
+        rulings: for methods, the reasons why calls differ, where ``differences.txt`` has none.
         before: what the class's methods take before our arguments, by the name of an address.
         without_address: commands with methods that do not take an address.
         driven: for commands, arguments with which the class drives a robot, instead of values

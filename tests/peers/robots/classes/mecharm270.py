@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from robots.robot import GEOMETRY, GPIO, LOCAL, Call, Robot
-from robots.rulings import KIND, SETTERS, limits
+from robots.rulings import KIND
 
 _ZERO = [0] * 6
 ROBOT = Robot(
@@ -18,10 +18,6 @@ ROBOT = Robot(
         Call("sync_send_coords", (_ZERO, 50, 1), "send_coords", (_ZERO, 50, 1)),
     ],
     rulings={
-        **SETTERS,
-        "is_in_position": limits("Has invalid"),
-        "set_tool_reference": limits("Has invalid coord"),
-        "set_world_reference": limits("Has invalid coord"),
         "set_gripper_state": [KIND],
         "set_gripper_value": [KIND],
     },

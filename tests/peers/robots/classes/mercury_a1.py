@@ -93,28 +93,11 @@ LACKING = {
     "set_hand_gripper": "a method for each register",
     "get_hand_gripper": "a method for each register",
 }
-WHOLE = "any step of the wire here; the maker takes whole numbers only"
-_LIMIT = (
-    "a captured frame sets -178 degrees, and any tenth is legal here; the maker wants a whole "
-    "number inside the limits of targets"
-)
 RULINGS = {
     "drag_teach_execute": [
         Ruling("fe fe 03 47", "the maker asks first whether points are recorded")
     ],
     "set_limit_switch": [Ruling("fe fe 03 12", "the maker asks first whether the arm has power")],
-    "set_joint_min_angle": [Ruling("rejected", _LIMIT)],
-    "set_joint_max_angle": [Ruling("rejected", _LIMIT)],
-    "set_pos_over_shoot": [Ruling("'float' object is not iterable", WHOLE)],
-    "write_move_c_r": [Ruling("'float' object is not iterable", WHOLE)],
-    "tool_serial_set_baud": [
-        Ruling("fe fe 04 b8", "four bytes, as on the maker's page; its library sends one"),
-        Ruling("rejected", "four bytes, as on the maker's page; its library fails above 255"),
-    ],
-    "tool_serial_set_timeout": [
-        Ruling("fe fe 04 b9", "two bytes, as on the maker's page; its library sends one"),
-        Ruling("rejected", "two bytes, as on the maker's page; its library fails above 255"),
-    ],
 }
 # What the class needs to drive a simulated robot.
 _MOTIONS: tuple[str, ...] = (

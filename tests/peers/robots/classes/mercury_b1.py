@@ -13,8 +13,6 @@ from robots.classes.mercury_a1 import (
 from robots.crc_classes import opened_as
 from robots.robot import GEOMETRY, Call, Robot, Ruling
 
-_SIDES = "both arms have one edition: y is that of either arm; the maker's class knows which it is"
-_SINGLE = "the range is that of an arm on a body; here the maker checks that of a Mercury A1"
 _HEAD = "joint 12 turns to 245 degrees, as on the maker's page; its class wants 220"
 _PLACE = [300, 0, 200, 90, 0, -90]
 ROBOT = Robot(
@@ -31,12 +29,6 @@ ROBOT = Robot(
         **RULINGS,
         "jog_increment_angle": [Ruling("increment angle value not right", _HEAD)],
         "send_angle": [Ruling("angle value not right", _HEAD)],
-        "send_base_coord": [Ruling("the limit coord is", _SIDES)],
-        "send_base_coords": [Ruling("Has invalid coord value", _SIDES)],
-        "send_coord": [Ruling("the limit range is", _SIDES)],
-        "send_coords": [Ruling("Has invalid coord value", _SIDES)],
-        "solve_inv_kinematics": [Ruling("Has invalid coord value", _SINGLE)],
-        "write_move_c_r": [Ruling("Has invalid coord value", _SINGLE)],
     },
     opened=opened_as("/dev/left_arm"),
     **{

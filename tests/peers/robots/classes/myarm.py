@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from robots.robot import GEOMETRY, GPIO, LOCAL, SERVO_BUS, Call, Robot
-from robots.rulings import SETTERS, limits
 
 _ZERO = [0] * 7
 _LOWEST, _HIGHEST = [-160, -70, -170, -113, -170, -115, -180], [160, 115, 170, 75, 170, 115, 180]
@@ -20,11 +19,6 @@ ROBOT = Robot(
         Call("sync_send_angles", (_HIGHEST, 50), "send_angles", (_HIGHEST, 50)),
         Call("sync_send_coords", (_END, 50), "send_coords", (_END, 50, 0)),
     ],
-    rulings={
-        **SETTERS,
-        "set_tool_reference": limits("Has invalid coord"),
-        "set_world_reference": limits("Has invalid coord"),
-    },
     lacking={"is_in_position_coords": "the maker has is_in_position with id 1 for it"},
     kinds=dict.fromkeys(
         ("send_angle", "send_angles", "send_coord", "send_coords", "set_gripper_value"), list

@@ -3,12 +3,8 @@
 from __future__ import annotations
 
 from robots.classes.myarmc import METHODS, PIN_MODE
-from robots.robot import GEOMETRY, LOCAL, Call, Robot, Ruling
+from robots.robot import GEOMETRY, LOCAL, Call, Robot
 
-_MIRRORED = Ruling(
-    "must be reversed",
-    "servos 2 and 3 must mirror each other; a range of each position cannot state that",
-)
 _ENCODERS = [2000, 1598, 2498, 2000, 2000, 2000, 2000, 2000]
 ROBOT = Robot(
     "MyArmM",
@@ -34,7 +30,6 @@ ROBOT = Robot(
             (_ENCODERS, [500] * 8),
         ),
     ],
-    rulings={"set_servos_encoder": [_MIRRORED], "set_servos_encoder_drag": [_MIRRORED]},
     driven={
         "set_servos_encoder": (_ENCODERS, 50),
         "set_servos_encoder_drag": (_ENCODERS, [500] * 8),

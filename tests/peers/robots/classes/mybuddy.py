@@ -5,7 +5,7 @@ The maker's methods take the address of a limb as their first argument.
 
 from __future__ import annotations
 
-from robots.robot import DRIVEN, GEOMETRY, LOCAL, SERVO_BUS, Call, Robot, Ruling
+from robots.robot import DRIVEN, GEOMETRY, LOCAL, SERVO_BUS, Call, Robot
 
 _PINS = frozenset(
     {"set_gpio_clearup", "set_gpio_init_mode", "set_gpio_output", "set_gpio_pwm_change_dc"}
@@ -16,9 +16,6 @@ _ZERO, _ANGLES = [0] * 6, [10, -20, 30, -40, 50, -60]
 _COORDS = [100, -50.5, 200, 90, -45.25, 10]
 _FIRST = "the first argument becomes the address, by a mistake of the maker; no robot has it"
 _NONE = "it fails before it sends: the maker's class takes the address from arguments that lack"
-_ROWS = "for the whole robot, the maker sends 14 positions and 14 speeds for 13 joints"
-_ONE_SPEED = "for the whole robot, the maker takes the speeds in a row only"
-_BYTE = "a word of the range is sent as one byte; the maker fails beyond 0..255"
 _FORM = "a variant of is_in_position in the maker's class"
 _WHOLE_ROBOT = frozenset(
     {"get_system_version", "focus_all_servos", "base_to_single_coords", "collision"}
@@ -71,12 +68,6 @@ ROBOT = Robot(
         Call("sync_send_angles", (1, _ZERO, 50), "send_angles", (_ZERO, 50), "LEFT"),
         Call("sync_send_coords", (2, _ZERO, 50), "send_coords", (_ZERO, 50, 0), "RIGHT"),
     ],
-    rulings={
-        "set_encoders": [
-            Ruling("fe fe 00 1e 3c", _ROWS),
-            Ruling("'int' object is not subscriptable", _ONE_SPEED),
-        ],
-    },
     driven={
         **DRIVEN,
         "send_angles": (_ANGLES, 50),

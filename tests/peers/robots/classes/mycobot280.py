@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from robots.robot import DRIVEN, GPIO, LOCAL, Call, Robot, Ruling
-from robots.rulings import EMPTY, REACHED, SETTERS, SPAN, limits
+from robots.robot import DRIVEN, GPIO, LOCAL, Call, Robot
+from robots.rulings import EMPTY, REACHED
 
 _LOWEST = [-168, -140, -150, -150, -155, -180]
 # Header and footer inside the data: FE FE and 00 FA.
@@ -23,13 +23,6 @@ ROBOT = Robot(
         Call("sync_send_coords", (_COORDS, 50), "send_coords", (_COORDS, 50, 0)),
         Call("sync_send_coords", (_COORDS, 50, 1), "send_coords", (_COORDS, 50, 1)),
     ],
-    rulings={
-        **SETTERS,
-        "is_in_position": limits("Has invalid"),
-        "set_tool_reference": limits("Has invalid coord"),
-        "set_world_reference": limits("Has invalid coord"),
-        "jog_increment_angle": [Ruling("increment angle value not right", SPAN)],
-    },
     driven={**DRIVEN, "send_coords": REACHED},
     unanswered={"drag_get_record_data": EMPTY},
 )

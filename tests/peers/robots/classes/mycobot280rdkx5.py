@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from robots.robot import DRIVEN, LOCAL, Call, Robot, Ruling
-from robots.rulings import EMPTY, REACHED, SPAN, TENTH, limits
+from robots.rulings import EMPTY, REACHED
 
 _ZERO = [0] * 6
 _OTHER_NAME = "the older class for the 280 has the method"
@@ -32,31 +32,9 @@ ROBOT = Robot(
         Call("sync_send_coords", (_ZERO, 50, 1), "send_coords", (_ZERO, 50, 1)),
     ],
     rulings={
-        "set_joint_min": [TENTH],
-        "set_joint_max": [TENTH],
-        "angles_to_coords": limits("angles not right"),
-        "solve_inv_kinematics": limits("not right"),
-        "set_tool_reference": limits("coords not right"),
-        "set_world_reference": limits("coords not right"),
-        "is_in_position": [
-            *limits("not right"),
-            Ruling("builtin", "the maker sends the function id() by mistake: every call fails"),
-        ],
         "get_gripper_value": [
             Ruling(
                 "fe fe 03 65 01 fa", "the kind may be left out, as on the 280; the maker sends 1"
-            )
-        ],
-        "jog_increment_angle": [
-            Ruling("NoneType", "the maker's check fails by mistake for every call")
-        ],
-        "jog_increment_coord": [Ruling("coord not right", SPAN)],
-        "send_coords": [
-            Ruling("coord_mode not right", "mode 2 comes from other clients for the 280")
-        ],
-        "set_servo_data": [
-            Ruling(
-                "address not right", "the maker compares the value, not the address, with 0 to 4"
             )
         ],
     },

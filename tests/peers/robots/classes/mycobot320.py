@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from robots.robot import GEOMETRY, GPIO, LOCAL, Call, Robot, Ruling
-from robots.rulings import SETTERS, SPAN, limits
+from robots.robot import GEOMETRY, GPIO, LOCAL, Call, Robot
 
 _ZERO = [0] * 6
 _PINCH = "set_hand_gripper_pinch_action"
@@ -21,13 +20,6 @@ ROBOT = Robot(
         Call(_PINCH, (1, 5, False), _PINCH, (1, 5, False), why=_IDLE),
     ],
     own_arguments={_PINCH: [(0, 5, 1, 1), (4, 1, 1, 14), (4, 20, 1, 254)]},
-    rulings={
-        **SETTERS,
-        "is_in_position": limits("Has invalid"),
-        "jog_increment_angle": [Ruling("increment angle value not right", SPAN)],
-        "set_tool_reference": limits("Has invalid coord"),
-        "set_world_reference": limits("Has invalid coord"),
-    },
     unanswered=dict.fromkeys(
         (
             "get_coords",

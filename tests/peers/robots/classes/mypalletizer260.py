@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from robots.robot import GEOMETRY, GPIO, LOCAL, Call, Robot
-from robots.rulings import SETTERS
 
 _THREE = "0x22: the arm has four joints; the maker sends three angles"
 _ZERO = [0, 0, 0, 0]
@@ -19,7 +18,6 @@ ROBOT = Robot(
         Call("sync_send_coords", ([200, 0, 100, 9], 50), "send_coords", ([200, 0, 100, 9], 50)),
         Call("go_home", (), "send_angles", (_ZERO, 10), why=_THREE),
     ],
-    rulings=SETTERS,
     unanswered={"get_coords": GEOMETRY},
     kinds={"is_free_mode": list},
 )

@@ -13,7 +13,6 @@ from robots.classes.mercury_a1 import (
 from robots.classes.pro630 import HALF, LISTED, UNREAD
 from robots.crc_classes import SINGLE, opened_as
 from robots.robot import Robot
-from robots.rulings import TENTH
 
 _ENDS = "the maker's class has no method by which it would explain the end of a motion, and fails"
 _FAILS = "the maker's class fails by mistake, after the request was accepted"
@@ -36,7 +35,7 @@ ROBOT = Robot(
     calls=calls_of(6),
     local=LOCAL_NAMES,
     own_arguments=OWN_ARGUMENTS,
-    rulings={**RULINGS, "set_joint_min_angle": [TENTH], "set_joint_max_angle": [TENTH]},
+    rulings=RULINGS,
     opened=opened_as(SINGLE),
     **{
         **DRIVING,

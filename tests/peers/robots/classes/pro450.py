@@ -69,13 +69,6 @@ _ZERO = [0] * 6
 _FIRST = "the maker asks first whether a new target replaces the present one"
 _JOG = [Ruling("fe fe 03 17", _FIRST)]
 _BYTES = "the maker's class returns the nine bytes of the reply"
-_LIMIT = (
-    "the firmware's limit is wider here, and any tenth is legal; the maker wants a whole number "
-    "inside the limits of targets"
-)
-_USUAL = "a value with USUAL is sent here; the maker rejects it"
-_NO_VALUE = "the value may be left out here; the maker wants one for each limit but USUAL"
-_NEGATIVE = "a byte in two's complement; the maker's class fails by mistake below 0"
 _MOTIONS: tuple[str, ...] = ("send_angle", "send_angles", "send_coord", "send_coords")
 _MOTIONS += ("jog_increment_coord", "over_limit_return_zero", "write_move_c")
 _MOTIONS += ("fourier_trajectories", "jog_increment_angle")
@@ -112,13 +105,6 @@ ROBOT = Robot(
     rulings={
         **dict.fromkeys(("jog_angle", "jog_coord", "jog_rpy"), _JOG),
         **dict.fromkeys(("jog_increment_angle", "jog_increment_coord"), _JOG),
-        "set_joint_min_angle": [Ruling("rejected", _LIMIT)],
-        "set_joint_max_angle": [Ruling("rejected", _LIMIT)],
-        "set_fusion_parameters": [
-            Ruling("restores default parameters", _USUAL),
-            Ruling("value is required", _NO_VALUE),
-        ],
-        "set_pro_gripper_offset": [Ruling("rejected", _NEGATIVE)],
     },
     opened=opened_on_socket,
     driven={"set_torque_comp": (3, 1, 1), "tool_serial_write_data": ([1, 2, 3, 4, 5, 6, 7, 8],)},

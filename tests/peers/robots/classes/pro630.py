@@ -12,7 +12,6 @@ from robots.classes.mercury_a1 import (
 )
 from robots.crc_classes import SINGLE, opened_as
 from robots.robot import Call, Robot, Ruling
-from robots.rulings import TENTH
 
 # These switch pins of the computer in the arm, or raise that the robot does not support them.
 _PINS = {"get_basic_input", "set_basic_output", "power_on_only"}
@@ -50,8 +49,6 @@ ROBOT = Robot(
     own_arguments={**OWN_ARGUMENTS, "power_on": [(1,)]},
     rulings={
         **RULINGS,
-        "set_joint_min_angle": [TENTH],
-        "set_joint_max_angle": [TENTH],
         "get_servo_data": [Ruling("servo_id not right", _SERVO)],
         "set_servo_data": [Ruling("servo_id not right", _SERVO)],
     },
