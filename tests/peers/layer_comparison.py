@@ -45,16 +45,6 @@ class Recorded(MemoryTransport):
         super().write(data)
 
 
-class RecordedPort(ArmPort):
-    """The maker's port to a simulated arm; it keeps what is written."""
-
-    written = b""
-
-    def write(self, data: Any) -> int:
-        self.written += bytes(data)
-        return super().write(data)
-
-
 class Called(NamedTuple):
     """What a call wrote, and its result; ``rejected`` if it raised an error before it wrote."""
 
@@ -97,7 +87,7 @@ class Fixed:
 def call_theirs(robot: Robot, call: Call, reply: bytes | None = None) -> Called:
     """Call the maker's class on a simulated arm, or one that sends a reply to everything."""
     with stepped() as clock:
-        port = RecordedPort(_arm(robot, clock.time, reply), clock)
+        port = ArmPort(_arm(robot, clock.time, reply), clock)
         peer, start = robot.on(port), clock.now
         with limited(MOST_SECONDS if reply is None else MOST_FOR_REPLY):
             result = result_of_theirs(peer, call)

@@ -71,6 +71,17 @@ def test_setter_without_acknowledgement_is_sent_three_times_and_each_moves_the_a
         assert found.received.count("get_angles") == 1
 
 
+def test_every_query_gets_a_reply() -> None:
+    with driven("MyCobot", "mycobot") as found:
+        queries = [
+            c.name for c in found.arm.table.commands if c.requires_reply and not c.request[0].fields
+        ]
+        known = [name for name in queries if hasattr(found.peer, name)]
+        assert [name for name in known if getattr(found.peer, name)() in (None, -1)] == []
+        assert found.received == known
+        assert len(known) > 10
+
+
 def test_angle_between_steps_is_truncated_where_ours_is_rounded() -> None:
     with driven("MyCobot280", "mycobot280") as found:
         found.peer.send_angle(1, 0.58, 100)

@@ -1,4 +1,4 @@
-"""A sample of ``make robots``, and the maker's unmodified classes on simulators of their robots."""
+"""A sample of ``make robots``, and requests of drawn values."""
 
 from __future__ import annotations
 
@@ -13,7 +13,6 @@ from pymycobot_classes import library
 from robots.classes import ROBOTS
 from robots.comparison import OPEN, REJECTED, compare, difference
 from robots.drawing import drawn_call
-from robots.driving import wrong_read_backs, wrong_replies
 from robots.robot import SERVO_BUS, Ruling
 
 # Every method is compared by `make robots`; here one of so many.
@@ -92,28 +91,8 @@ def test_what_is_stated_about_a_class_names_its_methods_and_gives_reasons(peer: 
     for method, stated in robot.rulings.items():
         assert method in robot.public
         assert all(ruling.why for ruling in stated)
-    for listed in (robot.unanswered, robot.not_read_back):
-        assert set(listed) <= set(robot.public)
-        assert all(listed.values())
-    assert set(robot.kinds) <= set(robot.public)
     names = {name for name in dir(library(peer)) if not name.startswith("_")}
     assert robot.local - SERVO_BUS <= names
-
-
-# It reads the language of the system in a way that Python deprecates.
-@pytest.mark.filterwarnings("ignore:.*getdefaultlocale:DeprecationWarning")
-@robots
-def test_every_method_with_a_reply_gets_one_of_the_right_type(peer: str) -> None:
-    called, wrong = wrong_replies(ROBOTS[peer])
-    assert wrong == []
-    assert called > 15
-
-
-@robots
-def test_values_that_the_makers_class_sets_read_back(peer: str) -> None:
-    checked, wrong = wrong_read_backs(ROBOTS[peer])
-    assert wrong == []
-    assert checked > 5
 
 
 def test_another_edition_is_noticed() -> None:
@@ -121,12 +100,11 @@ def test_another_edition_is_noticed() -> None:
     found = {each.method: each.open for each in compare(other, ["send_angles", "set_color"])}
     assert "ours: fe fe 0b 22" in found["send_angles"][0]
     assert found["set_color"] == ()
-    assert len(wrong_replies(other)[1]) > 0
 
 
 def test_ruling_that_no_call_needs_is_open() -> None:
     stale = {"set_color": [Ruling("fe fe", "a reason")]}
     [found] = compare(replace(ROBOTS["MechArm270"], rulings=stale), ["set_color"])
     assert found.open == ("no call needs the ruling: a reason",)
-    [found] = compare(replace(ROBOTS["MechArm270"], rulings={}), ["set_server_port"])
+    [found] = compare(replace(ROBOTS["MyCobot"], rulings={}), ["set_server_port"])
     assert "'h' format" in found.open[0]

@@ -76,11 +76,6 @@ def inside(variant: Variant) -> Iterator[Arguments]:
         )
 
 
-def between(variant: Variant) -> Arguments:
-    """Return one set of values inside of the corners; the lowest if there is nothing between."""
-    return next(inside(variant), next(corners(variant)))
-
-
 def end(field: Field, high: bool, pick: int | None = None) -> Any:
     """Return the lowest or the highest value of a field, in the case that ``pick`` selects."""
     case = field.case(pick)

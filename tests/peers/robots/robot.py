@@ -34,12 +34,6 @@ SERVO_BUS = frozenset(
 )
 
 
-# Arguments with which most classes drive a simulated robot.
-DRIVEN = {"set_server_port": (9000,), "set_servo_data": (1, 24, 200)}
-# The reason why a simulated robot does not reply to a query of coordinates.
-GEOMETRY = "no source gives the geometry"
-
-
 class Call(NamedTuple):
     """A method of the maker's class, and the request of ours that means the same.
 
@@ -91,11 +85,6 @@ class Robot:
         rulings: for methods, the reasons why calls differ, where ``differences.txt`` has none.
         before: what the class's methods take before our arguments, by the name of an address.
         without_address: commands with methods that do not take an address.
-        driven: for commands, arguments with which the class drives a robot, instead of values
-            inside of the table's ranges.
-        unanswered: methods that get no reply from the simulated robot: why.
-        kinds: methods that return another type than the reply has.
-        not_read_back: methods that set what their query does not report then: why.
         opened: makes an object of the class on a port.
     """
 
@@ -111,10 +100,6 @@ class Robot:
     rulings: Mapping[str, Sequence[Ruling]] = field(default_factory=dict)
     before: Mapping[str | None, Arguments] = field(default_factory=lambda: {None: ()})
     without_address: frozenset[str] = frozenset()
-    driven: Mapping[str, Arguments] = field(default_factory=lambda: DRIVEN)
-    unanswered: Mapping[str, str] = field(default_factory=dict)
-    kinds: Mapping[str, type] = field(default_factory=dict)
-    not_read_back: Mapping[str, str] = field(default_factory=dict)
     opened: Callable[[str, Any], Any] = peer_on
 
     @property

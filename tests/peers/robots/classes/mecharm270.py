@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from robots.robot import GEOMETRY, GPIO, LOCAL, Call, Robot
-from robots.rulings import KIND
+from robots.robot import GPIO, LOCAL, Call, Robot, Ruling
 
 _ZERO = [0] * 6
+_KIND = Ruling(
+    "NoneType", "the kind may be left out; the maker's check of a missing kind fails by mistake"
+)
 ROBOT = Robot(
     "MechArm270",
     "mecharm270",
@@ -18,17 +20,7 @@ ROBOT = Robot(
         Call("sync_send_coords", (_ZERO, 50, 1), "send_coords", (_ZERO, 50, 1)),
     ],
     rulings={
-        "set_gripper_state": [KIND],
-        "set_gripper_value": [KIND],
+        "set_gripper_state": [_KIND],
+        "set_gripper_value": [_KIND],
     },
-    unanswered=dict.fromkeys(
-        (
-            "get_coords",
-            "get_angles_coords",
-            "get_coords_plan",
-            "angles_to_coords",
-            "solve_inv_kinematics",
-        ),
-        GEOMETRY,
-    ),
 )

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 from robots.crc_classes import SINGLE, opened_as
-from robots.robot import GEOMETRY, LOCAL, Arguments, Call, Robot, Ruling
+from robots.robot import LOCAL, Arguments, Call, Robot, Ruling
 
 _PRO = {"angle": (11, 12), "torque": (27, 28), "speed": (32, 33)}
 _HAND = {"angle": (11, 12), "torque": (27, 28), "p": (15, 16), "d": (17, 18), "i": (19, 20)}
@@ -99,32 +97,6 @@ RULINGS = {
     ],
     "set_limit_switch": [Ruling("fe fe 03 12", "the maker asks first whether the arm has power")],
 }
-# What the class needs to drive a simulated robot.
-_MOTIONS: tuple[str, ...] = (
-    "send_angle",
-    "send_angles",
-    "send_coord",
-    "send_coords",
-    "jog_increment_angle",
-)
-_MOTIONS += ("jog_increment_coord", "over_limit_return_zero", "set_solution_angles")
-_MOTIONS += ("write_move_c", "write_move_c_r")
-_ONE_BYTE = "the maker sends one byte instead of several, which no arm reads"
-DRIVING: dict[str, Any] = {
-    "driven": {
-        "get_pro_gripper": (12, 14),
-        "set_pro_gripper": (11, 50),
-        "tool_serial_write_data": ([1, 2, 3],),
-    },
-    "unanswered": {
-        **dict.fromkeys(("get_coords", "solve_inv_kinematics", "get_quick_move_info"), GEOMETRY),
-        "drag_teach_execute": "the maker returns a text, since nothing was recorded",
-        "tool_serial_set_baud": _ONE_BYTE,
-        "tool_serial_set_timeout": _ONE_BYTE,
-    },
-    # Motions return the status of their end.
-    "kinds": {**dict.fromkeys(_MOTIONS, int), "tool_serial_read_data": int},
-}
 ROBOT = Robot(
     "Mercury (A1)",
     "mercury_a1",
@@ -135,5 +107,4 @@ ROBOT = Robot(
     calls=calls_of(7),
     rulings=RULINGS,
     opened=opened_as(SINGLE),
-    **DRIVING,
 )

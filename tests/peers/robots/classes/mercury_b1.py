@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from robots.classes.mercury_a1 import (
-    DRIVING,
     LACKING,
     LOCAL_NAMES,
     OWN_ARGUMENTS,
@@ -11,7 +10,7 @@ from robots.classes.mercury_a1 import (
     calls_of,
 )
 from robots.crc_classes import opened_as
-from robots.robot import GEOMETRY, Call, Robot, Ruling
+from robots.robot import Call, Robot, Ruling
 
 _HEAD = "joint 12 turns to 245 degrees, as on the maker's page; its class wants 220"
 _PLACE = [300, 0, 200, 90, 0, -90]
@@ -31,9 +30,4 @@ ROBOT = Robot(
         "send_angle": [Ruling("angle value not right", _HEAD)],
     },
     opened=opened_as("/dev/left_arm"),
-    **{
-        **DRIVING,
-        "unanswered": {**DRIVING["unanswered"], "get_base_coords": GEOMETRY},
-        "kinds": {**DRIVING["kinds"], "send_base_coord": int, "send_base_coords": int},
-    },
 )

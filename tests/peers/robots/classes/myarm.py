@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from robots.robot import GEOMETRY, GPIO, LOCAL, SERVO_BUS, Call, Robot
+from robots.robot import GPIO, LOCAL, SERVO_BUS, Call, Robot
 
 _ZERO = [0] * 7
 _LOWEST, _HIGHEST = [-160, -70, -170, -113, -170, -115, -180], [160, 115, 170, 75, 170, 115, 180]
 _END = [200, -25.8, 100, 9, -2.58, 180]
-_UNREAD = "the maker does not read the acknowledgement, and then takes it for the next reply"
 ROBOT = Robot(
     "MyArm",
     "myarm300",
@@ -20,10 +19,4 @@ ROBOT = Robot(
         Call("sync_send_coords", (_END, 50), "send_coords", (_END, 50, 0)),
     ],
     lacking={"is_in_position_coords": "the maker has is_in_position with id 1 for it"},
-    kinds=dict.fromkeys(
-        ("send_angle", "send_angles", "send_coord", "send_coords", "set_gripper_value"), list
-    ),
-    not_read_back={"send_radians": _UNREAD},
-    unanswered=dict.fromkeys(("get_coords", "get_angles_coords"), GEOMETRY)
-    | {"send_radians": "the maker does not read the acknowledgement"},
 )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from robots.robot import GEOMETRY, LOCAL, Robot
+from robots.robot import LOCAL, Robot
 
 METHODS = {
     "get_system_version": "get_robot_firmware_version",
@@ -25,6 +25,4 @@ ROBOT = Robot(
         ),
         "only the maker's page has it",
     ),
-    driven={},
-    unanswered={"get_joints_coord": GEOMETRY},
 )

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from robots.classes.myarmc import METHODS, PIN_MODE
-from robots.robot import GEOMETRY, LOCAL, Call, Robot
+from robots.robot import LOCAL, Call, Robot
 
 _ENCODERS = [2000, 1598, 2498, 2000, 2000, 2000, 2000, 2000]
 ROBOT = Robot(
@@ -30,10 +30,4 @@ ROBOT = Robot(
             (_ENCODERS, [500] * 8),
         ),
     ],
-    driven={
-        "set_servos_encoder": (_ENCODERS, 50),
-        "set_servos_encoder_drag": (_ENCODERS, [500] * 8),
-    },
-    kinds={"get_assist_in_io_state": list},
-    unanswered={"get_joints_coord": GEOMETRY},
 )

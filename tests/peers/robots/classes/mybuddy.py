@@ -5,7 +5,7 @@ The maker's methods take the address of a limb as their first argument.
 
 from __future__ import annotations
 
-from robots.robot import DRIVEN, GEOMETRY, LOCAL, SERVO_BUS, Call, Robot
+from robots.robot import LOCAL, SERVO_BUS, Call, Robot
 
 _PINS = frozenset(
     {"set_gpio_clearup", "set_gpio_init_mode", "set_gpio_output", "set_gpio_pwm_change_dc"}
@@ -68,22 +68,4 @@ ROBOT = Robot(
         Call("sync_send_angles", (1, _ZERO, 50), "send_angles", (_ZERO, 50), "LEFT"),
         Call("sync_send_coords", (2, _ZERO, 50), "send_coords", (_ZERO, 50, 0), "RIGHT"),
     ],
-    driven={
-        **DRIVEN,
-        "send_angles": (_ANGLES, 50),
-        # One speed cannot be sent to the whole robot.
-        "set_encoders": ([2048] * 6, [100] * 6),
-    },
-    kinds={"get_acceleration": list, "is_collision_on": list},
-    unanswered={
-        **dict.fromkeys(
-            [
-                *("get_coords", "get_coord", "get_base_coord", "get_base_coords", "collision"),
-                "base_to_single_coords",
-            ],
-            GEOMETRY,
-        ),
-        "read_next_error": "the maker's method returns nothing",
-        "get_joint_current": "the maker's method reads no reply",
-    },
 )

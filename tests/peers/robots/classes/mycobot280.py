@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from robots.robot import DRIVEN, GPIO, LOCAL, Call, Robot
-from robots.rulings import EMPTY, REACHED
+from robots.robot import GPIO, LOCAL, Call, Robot
 
 _LOWEST = [-168, -140, -150, -150, -155, -180]
 # Header and footer inside the data: FE FE and 00 FA.
@@ -23,6 +22,4 @@ ROBOT = Robot(
         Call("sync_send_coords", (_COORDS, 50), "send_coords", (_COORDS, 50, 0)),
         Call("sync_send_coords", (_COORDS, 50, 1), "send_coords", (_COORDS, 50, 1)),
     ],
-    driven={**DRIVEN, "send_coords": REACHED},
-    unanswered={"drag_get_record_data": EMPTY},
 )

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from robots.robot import DRIVEN, LOCAL, Call, Robot, Ruling
-from robots.rulings import EMPTY, REACHED
+from robots.robot import LOCAL, Call, Robot, Ruling
 
 _ZERO = [0] * 6
 _OTHER_NAME = "the older class for the 280 has the method"
@@ -37,11 +36,5 @@ ROBOT = Robot(
                 "fe fe 03 65 01 fa", "the kind may be left out, as on the 280; the maker sends 1"
             )
         ],
-    },
-    driven={**DRIVEN, "send_coords": REACHED},
-    unanswered={
-        "is_in_position": "every call fails before it is sent",
-        "jog_increment_angle": "every call fails before it is sent",
-        "get_drag_record_data": EMPTY,
     },
 )

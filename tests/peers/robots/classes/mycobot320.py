@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from robots.robot import GEOMETRY, GPIO, LOCAL, Call, Robot
+from robots.robot import GPIO, LOCAL, Call, Robot
 
 _ZERO = [0] * 6
 _PINCH = "set_hand_gripper_pinch_action"
@@ -20,14 +20,4 @@ ROBOT = Robot(
         Call(_PINCH, (1, 5, False), _PINCH, (1, 5, False), why=_IDLE),
     ],
     own_arguments={_PINCH: [(0, 5, 1, 1), (4, 1, 1, 14), (4, 20, 1, 254)]},
-    unanswered=dict.fromkeys(
-        (
-            "get_coords",
-            "get_angles_coords",
-            "get_coords_plan",
-            "angles_to_coords",
-            "solve_inv_kinematics",
-        ),
-        GEOMETRY,
-    ),
 )

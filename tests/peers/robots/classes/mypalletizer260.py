@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from robots.robot import GEOMETRY, GPIO, LOCAL, Call, Robot
+from robots.robot import GPIO, LOCAL, Call, Robot
 
 _THREE = "0x22: the arm has four joints; the maker sends three angles"
 _ZERO = [0, 0, 0, 0]
@@ -18,6 +18,4 @@ ROBOT = Robot(
         Call("sync_send_coords", ([200, 0, 100, 9], 50), "send_coords", ([200, 0, 100, 9], 50)),
         Call("go_home", (), "send_angles", (_ZERO, 10), why=_THREE),
     ],
-    unanswered={"get_coords": GEOMETRY},
-    kinds={"is_free_mode": list},
 )

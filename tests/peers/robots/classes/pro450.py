@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from robots.classes.mercury_a1 import LOCAL_NAMES
-from robots.robot import GEOMETRY, Arguments, Call, Robot, Ruling
+from robots.robot import Arguments, Call, Robot, Ruling
 from robots.tcp_classes import opened_on_socket
 
 GRIPPER = 14
@@ -68,10 +68,6 @@ _PLACE = [300, 0, 200, 90, 0, -90]
 _ZERO = [0] * 6
 _FIRST = "the maker asks first whether a new target replaces the present one"
 _JOG = [Ruling("fe fe 03 17", _FIRST)]
-_BYTES = "the maker's class returns the nine bytes of the reply"
-_MOTIONS: tuple[str, ...] = ("send_angle", "send_angles", "send_coord", "send_coords")
-_MOTIONS += ("jog_increment_coord", "over_limit_return_zero", "write_move_c")
-_MOTIONS += ("fourier_trajectories", "jog_increment_angle")
 ROBOT = Robot(
     "Pro450Client",
     "pro450",
@@ -107,9 +103,5 @@ ROBOT = Robot(
         **dict.fromkeys(("jog_increment_angle", "jog_increment_coord"), _JOG),
     },
     opened=opened_on_socket,
-    driven={"set_torque_comp": (3, 1, 1), "tool_serial_write_data": ([1, 2, 3, 4, 5, 6, 7, 8],)},
-    unanswered=dict.fromkeys(("get_coords", "solve_inv_kinematics"), GEOMETRY),
     # Motions return the status of their end; the type of the robot is a text of digits.
-    kinds={**dict.fromkeys(_MOTIONS, int), "get_robot_type": str},
-    not_read_back={"set_base_external_config": _BYTES},
 )

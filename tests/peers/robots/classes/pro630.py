@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from robots.classes.mercury_a1 import (
-    DRIVING,
     LACKING,
     LOCAL_NAMES,
     OWN_ARGUMENTS,
@@ -17,26 +16,6 @@ from robots.robot import Call, Robot, Ruling
 _PINS = {"get_basic_input", "set_basic_output", "power_on_only"}
 _PINS |= {"get_monitor_mode", "set_monitor_mode", "joint_number", "pin_numbered_mapping_table"}
 _PINS |= {"arm_span_maximum", "power_control_1", "power_control_2"}
-_WIDE = "the maker's class does not read replies of this size"
-# The class returns a list with the only value.
-LISTED: tuple[str, ...] = (
-    "get_atom_modify_version",
-    "get_collision_mode",
-    "get_identify_mode",
-    "get_drag_fifo_len",
-)
-LISTED += ("is_drag_fifo_empty", "get_dynamic_parameters", "tool_serial_ready")
-LISTED += ("tool_serial_available", "tool_serial_read_data", "tool_serial_write_data")
-LISTED += ("tool_serial_peek",)
-UNREAD = dict.fromkeys(("get_pos_over", "get_pro_gripper"), _WIDE)
-HALF = {"set_dynamic_parameters": "the maker's class reads three bytes of four"}
-_UNREAD: tuple[str, ...] = (
-    "get_comm_error_counts",
-    "get_solution_angles",
-    "get_max_speed",
-    "get_max_acc",
-)
-_UNREAD += ("get_fusion_parameters", "get_pos_over_shoot")
 _SERVO = "the class has the method, but checks for joints; the servos 11 and 12 are those of a head"
 _ZERO = [0] * 6
 ROBOT = Robot(
@@ -53,10 +32,4 @@ ROBOT = Robot(
         "set_servo_data": [Ruling("servo_id not right", _SERVO)],
     },
     opened=opened_as(SINGLE),
-    **{
-        **DRIVING,
-        "unanswered": {**DRIVING["unanswered"], **UNREAD, **dict.fromkeys(_UNREAD, _WIDE)},
-        "kinds": {**DRIVING["kinds"], **dict.fromkeys(LISTED, list)},
-    },
-    not_read_back=HALF,
 )
