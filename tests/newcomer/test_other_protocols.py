@@ -1,4 +1,4 @@
-"""Use protocols of other devices from the wheels alone, without Rust and without its codec."""
+"""Use protocols of other devices from the wheels alone, without Rust, also without its codec."""
 
 from __future__ import annotations
 
@@ -37,11 +37,7 @@ with server, p.CLIENT(server.url, timeout=10, record="a.pcapng") as device:
 {calls}
 print("cobotwire._native" in sys.modules)
 """
-PRINTED = {
-    "feetech": ["reference", "True", "0.0", "False"],
-    "dynamixel": ["reference", "False", "True", "False"],
-    "ublox": ["reference", "200", "True", "False"],
-}
+PRINTED = {"feetech": ["True", "0.0"], "dynamixel": ["False", "True"], "ublox": ["200", "True"]}
 # The frames were recorded in both directions; these requests were sent.
 DECODED = {
     "feetech": "sync_write_goals(register=42, count=6, targets=(1; 2048 ticks;",
@@ -50,20 +46,27 @@ DECODED = {
 }
 
 
-@pytest.mark.parametrize("name", PRINTED)
+@pytest.mark.parametrize(
+    ("name", "codec"), [*((name, "reference") for name in PRINTED), ("feetech", "native")]
+)
 def test_protocol_is_built_simulated_recorded_decoded_and_tested_without_rust(
-    tmp_path: Path, environment: dict[str, str], fresh: Path, name: str
+    tmp_path: Path, environment: dict[str, str], fresh: Path, name: str, codec: str
 ) -> None:
     spec = vectors.ROOT / "tests" / "protocols" / f"{name}.yaml"
     (tmp_path / spec.name).write_bytes(spec.read_bytes())
     (tmp_path / "drive.py").write_text(SCRIPT.format(name=name, calls=CALLS[name]))
-    within = {**environment, "PATH": str(fresh), "COBOTWIRE_CODEC": "reference"}
+    within = {**environment, "PATH": str(fresh), "COBOTWIRE_CODEC": codec}
 
     def output(*words: str) -> str:
         return run(*words, cwd=tmp_path, env=within).stdout
 
     assert name in output("cobotwire-gen", "build", spec.name, "--out", name)
-    assert output("python", "drive.py").splitlines() == PRINTED[name]
+    assert output("python", "drive.py").splitlines() == [
+        *(codec, *PRINTED[name]),
+        str(codec == "native"),
+    ]
+    sent = DECODED[name].partition("(")[0]
+    assert sent in output("cobotwire", "--edition", f"./{name}", "commands")
     assert DECODED[name] in output("cobotwire", "--edition", name, "decode", "a.pcapng")
     tested = output(
         "cobotwire", "--edition", name, "conform", "device", "--simulated", "--json", "-"
@@ -71,3 +74,5 @@ def test_protocol_is_built_simulated_recorded_decoded_and_tested_without_rust(
     verdicts = [result["verdict"] for result in json.loads(tested)["results"]]
     assert "pass" in verdicts
     assert "fail" not in verdicts
+    with pytest.raises(FileNotFoundError):
+        run("cargo", "--version", env=within)

@@ -19,7 +19,7 @@ from cobotwire.simulator import MemoryTransport, SimulatedArm
 from cobotwire.simulator.clock import SteppedClock
 from differences import Difference, relation
 from robots.comparison import calls_of, is_truncated
-from robots.driving import ArmPort, stepped
+from robots.driving import ArmPort, Fixed, stepped
 from robots.robot import Call, Robot
 
 REJECTED = "rejected"
@@ -64,24 +64,6 @@ def layer_on(name: str, transport: Any, native: Any = None) -> Any:
     made = object.__new__(kind)
     made._open(partial(native or kind.NATIVE, transport), False, "raise")
     return made
-
-
-class Fixed:
-    """Stands in for an arm: it replies with the same bytes to everything."""
-
-    wait = None
-
-    def __init__(self, reply: bytes) -> None:
-        self._reply = reply
-
-    def connect(self) -> Fixed:
-        return self
-
-    def receive(self, data: bytes) -> bytes:
-        return self._reply
-
-    def flush(self) -> bytes:
-        return b""
 
 
 def call_theirs(robot: Robot, call: Call, reply: bytes | None = None) -> Called:

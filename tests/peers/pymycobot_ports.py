@@ -42,31 +42,3 @@ class RecordingTransport:
 
     def close(self) -> None:
         """Do nothing: there is nothing to release."""
-
-
-class ReplyingPort:
-    """The part of ``serial.Serial`` that pymycobot uses; every write gets the same reply."""
-
-    is_open = True
-
-    def __init__(self, reply: bytes = b"") -> None:
-        self.written = b""
-        self._reply = reply
-        self._waiting = b""
-
-    def isOpen(self) -> bool:
-        return True
-
-    def reset_input_buffer(self) -> None:
-        self._waiting = b""
-
-    def write(self, data: Sequence[int]) -> None:
-        self.written += bytes(data)
-        self._waiting += self._reply
-
-    def inWaiting(self) -> int:
-        return len(self._waiting)
-
-    def read(self, size: int = 1) -> bytes:
-        data, self._waiting = self._waiting[:size], self._waiting[size:]
-        return data

@@ -63,7 +63,8 @@ def corners(variant: Variant) -> Iterator[Arguments]:
 def inside(variant: Variant) -> Iterator[Arguments]:
     """Return values inside of the corners, for the lowest selector: whole ones, and other ones.
 
-    The other ones are one step above the lowest. The maker's classes truncate some of them.
+    The other ones are few steps above the lowest, each field some more than the one before, so that
+    no two fields are alike. The maker's classes truncate some of them.
     """
     if not any(_is_range(field) for field in variant.fields):
         return
@@ -71,7 +72,7 @@ def inside(variant: Variant) -> Iterator[Arguments]:
     pick = min(_picks(variant), default=None)
     for middle in (_middle, _next_step):
         yield tuple(
-            pick if index in selectors else middle(field, pick)
+            pick if index in selectors else middle(field, pick, index)
             for index, field in enumerate(variant.fields)
         )
 
@@ -103,7 +104,7 @@ def _is_range(field: Field) -> bool:
     return field.const is None and not field.choices
 
 
-def _middle(field: Field, pick: int | None) -> Any:
+def _middle(field: Field, pick: int | None, index: int) -> Any:
     low, high = end(field, False, pick), end(field, True, pick)
     if not _is_range(field) or isinstance(low, str | bytes):
         return low
@@ -116,10 +117,11 @@ def _halfway(low: float, high: float) -> float:
     return type(low)(int((low + high) / 2))
 
 
-def _next_step(field: Field, pick: int | None) -> Any:
+def _next_step(field: Field, pick: int | None, index: int) -> Any:
     case = field.case(pick)
     assert case is not None
     if not _is_range(field) or field.kind in ("text", "bytes") or field.each:
         return end(field, False, pick)
-    raws = [min(number.minimum + 1, number.maximum) for number in case.numbers]
+    steps = enumerate(case.numbers, start=index + 1)
+    raws = [min(number.minimum + step, number.maximum) for step, number in steps]
     return _value(field, pick, raws)

@@ -15,8 +15,9 @@ from cobotwire.protocol.errors import ProtocolError, UsageError
 from cobotwire.protocol.table import Command
 from differences import rulings
 from pymycobot_classes import library, recording_client, written
-from pymycobot_ports import RecordingPort, ReplyingPort
+from pymycobot_ports import RecordingPort
 from robots.arguments import Named, arguments_of
+from robots.driving import ArmPort, Fixed, stepped
 from robots.robot import Call, Robot
 
 REJECTED, OPEN = "rejected: ", "open: "
@@ -137,9 +138,10 @@ def sent_by_peer(robot: Robot, call: Call) -> bytes | str:
     """Return what the maker's class writes, or why it rejects the call."""
     try:
         if _has_text(robot, call.command):
-            port = ReplyingPort()
-            getattr(robot.on(port), call.method)(*call.theirs)
-            return port.written
+            with stepped() as clock:
+                port = ArmPort(Fixed(b""), clock)
+                getattr(robot.on(port), call.method)(*call.theirs)
+                return port.written
         return written(_recording_peer(robot.peer, robot.opened), call.method, call.theirs)
     except Exception as error:  # any: the maker's classes fail in many ways
         return f"{REJECTED}{type(error).__name__}: {error}"

@@ -80,6 +80,24 @@ class ArmPort:
         """Do nothing: there is nothing to release."""
 
 
+class Fixed:
+    """Stands in for an arm: it replies with the same bytes to everything."""
+
+    wait = None
+
+    def __init__(self, reply: bytes) -> None:
+        self._reply = reply
+
+    def connect(self) -> Fixed:
+        return self
+
+    def receive(self, data: bytes) -> bytes:
+        return self._reply
+
+    def flush(self) -> bytes:
+        return b""
+
+
 @contextmanager
 def stepped() -> Iterator[SteppedTime]:
     """Step the time of the maker's library, and of our layer."""
