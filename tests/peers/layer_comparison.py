@@ -178,7 +178,11 @@ def conversation(robot: Robot, theirs: Called, mine: Called) -> str:
         return ""
     shows = [_frames(robot, theirs.written, mine.written)]
     if (mine.result, type(mine.result)) != (theirs.result, type(theirs.result)):
-        shows.append(relation(theirs.result, mine.result))
+        differ = relation(theirs.result, mine.result)
+        # What the library truncates makes the arm calculate with other numbers.
+        is_truncated_only = theirs.written != mine.written and shows == [""]
+        if not (is_truncated_only and differ.endswith("of other values")):
+            shows.append(differ)
     return "; ".join(each for each in shows if each)
 
 

@@ -71,7 +71,9 @@ def test_requests_of_the_document_that_its_class_lacks_equal_those_of_newer_clas
     for peer in ("MyCobot280", "MyPalletizer260"):
         newer = replace(ROBOTS[peer], edition="mycobot", calls=())
         found = compare(newer, ROBOTS["MyCobot"].lacking)
-        equal |= {each.method for each in found if each.equal}
+        # The palletizer has no joint 6.
+        whole = (each for each in found if not each.open or each.method == "jog_absolute")
+        equal |= {each.method for each in whole if each.equal}
     assert equal == set(ROBOTS["MyCobot"].lacking) - DISPUTED
 
 
