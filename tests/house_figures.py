@@ -149,7 +149,9 @@ def _print_rooms(counts: dict[Source, Size]) -> None:
 
 
 def _room(path: str, text: str) -> str:
-    if GENERATED.match(path) or text.startswith(GENERATED_HEADER):
+    # A template starts with the header of what it generates.
+    headed = text.startswith(GENERATED_HEADER) and not path.endswith(".j2")
+    if headed or GENERATED.match(path):
         return "generated"
     if path.startswith(PACKAGE):
         first = path.removeprefix(PACKAGE).split("/")[0]

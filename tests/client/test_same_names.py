@@ -40,8 +40,19 @@ def test_both_clients_have_the_same_methods(edition: str) -> None:
     for name in blocking:
         assert shape(blocking[name]) == shape(asynchronous[name]), name
     for command in _called(package):
+        assert asynchronous[command.name].__doc__ == blocking[command.name].__doc__
         assert inspect.iscoroutinefunction(asynchronous[command.name])
         assert not inspect.iscoroutinefunction(blocking[command.name])
+
+
+@pytest.mark.parametrize("edition", NAMES)
+def test_edition_has_no_methods_or_messages_of_commands_that_only_others_have(edition: str) -> None:
+    package: Any = editions.load(edition)
+    every = {command.name: command for name in NAMES for command in _called(editions.load(name))}
+    for name in every.keys() - {command.name for command in _called(package)}:
+        assert not hasattr(package.CLIENT, name)
+        assert not hasattr(package.ASYNC_CLIENT, name)
+        assert not hasattr(package, every[name].request_type.__name__)
 
 
 @pytest.mark.parametrize("edition", NAMES)

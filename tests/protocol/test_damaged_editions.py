@@ -17,7 +17,7 @@ from cobotwire import editions
 from cobotwire.cli.app import app
 from cobotwire.protocol.damage import KINDS
 from cobotwire.protocol.errors import UsageError
-from cobotwire.studio.explained import sources_of
+from cobotwire.protocol.loading import load_sources
 from in_process import run
 
 SHIPPED = Path(editions.__file__).parent
@@ -161,10 +161,21 @@ def test_command_line_reports_a_damaged_edition_in_one_line(
     assert len(ended.stderr.splitlines()) == 1
 
 
-@pytest.mark.parametrize("text", ["", "[]", "{}", "[" * 100_000, '{"commands": {"get_angles": 1}}'])
-def test_studio_reports_damaged_sources_of_commands(package: Path, text: str) -> None:
-    other = package.parent / f"{package.name}_sources_{abs(hash(text))}"
+@pytest.mark.parametrize("text", ["", "[]", "{}", "[" * 100_000, '{"errata": [{"commands": 1}]}'])
+def test_damaged_errata_are_refused(package: Path, text: str) -> None:
+    other = package.parent / f"{package.name}_errata_{abs(hash(text))}"
     shutil.copytree(package, other)
-    (other / "sources.json").write_text(text)
-    with pytest.raises(UsageError, match=r"sources\.json is damaged; generate"):
-        sources_of(editions.load(str(other)))
+    editions.load(str(other))
+    (other / "errata.json").write_text(text)
+    with pytest.raises(UsageError, match=r"errata\.json is damaged; generate"):
+        load_sources(other.name)
+
+
+def test_sources_state_the_errata_of_a_command() -> None:
+    editions.load("mycobot")
+    found = load_sources("cobotwire.editions.mycobot")["get_angles"]
+    assert found["place"].startswith("spec/commands/motion.yaml:")
+    assert found["lines"] == [[223, 269]]
+    assert len(found["errata"]) == 2
+    assert all("get_angles" in each["commands"] for each in found["errata"])
+    assert load_sources("cobotwire.editions.nothing") == {}

@@ -2,10 +2,12 @@
 
 from cobotwire import (
     AsyncMercuryX1,
+    AsyncMyArm300,
     AsyncMyCobot,
     AsyncTwoArms,
     Limits,
     MercuryX1,
+    MyArm300,
     MyCobot,
     MyPalletizer260,
     RetryPolicy,
@@ -84,6 +86,22 @@ async def drive_async(port: str) -> float:
         await other.move_angles([0, 0, 0, 0, 0, 0], 30)
         angles: Angles = await arm.get_angles()
     return angles.j1
+
+
+class GuardedArm(MyArm300):
+    """A client whose user overrides methods that the delta takes from its base."""
+
+    def is_paused(self) -> bool:
+        """Check twice."""
+        return super().is_paused() and super().is_paused()
+
+
+class GuardedAsyncArm(AsyncMyArm300):
+    """The same for asyncio."""
+
+    async def is_paused(self) -> bool:
+        """Check twice."""
+        return await super().is_paused() and await super().is_paused()
 
 
 async def find(port: str) -> float:

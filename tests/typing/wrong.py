@@ -1,7 +1,7 @@
 """Code that must not type-check: each line that ends in `# wrong` is an error, and no other."""
 
 import cobotwire
-from cobotwire import AsyncMyCobot, MyCobot
+from cobotwire import AsyncMyArm300, AsyncMyCobot, MyArm300, MyCobot
 from cobotwire.editions.mycobot import GetAngles, GetEncoder
 
 
@@ -37,6 +37,23 @@ async def drive_async(arm: AsyncMyCobot) -> None:
     await arm.send_angles("000000", 30)  # wrong
     for sample in arm.stream(GetAngles(), rate=50):  # wrong
         print(sample)
+
+
+def drive_delta(arm: MyArm300) -> None:
+    """Use what a delta withdraws, and give the wrong arguments to a method of its base."""
+    arm.jog_stop()  # wrong
+    arm.get_angles_plan()  # wrong
+    arm.set_HTS_gripper_torque("strong")  # wrong
+    arm.get_movement_type(1)  # wrong
+
+
+async def drive_delta_async(arm: AsyncMyArm300) -> None:
+    """Make the same mistakes with the asyncio client."""
+    await arm.jog_stop()  # wrong
+    await arm.set_HTS_gripper_torque("strong")  # wrong
+    arm.resume()  # wrong
+    mode: int = await arm.is_paused(1)  # wrong
+    print(mode)
 
 
 def find(port: str) -> None:

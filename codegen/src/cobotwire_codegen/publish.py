@@ -36,12 +36,12 @@ from cobotwire_codegen.model import (
 from cobotwire_codegen.publish_robot import robot_parts
 from cobotwire_codegen.publish_sections import (
     Record,
+    errata_of,
     exact_number,
     given,
     hexed,
     places_of,
     sections_for_people,
-    sources_of_commands,
 )
 
 FORMAT = "cobotwire-edition"
@@ -70,15 +70,10 @@ def edition_json(edition: Edition, *, complete: bool = False) -> str:
     return "{\n" + ",\n".join(lines) + "\n}\n"
 
 
-def sources_json(edition: Edition) -> str:
-    """Return where each command comes from, for people: its place, lines, disputes and errata.
-
-    Codecs and clients do not read it.
-    """
-    rows = ",\n".join(
-        f"{_compact(name)}: {_compact(record)}" for name, record in sources_of_commands(edition)
-    )
-    return f'{{\n"generated": {_compact(MARK)},\n"commands": {{\n{rows}\n}}\n}}\n'
+def errata_json(edition: Edition) -> str:
+    """Return the errata of an edition for people; codecs and clients do not read them."""
+    rows = ",\n".join(map(_compact, errata_of(edition)))
+    return f'{{\n"generated": {_compact(MARK)},\n"errata": [\n{rows}\n]\n}}\n'
 
 
 def _compact(value: Any) -> str:
@@ -237,6 +232,7 @@ class _Writer:
             doc=command.doc,
             notes=list(lower.notes(command)),
             place=places_of(command),
+            lines=[list(pair) for pair in command.source],
         )
 
     def _variants(self, variants: tuple[Variant, ...]) -> list[list[Record]]:

@@ -18,32 +18,20 @@ def sections_for_people(edition: Edition) -> Record:
     return {
         "sources": [_plain_record(source) for source in _sources(edition)],
         "changes": [_plain(change) for change in edition.changes],
-        "errata": [_plain(erratum) for erratum in edition.errata],
+        "errata": errata_of(edition),
         "vectors": [_plain(vector) for vector in edition.vectors],
     }
+
+
+def errata_of(edition: Edition) -> list[Record]:
+    """Return the errata of the maker's document."""
+    return [_plain(erratum) for erratum in edition.errata]
 
 
 def places_of(command: Command) -> str:
     """Return where the spec states a command and its changes: ``FILE:LINE FILE:LINE``."""
     spots = (command.place, *(change.place for change in command.changes))
     return " ".join(f"{spot.file}:{spot.line}" for spot in spots)
-
-
-def sources_of_commands(edition: Edition) -> Iterator[tuple[str, Record]]:
-    """Yield the name of each command with its place, its lines in the document, and its errata."""
-    for command in edition.commands:
-        errata = [erratum for erratum in edition.errata if command.name in erratum.commands]
-        record = given(
-            place=places_of(command),
-            document=edition.document if command.source else "",
-            lines=command.source,
-            disputed=command.disputed,
-            errata=[
-                {"lines": each.lines, "says": each.says, "read": each.read, "why": each.why}
-                for each in errata
-            ],
-        )
-        yield command.name, _plain_record(record)
 
 
 def _sources(edition: Edition) -> Iterator[Record]:

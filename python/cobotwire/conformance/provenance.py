@@ -10,7 +10,7 @@ import cobotwire
 from cobotwire import editions
 from cobotwire.conformance.catalogue import VERSION, code_digest
 from cobotwire.conformance.report import Environment, Report
-from cobotwire.protocol.loading import stored_table
+from cobotwire.protocol.loading import stored_file
 
 
 def identify(report: Report, edition: str, *, port: str = "") -> None:
@@ -32,7 +32,7 @@ def edition_digest(edition: str) -> str:
     """Return the SHA-256 of an edition's table; empty if it is not stored as such."""
     try:
         package = getattr(editions.load(edition), "__name__", "")
-        return sha256(stored_table(package)[1]).hexdigest()
+        return sha256(stored_file(package)[1]).hexdigest()
     except (KeyError, OSError):
         return ""
 

@@ -54,7 +54,7 @@ def load_table(package: str, checksum: str | None = "") -> Table:
     Raises:
         UsageError: the file is missing or damaged, or another version of cobotwire-gen made it.
     """
-    path, data = stored_table(package)
+    path, data = stored_file(package)
     found = checksum_of(data)
     if checksum in (found, None):
         document: Record = json.loads(data)
@@ -128,23 +128,55 @@ def _check(record: Record) -> Check:
     )
 
 
-def load_places(package: str) -> dict[str, str]:
-    """Return the place of each command in the spec: ``file:line``, and where a delta changed it.
+def load_sources(package: str) -> dict[str, Record]:
+    """Return where each command comes from: ``place`` in the spec, ``lines`` and ``errata``.
 
-    The table of the package was loaded before, so its file is as it was written.
+    The place is ``file:line``, also of each change by a delta; lines and errata are those of the
+    maker's document. The result is empty if a hand-written package does not state it. The table of
+    the package was loaded before, so its file is as it was written.
+
+    Raises:
+        UsageError: the file of the errata is damaged.
     """
-    document: Record = json.loads(stored_table(package)[1])
-    return {record["name"]: record["place"] for record in document["commands"]}
+    try:
+        document: Record = json.loads(stored_file(package)[1])
+    except (KeyError, UsageError):
+        return {}
+    errata = _load_errata(package)
+    return {
+        record["name"]: {
+            "place": record["place"],
+            "lines": record.get("lines", []),
+            "errata": [each for each in errata if record["name"] in each["commands"]],
+        }
+        for record in document["commands"]
+        if "place" in record
+    }
 
 
-def stored_table(package: str) -> tuple[str, bytes]:
-    """Return the path and bytes of a package's ``edition.json``, also from inside a zip file.
+def _load_errata(package: str) -> list[Record]:
+    try:
+        path, data = stored_file(package, "errata.json")
+    except UsageError:
+        # No errata are known of most documents.
+        return []
+    try:
+        found: list[Record] = json.loads(data)["errata"]
+        assert all(type(each["commands"]) is list for each in found)
+    except (ValueError, LookupError, TypeError, RecursionError, AssertionError):
+        message = f"{path} is damaged; generate the package again with cobotwire-gen"
+        raise UsageError("edition", package, message=message) from None
+    return found
+
+
+def stored_file(package: str, name: str = "edition.json") -> tuple[str, bytes]:
+    """Return the path and bytes of a package's file, also from inside a zip file.
 
     Raises:
         UsageError: it cannot be read.
     """
     module = sys.modules[package]
-    path = os.path.join(os.path.dirname(str(module.__file__)), "edition.json")
+    path = os.path.join(os.path.dirname(str(module.__file__)), name)
     loader: Any = module.__spec__ and module.__spec__.loader
     try:
         data: bytes = loader.get_data(path)

@@ -2,17 +2,13 @@
 
 from __future__ import annotations
 
-import json
-from collections.abc import Mapping
-from functools import lru_cache
-from pathlib import Path
 from typing import Any
 
 from cobotwire.codec.interface import Codec, DecodedMessage
 from cobotwire.diagnose import Finding
 from cobotwire.diagnose.explain import Part, frame_parts
 from cobotwire.editions import Edition
-from cobotwire.protocol.errors import UsageError
+from cobotwire.protocol.loading import load_sources
 from cobotwire.studio.describing import Describer, frame_of
 from cobotwire.studio.entries import Entry
 
@@ -23,7 +19,7 @@ class Explainer:
     """Explains entries of one edition."""
 
     def __init__(self, edition: Edition, codec: Codec) -> None:
-        self._sources = sources_of(edition)
+        self._sources = load_sources(getattr(edition, "__name__", ""))
         self._codec = codec
         self._describer = Describer(codec)
 
@@ -104,28 +100,3 @@ def _fact(value: Any) -> str:
 
 def _hex(data: bytes) -> str:
     return data.hex(" ").upper()
-
-
-def sources_of(edition: Edition) -> Mapping[str, Any]:
-    """Return where each command is described: its place in the spec, lines, errata, disputes.
-
-    Empty for a package that an older cobotwire-gen built.
-
-    Raises:
-        UsageError: the file is damaged.
-    """
-    return _read_sources(str(Path(getattr(edition, "__file__", "")).parent / "sources.json"))
-
-
-@lru_cache
-def _read_sources(path: str) -> Mapping[str, Any]:
-    try:
-        found = json.loads(Path(path).read_text(encoding="utf-8"))["commands"]
-    except OSError:
-        return {}
-    except (ValueError, LookupError, TypeError, RecursionError):
-        found = None
-    if not isinstance(found, dict) or not all(isinstance(each, dict) for each in found.values()):
-        message = f"{path} is damaged; generate the package again with cobotwire-gen"
-        raise UsageError("edition", path, message=message)
-    return found

@@ -22,7 +22,7 @@ from jinja2.sandbox import SandboxedEnvironment
 
 from cobotwire_codegen import lower
 from cobotwire_codegen.model import Bits, Edition, Enum, Flag, Listed, Quantity, Type, Value
-from cobotwire_codegen.publish import edition_json, sources_json
+from cobotwire_codegen.publish import edition_json, errata_json
 from cobotwire_codegen.render import examples, layout, markdown, parameters, python_api, words
 from cobotwire_codegen.render.byte_table import byte_rows, on_one_line, only_fixed
 from cobotwire_codegen.render.diagram import byte_diagram
@@ -32,7 +32,6 @@ from cobotwire_codegen.render.literal import literal, quoted
 from cobotwire_codegen.render.messages import message_classes
 from cobotwire_codegen.render.sharing import Sharing, local_imports
 from cobotwire_codegen.render.vectors_json import vectors_json
-from cobotwire_codegen.render.way import BLOCKING, WAYS, Way
 from cobotwire_codegen.wire import size
 
 Files = dict[PurePosixPath, str]
@@ -61,11 +60,9 @@ def render_python(
     # Type checkers use the annotations of an installed package only if it has this file.
     files[PurePosixPath("py.typed")] = ""
     files[PurePosixPath("edition.json")] = table
-    files[PurePosixPath("sources.json")] = sources_json(edition)
-    files |= _messages(jinja, common)
-    for way in WAYS:
-        files |= _client(jinja, common, way)
-    return files
+    if edition.errata:
+        files[PurePosixPath("errata.json")] = errata_json(edition)
+    return files | _messages(jinja, common) | _methods(jinja, common) | _clients(jinja, common)
 
 
 def _package_of(module: str) -> str:
@@ -98,31 +95,63 @@ def _messages(jinja: Environment, common: dict[str, Any]) -> Files:
     return made
 
 
-def _client(jinja: Environment, common: dict[str, Any], way: Way) -> Files:
-    """Return the client for one way of calling; the same templates generate every client."""
+def _methods(jinja: Environment, common: dict[str, Any]) -> Files:
+    """Return the modules of methods, one for each family that has its own."""
     sharing: Sharing = common["sharing"]
-    imports = ["from cobotwire.protocol.table import Table"]
-    if python_api.moves(sharing.edition):
-        imports.append(f"from {way.moving_module} import {way.prefix}MovingClient")
-    made: Files = {}
     template = jinja.get_template("python/commands/family.py.j2")
-    own: list[str] = []
-    for family in sharing.edition.families:
-        module = sharing.methods_module(family, way)
-        name = f"{way.prefix}{family.name.capitalize()}Commands"
-        line = f"from {sharing.relative(module)} import {name}"
-        (own if sharing.is_own(module) else imports).append(line)
-        if sharing.is_own(module):
-            path = PurePosixPath(f"{way.folder}/{family.name}.py")
-            made[path] = template.render(common, family=family, way=way)
+    made = {
+        PurePosixPath(f"commands/{family.name}.py"): template.render(common, family=family)
+        for family in sharing.edition.families
+        if sharing.is_own(sharing.methods_module(family))
+    }
     if made:
         index = jinja.get_template("python/commands/__init__.py.j2")
-        made[PurePosixPath(f"{way.folder}/__init__.py")] = index.render(common, way=way)
-    own.append("from .table import TABLE")
-    lines = [*sorted(imports), "", *sorted(own)]
-    client = jinja.get_template("python/client.py.j2").render(common, way=way, imports=lines)
-    made[PurePosixPath("client.py" if way is BLOCKING else f"{way.folder}_client.py")] = client
+        made[PurePosixPath("commands/__init__.py")] = index.render(common)
     return made
+
+
+def _clients(jinja: Environment, common: dict[str, Any]) -> Files:
+    """Return the blocking client, and that for asyncio; one template generates both."""
+    sharing: Sharing = common["sharing"]
+    template = jinja.get_template("python/client.py.j2")
+    name = sharing.edition.class_name
+    table = "from cobotwire.protocol.table import Table"
+    moves = python_api.moves(sharing.edition)
+    imports = [table]
+    own = ["from .table import TABLE"]
+    bases: list[str] = []
+    if moves:
+        imports.append("from cobotwire.client.moving import MovingClient")
+        bases.append("MovingClient")
+    for family in sharing.edition.families:
+        module = sharing.methods_module(family)
+        bases.append(python_api.family_class(family))
+        line = f"from {sharing.relative(module)} import {bases[-1]}"
+        (own if sharing.is_own(module) else imports).append(line)
+    blocking = template.render(
+        common,
+        prefix="",
+        imports=[*sorted(imports), "", *sorted(own)],
+        head=layout.laid_out(f"class {name}(", bases, "):", 0),
+    )
+    module, base = ("aio_moving", "AsyncMovingClient") if moves else ("aio", "AsyncClient")
+    asynchronous = template.render(
+        common,
+        prefix="Async",
+        imports=[
+            f"from cobotwire.client.{module} import {base}",
+            "from cobotwire.client.methods import asynchronous",
+            table,
+            "",
+            f"from .client import {name}",
+            "from .table import TABLE",
+        ],
+        head=f"class Async{name}({base}):",
+    )
+    return {
+        PurePosixPath("client.py"): blocking,
+        PurePosixPath("aio_client.py"): asynchronous,
+    }
 
 
 def render_reference(edition: Edition, templates: Path | None = None) -> Files:

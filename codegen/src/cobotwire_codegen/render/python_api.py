@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
+from typing import Any
 
 from cobotwire_codegen.lower import message_class
 from cobotwire_codegen.model import (
@@ -20,27 +22,26 @@ from cobotwire_codegen.render.arguments import Argument, arguments, overloads
 from cobotwire_codegen.render.layout import WIDTH, laid_out, oneline
 from cobotwire_codegen.render.messages import classes_in_method, declared
 from cobotwire_codegen.render.parameters import Parameter, results, returns
-from cobotwire_codegen.render.way import BLOCKING, Way
 from cobotwire_codegen.render.words import units
 
-# Words that a description may use without adding anything to the title.
-_ARTICLES = ("a", "all", "an", "arm", "as", "at", "by", "for", "from", "in", "is", "it", "of", "on")
-_VERBS = ("check", "get", "read", "report", "return", "set", "the", "to", "whether")
-FILLING = frozenset((*_ARTICLES, *_VERBS))
+# Stems that a description may use without adding anything to the rest of a docstring.
+_WORDS = "a all an and arm as at by each every for from given in is it of on one or the their to"
+_VERBS = "check get mov read report return send set switch whether"
+FILLING = frozenset(f"{_WORDS} {_VERBS}".split())
 # The notes of commands of these safety classes are warnings, so the docstring keeps them.
 WARNED = ("motion", "power", "persistent write")
 _PARTS = re.compile(r"\A\d+ numbers \(([^()]*)\)\Z")
 _SENTENCE = re.compile(r"(?<=[.])\s+(?=[A-Z])")
 
 
-def signature(command: Command, way: Way = BLOCKING) -> str:
+def signature(command: Command) -> str:
     """Return the head of a command's method."""
-    return _head(command, arguments(command), way, ":")
+    return _head(command, arguments(command), ":")
 
 
-def overload_signatures(command: Command, way: Way = BLOCKING) -> list[str]:
+def overload_signatures(command: Command) -> list[str]:
     """Return the heads of a method's overloads, one for each variant; none if it has none."""
-    return [_head(command, variant, way, ": ...") for variant in overloads(command)]
+    return [_head(command, variant, ": ...") for variant in overloads(command)]
 
 
 def signatures(command: Command) -> list[str]:
@@ -51,17 +52,17 @@ def signatures(command: Command) -> list[str]:
     return [oneline(head.removesuffix(" ...")) for head in heads]
 
 
-def _head(command: Command, given: tuple[Argument, ...], way: Way, end: str) -> str:
+def _head(command: Command, given: tuple[Argument, ...], end: str) -> str:
     parts = declared(command, given)
     if command.ack:
         parts += [*([] if "*" in parts else ["*"]), "ack_within: float | None = None"]
-    return laid_out(f"{way.async_}def {command.name}(", parts, f") -> {returns(command)}{end}", 4)
+    return laid_out(f"def {command.name}(", parts, f") -> {returns(command)}{end}", 4)
 
 
-def call(command: Command, family: Family, way: Way) -> str:
+def call(command: Command, family: Family) -> str:
     """Return the body of a command's method."""
     given = [argument.name for argument in arguments(command)]
-    head = f"return {way.await_}self._call(" if command.awaits_reply else f"{way.await_}self._send("
+    head = f"return self.{'_call' if command.awaits_reply else '_send'}("
     # The constructor of a request with overloads accepts only what one of them accepts.
     made = "._of" if overloads(command) else ""
     opening = f"messages.{family.name}.{message_class(command.name)}{made}("
@@ -72,12 +73,13 @@ def call(command: Command, family: Family, way: Way) -> str:
 
 
 def description(command: Command) -> str:
-    """Return the first sentence if it adds a word to the title, and the warnings.
+    """Return the first sentence if it adds a word to the rest of the docstring, and the warnings.
 
     The reference page has the whole description and every note.
     """
     sentence = _SENTENCE.split(command.doc, maxsplit=1)[0]
-    new = _stems(sentence) - _stems(command.title) - FILLING
+    rest = " ".join([command.title, *argument_lines(command), result_line(command)])
+    new = _stems(sentence) - _stems(rest) - FILLING
     warnings = command.notes if command.safety in WARNED else ()
     return " ".join([*([sentence] if new else []), *warnings])
 
@@ -132,21 +134,45 @@ def item_doc(item: Quantity | Enum | Flag) -> str:
     return item.doc + (f" In {units(item.unit)}." if item.unit and not radians else "")
 
 
-def imports(family: Family) -> tuple[set[str], bool]:
-    """Return the enums and named tuples of a family's methods, and whether these use Sequence."""
-    used = set().union(*(classes_in_method(command) for command in methods(family)))
-    found = (argument for command in methods(family) for argument in arguments(command))
+def derived(name: str, function: str, owner: str) -> str:
+    """Return the line of a class body that derives a method from another class's method."""
+    return laid_out(f"{name} = {function}(", [f"{owner}.{name}"], ")", 4)
+
+
+def family_class(family: Family) -> str:
+    """Return the name of the class of a family's methods."""
+    return f"{family.name.capitalize()}Commands"
+
+
+def imports(methods: Sequence[Command]) -> tuple[set[str], bool]:
+    """Return the enums and named tuples that methods name, and whether they use Sequence."""
+    used = set().union(*map(classes_in_method, methods))
+    found = (argument for command in methods for argument in arguments(command))
     return used, any("Sequence[" in argument.annotation for argument in found)
 
 
-def overloaded(family: Family) -> bool:
-    """Return whether a method of a family has several signatures."""
-    return any(map(overloads, methods(family)))
+def overloaded(methods: Sequence[Command]) -> bool:
+    """Return whether a method has several signatures."""
+    return any(map(overloads, methods))
 
 
-def methods(family: Family) -> list[Command]:
+def methods(commands: Sequence[Command]) -> list[Command]:
     """Return the commands that become methods: all but the events."""
-    return [command for command in family.commands if not command.event]
+    return [command for command in commands if not command.event]
+
+
+def method(command: Command) -> Any:
+    """Return all that the template of a family shows of a command's method."""
+    return (
+        signature(command),
+        overload_signatures(command),
+        command.title,
+        description(command),
+        argument_lines(command),
+        result_line(command),
+        command.safety,
+        command.id,
+    )
 
 
 def moves(edition: Edition) -> bool:

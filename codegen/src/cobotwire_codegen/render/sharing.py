@@ -9,7 +9,6 @@ from cobotwire_codegen.render import python_api
 from cobotwire_codegen.render.layout import import_line
 from cobotwire_codegen.render.messages import classes_used, message_classes
 from cobotwire_codegen.render.parameters import element_type, reported_type, results, returns
-from cobotwire_codegen.render.way import Way
 
 PACKAGE = "cobotwire.editions"
 
@@ -26,8 +25,8 @@ class Sharing:
         self._package = f"{PACKAGE}.{edition.name}"
         self._classes = _classes(edition)
         self._families = {c.name: f for f in edition.families for c in f.commands}
-        self._methods = {f.name: _methods(f) for f in edition.families}
-        self._messages = {c.name: _messages(c) for c in edition.commands}
+        self._methods = {c.name: python_api.method(c) for c in edition.commands}
+        self._messages = {c.name: message_classes(c) for c in edition.commands}
         self.shared_classes = self._find_shared_classes()
         self.shared_commands = {
             command.name
@@ -83,14 +82,41 @@ class Sharing:
             return self.base.messages_module(taken_over)
         return f"{self._package}.messages.{family.name}"
 
-    def methods_module(self, family: Family, way: Way) -> str:
+    def methods_module(self, family: Family) -> str:
         """Return the module that holds a family's methods; it may be the base's."""
         taken_over = self._whole_in_base(family)
         if taken_over is not None and self.base is not None:
-            same = self._methods[family.name] == self.base._methods[taken_over.name]
-            if same:
-                return self.base.methods_module(taken_over, way)
-        return f"{self._package}.{way.folder}.{family.name}"
+            same = (family.title, family.doc) == (taken_over.title, taken_over.doc)
+            if same and all(self._is_same_method(c, taken_over) for c in family.commands):
+                return self.base.methods_module(taken_over)
+        return f"{self._package}.commands.{family.name}"
+
+    def shared_methods(self, family: Family) -> list[str]:
+        """Return the methods of a family that is not whole in the base, but has them too."""
+        other = self._same_family(family)
+        if other is None:
+            return []
+        return [
+            c.name for c in python_api.methods(family.commands) if self._is_same_method(c, other)
+        ]
+
+    def base_import(self, family: Family) -> str:
+        """Return the import of the base's family as ``Base``."""
+        other = self._same_family(family)
+        assert self.base is not None
+        assert other is not None, "it shares methods with the base"
+        module = self.base.methods_module(other).replace(f"{PACKAGE}.", "...", 1)
+        return import_line(module, [f"{python_api.family_class(family)} as Base"])
+
+    def _is_same_method(self, command: Command, family: Family) -> bool:
+        """Return whether a family of the base has the same method, with the same messages."""
+        assert self.base is not None
+        name = command.name
+        return (
+            name in self.shared_commands
+            and self.base._families[name] is family
+            and self.base._methods[name] == self._methods[name]
+        )
 
     def is_own(self, module: str) -> bool:
         """Return whether a module belongs to this edition's package."""
@@ -135,13 +161,16 @@ class Sharing:
 
     def _whole_in_base(self, family: Family) -> Family | None:
         """Return the base's family with exactly the same messages; None if no family has them."""
-        if self.base is None or not {c.name for c in family.commands} <= self.shared_commands:
+        other = self._same_family(family)
+        if other is None or not {c.name for c in family.commands} <= self.shared_commands:
             return None
-        for other in self.base.edition.families:
-            if other.name == family.name:
-                same = [c.name for c in other.commands] == [c.name for c in family.commands]
-                return other if same else None
-        return None
+        same = [c.name for c in other.commands] == [c.name for c in family.commands]
+        return other if same else None
+
+    def _same_family(self, family: Family) -> Family | None:
+        """Return the base's family of the same name, if there is one."""
+        families = () if self.base is None else self.base.edition.families
+        return next((other for other in families if other.name == family.name), None)
 
 
 def _by_name(shared: tuple[str, str]) -> tuple[str, str, str]:
@@ -178,28 +207,3 @@ def _classes(edition: Edition) -> dict[str, Any]:
             parts = [(r.name, reported_type(r), r.doc) for r in results(command)]
             found[returns(command)] = (command.name, parts)
     return found
-
-
-def _messages(command: Command) -> Any:
-    return message_classes(command)
-
-
-def _methods(family: Family) -> Any:
-    """Return all that the template of a family's methods shows."""
-    return (
-        family.title,
-        family.doc,
-        [
-            (
-                python_api.signature(command),
-                python_api.overload_signatures(command),
-                command.title,
-                python_api.description(command),
-                python_api.argument_lines(command),
-                python_api.result_line(command),
-                command.safety,
-                command.id,
-            )
-            for command in family.commands
-        ],
-    )

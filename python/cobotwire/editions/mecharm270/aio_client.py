@@ -6,54 +6,120 @@ from __future__ import annotations
 from typing import ClassVar
 
 from cobotwire.client.aio_moving import AsyncMovingClient
-from cobotwire.editions.mycobot280.aio.frames import AsyncFramesCommands
-from cobotwire.editions.mycobot280.aio.io import AsyncIoCommands
-from cobotwire.editions.mycobot280.aio.kinematics import AsyncKinematicsCommands
-from cobotwire.editions.mycobot280.aio.network import AsyncNetworkCommands
-from cobotwire.editions.mycobot280.aio.system import AsyncSystemCommands
+from cobotwire.client.methods import asynchronous
 from cobotwire.protocol.table import Table
 
-from .aio.accessories import AsyncAccessoriesCommands
-from .aio.coords import AsyncCoordsCommands
-from .aio.gripper import AsyncGripperCommands
-from .aio.jog import AsyncJogCommands
-from .aio.motion import AsyncMotionCommands
-from .aio.power import AsyncPowerCommands
-from .aio.servo import AsyncServoCommands
+from .client import MechArm270
 from .table import TABLE
 
 
-class AsyncMechArm270(
-    AsyncMovingClient,
-    AsyncPowerCommands,
-    AsyncMotionCommands,
-    AsyncCoordsCommands,
-    AsyncJogCommands,
-    AsyncServoCommands,
-    AsyncIoCommands,
-    AsyncGripperCommands,
-    AsyncFramesCommands,
-    AsyncNetworkCommands,
-    AsyncSystemCommands,
-    AsyncKinematicsCommands,
-    AsyncAccessoriesCommands,
-):
+class AsyncMechArm270(AsyncMovingClient):
     """mechArm 270.
 
-    The serial protocol of the mechArm 270. It is stated as the difference from the edition
-    mycobot280; each change gives its reason and its evidence.
-
     Create it with a port or URL, preferably in an ``async with`` block; see
-    :class:`cobotwire.client.aio.AsyncClient` for the arguments and errors of opening.
-
-    Every method raises UsageError if an argument is not allowed, before it sends anything, and
-    LinkError if the transport is lost. A method that waits for a reply raises ReplyTimeout if no
-    reply comes in time, and ProtocolError if the edition does not allow the reply. A method with
-    the argument ``ack_within`` returns when its bytes are written; with a number of seconds, it
-    waits for the acknowledgement and raises ReplyTimeout if none comes in that time.
+    :class:`cobotwire.client.aio.AsyncClient` for the arguments and errors of opening. Its methods
+    are those of :class:`MechArm270`, whose class describes the edition and the errors.
     """
 
     table: ClassVar[Table] = TABLE
+
+    power_on = asynchronous(MechArm270.power_on)
+    power_off = asynchronous(MechArm270.power_off)
+    is_power_on = asynchronous(MechArm270.is_power_on)
+    release_all_servos = asynchronous(MechArm270.release_all_servos)
+    is_controller_connected = asynchronous(MechArm270.is_controller_connected)
+    set_fresh_mode = asynchronous(MechArm270.set_fresh_mode)
+    get_angles = asynchronous(MechArm270.get_angles)
+    send_angle = asynchronous(MechArm270.send_angle)
+    send_angles = asynchronous(MechArm270.send_angles)
+    pause = asynchronous(MechArm270.pause)
+    is_paused = asynchronous(MechArm270.is_paused)
+    resume = asynchronous(MechArm270.resume)
+    stop = asynchronous(MechArm270.stop)
+    is_in_position = asynchronous(MechArm270.is_in_position)
+    is_moving = asynchronous(MechArm270.is_moving)
+    clear_queue = asynchronous(MechArm270.clear_queue)
+    get_fresh_mode = asynchronous(MechArm270.get_fresh_mode)
+    set_vision_mode = asynchronous(MechArm270.set_vision_mode)
+    get_radians = asynchronous(MechArm270.get_radians)
+    send_radians = asynchronous(MechArm270.send_radians)
+    set_movement_type = asynchronous(MechArm270.set_movement_type)
+    get_movement_type = asynchronous(MechArm270.get_movement_type)
+    get_angles_plan = asynchronous(MechArm270.get_angles_plan)
+    get_coords = asynchronous(MechArm270.get_coords)
+    send_coord = asynchronous(MechArm270.send_coord)
+    send_coords = asynchronous(MechArm270.send_coords)
+    get_angles_coords = asynchronous(MechArm270.get_angles_coords)
+    get_coords_plan = asynchronous(MechArm270.get_coords_plan)
+    jog_angle = asynchronous(MechArm270.jog_angle)
+    jog_coord = asynchronous(MechArm270.jog_coord)
+    jog_increment = asynchronous(MechArm270.jog_increment)
+    jog_stop = asynchronous(MechArm270.jog_stop)
+    jog_rpy = asynchronous(MechArm270.jog_rpy)
+    jog_increment_angle = asynchronous(MechArm270.jog_increment_angle)
+    jog_increment_coord = asynchronous(MechArm270.jog_increment_coord)
+    set_encoder = asynchronous(MechArm270.set_encoder)
+    get_encoder = asynchronous(MechArm270.get_encoder)
+    set_encoders = asynchronous(MechArm270.set_encoders)
+    get_encoders = asynchronous(MechArm270.get_encoders)
+    get_joint_min_angle = asynchronous(MechArm270.get_joint_min_angle)
+    get_joint_max_angle = asynchronous(MechArm270.get_joint_max_angle)
+    set_joint_min = asynchronous(MechArm270.set_joint_min)
+    set_joint_max = asynchronous(MechArm270.set_joint_max)
+    is_servo_enable = asynchronous(MechArm270.is_servo_enable)
+    is_all_servo_enable = asynchronous(MechArm270.is_all_servo_enable)
+    set_servo_data = asynchronous(MechArm270.set_servo_data)
+    get_servo_data = asynchronous(MechArm270.get_servo_data)
+    set_servo_calibration = asynchronous(MechArm270.set_servo_calibration)
+    joint_brake = asynchronous(MechArm270.joint_brake)
+    release_servo = asynchronous(MechArm270.release_servo)
+    focus_servo = asynchronous(MechArm270.focus_servo)
+    set_encoders_drag = asynchronous(MechArm270.set_encoders_drag)
+    focus_all_servos = asynchronous(MechArm270.focus_all_servos)
+    get_servo_speeds = asynchronous(MechArm270.get_servo_speeds)
+    get_servo_voltages = asynchronous(MechArm270.get_servo_voltages)
+    get_servo_status = asynchronous(MechArm270.get_servo_status)
+    get_servo_temps = asynchronous(MechArm270.get_servo_temps)
+    set_pin_mode = asynchronous(MechArm270.set_pin_mode)
+    set_digital_output = asynchronous(MechArm270.set_digital_output)
+    get_digital_input = asynchronous(MechArm270.get_digital_input)
+    set_color = asynchronous(MechArm270.set_color)
+    set_basic_output = asynchronous(MechArm270.set_basic_output)
+    get_basic_input = asynchronous(MechArm270.get_basic_input)
+    set_pwm_output = asynchronous(MechArm270.set_pwm_output)
+    get_gripper_value = asynchronous(MechArm270.get_gripper_value)
+    set_gripper_state = asynchronous(MechArm270.set_gripper_state)
+    set_gripper_value = asynchronous(MechArm270.set_gripper_value)
+    set_gripper_calibration = asynchronous(MechArm270.set_gripper_calibration)
+    is_gripper_moving = asynchronous(MechArm270.is_gripper_moving)
+    set_HTS_gripper_torque = asynchronous(MechArm270.set_HTS_gripper_torque)
+    get_HTS_gripper_torque = asynchronous(MechArm270.get_HTS_gripper_torque)
+    get_gripper_protect_current = asynchronous(MechArm270.get_gripper_protect_current)
+    init_gripper = asynchronous(MechArm270.init_gripper)
+    set_gripper_protect_current = asynchronous(MechArm270.set_gripper_protect_current)
+    set_tool_reference = asynchronous(MechArm270.set_tool_reference)
+    get_tool_reference = asynchronous(MechArm270.get_tool_reference)
+    set_world_reference = asynchronous(MechArm270.set_world_reference)
+    get_world_reference = asynchronous(MechArm270.get_world_reference)
+    set_reference_frame = asynchronous(MechArm270.set_reference_frame)
+    get_reference_frame = asynchronous(MechArm270.get_reference_frame)
+    set_end_type = asynchronous(MechArm270.set_end_type)
+    get_end_type = asynchronous(MechArm270.get_end_type)
+    get_ssid_pwd = asynchronous(MechArm270.get_ssid_pwd)
+    set_server_port = asynchronous(MechArm270.set_server_port)
+    set_ssid_pwd = asynchronous(MechArm270.set_ssid_pwd)
+    set_transponder_mode = asynchronous(MechArm270.set_transponder_mode)
+    get_transponder_mode = asynchronous(MechArm270.get_transponder_mode)
+    get_modify_version = asynchronous(MechArm270.get_modify_version)
+    get_system_version = asynchronous(MechArm270.get_system_version)
+    get_error_information = asynchronous(MechArm270.get_error_information)
+    clear_error_information = asynchronous(MechArm270.clear_error_information)
+    read_next_error = asynchronous(MechArm270.read_next_error)
+    get_basic_version = asynchronous(MechArm270.get_basic_version)
+    get_reboot_count = asynchronous(MechArm270.get_reboot_count)
+    angles_to_coords = asynchronous(MechArm270.angles_to_coords)
+    solve_inv_kinematics = asynchronous(MechArm270.solve_inv_kinematics)
+    get_tof_distance = asynchronous(MechArm270.get_tof_distance)
 
 
 ASYNC_CLIENT = AsyncMechArm270

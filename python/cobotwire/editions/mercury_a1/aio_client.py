@@ -6,54 +6,168 @@ from __future__ import annotations
 from typing import ClassVar
 
 from cobotwire.client.aio_moving import AsyncMovingClient
+from cobotwire.client.methods import asynchronous
 from cobotwire.protocol.table import Table
 
-from .aio.coords import AsyncCoordsCommands
-from .aio.drag import AsyncDragCommands
-from .aio.frames import AsyncFramesCommands
-from .aio.gripper import AsyncGripperCommands
-from .aio.io import AsyncIoCommands
-from .aio.jog import AsyncJogCommands
-from .aio.motion import AsyncMotionCommands
-from .aio.planning import AsyncPlanningCommands
-from .aio.power import AsyncPowerCommands
-from .aio.serial import AsyncSerialCommands
-from .aio.servo import AsyncServoCommands
-from .aio.system import AsyncSystemCommands
+from .client import MercuryA1
 from .table import TABLE
 
 
-class AsyncMercuryA1(
-    AsyncMovingClient,
-    AsyncSystemCommands,
-    AsyncPowerCommands,
-    AsyncMotionCommands,
-    AsyncPlanningCommands,
-    AsyncCoordsCommands,
-    AsyncFramesCommands,
-    AsyncJogCommands,
-    AsyncServoCommands,
-    AsyncDragCommands,
-    AsyncIoCommands,
-    AsyncGripperCommands,
-    AsyncSerialCommands,
-):
+class AsyncMercuryA1(AsyncMovingClient):
     """Mercury A1.
 
-    The serial protocol of the Mercury A1, an arm with seven joints. The maker's library drives it
-    with the class Mercury, which also serves the arms of the Mercury B1 and X1.
-
     Create it with a port or URL, preferably in an ``async with`` block; see
-    :class:`cobotwire.client.aio.AsyncClient` for the arguments and errors of opening.
-
-    Every method raises UsageError if an argument is not allowed, before it sends anything, and
-    LinkError if the transport is lost. A method that waits for a reply raises ReplyTimeout if no
-    reply comes in time, and ProtocolError if the edition does not allow the reply. A method with
-    the argument ``ack_within`` returns when its bytes are written; with a number of seconds, it
-    waits for the acknowledgement and raises ReplyTimeout if none comes in that time.
+    :class:`cobotwire.client.aio.AsyncClient` for the arguments and errors of opening. Its methods
+    are those of :class:`MercuryA1`, whose class describes the edition and the errors.
     """
 
     table: ClassVar[Table] = TABLE
+
+    get_modified_version = asynchronous(MercuryA1.get_modified_version)
+    get_system_version = asynchronous(MercuryA1.get_system_version)
+    get_robot_type = asynchronous(MercuryA1.get_robot_type)
+    get_atom_modify_version = asynchronous(MercuryA1.get_atom_modify_version)
+    get_error_information = asynchronous(MercuryA1.get_error_information)
+    clear_error_information = asynchronous(MercuryA1.clear_error_information)
+    get_atom_version = asynchronous(MercuryA1.get_atom_version)
+    set_limit_switch = asynchronous(MercuryA1.set_limit_switch)
+    get_limit_switch = asynchronous(MercuryA1.get_limit_switch)
+    get_robot_status = asynchronous(MercuryA1.get_robot_status)
+    get_comm_error_counts = asynchronous(MercuryA1.get_comm_error_counts)
+    get_motors_run_err = asynchronous(MercuryA1.get_motors_run_err)
+    get_monitor_mode = asynchronous(MercuryA1.get_monitor_mode)
+    set_monitor_mode = asynchronous(MercuryA1.set_monitor_mode)
+    power_on = asynchronous(MercuryA1.power_on)
+    power_off = asynchronous(MercuryA1.power_off)
+    is_power_on = asynchronous(MercuryA1.is_power_on)
+    release_all_servos = asynchronous(MercuryA1.release_all_servos)
+    focus_all_servos = asynchronous(MercuryA1.focus_all_servos)
+    set_break = asynchronous(MercuryA1.set_break)
+    power_on_only = asynchronous(MercuryA1.power_on_only)
+    is_servo_enable = asynchronous(MercuryA1.is_servo_enable)
+    is_all_servo_enable = asynchronous(MercuryA1.is_all_servo_enable)
+    release_servo = asynchronous(MercuryA1.release_servo)
+    focus_servo = asynchronous(MercuryA1.focus_servo)
+    servo_restore = asynchronous(MercuryA1.servo_restore)
+    over_limit_return_zero = asynchronous(MercuryA1.over_limit_return_zero)
+    set_control_mode = asynchronous(MercuryA1.set_control_mode)
+    get_control_mode = asynchronous(MercuryA1.get_control_mode)
+    set_fresh_mode = asynchronous(MercuryA1.set_fresh_mode)
+    get_fresh_mode = asynchronous(MercuryA1.get_fresh_mode)
+    get_angle = asynchronous(MercuryA1.get_angle)
+    get_angles = asynchronous(MercuryA1.get_angles)
+    send_angle = asynchronous(MercuryA1.send_angle)
+    send_angles = asynchronous(MercuryA1.send_angles)
+    pause = asynchronous(MercuryA1.pause)
+    is_paused = asynchronous(MercuryA1.is_paused)
+    resume = asynchronous(MercuryA1.resume)
+    stop = asynchronous(MercuryA1.stop)
+    is_in_position = asynchronous(MercuryA1.is_in_position)
+    is_in_position_coords = asynchronous(MercuryA1.is_in_position_coords)
+    is_moving = asynchronous(MercuryA1.is_moving)
+    get_solution_angles = asynchronous(MercuryA1.get_solution_angles)
+    set_solution_angles = asynchronous(MercuryA1.set_solution_angles)
+    get_quick_move_info = asynchronous(MercuryA1.get_quick_move_info)
+    get_max_speed = asynchronous(MercuryA1.get_max_speed)
+    set_max_speed = asynchronous(MercuryA1.set_max_speed)
+    get_max_acc = asynchronous(MercuryA1.get_max_acc)
+    set_max_acc = asynchronous(MercuryA1.set_max_acc)
+    get_fusion_parameters = asynchronous(MercuryA1.get_fusion_parameters)
+    set_fusion_parameters = asynchronous(MercuryA1.set_fusion_parameters)
+    get_pos_over = asynchronous(MercuryA1.get_pos_over)
+    set_pos_over_shoot = asynchronous(MercuryA1.set_pos_over_shoot)
+    get_pos_over_shoot = asynchronous(MercuryA1.get_pos_over_shoot)
+    set_movement_type = asynchronous(MercuryA1.set_movement_type)
+    get_movement_type = asynchronous(MercuryA1.get_movement_type)
+    get_vr_mode = asynchronous(MercuryA1.get_vr_mode)
+    set_vr_mode = asynchronous(MercuryA1.set_vr_mode)
+    get_filter_len = asynchronous(MercuryA1.get_filter_len)
+    set_filter_len = asynchronous(MercuryA1.set_filter_len)
+    get_coords = asynchronous(MercuryA1.get_coords)
+    angles_to_coords = asynchronous(MercuryA1.angles_to_coords)
+    send_coord = asynchronous(MercuryA1.send_coord)
+    send_coords = asynchronous(MercuryA1.send_coords)
+    write_move_c = asynchronous(MercuryA1.write_move_c)
+    write_move_c_r = asynchronous(MercuryA1.write_move_c_r)
+    solve_inv_kinematics = asynchronous(MercuryA1.solve_inv_kinematics)
+    set_tool_reference = asynchronous(MercuryA1.set_tool_reference)
+    get_tool_reference = asynchronous(MercuryA1.get_tool_reference)
+    set_world_reference = asynchronous(MercuryA1.set_world_reference)
+    get_world_reference = asynchronous(MercuryA1.get_world_reference)
+    set_reference_frame = asynchronous(MercuryA1.set_reference_frame)
+    get_reference_frame = asynchronous(MercuryA1.get_reference_frame)
+    set_end_type = asynchronous(MercuryA1.set_end_type)
+    get_end_type = asynchronous(MercuryA1.get_end_type)
+    jog_angle = asynchronous(MercuryA1.jog_angle)
+    jog_coord = asynchronous(MercuryA1.jog_coord)
+    jog_increment_angle = asynchronous(MercuryA1.jog_increment_angle)
+    jog_increment_coord = asynchronous(MercuryA1.jog_increment_coord)
+    jog_rpy = asynchronous(MercuryA1.jog_rpy)
+    clear_zero_pos = asynchronous(MercuryA1.clear_zero_pos)
+    get_servo_encoder = asynchronous(MercuryA1.get_servo_encoder)
+    get_servo_encoders = asynchronous(MercuryA1.get_servo_encoders)
+    get_joint_min_angle = asynchronous(MercuryA1.get_joint_min_angle)
+    get_joint_max_angle = asynchronous(MercuryA1.get_joint_max_angle)
+    set_joint_min_angle = asynchronous(MercuryA1.set_joint_min_angle)
+    set_joint_max_angle = asynchronous(MercuryA1.set_joint_max_angle)
+    set_servo_calibration = asynchronous(MercuryA1.set_servo_calibration)
+    get_zero_pos = asynchronous(MercuryA1.get_zero_pos)
+    is_init_calibration = asynchronous(MercuryA1.is_init_calibration)
+    set_collision_mode = asynchronous(MercuryA1.set_collision_mode)
+    get_collision_mode = asynchronous(MercuryA1.get_collision_mode)
+    set_collision_threshold = asynchronous(MercuryA1.set_collision_threshold)
+    get_collision_threshold = asynchronous(MercuryA1.get_collision_threshold)
+    set_torque_comp = asynchronous(MercuryA1.set_torque_comp)
+    get_torque_comp = asynchronous(MercuryA1.get_torque_comp)
+    get_model_direction = asynchronous(MercuryA1.get_model_direction)
+    set_model_direction = asynchronous(MercuryA1.set_model_direction)
+    set_identify_mode = asynchronous(MercuryA1.set_identify_mode)
+    get_identify_mode = asynchronous(MercuryA1.get_identify_mode)
+    get_down_encoders = asynchronous(MercuryA1.get_down_encoders)
+    set_dynamic_parameters = asynchronous(MercuryA1.set_dynamic_parameters)
+    get_dynamic_parameters = asynchronous(MercuryA1.get_dynamic_parameters)
+    fourier_trajectories = asynchronous(MercuryA1.fourier_trajectories)
+    get_servo_speeds = asynchronous(MercuryA1.get_servo_speeds)
+    get_servo_currents = asynchronous(MercuryA1.get_servo_currents)
+    get_servo_status = asynchronous(MercuryA1.get_servo_status)
+    clear_encoder_error = asynchronous(MercuryA1.clear_encoder_error)
+    drag_teach_save = asynchronous(MercuryA1.drag_teach_save)
+    drag_teach_execute = asynchronous(MercuryA1.drag_teach_execute)
+    drag_teach_pause = asynchronous(MercuryA1.drag_teach_pause)
+    drag_teach_clean = asynchronous(MercuryA1.drag_teach_clean)
+    get_drag_fifo = asynchronous(MercuryA1.get_drag_fifo)
+    set_drag_fifo = asynchronous(MercuryA1.set_drag_fifo)
+    get_drag_fifo_len = asynchronous(MercuryA1.get_drag_fifo_len)
+    is_drag_fifo_empty = asynchronous(MercuryA1.is_drag_fifo_empty)
+    get_digital_inputs = asynchronous(MercuryA1.get_digital_inputs)
+    set_digital_output = asynchronous(MercuryA1.set_digital_output)
+    get_digital_input = asynchronous(MercuryA1.get_digital_input)
+    is_btn_clicked = asynchronous(MercuryA1.is_btn_clicked)
+    set_color = asynchronous(MercuryA1.set_color)
+    set_base_io_output = asynchronous(MercuryA1.set_base_io_output)
+    get_base_io_input = asynchronous(MercuryA1.get_base_io_input)
+    set_gripper_enabled = asynchronous(MercuryA1.set_gripper_enabled)
+    set_gripper_state = asynchronous(MercuryA1.set_gripper_state)
+    set_gripper_value = asynchronous(MercuryA1.set_gripper_value)
+    set_gripper_calibration = asynchronous(MercuryA1.set_gripper_calibration)
+    set_electric_gripper = asynchronous(MercuryA1.set_electric_gripper)
+    init_electric_gripper = asynchronous(MercuryA1.init_electric_gripper)
+    set_gripper_mode = asynchronous(MercuryA1.set_gripper_mode)
+    get_gripper_mode = asynchronous(MercuryA1.get_gripper_mode)
+    set_pro_gripper = asynchronous(MercuryA1.set_pro_gripper)
+    set_hand_gripper = asynchronous(MercuryA1.set_hand_gripper)
+    set_hand_gripper_angles = asynchronous(MercuryA1.set_hand_gripper_angles)
+    get_pro_gripper = asynchronous(MercuryA1.get_pro_gripper)
+    get_hand_gripper = asynchronous(MercuryA1.get_hand_gripper)
+    tool_serial_restore = asynchronous(MercuryA1.tool_serial_restore)
+    tool_serial_ready = asynchronous(MercuryA1.tool_serial_ready)
+    tool_serial_available = asynchronous(MercuryA1.tool_serial_available)
+    tool_serial_read_data = asynchronous(MercuryA1.tool_serial_read_data)
+    tool_serial_write_data = asynchronous(MercuryA1.tool_serial_write_data)
+    tool_serial_flush = asynchronous(MercuryA1.tool_serial_flush)
+    tool_serial_peek = asynchronous(MercuryA1.tool_serial_peek)
+    tool_serial_set_baud = asynchronous(MercuryA1.tool_serial_set_baud)
+    tool_serial_set_timeout = asynchronous(MercuryA1.tool_serial_set_timeout)
 
 
 ASYNC_CLIENT = AsyncMercuryA1

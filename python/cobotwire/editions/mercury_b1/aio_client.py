@@ -6,59 +6,181 @@ from __future__ import annotations
 from typing import ClassVar
 
 from cobotwire.client.aio_moving import AsyncMovingClient
-from cobotwire.editions.mercury_a1.aio.drag import AsyncDragCommands
-from cobotwire.editions.mercury_a1.aio.frames import AsyncFramesCommands
-from cobotwire.editions.mercury_a1.aio.io import AsyncIoCommands
-from cobotwire.editions.mercury_a1.aio.planning import AsyncPlanningCommands
-from cobotwire.editions.mercury_a1.aio.serial import AsyncSerialCommands
+from cobotwire.client.methods import asynchronous
 from cobotwire.protocol.table import Table
 
-from .aio.base import AsyncBaseCommands
-from .aio.body import AsyncBodyCommands
-from .aio.coords import AsyncCoordsCommands
-from .aio.gripper import AsyncGripperCommands
-from .aio.jog import AsyncJogCommands
-from .aio.motion import AsyncMotionCommands
-from .aio.power import AsyncPowerCommands
-from .aio.servo import AsyncServoCommands
-from .aio.system import AsyncSystemCommands
+from .client import MercuryB1
 from .table import TABLE
 
 
-class AsyncMercuryB1(
-    AsyncMovingClient,
-    AsyncSystemCommands,
-    AsyncPowerCommands,
-    AsyncMotionCommands,
-    AsyncPlanningCommands,
-    AsyncCoordsCommands,
-    AsyncFramesCommands,
-    AsyncJogCommands,
-    AsyncServoCommands,
-    AsyncDragCommands,
-    AsyncIoCommands,
-    AsyncGripperCommands,
-    AsyncSerialCommands,
-    AsyncBaseCommands,
-    AsyncBodyCommands,
-):
+class AsyncMercuryB1(AsyncMovingClient):
     """Mercury B1.
 
-    The serial protocol of one arm of the Mercury B1, a robot with two arms. Each arm has a serial
-    port of its own, so a program opens a client for each; the right arm also drives the joints 11
-    to 13 of head, neck and waist. The edition is stated as the difference from mercury_a1.
-
     Create it with a port or URL, preferably in an ``async with`` block; see
-    :class:`cobotwire.client.aio.AsyncClient` for the arguments and errors of opening.
-
-    Every method raises UsageError if an argument is not allowed, before it sends anything, and
-    LinkError if the transport is lost. A method that waits for a reply raises ReplyTimeout if no
-    reply comes in time, and ProtocolError if the edition does not allow the reply. A method with
-    the argument ``ack_within`` returns when its bytes are written; with a number of seconds, it
-    waits for the acknowledgement and raises ReplyTimeout if none comes in that time.
+    :class:`cobotwire.client.aio.AsyncClient` for the arguments and errors of opening. Its methods
+    are those of :class:`MercuryB1`, whose class describes the edition and the errors.
     """
 
     table: ClassVar[Table] = TABLE
+
+    get_modified_version = asynchronous(MercuryB1.get_modified_version)
+    get_system_version = asynchronous(MercuryB1.get_system_version)
+    get_robot_type = asynchronous(MercuryB1.get_robot_type)
+    get_atom_modify_version = asynchronous(MercuryB1.get_atom_modify_version)
+    get_error_information = asynchronous(MercuryB1.get_error_information)
+    clear_error_information = asynchronous(MercuryB1.clear_error_information)
+    get_atom_version = asynchronous(MercuryB1.get_atom_version)
+    set_limit_switch = asynchronous(MercuryB1.set_limit_switch)
+    get_limit_switch = asynchronous(MercuryB1.get_limit_switch)
+    get_robot_status = asynchronous(MercuryB1.get_robot_status)
+    get_comm_error_counts = asynchronous(MercuryB1.get_comm_error_counts)
+    get_motors_run_err = asynchronous(MercuryB1.get_motors_run_err)
+    get_monitor_mode = asynchronous(MercuryB1.get_monitor_mode)
+    set_monitor_mode = asynchronous(MercuryB1.set_monitor_mode)
+    power_on = asynchronous(MercuryB1.power_on)
+    power_off = asynchronous(MercuryB1.power_off)
+    is_power_on = asynchronous(MercuryB1.is_power_on)
+    release_all_servos = asynchronous(MercuryB1.release_all_servos)
+    focus_all_servos = asynchronous(MercuryB1.focus_all_servos)
+    set_break = asynchronous(MercuryB1.set_break)
+    power_on_only = asynchronous(MercuryB1.power_on_only)
+    is_servo_enable = asynchronous(MercuryB1.is_servo_enable)
+    is_all_servo_enable = asynchronous(MercuryB1.is_all_servo_enable)
+    release_servo = asynchronous(MercuryB1.release_servo)
+    focus_servo = asynchronous(MercuryB1.focus_servo)
+    servo_restore = asynchronous(MercuryB1.servo_restore)
+    over_limit_return_zero = asynchronous(MercuryB1.over_limit_return_zero)
+    set_control_mode = asynchronous(MercuryB1.set_control_mode)
+    get_control_mode = asynchronous(MercuryB1.get_control_mode)
+    set_fresh_mode = asynchronous(MercuryB1.set_fresh_mode)
+    get_fresh_mode = asynchronous(MercuryB1.get_fresh_mode)
+    get_angle = asynchronous(MercuryB1.get_angle)
+    get_angles = asynchronous(MercuryB1.get_angles)
+    send_angle = asynchronous(MercuryB1.send_angle)
+    send_angles = asynchronous(MercuryB1.send_angles)
+    pause = asynchronous(MercuryB1.pause)
+    is_paused = asynchronous(MercuryB1.is_paused)
+    resume = asynchronous(MercuryB1.resume)
+    stop = asynchronous(MercuryB1.stop)
+    is_in_position = asynchronous(MercuryB1.is_in_position)
+    is_in_position_coords = asynchronous(MercuryB1.is_in_position_coords)
+    is_moving = asynchronous(MercuryB1.is_moving)
+    get_solution_angles = asynchronous(MercuryB1.get_solution_angles)
+    set_solution_angles = asynchronous(MercuryB1.set_solution_angles)
+    get_quick_move_info = asynchronous(MercuryB1.get_quick_move_info)
+    get_max_speed = asynchronous(MercuryB1.get_max_speed)
+    set_max_speed = asynchronous(MercuryB1.set_max_speed)
+    get_max_acc = asynchronous(MercuryB1.get_max_acc)
+    set_max_acc = asynchronous(MercuryB1.set_max_acc)
+    get_fusion_parameters = asynchronous(MercuryB1.get_fusion_parameters)
+    set_fusion_parameters = asynchronous(MercuryB1.set_fusion_parameters)
+    get_pos_over = asynchronous(MercuryB1.get_pos_over)
+    set_pos_over_shoot = asynchronous(MercuryB1.set_pos_over_shoot)
+    get_pos_over_shoot = asynchronous(MercuryB1.get_pos_over_shoot)
+    set_movement_type = asynchronous(MercuryB1.set_movement_type)
+    get_movement_type = asynchronous(MercuryB1.get_movement_type)
+    get_vr_mode = asynchronous(MercuryB1.get_vr_mode)
+    set_vr_mode = asynchronous(MercuryB1.set_vr_mode)
+    get_filter_len = asynchronous(MercuryB1.get_filter_len)
+    set_filter_len = asynchronous(MercuryB1.set_filter_len)
+    get_coords = asynchronous(MercuryB1.get_coords)
+    angles_to_coords = asynchronous(MercuryB1.angles_to_coords)
+    send_coord = asynchronous(MercuryB1.send_coord)
+    send_coords = asynchronous(MercuryB1.send_coords)
+    write_move_c = asynchronous(MercuryB1.write_move_c)
+    write_move_c_r = asynchronous(MercuryB1.write_move_c_r)
+    solve_inv_kinematics = asynchronous(MercuryB1.solve_inv_kinematics)
+    set_tool_reference = asynchronous(MercuryB1.set_tool_reference)
+    get_tool_reference = asynchronous(MercuryB1.get_tool_reference)
+    set_world_reference = asynchronous(MercuryB1.set_world_reference)
+    get_world_reference = asynchronous(MercuryB1.get_world_reference)
+    set_reference_frame = asynchronous(MercuryB1.set_reference_frame)
+    get_reference_frame = asynchronous(MercuryB1.get_reference_frame)
+    set_end_type = asynchronous(MercuryB1.set_end_type)
+    get_end_type = asynchronous(MercuryB1.get_end_type)
+    jog_angle = asynchronous(MercuryB1.jog_angle)
+    jog_coord = asynchronous(MercuryB1.jog_coord)
+    jog_increment_angle = asynchronous(MercuryB1.jog_increment_angle)
+    jog_increment_coord = asynchronous(MercuryB1.jog_increment_coord)
+    jog_rpy = asynchronous(MercuryB1.jog_rpy)
+    clear_zero_pos = asynchronous(MercuryB1.clear_zero_pos)
+    get_servo_encoder = asynchronous(MercuryB1.get_servo_encoder)
+    get_servo_encoders = asynchronous(MercuryB1.get_servo_encoders)
+    get_joint_min_angle = asynchronous(MercuryB1.get_joint_min_angle)
+    get_joint_max_angle = asynchronous(MercuryB1.get_joint_max_angle)
+    set_joint_min_angle = asynchronous(MercuryB1.set_joint_min_angle)
+    set_joint_max_angle = asynchronous(MercuryB1.set_joint_max_angle)
+    set_servo_calibration = asynchronous(MercuryB1.set_servo_calibration)
+    get_zero_pos = asynchronous(MercuryB1.get_zero_pos)
+    is_init_calibration = asynchronous(MercuryB1.is_init_calibration)
+    set_collision_mode = asynchronous(MercuryB1.set_collision_mode)
+    get_collision_mode = asynchronous(MercuryB1.get_collision_mode)
+    set_collision_threshold = asynchronous(MercuryB1.set_collision_threshold)
+    get_collision_threshold = asynchronous(MercuryB1.get_collision_threshold)
+    set_torque_comp = asynchronous(MercuryB1.set_torque_comp)
+    get_torque_comp = asynchronous(MercuryB1.get_torque_comp)
+    get_model_direction = asynchronous(MercuryB1.get_model_direction)
+    set_model_direction = asynchronous(MercuryB1.set_model_direction)
+    set_identify_mode = asynchronous(MercuryB1.set_identify_mode)
+    get_identify_mode = asynchronous(MercuryB1.get_identify_mode)
+    get_down_encoders = asynchronous(MercuryB1.get_down_encoders)
+    set_dynamic_parameters = asynchronous(MercuryB1.set_dynamic_parameters)
+    get_dynamic_parameters = asynchronous(MercuryB1.get_dynamic_parameters)
+    fourier_trajectories = asynchronous(MercuryB1.fourier_trajectories)
+    get_servo_speeds = asynchronous(MercuryB1.get_servo_speeds)
+    get_servo_currents = asynchronous(MercuryB1.get_servo_currents)
+    get_servo_status = asynchronous(MercuryB1.get_servo_status)
+    clear_encoder_error = asynchronous(MercuryB1.clear_encoder_error)
+    drag_teach_save = asynchronous(MercuryB1.drag_teach_save)
+    drag_teach_execute = asynchronous(MercuryB1.drag_teach_execute)
+    drag_teach_pause = asynchronous(MercuryB1.drag_teach_pause)
+    drag_teach_clean = asynchronous(MercuryB1.drag_teach_clean)
+    get_drag_fifo = asynchronous(MercuryB1.get_drag_fifo)
+    set_drag_fifo = asynchronous(MercuryB1.set_drag_fifo)
+    get_drag_fifo_len = asynchronous(MercuryB1.get_drag_fifo_len)
+    is_drag_fifo_empty = asynchronous(MercuryB1.is_drag_fifo_empty)
+    get_digital_inputs = asynchronous(MercuryB1.get_digital_inputs)
+    set_digital_output = asynchronous(MercuryB1.set_digital_output)
+    get_digital_input = asynchronous(MercuryB1.get_digital_input)
+    is_btn_clicked = asynchronous(MercuryB1.is_btn_clicked)
+    set_color = asynchronous(MercuryB1.set_color)
+    set_base_io_output = asynchronous(MercuryB1.set_base_io_output)
+    get_base_io_input = asynchronous(MercuryB1.get_base_io_input)
+    set_gripper_enabled = asynchronous(MercuryB1.set_gripper_enabled)
+    set_gripper_state = asynchronous(MercuryB1.set_gripper_state)
+    set_gripper_value = asynchronous(MercuryB1.set_gripper_value)
+    set_gripper_calibration = asynchronous(MercuryB1.set_gripper_calibration)
+    set_electric_gripper = asynchronous(MercuryB1.set_electric_gripper)
+    init_electric_gripper = asynchronous(MercuryB1.init_electric_gripper)
+    set_gripper_mode = asynchronous(MercuryB1.set_gripper_mode)
+    get_gripper_mode = asynchronous(MercuryB1.get_gripper_mode)
+    set_pro_gripper = asynchronous(MercuryB1.set_pro_gripper)
+    set_hand_gripper = asynchronous(MercuryB1.set_hand_gripper)
+    set_hand_gripper_angles = asynchronous(MercuryB1.set_hand_gripper_angles)
+    get_pro_gripper = asynchronous(MercuryB1.get_pro_gripper)
+    get_hand_gripper = asynchronous(MercuryB1.get_hand_gripper)
+    tool_serial_restore = asynchronous(MercuryB1.tool_serial_restore)
+    tool_serial_ready = asynchronous(MercuryB1.tool_serial_ready)
+    tool_serial_available = asynchronous(MercuryB1.tool_serial_available)
+    tool_serial_read_data = asynchronous(MercuryB1.tool_serial_read_data)
+    tool_serial_write_data = asynchronous(MercuryB1.tool_serial_write_data)
+    tool_serial_flush = asynchronous(MercuryB1.tool_serial_flush)
+    tool_serial_peek = asynchronous(MercuryB1.tool_serial_peek)
+    tool_serial_set_baud = asynchronous(MercuryB1.tool_serial_set_baud)
+    tool_serial_set_timeout = asynchronous(MercuryB1.tool_serial_set_timeout)
+    get_base_coords = asynchronous(MercuryB1.get_base_coords)
+    send_base_coord = asynchronous(MercuryB1.send_base_coord)
+    send_base_coords = asynchronous(MercuryB1.send_base_coords)
+    is_in_position_base_coords = asynchronous(MercuryB1.is_in_position_base_coords)
+    jog_base_coord = asynchronous(MercuryB1.jog_base_coord)
+    jog_base_increment_coord = asynchronous(MercuryB1.jog_base_increment_coord)
+    jog_base_rpy = asynchronous(MercuryB1.jog_base_rpy)
+    set_servo_cw = asynchronous(MercuryB1.set_servo_cw)
+    get_servo_cw = asynchronous(MercuryB1.get_servo_cw)
+    clear_waist_queue = asynchronous(MercuryB1.clear_waist_queue)
+    write_waist_sync = asynchronous(MercuryB1.write_waist_sync)
+    set_servo_data = asynchronous(MercuryB1.set_servo_data)
+    get_servo_data = asynchronous(MercuryB1.get_servo_data)
 
 
 ASYNC_CLIENT = AsyncMercuryB1

@@ -6,52 +6,108 @@ from __future__ import annotations
 from typing import ClassVar
 
 from cobotwire.client.aio_moving import AsyncMovingClient
+from cobotwire.client.methods import asynchronous
 from cobotwire.protocol.table import Table
 
-from .aio.accessories import AsyncAccessoriesCommands
-from .aio.coords import AsyncCoordsCommands
-from .aio.frames import AsyncFramesCommands
-from .aio.gripper import AsyncGripperCommands
-from .aio.io import AsyncIoCommands
-from .aio.jog import AsyncJogCommands
-from .aio.motion import AsyncMotionCommands
-from .aio.network import AsyncNetworkCommands
-from .aio.power import AsyncPowerCommands
-from .aio.servo import AsyncServoCommands
-from .aio.system import AsyncSystemCommands
+from .client import MyArm300
 from .table import TABLE
 
 
-class AsyncMyArm300(
-    AsyncMovingClient,
-    AsyncPowerCommands,
-    AsyncMotionCommands,
-    AsyncCoordsCommands,
-    AsyncJogCommands,
-    AsyncServoCommands,
-    AsyncIoCommands,
-    AsyncGripperCommands,
-    AsyncFramesCommands,
-    AsyncNetworkCommands,
-    AsyncSystemCommands,
-    AsyncAccessoriesCommands,
-):
+class AsyncMyArm300(AsyncMovingClient):
     """myArm 300.
 
-    The serial protocol of the myArm 300, an arm with seven joints. It is stated as the difference
-    from the edition mycobot280; each change gives its reason and its evidence.
-
     Create it with a port or URL, preferably in an ``async with`` block; see
-    :class:`cobotwire.client.aio.AsyncClient` for the arguments and errors of opening.
-
-    Every method raises UsageError if an argument is not allowed, before it sends anything, and
-    LinkError if the transport is lost. A method that waits for a reply raises ReplyTimeout if no
-    reply comes in time, and ProtocolError if the edition does not allow the reply. A method with
-    the argument ``ack_within`` returns when its bytes are written; with a number of seconds, it
-    waits for the acknowledgement and raises ReplyTimeout if none comes in that time.
+    :class:`cobotwire.client.aio.AsyncClient` for the arguments and errors of opening. Its methods
+    are those of :class:`MyArm300`, whose class describes the edition and the errors.
     """
 
     table: ClassVar[Table] = TABLE
+
+    power_on = asynchronous(MyArm300.power_on)
+    power_off = asynchronous(MyArm300.power_off)
+    is_power_on = asynchronous(MyArm300.is_power_on)
+    release_all_servos = asynchronous(MyArm300.release_all_servos)
+    is_controller_connected = asynchronous(MyArm300.is_controller_connected)
+    set_fresh_mode = asynchronous(MyArm300.set_fresh_mode)
+    get_angles = asynchronous(MyArm300.get_angles)
+    send_angle = asynchronous(MyArm300.send_angle)
+    send_angles = asynchronous(MyArm300.send_angles)
+    pause = asynchronous(MyArm300.pause)
+    is_paused = asynchronous(MyArm300.is_paused)
+    resume = asynchronous(MyArm300.resume)
+    stop = asynchronous(MyArm300.stop)
+    is_in_position = asynchronous(MyArm300.is_in_position)
+    is_moving = asynchronous(MyArm300.is_moving)
+    get_fresh_mode = asynchronous(MyArm300.get_fresh_mode)
+    get_radians = asynchronous(MyArm300.get_radians)
+    send_radians = asynchronous(MyArm300.send_radians)
+    set_movement_type = asynchronous(MyArm300.set_movement_type)
+    get_movement_type = asynchronous(MyArm300.get_movement_type)
+    is_in_position_coords = asynchronous(MyArm300.is_in_position_coords)
+    get_solution_angles = asynchronous(MyArm300.get_solution_angles)
+    set_solution_angles = asynchronous(MyArm300.set_solution_angles)
+    get_coords = asynchronous(MyArm300.get_coords)
+    send_coord = asynchronous(MyArm300.send_coord)
+    send_coords = asynchronous(MyArm300.send_coords)
+    get_angles_coords = asynchronous(MyArm300.get_angles_coords)
+    jog_angle = asynchronous(MyArm300.jog_angle)
+    jog_coord = asynchronous(MyArm300.jog_coord)
+    jog_increment = asynchronous(MyArm300.jog_increment)
+    jog_absolute = asynchronous(MyArm300.jog_absolute)
+    set_encoder = asynchronous(MyArm300.set_encoder)
+    get_encoder = asynchronous(MyArm300.get_encoder)
+    set_encoders = asynchronous(MyArm300.set_encoders)
+    get_encoders = asynchronous(MyArm300.get_encoders)
+    get_joint_min_angle = asynchronous(MyArm300.get_joint_min_angle)
+    get_joint_max_angle = asynchronous(MyArm300.get_joint_max_angle)
+    set_joint_min = asynchronous(MyArm300.set_joint_min)
+    set_joint_max = asynchronous(MyArm300.set_joint_max)
+    is_servo_enable = asynchronous(MyArm300.is_servo_enable)
+    is_all_servo_enable = asynchronous(MyArm300.is_all_servo_enable)
+    set_servo_data = asynchronous(MyArm300.set_servo_data)
+    get_servo_data = asynchronous(MyArm300.get_servo_data)
+    set_servo_calibration = asynchronous(MyArm300.set_servo_calibration)
+    joint_brake = asynchronous(MyArm300.joint_brake)
+    release_servo = asynchronous(MyArm300.release_servo)
+    focus_servo = asynchronous(MyArm300.focus_servo)
+    set_encoders_drag = asynchronous(MyArm300.set_encoders_drag)
+    focus_all_servos = asynchronous(MyArm300.focus_all_servos)
+    get_servo_speeds = asynchronous(MyArm300.get_servo_speeds)
+    get_servo_voltages = asynchronous(MyArm300.get_servo_voltages)
+    get_servo_status = asynchronous(MyArm300.get_servo_status)
+    get_servo_temps = asynchronous(MyArm300.get_servo_temps)
+    set_digital_output = asynchronous(MyArm300.set_digital_output)
+    get_digital_input = asynchronous(MyArm300.get_digital_input)
+    set_color = asynchronous(MyArm300.set_color)
+    set_basic_output = asynchronous(MyArm300.set_basic_output)
+    get_basic_input = asynchronous(MyArm300.get_basic_input)
+    set_gripper_state = asynchronous(MyArm300.set_gripper_state)
+    set_gripper_value = asynchronous(MyArm300.set_gripper_value)
+    set_gripper_calibration = asynchronous(MyArm300.set_gripper_calibration)
+    set_HTS_gripper_torque = asynchronous(MyArm300.set_HTS_gripper_torque)
+    get_HTS_gripper_torque = asynchronous(MyArm300.get_HTS_gripper_torque)
+    get_gripper_protect_current = asynchronous(MyArm300.get_gripper_protect_current)
+    init_gripper = asynchronous(MyArm300.init_gripper)
+    set_gripper_protect_current = asynchronous(MyArm300.set_gripper_protect_current)
+    set_tool_reference = asynchronous(MyArm300.set_tool_reference)
+    get_tool_reference = asynchronous(MyArm300.get_tool_reference)
+    set_world_reference = asynchronous(MyArm300.set_world_reference)
+    get_world_reference = asynchronous(MyArm300.get_world_reference)
+    set_reference_frame = asynchronous(MyArm300.set_reference_frame)
+    get_reference_frame = asynchronous(MyArm300.get_reference_frame)
+    set_end_type = asynchronous(MyArm300.set_end_type)
+    get_end_type = asynchronous(MyArm300.get_end_type)
+    get_ssid_pwd = asynchronous(MyArm300.get_ssid_pwd)
+    set_server_port = asynchronous(MyArm300.set_server_port)
+    get_transponder_mode = asynchronous(MyArm300.get_transponder_mode)
+    set_transponder_mode = asynchronous(MyArm300.set_transponder_mode)
+    get_system_version = asynchronous(MyArm300.get_system_version)
+    get_error_information = asynchronous(MyArm300.get_error_information)
+    clear_error_information = asynchronous(MyArm300.clear_error_information)
+    read_next_error = asynchronous(MyArm300.read_next_error)
+    get_basic_version = asynchronous(MyArm300.get_basic_version)
+    get_tof_distance = asynchronous(MyArm300.get_tof_distance)
+    set_four_pieces_zero = asynchronous(MyArm300.set_four_pieces_zero)
 
 
 ASYNC_CLIENT = AsyncMyArm300

@@ -3,4 +3,4 @@
 
 from cobotwire.protocol.loading import load_table
 
-TABLE = load_table(__package__, checksum="2a21d479")
+TABLE = load_table(__package__, checksum="0d8948ff")

@@ -5,41 +5,81 @@ from __future__ import annotations
 
 from typing import ClassVar
 
+from cobotwire.client.aio import AsyncClient
+from cobotwire.client.methods import asynchronous
 from cobotwire.protocol.table import Table
 
-from .aio.io import AsyncIoCommands
-from .aio.motion import AsyncMotionCommands
-from .aio.parameters import AsyncParametersCommands
-from .aio.power import AsyncPowerCommands
-from .aio.servo import AsyncServoCommands
-from .aio.system import AsyncSystemCommands
+from .client import MyArmC650
 from .table import TABLE
 
 
-class AsyncMyArmC650(
-    AsyncSystemCommands,
-    AsyncPowerCommands,
-    AsyncMotionCommands,
-    AsyncServoCommands,
-    AsyncParametersCommands,
-    AsyncIoCommands,
-):
+class AsyncMyArmC650(AsyncClient):
     """myArm C650.
 
-    The serial protocol of the myArm C650, an arm that a person moves by hand to control another
-    one. It has seven joints, the gripper included, and eight servos; no command moves them.
-
     Create it with a port or URL, preferably in an ``async with`` block; see
-    :class:`cobotwire.client.aio.AsyncClient` for the arguments and errors of opening.
-
-    Every method raises UsageError if an argument is not allowed, before it sends anything, and
-    LinkError if the transport is lost. A method that waits for a reply raises ReplyTimeout if no
-    reply comes in time, and ProtocolError if the edition does not allow the reply. A method with
-    the argument ``ack_within`` returns when its bytes are written; with a number of seconds, it
-    waits for the acknowledgement and raises ReplyTimeout if none comes in that time.
+    :class:`cobotwire.client.aio.AsyncClient` for the arguments and errors of opening. Its methods
+    are those of :class:`MyArmC650`, whose class describes the edition and the errors.
     """
 
     table: ClassVar[Table] = TABLE
+
+    get_robot_modified_version = asynchronous(MyArmC650.get_robot_modified_version)
+    get_system_version = asynchronous(MyArmC650.get_system_version)
+    get_robot_firmware_version = asynchronous(MyArmC650.get_robot_firmware_version)
+    get_robot_tool_modified_version = asynchronous(MyArmC650.get_robot_tool_modified_version)
+    get_robot_tool_firmware_version = asynchronous(MyArmC650.get_robot_tool_firmware_version)
+    set_robot_err_check_state = asynchronous(MyArmC650.set_robot_err_check_state)
+    get_robot_err_check_state = asynchronous(MyArmC650.get_robot_err_check_state)
+    get_robot_error_status = asynchronous(MyArmC650.get_robot_error_status)
+    get_recv_queue_len = asynchronous(MyArmC650.get_recv_queue_len)
+    get_recv_queue_max_len = asynchronous(MyArmC650.get_recv_queue_max_len)
+    set_recv_queue_max_len = asynchronous(MyArmC650.set_recv_queue_max_len)
+    clear_recv_queue = asynchronous(MyArmC650.clear_recv_queue)
+    clear_robot_err = asynchronous(MyArmC650.clear_robot_err)
+    power_on = asynchronous(MyArmC650.power_on)
+    power_off = asynchronous(MyArmC650.power_off)
+    is_power_on = asynchronous(MyArmC650.is_power_on)
+    get_angles = asynchronous(MyArmC650.get_angles)
+    get_joints_angle = asynchronous(MyArmC650.get_joints_angle)
+    get_joint_angle = asynchronous(MyArmC650.get_joint_angle)
+    get_coords = asynchronous(MyArmC650.get_coords)
+    get_joints_coord = asynchronous(MyArmC650.get_joints_coord)
+    get_joints_min = asynchronous(MyArmC650.get_joints_min)
+    get_joints_max = asynchronous(MyArmC650.get_joints_max)
+    get_servo_encoder = asynchronous(MyArmC650.get_servo_encoder)
+    get_servos_encoder = asynchronous(MyArmC650.get_servos_encoder)
+    get_servos_encoder_drag = asynchronous(MyArmC650.get_servos_encoder_drag)
+    is_all_servos_enabled = asynchronous(MyArmC650.is_all_servos_enabled)
+    set_servo_calibration = asynchronous(MyArmC650.set_servo_calibration)
+    set_servo_calibrate = asynchronous(MyArmC650.set_servo_calibrate)
+    get_servos_speed = asynchronous(MyArmC650.get_servos_speed)
+    get_servos_current = asynchronous(MyArmC650.get_servos_current)
+    get_servos_voltage = asynchronous(MyArmC650.get_servos_voltage)
+    get_servos_status = asynchronous(MyArmC650.get_servos_status)
+    get_servos_temp = asynchronous(MyArmC650.get_servos_temp)
+    get_servos_protect_current = asynchronous(MyArmC650.get_servos_protect_current)
+    set_servo_enabled = asynchronous(MyArmC650.set_servo_enabled)
+    set_servo_p = asynchronous(MyArmC650.set_servo_p)
+    get_servo_p = asynchronous(MyArmC650.get_servo_p)
+    set_servo_d = asynchronous(MyArmC650.set_servo_d)
+    get_servo_d = asynchronous(MyArmC650.get_servo_d)
+    set_servo_i = asynchronous(MyArmC650.set_servo_i)
+    get_servo_i = asynchronous(MyArmC650.get_servo_i)
+    set_servo_cw = asynchronous(MyArmC650.set_servo_cw)
+    get_servo_cw = asynchronous(MyArmC650.get_servo_cw)
+    set_servo_cww = asynchronous(MyArmC650.set_servo_cww)
+    get_servo_cww = asynchronous(MyArmC650.get_servo_cww)
+    set_servo_system_data = asynchronous(MyArmC650.set_servo_system_data)
+    get_servo_system_data = asynchronous(MyArmC650.get_servo_system_data)
+    restore_servo_system_param = asynchronous(MyArmC650.restore_servo_system_param)
+    set_tool_out_io_state = asynchronous(MyArmC650.set_tool_out_io_state)
+    get_tool_in_io_state = asynchronous(MyArmC650.get_tool_in_io_state)
+    set_master_out_io_state = asynchronous(MyArmC650.set_master_out_io_state)
+    get_master_in_io_state = asynchronous(MyArmC650.get_master_in_io_state)
+    set_color = asynchronous(MyArmC650.set_color)
+    set_tool_led_color = asynchronous(MyArmC650.set_tool_led_color)
+    is_tool_btn_clicked = asynchronous(MyArmC650.is_tool_btn_clicked)
+    set_pin_mode = asynchronous(MyArmC650.set_pin_mode)
 
 
 ASYNC_CLIENT = AsyncMyArmC650

@@ -17,12 +17,7 @@ from .table import TABLE
 
 
 class MyArmC650(
-    SystemCommands,
-    PowerCommands,
-    MotionCommands,
-    ServoCommands,
-    ParametersCommands,
-    IoCommands,
+    SystemCommands, PowerCommands, MotionCommands, ServoCommands, ParametersCommands, IoCommands
 ):
     """myArm C650.
 

@@ -6,43 +6,97 @@ from __future__ import annotations
 from typing import ClassVar
 
 from cobotwire.client.aio_moving import AsyncMovingClient
-from cobotwire.editions.myarm_c650.aio.parameters import AsyncParametersCommands
+from cobotwire.client.methods import asynchronous
 from cobotwire.protocol.table import Table
 
-from .aio.io import AsyncIoCommands
-from .aio.motion import AsyncMotionCommands
-from .aio.power import AsyncPowerCommands
-from .aio.servo import AsyncServoCommands
-from .aio.system import AsyncSystemCommands
+from .client import MyArmM750
 from .table import TABLE
 
 
-class AsyncMyArmM750(
-    AsyncMovingClient,
-    AsyncSystemCommands,
-    AsyncPowerCommands,
-    AsyncMotionCommands,
-    AsyncServoCommands,
-    AsyncParametersCommands,
-    AsyncIoCommands,
-):
+class AsyncMyArmM750(AsyncMovingClient):
     """myArm M750.
 
-    The serial protocol of the myArm M750, an arm with seven joints, the gripper included, and eight
-    servos. It is stated as the difference from the edition myarm_c650, the arm that controls it by
-    hand.
-
     Create it with a port or URL, preferably in an ``async with`` block; see
-    :class:`cobotwire.client.aio.AsyncClient` for the arguments and errors of opening.
-
-    Every method raises UsageError if an argument is not allowed, before it sends anything, and
-    LinkError if the transport is lost. A method that waits for a reply raises ReplyTimeout if no
-    reply comes in time, and ProtocolError if the edition does not allow the reply. A method with
-    the argument ``ack_within`` returns when its bytes are written; with a number of seconds, it
-    waits for the acknowledgement and raises ReplyTimeout if none comes in that time.
+    :class:`cobotwire.client.aio.AsyncClient` for the arguments and errors of opening. Its methods
+    are those of :class:`MyArmM750`, whose class describes the edition and the errors.
     """
 
     table: ClassVar[Table] = TABLE
+
+    get_robot_modified_version = asynchronous(MyArmM750.get_robot_modified_version)
+    get_system_version = asynchronous(MyArmM750.get_system_version)
+    get_robot_firmware_version = asynchronous(MyArmM750.get_robot_firmware_version)
+    get_robot_tool_modified_version = asynchronous(MyArmM750.get_robot_tool_modified_version)
+    get_robot_tool_firmware_version = asynchronous(MyArmM750.get_robot_tool_firmware_version)
+    set_robot_err_check_state = asynchronous(MyArmM750.set_robot_err_check_state)
+    get_robot_err_check_state = asynchronous(MyArmM750.get_robot_err_check_state)
+    get_robot_error_status = asynchronous(MyArmM750.get_robot_error_status)
+    get_recv_queue_len = asynchronous(MyArmM750.get_recv_queue_len)
+    get_recv_queue_max_len = asynchronous(MyArmM750.get_recv_queue_max_len)
+    set_recv_queue_max_len = asynchronous(MyArmM750.set_recv_queue_max_len)
+    clear_recv_queue = asynchronous(MyArmM750.clear_recv_queue)
+    clear_robot_err = asynchronous(MyArmM750.clear_robot_err)
+    is_sd_insert = asynchronous(MyArmM750.is_sd_insert)
+    power_on = asynchronous(MyArmM750.power_on)
+    power_off = asynchronous(MyArmM750.power_off)
+    is_power_on = asynchronous(MyArmM750.is_power_on)
+    set_robot_power_on = asynchronous(MyArmM750.set_robot_power_on)
+    set_robot_power_off = asynchronous(MyArmM750.set_robot_power_off)
+    get_robot_power_status = asynchronous(MyArmM750.get_robot_power_status)
+    get_angles = asynchronous(MyArmM750.get_angles)
+    get_joints_angle = asynchronous(MyArmM750.get_joints_angle)
+    get_joint_angle = asynchronous(MyArmM750.get_joint_angle)
+    get_coords = asynchronous(MyArmM750.get_coords)
+    get_joints_coord = asynchronous(MyArmM750.get_joints_coord)
+    get_joints_min = asynchronous(MyArmM750.get_joints_min)
+    get_joints_max = asynchronous(MyArmM750.get_joints_max)
+    send_angle = asynchronous(MyArmM750.send_angle)
+    set_joint_angle = asynchronous(MyArmM750.set_joint_angle)
+    send_angles = asynchronous(MyArmM750.send_angles)
+    set_joints_angle = asynchronous(MyArmM750.set_joints_angle)
+    stop = asynchronous(MyArmM750.stop)
+    stop_robot = asynchronous(MyArmM750.stop_robot)
+    is_moving = asynchronous(MyArmM750.is_moving)
+    is_robot_moving = asynchronous(MyArmM750.is_robot_moving)
+    get_servo_encoder = asynchronous(MyArmM750.get_servo_encoder)
+    get_servos_encoder = asynchronous(MyArmM750.get_servos_encoder)
+    get_servos_encoder_drag = asynchronous(MyArmM750.get_servos_encoder_drag)
+    is_all_servos_enabled = asynchronous(MyArmM750.is_all_servos_enabled)
+    set_servo_calibration = asynchronous(MyArmM750.set_servo_calibration)
+    set_servo_calibrate = asynchronous(MyArmM750.set_servo_calibrate)
+    get_servos_speed = asynchronous(MyArmM750.get_servos_speed)
+    get_servos_current = asynchronous(MyArmM750.get_servos_current)
+    get_servos_voltage = asynchronous(MyArmM750.get_servos_voltage)
+    get_servos_status = asynchronous(MyArmM750.get_servos_status)
+    get_servos_temp = asynchronous(MyArmM750.get_servos_temp)
+    get_servos_protect_current = asynchronous(MyArmM750.get_servos_protect_current)
+    set_servo_enabled = asynchronous(MyArmM750.set_servo_enabled)
+    set_servo_encoder = asynchronous(MyArmM750.set_servo_encoder)
+    set_servos_encoder = asynchronous(MyArmM750.set_servos_encoder)
+    set_servos_encoder_drag = asynchronous(MyArmM750.set_servos_encoder_drag)
+    set_servo_p = asynchronous(MyArmM750.set_servo_p)
+    get_servo_p = asynchronous(MyArmM750.get_servo_p)
+    set_servo_d = asynchronous(MyArmM750.set_servo_d)
+    get_servo_d = asynchronous(MyArmM750.get_servo_d)
+    set_servo_i = asynchronous(MyArmM750.set_servo_i)
+    get_servo_i = asynchronous(MyArmM750.get_servo_i)
+    set_servo_cw = asynchronous(MyArmM750.set_servo_cw)
+    get_servo_cw = asynchronous(MyArmM750.get_servo_cw)
+    set_servo_cww = asynchronous(MyArmM750.set_servo_cww)
+    get_servo_cww = asynchronous(MyArmM750.get_servo_cww)
+    set_servo_system_data = asynchronous(MyArmM750.set_servo_system_data)
+    get_servo_system_data = asynchronous(MyArmM750.get_servo_system_data)
+    restore_servo_system_param = asynchronous(MyArmM750.restore_servo_system_param)
+    set_tool_out_io_state = asynchronous(MyArmM750.set_tool_out_io_state)
+    get_tool_in_io_state = asynchronous(MyArmM750.get_tool_in_io_state)
+    set_master_out_io_state = asynchronous(MyArmM750.set_master_out_io_state)
+    get_master_in_io_state = asynchronous(MyArmM750.get_master_in_io_state)
+    set_color = asynchronous(MyArmM750.set_color)
+    set_tool_led_color = asynchronous(MyArmM750.set_tool_led_color)
+    is_tool_btn_clicked = asynchronous(MyArmM750.is_tool_btn_clicked)
+    set_pin_mode = asynchronous(MyArmM750.set_pin_mode)
+    set_assist_out_io_state = asynchronous(MyArmM750.set_assist_out_io_state)
+    get_assist_in_io_state = asynchronous(MyArmM750.get_assist_in_io_state)
 
 
 ASYNC_CLIENT = AsyncMyArmM750

@@ -6,48 +6,19 @@ from __future__ import annotations
 from typing import ClassVar, Self
 
 from cobotwire.client.aio_moving import AsyncMovingClient
-from cobotwire.editions.mycobot.aio.gripper import AsyncGripperCommands
+from cobotwire.client.methods import asynchronous
 from cobotwire.protocol.table import Table
 
-from .aio.base import AsyncBaseCommands
-from .aio.coords import AsyncCoordsCommands
-from .aio.frames import AsyncFramesCommands
-from .aio.io import AsyncIoCommands
-from .aio.jog import AsyncJogCommands
-from .aio.motion import AsyncMotionCommands
-from .aio.power import AsyncPowerCommands
-from .aio.servo import AsyncServoCommands
-from .aio.system import AsyncSystemCommands
+from .client import MyBuddy
 from .table import TABLE
 
 
-class AsyncMyBuddy(
-    AsyncMovingClient,
-    AsyncPowerCommands,
-    AsyncMotionCommands,
-    AsyncCoordsCommands,
-    AsyncJogCommands,
-    AsyncServoCommands,
-    AsyncIoCommands,
-    AsyncGripperCommands,
-    AsyncFramesCommands,
-    AsyncSystemCommands,
-    AsyncBaseCommands,
-):
+class AsyncMyBuddy(AsyncMovingClient):
     """myBuddy.
 
-    The serial protocol of the myBuddy, a robot with two arms of six joints and a waist of one
-    joint. Each frame has the address of an arm, of the waist, or of the whole robot. It is stated
-    as the difference from the edition mycobot; each change gives its reason and its evidence.
-
     Create it with a port or URL, preferably in an ``async with`` block; see
-    :class:`cobotwire.client.aio.AsyncClient` for the arguments and errors of opening.
-
-    Every method raises UsageError if an argument is not allowed, before it sends anything, and
-    LinkError if the transport is lost. A method that waits for a reply raises ReplyTimeout if no
-    reply comes in time, and ProtocolError if the edition does not allow the reply. A method with
-    the argument ``ack_within`` returns when its bytes are written; with a number of seconds, it
-    waits for the acknowledgement and raises ReplyTimeout if none comes in that time.
+    :class:`cobotwire.client.aio.AsyncClient` for the arguments and errors of opening. Its methods
+    are those of :class:`MyBuddy`, whose class describes the edition and the errors.
     """
 
     table: ClassVar[Table] = TABLE
@@ -76,6 +47,106 @@ class AsyncMyBuddy(
     def waist(self) -> Self:
         """Return the client for this address: The waist."""
         return self.at(3)
+
+    power_on = asynchronous(MyBuddy.power_on)
+    power_off = asynchronous(MyBuddy.power_off)
+    is_power_on = asynchronous(MyBuddy.is_power_on)
+    release_all_servos = asynchronous(MyBuddy.release_all_servos)
+    is_controller_connected = asynchronous(MyBuddy.is_controller_connected)
+    set_free_mode = asynchronous(MyBuddy.set_free_mode)
+    is_free_mode = asynchronous(MyBuddy.is_free_mode)
+    set_fresh_mode = asynchronous(MyBuddy.set_fresh_mode)
+    get_angles = asynchronous(MyBuddy.get_angles)
+    send_angle = asynchronous(MyBuddy.send_angle)
+    send_angles = asynchronous(MyBuddy.send_angles)
+    pause = asynchronous(MyBuddy.pause)
+    is_paused = asynchronous(MyBuddy.is_paused)
+    resume = asynchronous(MyBuddy.resume)
+    stop = asynchronous(MyBuddy.stop)
+    is_in_position = asynchronous(MyBuddy.is_in_position)
+    is_moving = asynchronous(MyBuddy.is_moving)
+    get_speed = asynchronous(MyBuddy.get_speed)
+    set_speed = asynchronous(MyBuddy.set_speed)
+    get_fresh_mode = asynchronous(MyBuddy.get_fresh_mode)
+    get_radians = asynchronous(MyBuddy.get_radians)
+    send_radians = asynchronous(MyBuddy.send_radians)
+    is_waist_in_position = asynchronous(MyBuddy.is_waist_in_position)
+    is_robot_in_position = asynchronous(MyBuddy.is_robot_in_position)
+    get_angle = asynchronous(MyBuddy.get_angle)
+    get_coord = asynchronous(MyBuddy.get_coord)
+    send_angles_auto = asynchronous(MyBuddy.send_angles_auto)
+    get_acceleration = asynchronous(MyBuddy.get_acceleration)
+    set_acceleration = asynchronous(MyBuddy.set_acceleration)
+    set_movement_type = asynchronous(MyBuddy.set_movement_type)
+    get_movement_type = asynchronous(MyBuddy.get_movement_type)
+    get_plan_speed = asynchronous(MyBuddy.get_plan_speed)
+    get_plan_acceleration = asynchronous(MyBuddy.get_plan_acceleration)
+    set_plan_speed = asynchronous(MyBuddy.set_plan_speed)
+    set_plan_acceleration = asynchronous(MyBuddy.set_plan_acceleration)
+    get_coords = asynchronous(MyBuddy.get_coords)
+    send_coord = asynchronous(MyBuddy.send_coord)
+    send_coords = asynchronous(MyBuddy.send_coords)
+    jog_angle = asynchronous(MyBuddy.jog_angle)
+    jog_absolute = asynchronous(MyBuddy.jog_absolute)
+    jog_coord = asynchronous(MyBuddy.jog_coord)
+    jog_increment = asynchronous(MyBuddy.jog_increment)
+    jog_stop = asynchronous(MyBuddy.jog_stop)
+    set_encoder = asynchronous(MyBuddy.set_encoder)
+    get_encoder = asynchronous(MyBuddy.get_encoder)
+    set_encoders = asynchronous(MyBuddy.set_encoders)
+    get_encoders = asynchronous(MyBuddy.get_encoders)
+    get_joint_min_angle = asynchronous(MyBuddy.get_joint_min_angle)
+    get_joint_max_angle = asynchronous(MyBuddy.get_joint_max_angle)
+    set_joint_min = asynchronous(MyBuddy.set_joint_min)
+    set_joint_max = asynchronous(MyBuddy.set_joint_max)
+    is_servo_enable = asynchronous(MyBuddy.is_servo_enable)
+    is_all_servo_enable = asynchronous(MyBuddy.is_all_servo_enable)
+    set_servo_data = asynchronous(MyBuddy.set_servo_data)
+    get_servo_data = asynchronous(MyBuddy.get_servo_data)
+    set_servo_calibration = asynchronous(MyBuddy.set_servo_calibration)
+    joint_brake = asynchronous(MyBuddy.joint_brake)
+    release_servo = asynchronous(MyBuddy.release_servo)
+    focus_servo = asynchronous(MyBuddy.focus_servo)
+    set_encoders_drag = asynchronous(MyBuddy.set_encoders_drag)
+    focus_all_servos = asynchronous(MyBuddy.focus_all_servos)
+    set_joint_current = asynchronous(MyBuddy.set_joint_current)
+    get_joint_current = asynchronous(MyBuddy.get_joint_current)
+    get_servo_voltages = asynchronous(MyBuddy.get_servo_voltages)
+    get_servo_status = asynchronous(MyBuddy.get_servo_status)
+    get_servo_temps = asynchronous(MyBuddy.get_servo_temps)
+    get_servo_speeds = asynchronous(MyBuddy.get_servo_speeds)
+    set_pin_mode = asynchronous(MyBuddy.set_pin_mode)
+    set_digital_output = asynchronous(MyBuddy.set_digital_output)
+    get_digital_input = asynchronous(MyBuddy.get_digital_input)
+    set_color = asynchronous(MyBuddy.set_color)
+    set_pwm_output = asynchronous(MyBuddy.set_pwm_output)
+    get_gripper_value = asynchronous(MyBuddy.get_gripper_value)
+    set_gripper_state = asynchronous(MyBuddy.set_gripper_state)
+    set_gripper_value = asynchronous(MyBuddy.set_gripper_value)
+    set_gripper_calibration = asynchronous(MyBuddy.set_gripper_calibration)
+    is_gripper_moving = asynchronous(MyBuddy.is_gripper_moving)
+    set_tool_reference = asynchronous(MyBuddy.set_tool_reference)
+    get_tool_reference = asynchronous(MyBuddy.get_tool_reference)
+    set_world_reference = asynchronous(MyBuddy.set_world_reference)
+    get_world_reference = asynchronous(MyBuddy.get_world_reference)
+    set_reference_frame = asynchronous(MyBuddy.set_reference_frame)
+    get_reference_frame = asynchronous(MyBuddy.get_reference_frame)
+    set_end_type = asynchronous(MyBuddy.set_end_type)
+    get_end_type = asynchronous(MyBuddy.get_end_type)
+    get_system_version = asynchronous(MyBuddy.get_system_version)
+    get_error_information = asynchronous(MyBuddy.get_error_information)
+    clear_error_information = asynchronous(MyBuddy.clear_error_information)
+    read_next_error = asynchronous(MyBuddy.read_next_error)
+    single_to_base_coords = asynchronous(MyBuddy.single_to_base_coords)
+    base_to_single_coords = asynchronous(MyBuddy.base_to_single_coords)
+    collision = asynchronous(MyBuddy.collision)
+    get_base_coord = asynchronous(MyBuddy.get_base_coord)
+    get_base_coords = asynchronous(MyBuddy.get_base_coords)
+    write_base_coord = asynchronous(MyBuddy.write_base_coord)
+    write_base_coords = asynchronous(MyBuddy.write_base_coords)
+    jog_inc_coord = asynchronous(MyBuddy.jog_inc_coord)
+    collision_switch = asynchronous(MyBuddy.collision_switch)
+    is_collision_on = asynchronous(MyBuddy.is_collision_on)
 
 
 ASYNC_CLIENT = AsyncMyBuddy

@@ -6,48 +6,87 @@ from __future__ import annotations
 from typing import ClassVar
 
 from cobotwire.client.aio_moving import AsyncMovingClient
+from cobotwire.client.methods import asynchronous
 from cobotwire.protocol.table import Table
 
-from .aio.coords import AsyncCoordsCommands
-from .aio.frames import AsyncFramesCommands
-from .aio.gripper import AsyncGripperCommands
-from .aio.io import AsyncIoCommands
-from .aio.jog import AsyncJogCommands
-from .aio.motion import AsyncMotionCommands
-from .aio.network import AsyncNetworkCommands
-from .aio.power import AsyncPowerCommands
-from .aio.servo import AsyncServoCommands
+from .client import MyCobot
 from .table import TABLE
 
 
-class AsyncMyCobot(
-    AsyncMovingClient,
-    AsyncPowerCommands,
-    AsyncMotionCommands,
-    AsyncCoordsCommands,
-    AsyncJogCommands,
-    AsyncServoCommands,
-    AsyncIoCommands,
-    AsyncGripperCommands,
-    AsyncFramesCommands,
-    AsyncNetworkCommands,
-):
+class AsyncMyCobot(AsyncMovingClient):
     """myCobot: the protocol document.
 
-    The serial protocol of the myCobot as its document describes it. Where the document contradicts
-    itself, the errata state how it is read, and why.
-
     Create it with a port or URL, preferably in an ``async with`` block; see
-    :class:`cobotwire.client.aio.AsyncClient` for the arguments and errors of opening.
-
-    Every method raises UsageError if an argument is not allowed, before it sends anything, and
-    LinkError if the transport is lost. A method that waits for a reply raises ReplyTimeout if no
-    reply comes in time, and ProtocolError if the edition does not allow the reply. A method with
-    the argument ``ack_within`` returns when its bytes are written; with a number of seconds, it
-    waits for the acknowledgement and raises ReplyTimeout if none comes in that time.
+    :class:`cobotwire.client.aio.AsyncClient` for the arguments and errors of opening. Its methods
+    are those of :class:`MyCobot`, whose class describes the edition and the errors.
     """
 
     table: ClassVar[Table] = TABLE
+
+    power_on = asynchronous(MyCobot.power_on)
+    power_off = asynchronous(MyCobot.power_off)
+    is_power_on = asynchronous(MyCobot.is_power_on)
+    release_all_servos = asynchronous(MyCobot.release_all_servos)
+    is_controller_connected = asynchronous(MyCobot.is_controller_connected)
+    set_free_mode = asynchronous(MyCobot.set_free_mode)
+    is_free_mode = asynchronous(MyCobot.is_free_mode)
+    set_fresh_mode = asynchronous(MyCobot.set_fresh_mode)
+    get_angles = asynchronous(MyCobot.get_angles)
+    send_angle = asynchronous(MyCobot.send_angle)
+    send_angles = asynchronous(MyCobot.send_angles)
+    pause = asynchronous(MyCobot.pause)
+    is_paused = asynchronous(MyCobot.is_paused)
+    resume = asynchronous(MyCobot.resume)
+    stop = asynchronous(MyCobot.stop)
+    is_in_position = asynchronous(MyCobot.is_in_position)
+    is_moving = asynchronous(MyCobot.is_moving)
+    get_speed = asynchronous(MyCobot.get_speed)
+    set_speed = asynchronous(MyCobot.set_speed)
+    get_coords = asynchronous(MyCobot.get_coords)
+    send_coord = asynchronous(MyCobot.send_coord)
+    send_coords = asynchronous(MyCobot.send_coords)
+    jog_angle = asynchronous(MyCobot.jog_angle)
+    jog_absolute = asynchronous(MyCobot.jog_absolute)
+    jog_coord = asynchronous(MyCobot.jog_coord)
+    jog_increment = asynchronous(MyCobot.jog_increment)
+    jog_stop = asynchronous(MyCobot.jog_stop)
+    set_encoder = asynchronous(MyCobot.set_encoder)
+    get_encoder = asynchronous(MyCobot.get_encoder)
+    set_encoders = asynchronous(MyCobot.set_encoders)
+    get_encoders = asynchronous(MyCobot.get_encoders)
+    get_joint_min_angle = asynchronous(MyCobot.get_joint_min_angle)
+    get_joint_max_angle = asynchronous(MyCobot.get_joint_max_angle)
+    set_joint_min = asynchronous(MyCobot.set_joint_min)
+    set_joint_max = asynchronous(MyCobot.set_joint_max)
+    is_servo_enable = asynchronous(MyCobot.is_servo_enable)
+    is_all_servo_enable = asynchronous(MyCobot.is_all_servo_enable)
+    set_servo_data = asynchronous(MyCobot.set_servo_data)
+    get_servo_data = asynchronous(MyCobot.get_servo_data)
+    set_servo_calibration = asynchronous(MyCobot.set_servo_calibration)
+    joint_brake = asynchronous(MyCobot.joint_brake)
+    release_servo = asynchronous(MyCobot.release_servo)
+    focus_servo = asynchronous(MyCobot.focus_servo)
+    set_pin_mode = asynchronous(MyCobot.set_pin_mode)
+    set_digital_output = asynchronous(MyCobot.set_digital_output)
+    get_digital_input = asynchronous(MyCobot.get_digital_input)
+    set_color = asynchronous(MyCobot.set_color)
+    set_basic_output = asynchronous(MyCobot.set_basic_output)
+    get_basic_input = asynchronous(MyCobot.get_basic_input)
+    get_gripper_value = asynchronous(MyCobot.get_gripper_value)
+    set_gripper_state = asynchronous(MyCobot.set_gripper_state)
+    set_gripper_value = asynchronous(MyCobot.set_gripper_value)
+    set_gripper_calibration = asynchronous(MyCobot.set_gripper_calibration)
+    is_gripper_moving = asynchronous(MyCobot.is_gripper_moving)
+    set_tool_reference = asynchronous(MyCobot.set_tool_reference)
+    get_tool_reference = asynchronous(MyCobot.get_tool_reference)
+    set_world_reference = asynchronous(MyCobot.set_world_reference)
+    get_world_reference = asynchronous(MyCobot.get_world_reference)
+    set_reference_frame = asynchronous(MyCobot.set_reference_frame)
+    get_reference_frame = asynchronous(MyCobot.get_reference_frame)
+    set_end_type = asynchronous(MyCobot.set_end_type)
+    get_end_type = asynchronous(MyCobot.get_end_type)
+    get_ssid_pwd = asynchronous(MyCobot.get_ssid_pwd)
+    set_server_port = asynchronous(MyCobot.set_server_port)
 
 
 ASYNC_CLIENT = AsyncMyCobot

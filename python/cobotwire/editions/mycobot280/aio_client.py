@@ -6,56 +6,132 @@ from __future__ import annotations
 from typing import ClassVar
 
 from cobotwire.client.aio_moving import AsyncMovingClient
+from cobotwire.client.methods import asynchronous
 from cobotwire.protocol.table import Table
 
-from .aio.accessories import AsyncAccessoriesCommands
-from .aio.coords import AsyncCoordsCommands
-from .aio.drag import AsyncDragCommands
-from .aio.frames import AsyncFramesCommands
-from .aio.gripper import AsyncGripperCommands
-from .aio.io import AsyncIoCommands
-from .aio.jog import AsyncJogCommands
-from .aio.kinematics import AsyncKinematicsCommands
-from .aio.motion import AsyncMotionCommands
-from .aio.network import AsyncNetworkCommands
-from .aio.power import AsyncPowerCommands
-from .aio.servo import AsyncServoCommands
-from .aio.system import AsyncSystemCommands
+from .client import MyCobot280
 from .table import TABLE
 
 
-class AsyncMyCobot280(
-    AsyncMovingClient,
-    AsyncPowerCommands,
-    AsyncMotionCommands,
-    AsyncCoordsCommands,
-    AsyncJogCommands,
-    AsyncServoCommands,
-    AsyncIoCommands,
-    AsyncGripperCommands,
-    AsyncFramesCommands,
-    AsyncNetworkCommands,
-    AsyncSystemCommands,
-    AsyncKinematicsCommands,
-    AsyncDragCommands,
-    AsyncAccessoriesCommands,
-):
+class AsyncMyCobot280(AsyncMovingClient):
     """myCobot 280: today's firmware.
 
-    The serial protocol that today's firmware of the myCobot 280 speaks. It is stated as the
-    difference from the edition mycobot; each change gives its reason and its evidence.
-
     Create it with a port or URL, preferably in an ``async with`` block; see
-    :class:`cobotwire.client.aio.AsyncClient` for the arguments and errors of opening.
-
-    Every method raises UsageError if an argument is not allowed, before it sends anything, and
-    LinkError if the transport is lost. A method that waits for a reply raises ReplyTimeout if no
-    reply comes in time, and ProtocolError if the edition does not allow the reply. A method with
-    the argument ``ack_within`` returns when its bytes are written; with a number of seconds, it
-    waits for the acknowledgement and raises ReplyTimeout if none comes in that time.
+    :class:`cobotwire.client.aio.AsyncClient` for the arguments and errors of opening. Its methods
+    are those of :class:`MyCobot280`, whose class describes the edition and the errors.
     """
 
     table: ClassVar[Table] = TABLE
+
+    power_on = asynchronous(MyCobot280.power_on)
+    power_off = asynchronous(MyCobot280.power_off)
+    is_power_on = asynchronous(MyCobot280.is_power_on)
+    release_all_servos = asynchronous(MyCobot280.release_all_servos)
+    is_controller_connected = asynchronous(MyCobot280.is_controller_connected)
+    set_free_mode = asynchronous(MyCobot280.set_free_mode)
+    is_free_mode = asynchronous(MyCobot280.is_free_mode)
+    set_fresh_mode = asynchronous(MyCobot280.set_fresh_mode)
+    get_angles = asynchronous(MyCobot280.get_angles)
+    send_angle = asynchronous(MyCobot280.send_angle)
+    send_angles = asynchronous(MyCobot280.send_angles)
+    pause = asynchronous(MyCobot280.pause)
+    is_paused = asynchronous(MyCobot280.is_paused)
+    resume = asynchronous(MyCobot280.resume)
+    stop = asynchronous(MyCobot280.stop)
+    is_in_position = asynchronous(MyCobot280.is_in_position)
+    is_moving = asynchronous(MyCobot280.is_moving)
+    clear_queue = asynchronous(MyCobot280.clear_queue)
+    check_async_or_sync = asynchronous(MyCobot280.check_async_or_sync)
+    get_fresh_mode = asynchronous(MyCobot280.get_fresh_mode)
+    set_vision_mode = asynchronous(MyCobot280.set_vision_mode)
+    get_radians = asynchronous(MyCobot280.get_radians)
+    send_radians = asynchronous(MyCobot280.send_radians)
+    set_movement_type = asynchronous(MyCobot280.set_movement_type)
+    get_movement_type = asynchronous(MyCobot280.get_movement_type)
+    get_angles_plan = asynchronous(MyCobot280.get_angles_plan)
+    get_coords = asynchronous(MyCobot280.get_coords)
+    send_coord = asynchronous(MyCobot280.send_coord)
+    send_coords = asynchronous(MyCobot280.send_coords)
+    get_angles_coords = asynchronous(MyCobot280.get_angles_coords)
+    get_coords_plan = asynchronous(MyCobot280.get_coords_plan)
+    jog_angle = asynchronous(MyCobot280.jog_angle)
+    jog_coord = asynchronous(MyCobot280.jog_coord)
+    jog_increment = asynchronous(MyCobot280.jog_increment)
+    jog_stop = asynchronous(MyCobot280.jog_stop)
+    jog_rpy = asynchronous(MyCobot280.jog_rpy)
+    jog_increment_angle = asynchronous(MyCobot280.jog_increment_angle)
+    jog_increment_coord = asynchronous(MyCobot280.jog_increment_coord)
+    set_encoder = asynchronous(MyCobot280.set_encoder)
+    get_encoder = asynchronous(MyCobot280.get_encoder)
+    set_encoders = asynchronous(MyCobot280.set_encoders)
+    get_encoders = asynchronous(MyCobot280.get_encoders)
+    get_joint_min_angle = asynchronous(MyCobot280.get_joint_min_angle)
+    get_joint_max_angle = asynchronous(MyCobot280.get_joint_max_angle)
+    set_joint_min = asynchronous(MyCobot280.set_joint_min)
+    set_joint_max = asynchronous(MyCobot280.set_joint_max)
+    is_servo_enable = asynchronous(MyCobot280.is_servo_enable)
+    is_all_servo_enable = asynchronous(MyCobot280.is_all_servo_enable)
+    set_servo_data = asynchronous(MyCobot280.set_servo_data)
+    get_servo_data = asynchronous(MyCobot280.get_servo_data)
+    set_servo_calibration = asynchronous(MyCobot280.set_servo_calibration)
+    joint_brake = asynchronous(MyCobot280.joint_brake)
+    release_servo = asynchronous(MyCobot280.release_servo)
+    focus_servo = asynchronous(MyCobot280.focus_servo)
+    set_encoders_drag = asynchronous(MyCobot280.set_encoders_drag)
+    focus_all_servos = asynchronous(MyCobot280.focus_all_servos)
+    get_servo_speeds = asynchronous(MyCobot280.get_servo_speeds)
+    get_servo_voltages = asynchronous(MyCobot280.get_servo_voltages)
+    get_servo_status = asynchronous(MyCobot280.get_servo_status)
+    get_servo_temps = asynchronous(MyCobot280.get_servo_temps)
+    backup_servo_params = asynchronous(MyCobot280.backup_servo_params)
+    restore_servo_params = asynchronous(MyCobot280.restore_servo_params)
+    set_pin_mode = asynchronous(MyCobot280.set_pin_mode)
+    set_digital_output = asynchronous(MyCobot280.set_digital_output)
+    get_digital_input = asynchronous(MyCobot280.get_digital_input)
+    set_color = asynchronous(MyCobot280.set_color)
+    set_basic_output = asynchronous(MyCobot280.set_basic_output)
+    get_basic_input = asynchronous(MyCobot280.get_basic_input)
+    set_pwm_output = asynchronous(MyCobot280.set_pwm_output)
+    get_gripper_value = asynchronous(MyCobot280.get_gripper_value)
+    set_gripper_state = asynchronous(MyCobot280.set_gripper_state)
+    set_gripper_value = asynchronous(MyCobot280.set_gripper_value)
+    set_gripper_calibration = asynchronous(MyCobot280.set_gripper_calibration)
+    is_gripper_moving = asynchronous(MyCobot280.is_gripper_moving)
+    set_HTS_gripper_torque = asynchronous(MyCobot280.set_HTS_gripper_torque)
+    get_HTS_gripper_torque = asynchronous(MyCobot280.get_HTS_gripper_torque)
+    get_gripper_protect_current = asynchronous(MyCobot280.get_gripper_protect_current)
+    init_gripper = asynchronous(MyCobot280.init_gripper)
+    set_gripper_protect_current = asynchronous(MyCobot280.set_gripper_protect_current)
+    set_tool_reference = asynchronous(MyCobot280.set_tool_reference)
+    get_tool_reference = asynchronous(MyCobot280.get_tool_reference)
+    set_world_reference = asynchronous(MyCobot280.set_world_reference)
+    get_world_reference = asynchronous(MyCobot280.get_world_reference)
+    set_reference_frame = asynchronous(MyCobot280.set_reference_frame)
+    get_reference_frame = asynchronous(MyCobot280.get_reference_frame)
+    set_end_type = asynchronous(MyCobot280.set_end_type)
+    get_end_type = asynchronous(MyCobot280.get_end_type)
+    get_ssid_pwd = asynchronous(MyCobot280.get_ssid_pwd)
+    set_server_port = asynchronous(MyCobot280.set_server_port)
+    set_ssid_pwd = asynchronous(MyCobot280.set_ssid_pwd)
+    set_transponder_mode = asynchronous(MyCobot280.set_transponder_mode)
+    get_transponder_mode = asynchronous(MyCobot280.get_transponder_mode)
+    get_modify_version = asynchronous(MyCobot280.get_modify_version)
+    get_system_version = asynchronous(MyCobot280.get_system_version)
+    get_error_information = asynchronous(MyCobot280.get_error_information)
+    clear_error_information = asynchronous(MyCobot280.clear_error_information)
+    read_next_error = asynchronous(MyCobot280.read_next_error)
+    get_basic_version = asynchronous(MyCobot280.get_basic_version)
+    get_reboot_count = asynchronous(MyCobot280.get_reboot_count)
+    angles_to_coords = asynchronous(MyCobot280.angles_to_coords)
+    solve_inv_kinematics = asynchronous(MyCobot280.solve_inv_kinematics)
+    drag_start_record = asynchronous(MyCobot280.drag_start_record)
+    drag_end_record = asynchronous(MyCobot280.drag_end_record)
+    drag_get_record_data = asynchronous(MyCobot280.drag_get_record_data)
+    drag_get_record_len = asynchronous(MyCobot280.drag_get_record_len)
+    drag_clear_record_data = asynchronous(MyCobot280.drag_clear_record_data)
+    get_tof_distance = asynchronous(MyCobot280.get_tof_distance)
+    move_round = asynchronous(MyCobot280.move_round)
+    set_four_pieces_zero = asynchronous(MyCobot280.set_four_pieces_zero)
 
 
 ASYNC_CLIENT = AsyncMyCobot280

@@ -6,55 +6,121 @@ from __future__ import annotations
 from typing import ClassVar
 
 from cobotwire.client.aio_moving import AsyncMovingClient
-from cobotwire.editions.mycobot280.aio.drag import AsyncDragCommands
-from cobotwire.editions.mycobot280.aio.frames import AsyncFramesCommands
-from cobotwire.editions.mycobot280.aio.jog import AsyncJogCommands
-from cobotwire.editions.mycobot280.aio.kinematics import AsyncKinematicsCommands
+from cobotwire.client.methods import asynchronous
 from cobotwire.protocol.table import Table
 
-from .aio.accessories import AsyncAccessoriesCommands
-from .aio.coords import AsyncCoordsCommands
-from .aio.gripper import AsyncGripperCommands
-from .aio.io import AsyncIoCommands
-from .aio.motion import AsyncMotionCommands
-from .aio.power import AsyncPowerCommands
-from .aio.servo import AsyncServoCommands
-from .aio.system import AsyncSystemCommands
+from .client import MyCobot280RDKX5
 from .table import TABLE
 
 
-class AsyncMyCobot280RDKX5(
-    AsyncMovingClient,
-    AsyncPowerCommands,
-    AsyncMotionCommands,
-    AsyncCoordsCommands,
-    AsyncJogCommands,
-    AsyncServoCommands,
-    AsyncIoCommands,
-    AsyncGripperCommands,
-    AsyncFramesCommands,
-    AsyncSystemCommands,
-    AsyncKinematicsCommands,
-    AsyncDragCommands,
-    AsyncAccessoriesCommands,
-):
+class AsyncMyCobot280RDKX5(AsyncMovingClient):
     """myCobot 280 RDK X5.
 
-    The serial protocol of the myCobot 280 on an RDK X5 board. It is stated as the difference from
-    the edition mycobot280; each change gives its reason and its evidence. Commands keep the names
-    of that edition where their messages are the same.
-
     Create it with a port or URL, preferably in an ``async with`` block; see
-    :class:`cobotwire.client.aio.AsyncClient` for the arguments and errors of opening.
-
-    Every method raises UsageError if an argument is not allowed, before it sends anything, and
-    LinkError if the transport is lost. A method that waits for a reply raises ReplyTimeout if no
-    reply comes in time, and ProtocolError if the edition does not allow the reply. A method with
-    the argument ``ack_within`` returns when its bytes are written; with a number of seconds, it
-    waits for the acknowledgement and raises ReplyTimeout if none comes in that time.
+    :class:`cobotwire.client.aio.AsyncClient` for the arguments and errors of opening. Its methods
+    are those of :class:`MyCobot280RDKX5`, whose class describes the edition and the errors.
     """
 
     table: ClassVar[Table] = TABLE
+
+    power_on = asynchronous(MyCobot280RDKX5.power_on)
+    power_off = asynchronous(MyCobot280RDKX5.power_off)
+    is_power_on = asynchronous(MyCobot280RDKX5.is_power_on)
+    release_all_servos = asynchronous(MyCobot280RDKX5.release_all_servos)
+    is_controller_connected = asynchronous(MyCobot280RDKX5.is_controller_connected)
+    set_fresh_mode = asynchronous(MyCobot280RDKX5.set_fresh_mode)
+    get_angles = asynchronous(MyCobot280RDKX5.get_angles)
+    send_angle = asynchronous(MyCobot280RDKX5.send_angle)
+    send_angles = asynchronous(MyCobot280RDKX5.send_angles)
+    pause = asynchronous(MyCobot280RDKX5.pause)
+    is_paused = asynchronous(MyCobot280RDKX5.is_paused)
+    resume = asynchronous(MyCobot280RDKX5.resume)
+    stop = asynchronous(MyCobot280RDKX5.stop)
+    is_in_position = asynchronous(MyCobot280RDKX5.is_in_position)
+    is_moving = asynchronous(MyCobot280RDKX5.is_moving)
+    clear_queue = asynchronous(MyCobot280RDKX5.clear_queue)
+    check_async_or_sync = asynchronous(MyCobot280RDKX5.check_async_or_sync)
+    get_fresh_mode = asynchronous(MyCobot280RDKX5.get_fresh_mode)
+    set_vision_mode = asynchronous(MyCobot280RDKX5.set_vision_mode)
+    get_radians = asynchronous(MyCobot280RDKX5.get_radians)
+    send_radians = asynchronous(MyCobot280RDKX5.send_radians)
+    set_movement_type = asynchronous(MyCobot280RDKX5.set_movement_type)
+    get_movement_type = asynchronous(MyCobot280RDKX5.get_movement_type)
+    get_coords = asynchronous(MyCobot280RDKX5.get_coords)
+    send_coord = asynchronous(MyCobot280RDKX5.send_coord)
+    send_coords = asynchronous(MyCobot280RDKX5.send_coords)
+    get_angles_coords = asynchronous(MyCobot280RDKX5.get_angles_coords)
+    jog_angle = asynchronous(MyCobot280RDKX5.jog_angle)
+    jog_coord = asynchronous(MyCobot280RDKX5.jog_coord)
+    jog_increment = asynchronous(MyCobot280RDKX5.jog_increment)
+    jog_stop = asynchronous(MyCobot280RDKX5.jog_stop)
+    jog_rpy = asynchronous(MyCobot280RDKX5.jog_rpy)
+    jog_increment_angle = asynchronous(MyCobot280RDKX5.jog_increment_angle)
+    jog_increment_coord = asynchronous(MyCobot280RDKX5.jog_increment_coord)
+    set_encoder = asynchronous(MyCobot280RDKX5.set_encoder)
+    get_encoder = asynchronous(MyCobot280RDKX5.get_encoder)
+    set_encoders = asynchronous(MyCobot280RDKX5.set_encoders)
+    get_joint_min_angle = asynchronous(MyCobot280RDKX5.get_joint_min_angle)
+    get_joint_max_angle = asynchronous(MyCobot280RDKX5.get_joint_max_angle)
+    set_joint_min = asynchronous(MyCobot280RDKX5.set_joint_min)
+    set_joint_max = asynchronous(MyCobot280RDKX5.set_joint_max)
+    is_servo_enable = asynchronous(MyCobot280RDKX5.is_servo_enable)
+    is_all_servo_enable = asynchronous(MyCobot280RDKX5.is_all_servo_enable)
+    set_servo_data = asynchronous(MyCobot280RDKX5.set_servo_data)
+    get_servo_data = asynchronous(MyCobot280RDKX5.get_servo_data)
+    set_servo_calibration = asynchronous(MyCobot280RDKX5.set_servo_calibration)
+    joint_brake = asynchronous(MyCobot280RDKX5.joint_brake)
+    release_servo = asynchronous(MyCobot280RDKX5.release_servo)
+    focus_servo = asynchronous(MyCobot280RDKX5.focus_servo)
+    set_encoders_drag = asynchronous(MyCobot280RDKX5.set_encoders_drag)
+    get_servo_speeds = asynchronous(MyCobot280RDKX5.get_servo_speeds)
+    get_servo_voltages = asynchronous(MyCobot280RDKX5.get_servo_voltages)
+    get_servo_status = asynchronous(MyCobot280RDKX5.get_servo_status)
+    get_servo_temps = asynchronous(MyCobot280RDKX5.get_servo_temps)
+    focus_all_servos = asynchronous(MyCobot280RDKX5.focus_all_servos)
+    get_servo_currents = asynchronous(MyCobot280RDKX5.get_servo_currents)
+    set_digital_output = asynchronous(MyCobot280RDKX5.set_digital_output)
+    get_digital_input = asynchronous(MyCobot280RDKX5.get_digital_input)
+    set_color = asynchronous(MyCobot280RDKX5.set_color)
+    get_gripper_value = asynchronous(MyCobot280RDKX5.get_gripper_value)
+    set_gripper_state = asynchronous(MyCobot280RDKX5.set_gripper_state)
+    set_gripper_value = asynchronous(MyCobot280RDKX5.set_gripper_value)
+    set_gripper_calibration = asynchronous(MyCobot280RDKX5.set_gripper_calibration)
+    is_gripper_moving = asynchronous(MyCobot280RDKX5.is_gripper_moving)
+    set_HTS_gripper_torque = asynchronous(MyCobot280RDKX5.set_HTS_gripper_torque)
+    get_HTS_gripper_torque = asynchronous(MyCobot280RDKX5.get_HTS_gripper_torque)
+    get_gripper_protect_current = asynchronous(MyCobot280RDKX5.get_gripper_protect_current)
+    init_gripper = asynchronous(MyCobot280RDKX5.init_gripper)
+    set_gripper_protect_current = asynchronous(MyCobot280RDKX5.set_gripper_protect_current)
+    set_tool_reference = asynchronous(MyCobot280RDKX5.set_tool_reference)
+    get_tool_reference = asynchronous(MyCobot280RDKX5.get_tool_reference)
+    set_world_reference = asynchronous(MyCobot280RDKX5.set_world_reference)
+    get_world_reference = asynchronous(MyCobot280RDKX5.get_world_reference)
+    set_reference_frame = asynchronous(MyCobot280RDKX5.set_reference_frame)
+    get_reference_frame = asynchronous(MyCobot280RDKX5.get_reference_frame)
+    set_end_type = asynchronous(MyCobot280RDKX5.set_end_type)
+    get_end_type = asynchronous(MyCobot280RDKX5.get_end_type)
+    get_modify_version = asynchronous(MyCobot280RDKX5.get_modify_version)
+    get_system_version = asynchronous(MyCobot280RDKX5.get_system_version)
+    get_error_information = asynchronous(MyCobot280RDKX5.get_error_information)
+    clear_error_information = asynchronous(MyCobot280RDKX5.clear_error_information)
+    read_next_error = asynchronous(MyCobot280RDKX5.read_next_error)
+    get_reboot_count = asynchronous(MyCobot280RDKX5.get_reboot_count)
+    get_tool_modify_version = asynchronous(MyCobot280RDKX5.get_tool_modify_version)
+    get_tool_system_version = asynchronous(MyCobot280RDKX5.get_tool_system_version)
+    set_monitor_state = asynchronous(MyCobot280RDKX5.set_monitor_state)
+    get_monitor_state = asynchronous(MyCobot280RDKX5.get_monitor_state)
+    get_queue_length = asynchronous(MyCobot280RDKX5.get_queue_length)
+    is_tool_button_click = asynchronous(MyCobot280RDKX5.is_tool_button_click)
+    angles_to_coords = asynchronous(MyCobot280RDKX5.angles_to_coords)
+    solve_inv_kinematics = asynchronous(MyCobot280RDKX5.solve_inv_kinematics)
+    drag_start_record = asynchronous(MyCobot280RDKX5.drag_start_record)
+    drag_end_record = asynchronous(MyCobot280RDKX5.drag_end_record)
+    drag_get_record_data = asynchronous(MyCobot280RDKX5.drag_get_record_data)
+    drag_get_record_len = asynchronous(MyCobot280RDKX5.drag_get_record_len)
+    drag_clear_record_data = asynchronous(MyCobot280RDKX5.drag_clear_record_data)
+    move_round = asynchronous(MyCobot280RDKX5.move_round)
+    set_four_pieces_zero = asynchronous(MyCobot280RDKX5.set_four_pieces_zero)
 
 
 ASYNC_CLIENT = AsyncMyCobot280RDKX5

@@ -3,4 +3,4 @@
 
 from cobotwire.protocol.loading import load_table
 
-TABLE = load_table(__package__, checksum="9443c16d")
+TABLE = load_table(__package__, checksum="3178cdfc")

@@ -6,58 +6,160 @@ from __future__ import annotations
 from typing import ClassVar
 
 from cobotwire.client.aio_moving import AsyncMovingClient
-from cobotwire.editions.mycobot280.aio.frames import AsyncFramesCommands
-from cobotwire.editions.mycobot280.aio.kinematics import AsyncKinematicsCommands
+from cobotwire.client.methods import asynchronous
 from cobotwire.protocol.table import Table
 
-from .aio.accessories import AsyncAccessoriesCommands
-from .aio.coords import AsyncCoordsCommands
-from .aio.gripper import AsyncGripperCommands
-from .aio.grippers import AsyncGrippersCommands
-from .aio.hand import AsyncHandCommands
-from .aio.io import AsyncIoCommands
-from .aio.jog import AsyncJogCommands
-from .aio.motion import AsyncMotionCommands
-from .aio.network import AsyncNetworkCommands
-from .aio.power import AsyncPowerCommands
-from .aio.servo import AsyncServoCommands
-from .aio.system import AsyncSystemCommands
+from .client import MyCobot320
 from .table import TABLE
 
 
-class AsyncMyCobot320(
-    AsyncMovingClient,
-    AsyncPowerCommands,
-    AsyncMotionCommands,
-    AsyncCoordsCommands,
-    AsyncJogCommands,
-    AsyncServoCommands,
-    AsyncIoCommands,
-    AsyncGripperCommands,
-    AsyncFramesCommands,
-    AsyncNetworkCommands,
-    AsyncSystemCommands,
-    AsyncKinematicsCommands,
-    AsyncAccessoriesCommands,
-    AsyncGrippersCommands,
-    AsyncHandCommands,
-):
+class AsyncMyCobot320(AsyncMovingClient):
     """myCobot 320.
 
-    The serial protocol of the myCobot 320. It is stated as the difference from the edition
-    mycobot280; each change gives its reason and its evidence.
-
     Create it with a port or URL, preferably in an ``async with`` block; see
-    :class:`cobotwire.client.aio.AsyncClient` for the arguments and errors of opening.
-
-    Every method raises UsageError if an argument is not allowed, before it sends anything, and
-    LinkError if the transport is lost. A method that waits for a reply raises ReplyTimeout if no
-    reply comes in time, and ProtocolError if the edition does not allow the reply. A method with
-    the argument ``ack_within`` returns when its bytes are written; with a number of seconds, it
-    waits for the acknowledgement and raises ReplyTimeout if none comes in that time.
+    :class:`cobotwire.client.aio.AsyncClient` for the arguments and errors of opening. Its methods
+    are those of :class:`MyCobot320`, whose class describes the edition and the errors.
     """
 
     table: ClassVar[Table] = TABLE
+
+    power_on = asynchronous(MyCobot320.power_on)
+    power_off = asynchronous(MyCobot320.power_off)
+    is_power_on = asynchronous(MyCobot320.is_power_on)
+    release_all_servos = asynchronous(MyCobot320.release_all_servos)
+    is_controller_connected = asynchronous(MyCobot320.is_controller_connected)
+    set_fresh_mode = asynchronous(MyCobot320.set_fresh_mode)
+    get_angles = asynchronous(MyCobot320.get_angles)
+    send_angle = asynchronous(MyCobot320.send_angle)
+    send_angles = asynchronous(MyCobot320.send_angles)
+    pause = asynchronous(MyCobot320.pause)
+    is_paused = asynchronous(MyCobot320.is_paused)
+    resume = asynchronous(MyCobot320.resume)
+    stop = asynchronous(MyCobot320.stop)
+    is_in_position = asynchronous(MyCobot320.is_in_position)
+    is_moving = asynchronous(MyCobot320.is_moving)
+    get_fresh_mode = asynchronous(MyCobot320.get_fresh_mode)
+    set_vision_mode = asynchronous(MyCobot320.set_vision_mode)
+    get_radians = asynchronous(MyCobot320.get_radians)
+    send_radians = asynchronous(MyCobot320.send_radians)
+    set_movement_type = asynchronous(MyCobot320.set_movement_type)
+    get_movement_type = asynchronous(MyCobot320.get_movement_type)
+    get_angles_plan = asynchronous(MyCobot320.get_angles_plan)
+    get_coords = asynchronous(MyCobot320.get_coords)
+    send_coord = asynchronous(MyCobot320.send_coord)
+    send_coords = asynchronous(MyCobot320.send_coords)
+    get_angles_coords = asynchronous(MyCobot320.get_angles_coords)
+    get_coords_plan = asynchronous(MyCobot320.get_coords_plan)
+    jog_angle = asynchronous(MyCobot320.jog_angle)
+    jog_coord = asynchronous(MyCobot320.jog_coord)
+    jog_increment = asynchronous(MyCobot320.jog_increment)
+    jog_stop = asynchronous(MyCobot320.jog_stop)
+    jog_rpy = asynchronous(MyCobot320.jog_rpy)
+    jog_increment_angle = asynchronous(MyCobot320.jog_increment_angle)
+    jog_increment_coord = asynchronous(MyCobot320.jog_increment_coord)
+    set_encoder = asynchronous(MyCobot320.set_encoder)
+    get_encoder = asynchronous(MyCobot320.get_encoder)
+    set_encoders = asynchronous(MyCobot320.set_encoders)
+    get_encoders = asynchronous(MyCobot320.get_encoders)
+    get_joint_min_angle = asynchronous(MyCobot320.get_joint_min_angle)
+    get_joint_max_angle = asynchronous(MyCobot320.get_joint_max_angle)
+    set_joint_min = asynchronous(MyCobot320.set_joint_min)
+    set_joint_max = asynchronous(MyCobot320.set_joint_max)
+    is_servo_enable = asynchronous(MyCobot320.is_servo_enable)
+    is_all_servo_enable = asynchronous(MyCobot320.is_all_servo_enable)
+    set_servo_data = asynchronous(MyCobot320.set_servo_data)
+    get_servo_data = asynchronous(MyCobot320.get_servo_data)
+    set_servo_calibration = asynchronous(MyCobot320.set_servo_calibration)
+    joint_brake = asynchronous(MyCobot320.joint_brake)
+    release_servo = asynchronous(MyCobot320.release_servo)
+    focus_servo = asynchronous(MyCobot320.focus_servo)
+    set_encoders_drag = asynchronous(MyCobot320.set_encoders_drag)
+    focus_all_servos = asynchronous(MyCobot320.focus_all_servos)
+    get_servo_speeds = asynchronous(MyCobot320.get_servo_speeds)
+    get_servo_voltages = asynchronous(MyCobot320.get_servo_voltages)
+    get_servo_status = asynchronous(MyCobot320.get_servo_status)
+    get_servo_temps = asynchronous(MyCobot320.get_servo_temps)
+    set_void_compensate = asynchronous(MyCobot320.set_void_compensate)
+    get_servo_currents = asynchronous(MyCobot320.get_servo_currents)
+    set_digital_output = asynchronous(MyCobot320.set_digital_output)
+    get_digital_input = asynchronous(MyCobot320.get_digital_input)
+    set_color = asynchronous(MyCobot320.set_color)
+    set_basic_output = asynchronous(MyCobot320.set_basic_output)
+    get_basic_input = asynchronous(MyCobot320.get_basic_input)
+    set_gripper_state = asynchronous(MyCobot320.set_gripper_state)
+    set_gripper_value = asynchronous(MyCobot320.set_gripper_value)
+    set_gripper_calibration = asynchronous(MyCobot320.set_gripper_calibration)
+    set_electric_gripper = asynchronous(MyCobot320.set_electric_gripper)
+    init_electric_gripper = asynchronous(MyCobot320.init_electric_gripper)
+    set_gripper_mode = asynchronous(MyCobot320.set_gripper_mode)
+    get_gripper_mode = asynchronous(MyCobot320.get_gripper_mode)
+    set_tool_reference = asynchronous(MyCobot320.set_tool_reference)
+    get_tool_reference = asynchronous(MyCobot320.get_tool_reference)
+    set_world_reference = asynchronous(MyCobot320.set_world_reference)
+    get_world_reference = asynchronous(MyCobot320.get_world_reference)
+    set_reference_frame = asynchronous(MyCobot320.set_reference_frame)
+    get_reference_frame = asynchronous(MyCobot320.get_reference_frame)
+    set_end_type = asynchronous(MyCobot320.set_end_type)
+    get_end_type = asynchronous(MyCobot320.get_end_type)
+    get_ssid_pwd = asynchronous(MyCobot320.get_ssid_pwd)
+    set_server_port = asynchronous(MyCobot320.set_server_port)
+    set_ssid_pwd = asynchronous(MyCobot320.set_ssid_pwd)
+    get_system_version = asynchronous(MyCobot320.get_system_version)
+    get_error_information = asynchronous(MyCobot320.get_error_information)
+    clear_error_information = asynchronous(MyCobot320.clear_error_information)
+    read_next_error = asynchronous(MyCobot320.read_next_error)
+    get_basic_version = asynchronous(MyCobot320.get_basic_version)
+    get_reboot_count = asynchronous(MyCobot320.get_reboot_count)
+    get_atom_version = asynchronous(MyCobot320.get_atom_version)
+    get_robot_status = asynchronous(MyCobot320.get_robot_status)
+    angles_to_coords = asynchronous(MyCobot320.angles_to_coords)
+    solve_inv_kinematics = asynchronous(MyCobot320.solve_inv_kinematics)
+    get_tof_distance = asynchronous(MyCobot320.get_tof_distance)
+    set_pro_gripper = asynchronous(MyCobot320.set_pro_gripper)
+    get_pro_gripper = asynchronous(MyCobot320.get_pro_gripper)
+    set_pro_gripper_angle = asynchronous(MyCobot320.set_pro_gripper_angle)
+    get_pro_gripper_angle = asynchronous(MyCobot320.get_pro_gripper_angle)
+    set_pro_gripper_open = asynchronous(MyCobot320.set_pro_gripper_open)
+    set_pro_gripper_close = asynchronous(MyCobot320.set_pro_gripper_close)
+    set_pro_gripper_calibration = asynchronous(MyCobot320.set_pro_gripper_calibration)
+    get_pro_gripper_status = asynchronous(MyCobot320.get_pro_gripper_status)
+    set_pro_gripper_torque = asynchronous(MyCobot320.set_pro_gripper_torque)
+    get_pro_gripper_torque = asynchronous(MyCobot320.get_pro_gripper_torque)
+    set_pro_gripper_speed = asynchronous(MyCobot320.set_pro_gripper_speed)
+    get_pro_gripper_speed = asynchronous(MyCobot320.get_pro_gripper_speed)
+    set_pro_gripper_abs_angle = asynchronous(MyCobot320.set_pro_gripper_abs_angle)
+    set_pro_gripper_pause = asynchronous(MyCobot320.set_pro_gripper_pause)
+    set_pro_gripper_resume = asynchronous(MyCobot320.set_pro_gripper_resume)
+    set_pro_gripper_stop = asynchronous(MyCobot320.set_pro_gripper_stop)
+    get_hand_firmware_major_version = asynchronous(MyCobot320.get_hand_firmware_major_version)
+    get_hand_firmware_minor_version = asynchronous(MyCobot320.get_hand_firmware_minor_version)
+    get_hand_gripper_type = asynchronous(MyCobot320.get_hand_gripper_type)
+    set_hand_gripper_id = asynchronous(MyCobot320.set_hand_gripper_id)
+    get_hand_gripper_id = asynchronous(MyCobot320.get_hand_gripper_id)
+    set_hand_gripper_enabled = asynchronous(MyCobot320.set_hand_gripper_enabled)
+    get_hand_gripper_status = asynchronous(MyCobot320.get_hand_gripper_status)
+    set_hand_gripper_angle = asynchronous(MyCobot320.set_hand_gripper_angle)
+    get_hand_gripper_angle = asynchronous(MyCobot320.get_hand_gripper_angle)
+    set_hand_gripper_angles = asynchronous(MyCobot320.set_hand_gripper_angles)
+    get_hand_gripper_angles = asynchronous(MyCobot320.get_hand_gripper_angles)
+    set_hand_gripper_calibrate = asynchronous(MyCobot320.set_hand_gripper_calibrate)
+    set_hand_gripper_pinch_action = asynchronous(MyCobot320.set_hand_gripper_pinch_action)
+    set_hand_gripper_torque = asynchronous(MyCobot320.set_hand_gripper_torque)
+    get_hand_gripper_torque = asynchronous(MyCobot320.get_hand_gripper_torque)
+    set_hand_gripper_speed = asynchronous(MyCobot320.set_hand_gripper_speed)
+    get_hand_gripper_default_speed = asynchronous(MyCobot320.get_hand_gripper_default_speed)
+    set_hand_gripper_p = asynchronous(MyCobot320.set_hand_gripper_p)
+    get_hand_gripper_p = asynchronous(MyCobot320.get_hand_gripper_p)
+    set_hand_gripper_d = asynchronous(MyCobot320.set_hand_gripper_d)
+    get_hand_gripper_d = asynchronous(MyCobot320.get_hand_gripper_d)
+    set_hand_gripper_i = asynchronous(MyCobot320.set_hand_gripper_i)
+    get_hand_gripper_i = asynchronous(MyCobot320.get_hand_gripper_i)
+    set_hand_gripper_clockwise = asynchronous(MyCobot320.set_hand_gripper_clockwise)
+    get_hand_gripper_clockwise = asynchronous(MyCobot320.get_hand_gripper_clockwise)
+    set_hand_gripper_counterclockwise = asynchronous(MyCobot320.set_hand_gripper_counterclockwise)
+    get_hand_gripper_counterclockwise = asynchronous(MyCobot320.get_hand_gripper_counterclockwise)
+    set_hand_gripper_min_pressure = asynchronous(MyCobot320.set_hand_gripper_min_pressure)
+    get_hand_gripper_min_pressure = asynchronous(MyCobot320.get_hand_gripper_min_pressure)
 
 
 ASYNC_CLIENT = AsyncMyCobot320

@@ -3,4 +3,4 @@
 
 from cobotwire.protocol.loading import load_table
 
-TABLE = load_table(__package__, checksum="0af39fed")
+TABLE = load_table(__package__, checksum="4dd7e898")

@@ -6,50 +6,90 @@ from __future__ import annotations
 from typing import ClassVar
 
 from cobotwire.client.aio_moving import AsyncMovingClient
+from cobotwire.client.methods import asynchronous
 from cobotwire.protocol.table import Table
 
-from .aio.accessories import AsyncAccessoriesCommands
-from .aio.coords import AsyncCoordsCommands
-from .aio.gripper import AsyncGripperCommands
-from .aio.io import AsyncIoCommands
-from .aio.jog import AsyncJogCommands
-from .aio.motion import AsyncMotionCommands
-from .aio.network import AsyncNetworkCommands
-from .aio.power import AsyncPowerCommands
-from .aio.servo import AsyncServoCommands
-from .aio.system import AsyncSystemCommands
+from .client import MyPalletizer260
 from .table import TABLE
 
 
-class AsyncMyPalletizer260(
-    AsyncMovingClient,
-    AsyncPowerCommands,
-    AsyncMotionCommands,
-    AsyncCoordsCommands,
-    AsyncJogCommands,
-    AsyncServoCommands,
-    AsyncIoCommands,
-    AsyncGripperCommands,
-    AsyncNetworkCommands,
-    AsyncSystemCommands,
-    AsyncAccessoriesCommands,
-):
+class AsyncMyPalletizer260(AsyncMovingClient):
     """myPalletizer 260.
 
-    The serial protocol of the myPalletizer 260, an arm with four joints. It is stated as the
-    difference from the edition mycobot; each change gives its reason and its evidence.
-
     Create it with a port or URL, preferably in an ``async with`` block; see
-    :class:`cobotwire.client.aio.AsyncClient` for the arguments and errors of opening.
-
-    Every method raises UsageError if an argument is not allowed, before it sends anything, and
-    LinkError if the transport is lost. A method that waits for a reply raises ReplyTimeout if no
-    reply comes in time, and ProtocolError if the edition does not allow the reply. A method with
-    the argument ``ack_within`` returns when its bytes are written; with a number of seconds, it
-    waits for the acknowledgement and raises ReplyTimeout if none comes in that time.
+    :class:`cobotwire.client.aio.AsyncClient` for the arguments and errors of opening. Its methods
+    are those of :class:`MyPalletizer260`, whose class describes the edition and the errors.
     """
 
     table: ClassVar[Table] = TABLE
+
+    power_on = asynchronous(MyPalletizer260.power_on)
+    power_off = asynchronous(MyPalletizer260.power_off)
+    is_power_on = asynchronous(MyPalletizer260.is_power_on)
+    release_all_servos = asynchronous(MyPalletizer260.release_all_servos)
+    is_controller_connected = asynchronous(MyPalletizer260.is_controller_connected)
+    set_free_mode = asynchronous(MyPalletizer260.set_free_mode)
+    is_free_mode = asynchronous(MyPalletizer260.is_free_mode)
+    get_angles = asynchronous(MyPalletizer260.get_angles)
+    send_angle = asynchronous(MyPalletizer260.send_angle)
+    send_angles = asynchronous(MyPalletizer260.send_angles)
+    pause = asynchronous(MyPalletizer260.pause)
+    is_paused = asynchronous(MyPalletizer260.is_paused)
+    resume = asynchronous(MyPalletizer260.resume)
+    stop = asynchronous(MyPalletizer260.stop)
+    is_in_position = asynchronous(MyPalletizer260.is_in_position)
+    is_moving = asynchronous(MyPalletizer260.is_moving)
+    get_speed = asynchronous(MyPalletizer260.get_speed)
+    set_speed = asynchronous(MyPalletizer260.set_speed)
+    get_radians = asynchronous(MyPalletizer260.get_radians)
+    send_radians = asynchronous(MyPalletizer260.send_radians)
+    get_feed_override = asynchronous(MyPalletizer260.get_feed_override)
+    get_acceleration = asynchronous(MyPalletizer260.get_acceleration)
+    set_acceleration = asynchronous(MyPalletizer260.set_acceleration)
+    get_coords = asynchronous(MyPalletizer260.get_coords)
+    send_coord = asynchronous(MyPalletizer260.send_coord)
+    send_coords = asynchronous(MyPalletizer260.send_coords)
+    jog_angle = asynchronous(MyPalletizer260.jog_angle)
+    jog_absolute = asynchronous(MyPalletizer260.jog_absolute)
+    jog_coord = asynchronous(MyPalletizer260.jog_coord)
+    jog_increment = asynchronous(MyPalletizer260.jog_increment)
+    jog_stop = asynchronous(MyPalletizer260.jog_stop)
+    set_encoder = asynchronous(MyPalletizer260.set_encoder)
+    get_encoder = asynchronous(MyPalletizer260.get_encoder)
+    set_encoders = asynchronous(MyPalletizer260.set_encoders)
+    get_encoders = asynchronous(MyPalletizer260.get_encoders)
+    get_joint_min_angle = asynchronous(MyPalletizer260.get_joint_min_angle)
+    get_joint_max_angle = asynchronous(MyPalletizer260.get_joint_max_angle)
+    set_joint_min = asynchronous(MyPalletizer260.set_joint_min)
+    set_joint_max = asynchronous(MyPalletizer260.set_joint_max)
+    is_servo_enable = asynchronous(MyPalletizer260.is_servo_enable)
+    is_all_servo_enable = asynchronous(MyPalletizer260.is_all_servo_enable)
+    set_servo_data = asynchronous(MyPalletizer260.set_servo_data)
+    get_servo_data = asynchronous(MyPalletizer260.get_servo_data)
+    set_servo_calibration = asynchronous(MyPalletizer260.set_servo_calibration)
+    joint_brake = asynchronous(MyPalletizer260.joint_brake)
+    release_servo = asynchronous(MyPalletizer260.release_servo)
+    focus_servo = asynchronous(MyPalletizer260.focus_servo)
+    set_encoders_drag = asynchronous(MyPalletizer260.set_encoders_drag)
+    focus_all_servos = asynchronous(MyPalletizer260.focus_all_servos)
+    set_pin_mode = asynchronous(MyPalletizer260.set_pin_mode)
+    set_digital_output = asynchronous(MyPalletizer260.set_digital_output)
+    get_digital_input = asynchronous(MyPalletizer260.get_digital_input)
+    set_color = asynchronous(MyPalletizer260.set_color)
+    set_basic_output = asynchronous(MyPalletizer260.set_basic_output)
+    get_basic_input = asynchronous(MyPalletizer260.get_basic_input)
+    get_gripper_value = asynchronous(MyPalletizer260.get_gripper_value)
+    set_gripper_state = asynchronous(MyPalletizer260.set_gripper_state)
+    set_gripper_value = asynchronous(MyPalletizer260.set_gripper_value)
+    set_gripper_calibration = asynchronous(MyPalletizer260.set_gripper_calibration)
+    is_gripper_moving = asynchronous(MyPalletizer260.is_gripper_moving)
+    get_ssid_pwd = asynchronous(MyPalletizer260.get_ssid_pwd)
+    set_server_port = asynchronous(MyPalletizer260.set_server_port)
+    set_ssid_pwd = asynchronous(MyPalletizer260.set_ssid_pwd)
+    get_system_version = asynchronous(MyPalletizer260.get_system_version)
+    get_error_information = asynchronous(MyPalletizer260.get_error_information)
+    get_basic_version = asynchronous(MyPalletizer260.get_basic_version)
+    get_tof_distance = asynchronous(MyPalletizer260.get_tof_distance)
 
 
 ASYNC_CLIENT = AsyncMyPalletizer260

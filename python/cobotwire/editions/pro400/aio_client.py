@@ -6,55 +6,168 @@ from __future__ import annotations
 from typing import ClassVar
 
 from cobotwire.client.aio_moving import AsyncMovingClient
-from cobotwire.editions.mercury_a1.aio.frames import AsyncFramesCommands
-from cobotwire.editions.mercury_a1.aio.gripper import AsyncGripperCommands
-from cobotwire.editions.mercury_a1.aio.io import AsyncIoCommands
-from cobotwire.editions.mercury_a1.aio.serial import AsyncSerialCommands
+from cobotwire.client.methods import asynchronous
 from cobotwire.protocol.table import Table
 
-from .aio.coords import AsyncCoordsCommands
-from .aio.drag import AsyncDragCommands
-from .aio.jog import AsyncJogCommands
-from .aio.motion import AsyncMotionCommands
-from .aio.planning import AsyncPlanningCommands
-from .aio.power import AsyncPowerCommands
-from .aio.servo import AsyncServoCommands
-from .aio.system import AsyncSystemCommands
+from .client import Pro400
 from .table import TABLE
 
 
-class AsyncPro400(
-    AsyncMovingClient,
-    AsyncSystemCommands,
-    AsyncPowerCommands,
-    AsyncMotionCommands,
-    AsyncPlanningCommands,
-    AsyncCoordsCommands,
-    AsyncFramesCommands,
-    AsyncJogCommands,
-    AsyncServoCommands,
-    AsyncDragCommands,
-    AsyncIoCommands,
-    AsyncGripperCommands,
-    AsyncSerialCommands,
-):
+class AsyncPro400(AsyncMovingClient):
     """myCobot Pro 400.
 
-    The serial protocol of the myCobot Pro 400, an arm with six joints. It is stated as the
-    difference from the edition mercury_a1; each change gives its reason and its evidence. No source
-    states the limits of its joints: the arm itself has to reject targets beyond them.
-
     Create it with a port or URL, preferably in an ``async with`` block; see
-    :class:`cobotwire.client.aio.AsyncClient` for the arguments and errors of opening.
-
-    Every method raises UsageError if an argument is not allowed, before it sends anything, and
-    LinkError if the transport is lost. A method that waits for a reply raises ReplyTimeout if no
-    reply comes in time, and ProtocolError if the edition does not allow the reply. A method with
-    the argument ``ack_within`` returns when its bytes are written; with a number of seconds, it
-    waits for the acknowledgement and raises ReplyTimeout if none comes in that time.
+    :class:`cobotwire.client.aio.AsyncClient` for the arguments and errors of opening. Its methods
+    are those of :class:`Pro400`, whose class describes the edition and the errors.
     """
 
     table: ClassVar[Table] = TABLE
+
+    get_modified_version = asynchronous(Pro400.get_modified_version)
+    get_system_version = asynchronous(Pro400.get_system_version)
+    get_robot_type = asynchronous(Pro400.get_robot_type)
+    get_atom_modify_version = asynchronous(Pro400.get_atom_modify_version)
+    get_error_information = asynchronous(Pro400.get_error_information)
+    clear_error_information = asynchronous(Pro400.clear_error_information)
+    get_atom_version = asynchronous(Pro400.get_atom_version)
+    set_limit_switch = asynchronous(Pro400.set_limit_switch)
+    get_limit_switch = asynchronous(Pro400.get_limit_switch)
+    get_robot_status = asynchronous(Pro400.get_robot_status)
+    get_comm_error_counts = asynchronous(Pro400.get_comm_error_counts)
+    get_motors_run_err = asynchronous(Pro400.get_motors_run_err)
+    get_monitor_mode = asynchronous(Pro400.get_monitor_mode)
+    set_monitor_mode = asynchronous(Pro400.set_monitor_mode)
+    power_on = asynchronous(Pro400.power_on)
+    power_off = asynchronous(Pro400.power_off)
+    is_power_on = asynchronous(Pro400.is_power_on)
+    release_all_servos = asynchronous(Pro400.release_all_servos)
+    focus_all_servos = asynchronous(Pro400.focus_all_servos)
+    set_break = asynchronous(Pro400.set_break)
+    power_on_only = asynchronous(Pro400.power_on_only)
+    is_servo_enable = asynchronous(Pro400.is_servo_enable)
+    is_all_servo_enable = asynchronous(Pro400.is_all_servo_enable)
+    release_servo = asynchronous(Pro400.release_servo)
+    focus_servo = asynchronous(Pro400.focus_servo)
+    servo_restore = asynchronous(Pro400.servo_restore)
+    over_limit_return_zero = asynchronous(Pro400.over_limit_return_zero)
+    set_control_mode = asynchronous(Pro400.set_control_mode)
+    get_control_mode = asynchronous(Pro400.get_control_mode)
+    get_angle = asynchronous(Pro400.get_angle)
+    get_angles = asynchronous(Pro400.get_angles)
+    send_angle = asynchronous(Pro400.send_angle)
+    send_angles = asynchronous(Pro400.send_angles)
+    pause = asynchronous(Pro400.pause)
+    is_paused = asynchronous(Pro400.is_paused)
+    resume = asynchronous(Pro400.resume)
+    stop = asynchronous(Pro400.stop)
+    is_in_position = asynchronous(Pro400.is_in_position)
+    is_in_position_coords = asynchronous(Pro400.is_in_position_coords)
+    is_moving = asynchronous(Pro400.is_moving)
+    get_solution_angles = asynchronous(Pro400.get_solution_angles)
+    set_solution_angles = asynchronous(Pro400.set_solution_angles)
+    get_quick_move_info = asynchronous(Pro400.get_quick_move_info)
+    set_pos_switch = asynchronous(Pro400.set_pos_switch)
+    get_pos_switch = asynchronous(Pro400.get_pos_switch)
+    get_max_speed = asynchronous(Pro400.get_max_speed)
+    set_max_speed = asynchronous(Pro400.set_max_speed)
+    get_max_acc = asynchronous(Pro400.get_max_acc)
+    set_max_acc = asynchronous(Pro400.set_max_acc)
+    get_fusion_parameters = asynchronous(Pro400.get_fusion_parameters)
+    set_fusion_parameters = asynchronous(Pro400.set_fusion_parameters)
+    get_pos_over = asynchronous(Pro400.get_pos_over)
+    set_pos_over_shoot = asynchronous(Pro400.set_pos_over_shoot)
+    get_pos_over_shoot = asynchronous(Pro400.get_pos_over_shoot)
+    set_movement_type = asynchronous(Pro400.set_movement_type)
+    get_movement_type = asynchronous(Pro400.get_movement_type)
+    get_vr_mode = asynchronous(Pro400.get_vr_mode)
+    set_vr_mode = asynchronous(Pro400.set_vr_mode)
+    get_filter_len = asynchronous(Pro400.get_filter_len)
+    set_filter_len = asynchronous(Pro400.set_filter_len)
+    get_coords = asynchronous(Pro400.get_coords)
+    angles_to_coords = asynchronous(Pro400.angles_to_coords)
+    send_coord = asynchronous(Pro400.send_coord)
+    send_coords = asynchronous(Pro400.send_coords)
+    write_move_c = asynchronous(Pro400.write_move_c)
+    write_move_c_r = asynchronous(Pro400.write_move_c_r)
+    solve_inv_kinematics = asynchronous(Pro400.solve_inv_kinematics)
+    set_tool_reference = asynchronous(Pro400.set_tool_reference)
+    get_tool_reference = asynchronous(Pro400.get_tool_reference)
+    set_world_reference = asynchronous(Pro400.set_world_reference)
+    get_world_reference = asynchronous(Pro400.get_world_reference)
+    set_reference_frame = asynchronous(Pro400.set_reference_frame)
+    get_reference_frame = asynchronous(Pro400.get_reference_frame)
+    set_end_type = asynchronous(Pro400.set_end_type)
+    get_end_type = asynchronous(Pro400.get_end_type)
+    jog_angle = asynchronous(Pro400.jog_angle)
+    jog_coord = asynchronous(Pro400.jog_coord)
+    jog_increment_angle = asynchronous(Pro400.jog_increment_angle)
+    jog_increment_coord = asynchronous(Pro400.jog_increment_coord)
+    jog_rpy = asynchronous(Pro400.jog_rpy)
+    clear_zero_pos = asynchronous(Pro400.clear_zero_pos)
+    get_servo_encoder = asynchronous(Pro400.get_servo_encoder)
+    get_servo_encoders = asynchronous(Pro400.get_servo_encoders)
+    get_joint_min_angle = asynchronous(Pro400.get_joint_min_angle)
+    get_joint_max_angle = asynchronous(Pro400.get_joint_max_angle)
+    set_joint_min_angle = asynchronous(Pro400.set_joint_min_angle)
+    set_joint_max_angle = asynchronous(Pro400.set_joint_max_angle)
+    set_servo_calibration = asynchronous(Pro400.set_servo_calibration)
+    get_zero_pos = asynchronous(Pro400.get_zero_pos)
+    is_init_calibration = asynchronous(Pro400.is_init_calibration)
+    set_collision_mode = asynchronous(Pro400.set_collision_mode)
+    get_collision_mode = asynchronous(Pro400.get_collision_mode)
+    set_collision_threshold = asynchronous(Pro400.set_collision_threshold)
+    get_collision_threshold = asynchronous(Pro400.get_collision_threshold)
+    set_torque_comp = asynchronous(Pro400.set_torque_comp)
+    get_torque_comp = asynchronous(Pro400.get_torque_comp)
+    get_model_direction = asynchronous(Pro400.get_model_direction)
+    set_model_direction = asynchronous(Pro400.set_model_direction)
+    set_identify_mode = asynchronous(Pro400.set_identify_mode)
+    get_identify_mode = asynchronous(Pro400.get_identify_mode)
+    get_down_encoders = asynchronous(Pro400.get_down_encoders)
+    set_dynamic_parameters = asynchronous(Pro400.set_dynamic_parameters)
+    get_dynamic_parameters = asynchronous(Pro400.get_dynamic_parameters)
+    fourier_trajectories = asynchronous(Pro400.fourier_trajectories)
+    get_servo_speeds = asynchronous(Pro400.get_servo_speeds)
+    get_servo_currents = asynchronous(Pro400.get_servo_currents)
+    get_servo_status = asynchronous(Pro400.get_servo_status)
+    clear_encoder_error = asynchronous(Pro400.clear_encoder_error)
+    drag_teach_save = asynchronous(Pro400.drag_teach_save)
+    drag_teach_execute = asynchronous(Pro400.drag_teach_execute)
+    drag_teach_pause = asynchronous(Pro400.drag_teach_pause)
+    drag_teach_clean = asynchronous(Pro400.drag_teach_clean)
+    get_drag_fifo = asynchronous(Pro400.get_drag_fifo)
+    set_drag_fifo = asynchronous(Pro400.set_drag_fifo)
+    get_drag_fifo_len = asynchronous(Pro400.get_drag_fifo_len)
+    is_drag_fifo_empty = asynchronous(Pro400.is_drag_fifo_empty)
+    get_digital_inputs = asynchronous(Pro400.get_digital_inputs)
+    set_digital_output = asynchronous(Pro400.set_digital_output)
+    get_digital_input = asynchronous(Pro400.get_digital_input)
+    is_btn_clicked = asynchronous(Pro400.is_btn_clicked)
+    set_color = asynchronous(Pro400.set_color)
+    set_base_io_output = asynchronous(Pro400.set_base_io_output)
+    get_base_io_input = asynchronous(Pro400.get_base_io_input)
+    set_gripper_enabled = asynchronous(Pro400.set_gripper_enabled)
+    set_gripper_state = asynchronous(Pro400.set_gripper_state)
+    set_gripper_value = asynchronous(Pro400.set_gripper_value)
+    set_gripper_calibration = asynchronous(Pro400.set_gripper_calibration)
+    set_electric_gripper = asynchronous(Pro400.set_electric_gripper)
+    init_electric_gripper = asynchronous(Pro400.init_electric_gripper)
+    set_gripper_mode = asynchronous(Pro400.set_gripper_mode)
+    get_gripper_mode = asynchronous(Pro400.get_gripper_mode)
+    set_pro_gripper = asynchronous(Pro400.set_pro_gripper)
+    set_hand_gripper = asynchronous(Pro400.set_hand_gripper)
+    set_hand_gripper_angles = asynchronous(Pro400.set_hand_gripper_angles)
+    get_pro_gripper = asynchronous(Pro400.get_pro_gripper)
+    get_hand_gripper = asynchronous(Pro400.get_hand_gripper)
+    tool_serial_restore = asynchronous(Pro400.tool_serial_restore)
+    tool_serial_ready = asynchronous(Pro400.tool_serial_ready)
+    tool_serial_available = asynchronous(Pro400.tool_serial_available)
+    tool_serial_read_data = asynchronous(Pro400.tool_serial_read_data)
+    tool_serial_write_data = asynchronous(Pro400.tool_serial_write_data)
+    tool_serial_flush = asynchronous(Pro400.tool_serial_flush)
+    tool_serial_peek = asynchronous(Pro400.tool_serial_peek)
+    tool_serial_set_baud = asynchronous(Pro400.tool_serial_set_baud)
+    tool_serial_set_timeout = asynchronous(Pro400.tool_serial_set_timeout)
 
 
 ASYNC_CLIENT = AsyncPro400

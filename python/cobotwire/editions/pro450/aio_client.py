@@ -6,53 +6,135 @@ from __future__ import annotations
 from typing import ClassVar
 
 from cobotwire.client.aio_moving import AsyncMovingClient
+from cobotwire.client.methods import asynchronous
 from cobotwire.protocol.table import Table
 
-from .aio.coords import AsyncCoordsCommands
-from .aio.drag import AsyncDragCommands
-from .aio.frames import AsyncFramesCommands
-from .aio.io import AsyncIoCommands
-from .aio.jog import AsyncJogCommands
-from .aio.motion import AsyncMotionCommands
-from .aio.planning import AsyncPlanningCommands
-from .aio.power import AsyncPowerCommands
-from .aio.serial import AsyncSerialCommands
-from .aio.servo import AsyncServoCommands
-from .aio.system import AsyncSystemCommands
+from .client import Pro450
 from .table import TABLE
 
 
-class AsyncPro450(
-    AsyncMovingClient,
-    AsyncSystemCommands,
-    AsyncPowerCommands,
-    AsyncMotionCommands,
-    AsyncPlanningCommands,
-    AsyncCoordsCommands,
-    AsyncFramesCommands,
-    AsyncJogCommands,
-    AsyncServoCommands,
-    AsyncDragCommands,
-    AsyncIoCommands,
-    AsyncSerialCommands,
-):
+class AsyncPro450(AsyncMovingClient):
     """myCobot Pro 450.
 
-    The protocol of the myCobot Pro 450, an arm with six joints. Its frames come over TCP, on port
-    4500 of the arm. It is stated as the difference from the edition mercury_a1; each change gives
-    its reason and its evidence.
-
     Create it with a port or URL, preferably in an ``async with`` block; see
-    :class:`cobotwire.client.aio.AsyncClient` for the arguments and errors of opening.
-
-    Every method raises UsageError if an argument is not allowed, before it sends anything, and
-    LinkError if the transport is lost. A method that waits for a reply raises ReplyTimeout if no
-    reply comes in time, and ProtocolError if the edition does not allow the reply. A method with
-    the argument ``ack_within`` returns when its bytes are written; with a number of seconds, it
-    waits for the acknowledgement and raises ReplyTimeout if none comes in that time.
+    :class:`cobotwire.client.aio.AsyncClient` for the arguments and errors of opening. Its methods
+    are those of :class:`Pro450`, whose class describes the edition and the errors.
     """
 
     table: ClassVar[Table] = TABLE
+
+    get_modified_version = asynchronous(Pro450.get_modified_version)
+    get_system_version = asynchronous(Pro450.get_system_version)
+    get_robot_type = asynchronous(Pro450.get_robot_type)
+    get_tool_modify_version = asynchronous(Pro450.get_tool_modify_version)
+    get_error_information = asynchronous(Pro450.get_error_information)
+    clear_error_information = asynchronous(Pro450.clear_error_information)
+    get_atom_version = asynchronous(Pro450.get_atom_version)
+    get_robot_status = asynchronous(Pro450.get_robot_status)
+    get_motors_run_err = asynchronous(Pro450.get_motors_run_err)
+    get_comm_error_counts = asynchronous(Pro450.get_comm_error_counts)
+    set_debug_state = asynchronous(Pro450.set_debug_state)
+    get_debug_state = asynchronous(Pro450.get_debug_state)
+    set_communication_mode = asynchronous(Pro450.set_communication_mode)
+    get_communication_mode = asynchronous(Pro450.get_communication_mode)
+    power_on = asynchronous(Pro450.power_on)
+    power_off = asynchronous(Pro450.power_off)
+    is_power_on = asynchronous(Pro450.is_power_on)
+    set_break = asynchronous(Pro450.set_break)
+    servo_restore = asynchronous(Pro450.servo_restore)
+    set_motor_enabled = asynchronous(Pro450.set_motor_enabled)
+    is_motor_pause = asynchronous(Pro450.is_motor_pause)
+    over_limit_return_zero = asynchronous(Pro450.over_limit_return_zero)
+    set_control_mode = asynchronous(Pro450.set_control_mode)
+    get_control_mode = asynchronous(Pro450.get_control_mode)
+    set_fresh_mode = asynchronous(Pro450.set_fresh_mode)
+    get_fresh_mode = asynchronous(Pro450.get_fresh_mode)
+    get_angle = asynchronous(Pro450.get_angle)
+    get_angles = asynchronous(Pro450.get_angles)
+    send_angle = asynchronous(Pro450.send_angle)
+    send_angles = asynchronous(Pro450.send_angles)
+    pause = asynchronous(Pro450.pause)
+    is_paused = asynchronous(Pro450.is_paused)
+    resume = asynchronous(Pro450.resume)
+    stop = asynchronous(Pro450.stop)
+    is_in_position = asynchronous(Pro450.is_in_position)
+    is_in_position_coords = asynchronous(Pro450.is_in_position_coords)
+    is_moving = asynchronous(Pro450.is_moving)
+    get_max_speed = asynchronous(Pro450.get_max_speed)
+    set_max_speed = asynchronous(Pro450.set_max_speed)
+    get_max_acc = asynchronous(Pro450.get_max_acc)
+    set_max_acc = asynchronous(Pro450.set_max_acc)
+    get_fusion_parameters = asynchronous(Pro450.get_fusion_parameters)
+    set_fusion_parameters = asynchronous(Pro450.set_fusion_parameters)
+    set_movement_type = asynchronous(Pro450.set_movement_type)
+    get_movement_type = asynchronous(Pro450.get_movement_type)
+    get_vr_mode = asynchronous(Pro450.get_vr_mode)
+    set_vr_mode = asynchronous(Pro450.set_vr_mode)
+    get_filter_len = asynchronous(Pro450.get_filter_len)
+    set_filter_len = asynchronous(Pro450.set_filter_len)
+    get_coords = asynchronous(Pro450.get_coords)
+    angles_to_coords = asynchronous(Pro450.angles_to_coords)
+    send_coord = asynchronous(Pro450.send_coord)
+    send_coords = asynchronous(Pro450.send_coords)
+    write_move_c = asynchronous(Pro450.write_move_c)
+    solve_inv_kinematics = asynchronous(Pro450.solve_inv_kinematics)
+    set_tool_reference = asynchronous(Pro450.set_tool_reference)
+    get_tool_reference = asynchronous(Pro450.get_tool_reference)
+    set_world_reference = asynchronous(Pro450.set_world_reference)
+    get_world_reference = asynchronous(Pro450.get_world_reference)
+    set_reference_frame = asynchronous(Pro450.set_reference_frame)
+    get_reference_frame = asynchronous(Pro450.get_reference_frame)
+    set_end_type = asynchronous(Pro450.set_end_type)
+    get_end_type = asynchronous(Pro450.get_end_type)
+    jog_angle = asynchronous(Pro450.jog_angle)
+    jog_coord = asynchronous(Pro450.jog_coord)
+    jog_increment_angle = asynchronous(Pro450.jog_increment_angle)
+    jog_increment_coord = asynchronous(Pro450.jog_increment_coord)
+    jog_rpy = asynchronous(Pro450.jog_rpy)
+    get_servo_encoders = asynchronous(Pro450.get_servo_encoders)
+    get_joint_min_angle = asynchronous(Pro450.get_joint_min_angle)
+    get_joint_max_angle = asynchronous(Pro450.get_joint_max_angle)
+    set_joint_min_angle = asynchronous(Pro450.set_joint_min_angle)
+    set_joint_max_angle = asynchronous(Pro450.set_joint_max_angle)
+    set_servo_calibration = asynchronous(Pro450.set_servo_calibration)
+    get_zero_pos = asynchronous(Pro450.get_zero_pos)
+    is_init_calibration = asynchronous(Pro450.is_init_calibration)
+    set_collision_mode = asynchronous(Pro450.set_collision_mode)
+    get_collision_mode = asynchronous(Pro450.get_collision_mode)
+    set_collision_threshold = asynchronous(Pro450.set_collision_threshold)
+    get_collision_threshold = asynchronous(Pro450.get_collision_threshold)
+    get_model_direction = asynchronous(Pro450.get_model_direction)
+    set_model_direction = asynchronous(Pro450.set_model_direction)
+    fourier_trajectories = asynchronous(Pro450.fourier_trajectories)
+    get_servo_speeds = asynchronous(Pro450.get_servo_speeds)
+    get_servo_currents = asynchronous(Pro450.get_servo_currents)
+    get_servo_status = asynchronous(Pro450.get_servo_status)
+    set_free_move_mode = asynchronous(Pro450.set_free_move_mode)
+    get_free_move_mode = asynchronous(Pro450.get_free_move_mode)
+    set_torque_comp = asynchronous(Pro450.set_torque_comp)
+    get_torque_comp = asynchronous(Pro450.get_torque_comp)
+    get_motor_temps = asynchronous(Pro450.get_motor_temps)
+    set_motor_type = asynchronous(Pro450.set_motor_type)
+    parameter_identify = asynchronous(Pro450.parameter_identify)
+    drag_teach_save = asynchronous(Pro450.drag_teach_save)
+    drag_teach_execute = asynchronous(Pro450.drag_teach_execute)
+    drag_teach_pause = asynchronous(Pro450.drag_teach_pause)
+    drag_teach_clean = asynchronous(Pro450.drag_teach_clean)
+    set_digital_output = asynchronous(Pro450.set_digital_output)
+    get_digital_input = asynchronous(Pro450.get_digital_input)
+    set_base_io_output = asynchronous(Pro450.set_base_io_output)
+    get_base_io_input = asynchronous(Pro450.get_base_io_input)
+    get_digital_inputs = asynchronous(Pro450.get_digital_inputs)
+    set_color = asynchronous(Pro450.set_color)
+    set_base_external_config = asynchronous(Pro450.set_base_external_config)
+    base_external_control = asynchronous(Pro450.base_external_control)
+    get_base_external_config = asynchronous(Pro450.get_base_external_config)
+    set_tool_serial_baud_rate = asynchronous(Pro450.set_tool_serial_baud_rate)
+    set_tool_serial_timeout = asynchronous(Pro450.set_tool_serial_timeout)
+    tool_serial_write_data = asynchronous(Pro450.tool_serial_write_data)
+    get_tool_config = asynchronous(Pro450.get_tool_config)
+    set_pro_gripper_offset = asynchronous(Pro450.set_pro_gripper_offset)
+    get_pro_gripper_offset = asynchronous(Pro450.get_pro_gripper_offset)
 
 
 ASYNC_CLIENT = AsyncPro450

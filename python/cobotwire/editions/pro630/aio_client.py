@@ -6,54 +6,163 @@ from __future__ import annotations
 from typing import ClassVar
 
 from cobotwire.client.aio_moving import AsyncMovingClient
-from cobotwire.editions.mercury_a1.aio.frames import AsyncFramesCommands
-from cobotwire.editions.mercury_a1.aio.gripper import AsyncGripperCommands
-from cobotwire.editions.mercury_a1.aio.io import AsyncIoCommands
-from cobotwire.editions.mercury_a1.aio.serial import AsyncSerialCommands
+from cobotwire.client.methods import asynchronous
 from cobotwire.protocol.table import Table
 
-from .aio.coords import AsyncCoordsCommands
-from .aio.drag import AsyncDragCommands
-from .aio.jog import AsyncJogCommands
-from .aio.motion import AsyncMotionCommands
-from .aio.planning import AsyncPlanningCommands
-from .aio.power import AsyncPowerCommands
-from .aio.servo import AsyncServoCommands
-from .aio.system import AsyncSystemCommands
+from .client import Pro630
 from .table import TABLE
 
 
-class AsyncPro630(
-    AsyncMovingClient,
-    AsyncSystemCommands,
-    AsyncPowerCommands,
-    AsyncMotionCommands,
-    AsyncPlanningCommands,
-    AsyncCoordsCommands,
-    AsyncFramesCommands,
-    AsyncJogCommands,
-    AsyncServoCommands,
-    AsyncDragCommands,
-    AsyncIoCommands,
-    AsyncGripperCommands,
-    AsyncSerialCommands,
-):
+class AsyncPro630(AsyncMovingClient):
     """myCobot Pro 630.
 
-    The serial protocol of the myCobot Pro 630, an arm with six joints. It is stated as the
-    difference from the edition mercury_a1; each change gives its reason and its evidence.
-
     Create it with a port or URL, preferably in an ``async with`` block; see
-    :class:`cobotwire.client.aio.AsyncClient` for the arguments and errors of opening.
-
-    Every method raises UsageError if an argument is not allowed, before it sends anything, and
-    LinkError if the transport is lost. A method that waits for a reply raises ReplyTimeout if no
-    reply comes in time, and ProtocolError if the edition does not allow the reply. A method with
-    the argument ``ack_within`` returns when its bytes are written; with a number of seconds, it
-    waits for the acknowledgement and raises ReplyTimeout if none comes in that time.
+    :class:`cobotwire.client.aio.AsyncClient` for the arguments and errors of opening. Its methods
+    are those of :class:`Pro630`, whose class describes the edition and the errors.
     """
 
     table: ClassVar[Table] = TABLE
+
+    get_modified_version = asynchronous(Pro630.get_modified_version)
+    get_system_version = asynchronous(Pro630.get_system_version)
+    get_robot_type = asynchronous(Pro630.get_robot_type)
+    get_atom_modify_version = asynchronous(Pro630.get_atom_modify_version)
+    get_error_information = asynchronous(Pro630.get_error_information)
+    clear_error_information = asynchronous(Pro630.clear_error_information)
+    get_atom_version = asynchronous(Pro630.get_atom_version)
+    set_limit_switch = asynchronous(Pro630.set_limit_switch)
+    get_limit_switch = asynchronous(Pro630.get_limit_switch)
+    get_robot_status = asynchronous(Pro630.get_robot_status)
+    get_comm_error_counts = asynchronous(Pro630.get_comm_error_counts)
+    get_motors_run_err = asynchronous(Pro630.get_motors_run_err)
+    power_on = asynchronous(Pro630.power_on)
+    power_off = asynchronous(Pro630.power_off)
+    is_power_on = asynchronous(Pro630.is_power_on)
+    release_all_servos = asynchronous(Pro630.release_all_servos)
+    focus_all_servos = asynchronous(Pro630.focus_all_servos)
+    set_break = asynchronous(Pro630.set_break)
+    is_servo_enable = asynchronous(Pro630.is_servo_enable)
+    is_all_servo_enable = asynchronous(Pro630.is_all_servo_enable)
+    release_servo = asynchronous(Pro630.release_servo)
+    focus_servo = asynchronous(Pro630.focus_servo)
+    servo_restore = asynchronous(Pro630.servo_restore)
+    over_limit_return_zero = asynchronous(Pro630.over_limit_return_zero)
+    set_control_mode = asynchronous(Pro630.set_control_mode)
+    get_control_mode = asynchronous(Pro630.get_control_mode)
+    get_angle = asynchronous(Pro630.get_angle)
+    get_angles = asynchronous(Pro630.get_angles)
+    send_angle = asynchronous(Pro630.send_angle)
+    send_angles = asynchronous(Pro630.send_angles)
+    pause = asynchronous(Pro630.pause)
+    is_paused = asynchronous(Pro630.is_paused)
+    resume = asynchronous(Pro630.resume)
+    stop = asynchronous(Pro630.stop)
+    is_in_position = asynchronous(Pro630.is_in_position)
+    is_in_position_coords = asynchronous(Pro630.is_in_position_coords)
+    is_moving = asynchronous(Pro630.is_moving)
+    get_solution_angles = asynchronous(Pro630.get_solution_angles)
+    set_solution_angles = asynchronous(Pro630.set_solution_angles)
+    get_quick_move_info = asynchronous(Pro630.get_quick_move_info)
+    get_max_speed = asynchronous(Pro630.get_max_speed)
+    set_max_speed = asynchronous(Pro630.set_max_speed)
+    get_max_acc = asynchronous(Pro630.get_max_acc)
+    set_max_acc = asynchronous(Pro630.set_max_acc)
+    get_fusion_parameters = asynchronous(Pro630.get_fusion_parameters)
+    set_fusion_parameters = asynchronous(Pro630.set_fusion_parameters)
+    get_pos_over = asynchronous(Pro630.get_pos_over)
+    set_pos_over_shoot = asynchronous(Pro630.set_pos_over_shoot)
+    get_pos_over_shoot = asynchronous(Pro630.get_pos_over_shoot)
+    set_movement_type = asynchronous(Pro630.set_movement_type)
+    get_movement_type = asynchronous(Pro630.get_movement_type)
+    get_vr_mode = asynchronous(Pro630.get_vr_mode)
+    set_vr_mode = asynchronous(Pro630.set_vr_mode)
+    get_filter_len = asynchronous(Pro630.get_filter_len)
+    set_filter_len = asynchronous(Pro630.set_filter_len)
+    get_coords = asynchronous(Pro630.get_coords)
+    angles_to_coords = asynchronous(Pro630.angles_to_coords)
+    send_coord = asynchronous(Pro630.send_coord)
+    send_coords = asynchronous(Pro630.send_coords)
+    write_move_c = asynchronous(Pro630.write_move_c)
+    write_move_c_r = asynchronous(Pro630.write_move_c_r)
+    solve_inv_kinematics = asynchronous(Pro630.solve_inv_kinematics)
+    set_tool_reference = asynchronous(Pro630.set_tool_reference)
+    get_tool_reference = asynchronous(Pro630.get_tool_reference)
+    set_world_reference = asynchronous(Pro630.set_world_reference)
+    get_world_reference = asynchronous(Pro630.get_world_reference)
+    set_reference_frame = asynchronous(Pro630.set_reference_frame)
+    get_reference_frame = asynchronous(Pro630.get_reference_frame)
+    set_end_type = asynchronous(Pro630.set_end_type)
+    get_end_type = asynchronous(Pro630.get_end_type)
+    jog_angle = asynchronous(Pro630.jog_angle)
+    jog_coord = asynchronous(Pro630.jog_coord)
+    jog_increment_angle = asynchronous(Pro630.jog_increment_angle)
+    jog_increment_coord = asynchronous(Pro630.jog_increment_coord)
+    jog_rpy = asynchronous(Pro630.jog_rpy)
+    clear_zero_pos = asynchronous(Pro630.clear_zero_pos)
+    get_servo_encoder = asynchronous(Pro630.get_servo_encoder)
+    get_servo_encoders = asynchronous(Pro630.get_servo_encoders)
+    get_joint_min_angle = asynchronous(Pro630.get_joint_min_angle)
+    get_joint_max_angle = asynchronous(Pro630.get_joint_max_angle)
+    set_joint_min_angle = asynchronous(Pro630.set_joint_min_angle)
+    set_joint_max_angle = asynchronous(Pro630.set_joint_max_angle)
+    set_servo_calibration = asynchronous(Pro630.set_servo_calibration)
+    get_zero_pos = asynchronous(Pro630.get_zero_pos)
+    is_init_calibration = asynchronous(Pro630.is_init_calibration)
+    set_collision_mode = asynchronous(Pro630.set_collision_mode)
+    get_collision_mode = asynchronous(Pro630.get_collision_mode)
+    set_collision_threshold = asynchronous(Pro630.set_collision_threshold)
+    get_collision_threshold = asynchronous(Pro630.get_collision_threshold)
+    set_torque_comp = asynchronous(Pro630.set_torque_comp)
+    get_torque_comp = asynchronous(Pro630.get_torque_comp)
+    get_model_direction = asynchronous(Pro630.get_model_direction)
+    set_model_direction = asynchronous(Pro630.set_model_direction)
+    set_identify_mode = asynchronous(Pro630.set_identify_mode)
+    get_identify_mode = asynchronous(Pro630.get_identify_mode)
+    get_down_encoders = asynchronous(Pro630.get_down_encoders)
+    set_dynamic_parameters = asynchronous(Pro630.set_dynamic_parameters)
+    get_dynamic_parameters = asynchronous(Pro630.get_dynamic_parameters)
+    fourier_trajectories = asynchronous(Pro630.fourier_trajectories)
+    get_servo_speeds = asynchronous(Pro630.get_servo_speeds)
+    get_servo_currents = asynchronous(Pro630.get_servo_currents)
+    get_servo_status = asynchronous(Pro630.get_servo_status)
+    clear_encoder_error = asynchronous(Pro630.clear_encoder_error)
+    drag_teach_save = asynchronous(Pro630.drag_teach_save)
+    drag_teach_execute = asynchronous(Pro630.drag_teach_execute)
+    drag_teach_pause = asynchronous(Pro630.drag_teach_pause)
+    drag_teach_clean = asynchronous(Pro630.drag_teach_clean)
+    get_drag_fifo = asynchronous(Pro630.get_drag_fifo)
+    set_drag_fifo = asynchronous(Pro630.set_drag_fifo)
+    get_drag_fifo_len = asynchronous(Pro630.get_drag_fifo_len)
+    is_drag_fifo_empty = asynchronous(Pro630.is_drag_fifo_empty)
+    get_digital_inputs = asynchronous(Pro630.get_digital_inputs)
+    set_digital_output = asynchronous(Pro630.set_digital_output)
+    get_digital_input = asynchronous(Pro630.get_digital_input)
+    is_btn_clicked = asynchronous(Pro630.is_btn_clicked)
+    set_color = asynchronous(Pro630.set_color)
+    set_base_io_output = asynchronous(Pro630.set_base_io_output)
+    get_base_io_input = asynchronous(Pro630.get_base_io_input)
+    set_gripper_enabled = asynchronous(Pro630.set_gripper_enabled)
+    set_gripper_state = asynchronous(Pro630.set_gripper_state)
+    set_gripper_value = asynchronous(Pro630.set_gripper_value)
+    set_gripper_calibration = asynchronous(Pro630.set_gripper_calibration)
+    set_electric_gripper = asynchronous(Pro630.set_electric_gripper)
+    init_electric_gripper = asynchronous(Pro630.init_electric_gripper)
+    set_gripper_mode = asynchronous(Pro630.set_gripper_mode)
+    get_gripper_mode = asynchronous(Pro630.get_gripper_mode)
+    set_pro_gripper = asynchronous(Pro630.set_pro_gripper)
+    set_hand_gripper = asynchronous(Pro630.set_hand_gripper)
+    set_hand_gripper_angles = asynchronous(Pro630.set_hand_gripper_angles)
+    get_pro_gripper = asynchronous(Pro630.get_pro_gripper)
+    get_hand_gripper = asynchronous(Pro630.get_hand_gripper)
+    tool_serial_restore = asynchronous(Pro630.tool_serial_restore)
+    tool_serial_ready = asynchronous(Pro630.tool_serial_ready)
+    tool_serial_available = asynchronous(Pro630.tool_serial_available)
+    tool_serial_read_data = asynchronous(Pro630.tool_serial_read_data)
+    tool_serial_write_data = asynchronous(Pro630.tool_serial_write_data)
+    tool_serial_flush = asynchronous(Pro630.tool_serial_flush)
+    tool_serial_peek = asynchronous(Pro630.tool_serial_peek)
+    tool_serial_set_baud = asynchronous(Pro630.tool_serial_set_baud)
+    tool_serial_set_timeout = asynchronous(Pro630.tool_serial_set_timeout)
 
 
 ASYNC_CLIENT = AsyncPro630

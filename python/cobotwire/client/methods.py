@@ -1,0 +1,36 @@
+"""What generated packages say of a method that is written elsewhere."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Coroutine
+from functools import wraps
+from typing import Any, Concatenate, ParamSpec, TypeVar
+
+P = ParamSpec("P")
+R = TypeVar("R")
+
+
+def shared(method: Callable[Concatenate[Any, P], R]) -> Callable[Concatenate[Any, P], R]:
+    """Return the method of a base edition for a class that does not inherit from the base's.
+
+    A delta does not inherit, since it would have the methods that it withdraws.
+    """
+    return method
+
+
+def asynchronous(
+    method: Callable[Concatenate[Any, P], R],
+) -> Callable[Concatenate[Any, P], Coroutine[Any, Any, R]]:
+    """Return the method of an asyncio client that does what a generated blocking method does.
+
+    A generated method returns what ``_call`` or ``_send`` of its client returns, which an asyncio
+    client's callers wait for.
+    """
+    generated: Callable[..., Any] = method
+
+    # It has the arguments and the docstring of the blocking method.
+    @wraps(method)
+    async def call(*arguments: Any, **named: Any) -> Any:
+        return await generated(*arguments, **named)
+
+    return call
