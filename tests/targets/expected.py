@@ -3,24 +3,25 @@
 from __future__ import annotations
 
 import json
+import re
+from itertools import chain
 from math import isfinite
 from typing import Any
 
+from hypothesis import strategies as st
+
 from cobotwire import codec as codecs
 from cobotwire.codec.interface import Codec, Listening
-from cobotwire.protocol.errors import ProtocolError
+from cobotwire.protocol.errors import ProtocolError, UsageError
 from cobotwire.protocol.loading import table_of
 from cobotwire.protocol.table import Direction, Field, Variant
 from cobotwire_codegen.model import Edition
 from cobotwire_codegen.publish import edition_json
+from raw_messages import raw_messages
+from strategies import CommandVariant
 from targets.vectors.comparison import Record, joined
 
-
-def codec_of_edition(edition: Edition, name: codecs.CodecName = "reference") -> Codec:
-    """Return a codec of an edition of the generator."""
-    return codecs.load(table_of(json.loads(edition_json(edition))), name)
-
-
+LISTENING: st.SearchStrategy[Listening] = st.sampled_from(["request", "reply", "both"])
 # UTF-8 at its limits: surplus bytes, surrogates, beyond U+10FFFF, cut characters.
 _UTF8 = """
     C1 BF, C2 80, DF BF, E0 9F BF, E0 A0 80, ED 9F BF, ED A0 80, EE 80 80, F0 8F BF BF, F0 90 80 80,
@@ -28,43 +29,82 @@ _UTF8 = """
 """
 
 
-def frames_with_odd_texts(codec: Codec) -> list[bytes]:
-    """Return replies of the made-up sensor that end with bytes that are, or are not, UTF-8."""
-    texts = [bytes.fromhex(text) for text in _UTF8.split(",")]
-    return [codec.table.frame.enclose(0x26, bytes(12) + text) for text in texts]
+def codec_of_edition(edition: Edition, name: codecs.CodecName = "reference") -> Codec:
+    """Return a codec of an edition of the generator."""
+    return codecs.load(table_of(json.loads(edition_json(edition))), name)
 
 
 class Document:
-    """Vectors of one edition in the format of ``docs/vectors.md``, as our codec decides them."""
+    """Vectors of one edition in the format of ``docs/vectors.md``, as our codec decides them.
 
-    def __init__(self, edition: Edition) -> None:
-        self.codec = codec_of_edition(edition)
-        self.record: Record = {"edition": edition.name, "messages": [], "malformed": []}
-        self.record["streams"] = []
+    ``encoded`` is a part that shared vectors lack: physical values, with the frame or the rejected
+    field.
+    """
 
-    def add(self, direction: Direction, data: bytes) -> None:
-        """Add bytes that should be a frame: a message or malformed bytes."""
+    def __init__(self, edition: Edition, codec: Codec | None = None) -> None:
+        self.codec = codec or codec_of_edition(edition)
+        self.edition = edition.name
+        self.clear()
+
+    def clear(self) -> None:
+        """Begin again without vectors."""
+        parts = ("messages", "rejected", "malformed", "streams", "encoded")
+        self.record: Record = {"edition": self.edition, **{part: [] for part in parts}}
+
+    def add(self, direction: Direction, data: bytes, of: CommandVariant | None = None) -> None:
+        """Add bytes that should be a frame: a message or malformed bytes.
+
+        ``of`` says as which message the bytes must be decoded.
+        """
         record: Record = {"name": data.hex(" "), "direction": direction, "bytes": data.hex(" ")}
+        if of is not None:
+            record |= {"command": of.command.name, "variant": _number(of.variant, of.number)}
         try:
-            found = self.codec.decode(direction, data)
+            found = self.codec.decode(direction, data, of=of and of.command.name)
         except ProtocolError as error:
-            self.record["malformed"].append(
-                record | {"reason": error.reason, "offset": error.offset}
-            )
+            place = {"reason": error.reason, "offset": error.offset, "rejects": _rejected(error)}
+            self.record["malformed"].append(record | place)
             return
         variants = found.command.variants(direction)
         number = next(i for i, each in enumerate(variants) if each is found.variant)
-        varies = any(field.sizes for field in found.variant.fields)
         self.record["messages"].append(
             record
             | {
                 "command": found.command.name,
-                "read_as": found.command.name,
-                # In the spec, messages with other numbers of elements are the same variant.
-                "variant": 0 if varies else number,
+                "read_as": self.codec.decode(direction, data).command.name,
+                "variant": _number(found.variant, number),
                 "fields": self._fields(found.variant, found.values, data, direction),
             }
         )
+
+    def add_odd_texts(self) -> None:
+        """Add replies of the made-up sensor that end with bytes that are, or are not, UTF-8."""
+        for text in _UTF8.split(","):
+            data = bytes(12) + bytes.fromhex(text)
+            self.add("reply", self.codec.table.frame.enclose(0x26, data))
+
+    def encode(self, of: CommandVariant, values: tuple[Any, ...]) -> None:
+        """Add the frame of physical values, or the field and the element that is rejected."""
+        rows = [
+            field.flatten(value, len(field.cases[0].numbers))
+            for field, value in zip(of.variant.fields, values)
+        ]
+        record: Record = {
+            "name": f"{of.command.name}{values}",
+            "command": of.command.name,
+            "direction": of.direction,
+            "variant": _number(of.variant, of.number),
+            "fields": [
+                {"name": field.name, "value": list(row)}
+                for field, row in zip(of.variant.fields, rows)
+            ],
+        }
+        try:
+            data = self.codec.encode(of.command.name, of.direction, values, variant=of.number)
+            record["bytes"] = data.hex(" ")
+        except UsageError as error:
+            record["field"], record["element"] = _argument(error.argument, of.variant)
+        self.record["encoded"].append(record)
 
     def stream(self, listening: Listening, data: bytes) -> None:
         """Add a stream and the events in it."""
@@ -75,15 +115,40 @@ class Document:
             {"name": name, "direction": listening, "bytes": name, "events": events}
         )
 
+    def draw(self, data: st.DataObject) -> None:
+        """Add a message, damaged copies of it, and a stream with other bytes between them."""
+        message = data.draw(raw_messages(self.codec.table))
+        frame, direction = message.frame, message.direction
+        self.add(direction, frame)
+        damaged = bytearray(frame)
+        for _ in range(data.draw(st.integers(1, 3))):
+            damaged[data.draw(st.integers(0, len(frame) - 1))] = data.draw(st.integers(0, 255))
+        self.add(direction, bytes(damaged))
+        # With a right check, most changes are changes of values; without one, the frame is refuted.
+        format = self.codec.table.frame
+        body = bytes(damaged[: len(frame) - format.check_size])
+        self.add(direction, body + format.end(body))
+        start = format.data_start(direction)
+        cut = bytes(damaged[: data.draw(st.integers(start, len(frame)))])
+        self.add(direction, cut)
+        pieces = st.sampled_from([frame, bytes(damaged), cut, frame[:-1], format.header])
+        stream = data.draw(st.lists(pieces | st.binary(max_size=4), max_size=6))
+        self.stream(data.draw(LISTENING), b"".join(stream))
+
     def _fields(
         self, variant: Variant, values: tuple[Any, ...], data: bytes, direction: Direction
     ) -> list[Record]:
         rows = variant.unpack(self.codec.table.frame.data(data, direction))
         return [
             {"name": field.name, "raw": list(row), "value": _numbers(variant, field, rows)}
-            | ({"text": _texts(field, value)} if field.kind == "text" else {})
+            | ({"text": list(value) if field.each else [value]} if field.kind == "text" else {})
             for field, row, value in zip(variant.fields, rows, values)
         ]
+
+
+def _number(variant: Variant, number: int) -> int:
+    """Return a variant's number in the spec, where the sizes of a list are the same variant."""
+    return 0 if any(field.sizes for field in variant.fields) else number
 
 
 def _numbers(variant: Variant, field: Field, rows: list[tuple[int, ...]]) -> list[Any]:
@@ -100,5 +165,22 @@ def _written(value: float) -> float | str:
     return "NaN" if value != value else f"{'-' if value < 0 else ''}Infinity"
 
 
-def _texts(field: Field, value: Any) -> list[str]:
-    return list(value) if field.each else [value]
+def _rejected(error: ProtocolError) -> str:
+    """Return the command and the field that an error names."""
+    if error.reason != "bad-value":
+        return ""
+    command, _, rest = str(error).partition(": ")
+    # "byte 3 of label is ...", "joints[1].angle is ..."
+    field = re.split(r"[.\[]", rest.partition(" is ")[0].rpartition(" of ")[2])[0]
+    return f"{command}: {field}"
+
+
+def _argument(argument: str, variant: Variant) -> tuple[str, int]:
+    """Return the field and the element that the name of an argument means."""
+    for field in variant.fields:
+        # Each case has its own names for its elements.
+        for element, number in chain.from_iterable(enumerate(c.numbers) for c in field.cases):
+            part = f".{number.name}" if number.name else f"[{element}]"
+            if argument == field.name + (part if field.many else ""):
+                return field.name, element
+    return argument, 0

@@ -37,14 +37,13 @@ def judged(
 ) -> Comparison:
     """Run a document's vectors on the C code of an edition, which may be a changed one."""
     with CPeer(program(edition, compiler, flags, name)) as peer:
-        return Judge(document, edition, peer).all()
+        return Judge(edition, peer).compare(document)
 
 
 class Judge:
-    """Compare a document with what the C code does; text outside frames is not compared."""
+    """Compare documents with what the C code does; text outside frames is not compared."""
 
-    def __init__(self, document: Record, edition: Edition, peer: CPeer) -> None:
-        self._document = document
+    def __init__(self, edition: Edition, peer: CPeer) -> None:
         self._frame = edition.frame
         self._peer = peer
         self._messages = messages(edition)
@@ -54,16 +53,17 @@ class Judge:
             for index, message in enumerate(self._messages)
         }
 
-    def all(self) -> Comparison:
+    def compare(self, document: Record) -> Comparison:
         """Compare every message, rejected value, malformed frame and stream."""
         parts = {
-            "messages": (self._message, self._document["messages"]),
+            "messages": (self._message, document["messages"]),
             "rejected": (
                 self._rejected,
-                [r for r in self._document["rejected"] if self._fits_struct(r)],
+                [r for r in document["rejected"] if self._fits_struct(r)],
             ),
-            "malformed": (self._malformed, self._document["malformed"]),
-            "streams": (self._stream, self._document["streams"]),
+            "malformed": (self._malformed, document["malformed"]),
+            "streams": (self._stream, document["streams"]),
+            "encoded": (self._encoded, document.get("encoded", [])),
         }
         differences = [
             f"{part}: {record['name']}: {difference}"
@@ -71,7 +71,7 @@ class Judge:
             for record in records
             for difference in judge(record)
         ]
-        fields = sum(len(f["raw"]) for r in self._document["messages"] for f in r["fields"])
+        fields = sum(len(f["raw"]) for r in document["messages"] for f in r["fields"])
         count = sum(len(records) for _, records in parts.values())
         refused = sum(len(parts[part][1]) for part in ("rejected", "malformed"))
         return Comparison(count, fields, differences, refused)
@@ -94,7 +94,7 @@ class Judge:
         index, data = self._place(record), bytes.fromhex(record["bytes"])
         raw = self._given(record, "raw")
         values = [float(value) for value in self._given(record, "value")]
-        address = (self._frame.address_values or (0,))[0]
+        address = data[self._frame.offset("address")] if self._frame.address_values else 0
         right = Read(index, raw, list(map(comparable, values)))
         yield from _unequal("built", self._peer.encode(index, raw, address), data)
         yield from _unequal(
@@ -117,9 +117,24 @@ class Judge:
         return member.field.name, found.element
 
     def _malformed(self, record: Record) -> Iterator[str]:
-        found = self._peer.read(record["direction"], bytes.fromhex(record["bytes"]))
+        data = bytes.fromhex(record["bytes"])
+        if "command" in record:
+            found = self._peer.decode(self._place(record), data)
+        else:
+            found = self._peer.read(record["direction"], data)
         outcome = (found.status, found.offset) if isinstance(found, Outcome) else found
         yield from _unequal("read", outcome, (record["reason"], record["offset"]))
+        if isinstance(found, Outcome) and record.get("rejects"):
+            message = self._messages[found.message]
+            name = f"{message.command.name}: {message.members[found.field].field.name}"
+            yield from _unequal("rejected", name, record["rejects"])
+
+    def _encoded(self, record: Record) -> Iterator[str]:
+        values = [float(value) for value in self._given(record, "value")]
+        found = self._where(self._peer.encode_values(self._place(record), values))
+        rejected = (record.get("field"), record.get("element"))
+        right = bytes.fromhex(record["bytes"]) if "bytes" in record else rejected
+        yield from _unequal("built", found, right)
 
     def _stream(self, record: Record) -> Iterator[str]:
         data = bytes.fromhex(record["bytes"])

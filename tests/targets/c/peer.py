@@ -133,21 +133,11 @@ class CPeer:
         accept_unknown: bool = False,
     ) -> tuple[list[Event], int]:
         """Frame a stream, with a flush after the marked chunks; return events and bytes waiting."""
-        found, pending = self.events_by_chunk(listening, chunks, accept_unknown)
-        return [event for events in found for event in events], pending
-
-    def events_by_chunk(
-        self,
-        listening: str,
-        chunks: Sequence[tuple[bytes, bool]],
-        accept_unknown: bool = False,
-    ) -> tuple[list[list[Event]], int]:
-        """Frame a stream as ``events`` does; return a list of events for each chunk."""
         parts = [struct.pack("=cHHH", b"f", LISTENING[listening], accept_unknown, len(chunks))]
         for data, flush in chunks:
             parts += [struct.pack("=HH", flush, len(data)), data]
         self._send(b"".join(parts))
-        return [list(self._events()) for _ in chunks], self._u16()
+        return [event for _ in chunks for event in self._events()], self._u16()
 
     def _events(self) -> Iterator[Event]:
         while self._u16():

@@ -12,7 +12,7 @@ import vectors
 from strategies import TABLES
 from targets.built import built
 from targets.c.compiled import compile_c, missing, scratch, sources
-from targets.c.specs import SPECS, edition_of
+from targets.specs import SPECS, edition_of
 from vectors import ROOT
 
 EDITIONS = sorted(TABLES)

@@ -12,7 +12,7 @@ from cobotwire_codegen.targets.vectors.document import document
 from strategies import TABLES
 from targets.c.comparison import compare, judged
 from targets.c.compiled import COMPILERS, missing
-from targets.c.specs import SPECS, edition_of
+from targets.specs import SPECS, edition_of
 from targets.vectors.comparison import read
 from wrong_models import WRONG, with_wrong_angles
 

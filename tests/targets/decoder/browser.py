@@ -14,6 +14,8 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any, Self
 
+import pytest
+
 from targets.comparison import ToolMissing
 
 NAMES = ("chromium", "chromium-browser", "google-chrome")
@@ -49,6 +51,11 @@ def chromium() -> str:
         if found:
             return found
     raise ToolMissing("Chromium is not installed (apt-get install chromium)")
+
+
+needs_chromium = pytest.mark.skipif(
+    not any(map(shutil.which, NAMES)), reason="Chromium is not installed"
+)
 
 
 def dom(url: str, *options: str) -> str:

@@ -1,74 +1,75 @@
-"""The decoder page, run in a real browser, agrees with the Python codecs on every vector."""
+"""The decoder page, run in a real browser, decodes every type in every frame as our codec does."""
 
 from __future__ import annotations
 
-import random
+from dataclasses import replace
+from pathlib import Path
 
-import pytest
+from hypothesis import HealthCheck, Phase, given, settings
+from hypothesis import strategies as st
 
 import vectors
-from cobotwire.codec.interface import Codec
+from cobotwire_codegen.model import Edition
 from cobotwire_codegen.targets.decoder import edition_script
-from strategies import TABLES, codec_of
-from targets.comparison import ToolMissing
-from targets.decoder import browser
-from targets.decoder.comparison import compare, judged
-from targets.vectors.comparison import Record, joined, read
+from random_editions import editions
+from strategies import TABLES
+from targets.decoder.browser import needs_chromium
+from targets.decoder.comparison import judged_all
+from targets.expected import Document
+from targets.specs import SPECS, edition_of
+from targets.vectors.comparison import read
 from wrong_models import WRONG, with_wrong_angles
 
-EDITIONS = sorted(TABLES)
-STREAMS = 400
-
-try:
-    browser.chromium()
-    MISSING = ""
-except ToolMissing as error:
-    MISSING = str(error)
-pytestmark = pytest.mark.skipif(bool(MISSING), reason=MISSING)
+pytestmark = needs_chromium
+# Shrinking is of no use, since the browser judges the documents of all examples at once: it starts
+# slowly.
+COLLECT = settings(phases=[Phase.generate], suppress_health_check=list(HealthCheck))
 
 
-@pytest.mark.parametrize("edition", EDITIONS)
-def test_decoder_page_agrees_with_every_vector(edition: str) -> None:
-    found = compare(edition)
-    assert found.differences == []
-    assert found.vectors > 1000
+def test_decoder_page_agrees_with_every_vector() -> None:
+    names = sorted(TABLES)
+    scripts = [edition_script(vectors.edition(name)) for name in names]
+    for found in judged_all(list(zip(map(read, names), scripts))):
+        assert found.differences == []
+        assert found.vectors > 1000
 
 
-@pytest.mark.parametrize("edition", EDITIONS)
-def test_streams_of_both_directions_are_framed_as_in_codec(edition: str) -> None:
-    chance = random.Random(6)
-    document = read(edition)
-    frames = [bytes.fromhex(record["bytes"]) for record in document["messages"]]
-    codec = codec_of(edition, "native")
-    streams = [_damaged(chance, frames) for _ in range(STREAMS)]
-    records = [_record(codec, data) for data in streams]
-    found = {"edition": edition, "messages": [], "malformed": [], "streams": records}
-    script = edition_script(vectors.edition(edition))
-    assert judged(found, script).differences == []
-    noise = {event.get("noise") for record in records for event in record["events"]}
+def test_decoder_page_of_a_wrong_model_differs_from_the_vectors() -> None:
+    model, document = vectors.edition("mycobot"), read("mycobot")
+    wrong = [replace(with_wrong_angles(model, WRONG[kind]), name=kind) for kind in WRONG]
+    documents = [(document | {"edition": each.name}, edition_script(each)) for each in wrong]
+    for found in judged_all(documents):
+        assert found.differences
+        assert all("get_angles" in difference for difference in found.differences)
+
+
+def test_any_messages_and_streams_are_decoded_as_in_codec(tmp_path: Path) -> None:
+    found = [edition_of(path) for path in SPECS.values()]
+    found += [vectors.edition(name) for name in sorted(TABLES)]
+    documents = [Document(edition) for edition in found]
+    documents[list(SPECS).index("sensor")].add_odd_texts()
+    known = list(documents)
+
+    @settings(COLLECT, max_examples=160)
+    @given(data=st.data())
+    def collect(data: st.DataObject) -> None:
+        known[data.draw(st.integers(0, len(known) - 1))].draw(data)
+
+    @settings(COLLECT, max_examples=8)
+    @given(data=st.data())
+    def collect_of_random_protocols(data: st.DataObject) -> None:
+        edition: Edition = data.draw(editions(tmp_path, f"rnd{len(found)}"))
+        documents.append(Document(edition))
+        for _ in range(5):
+            documents[-1].draw(data)
+        found.append(edition)
+
+    collect()
+    collect_of_random_protocols()
+    scripts = [edition_script(edition) for edition in found]
+    records = [document.record for document in documents]
+    compared = judged_all(list(zip(records, scripts, strict=True)))
+    assert [text for each in compared for text in each.differences] == []
+    assert sum(each.fields for each in compared) > 100
+    noise = {e.get("noise") for r in records for s in r["streams"] for e in s["events"]}
     assert noise >= {"no-header", "bad-length", "unknown-id", "bad-check", "truncated", None}
-
-
-def _damaged(chance: random.Random, frames: list[bytes]) -> bytes:
-    """Return frames of both directions, some with a byte changed, lost or inserted."""
-    data = bytearray(b"".join(chance.choices(frames, k=4)))
-    for _ in range(chance.randrange(4)):
-        at = chance.randrange(len(data))
-        byte = chance.choice((0xFE, 0xFA, chance.randrange(256)))
-        data[at : at + chance.randrange(2)] = bytes([byte] * chance.randrange(3))
-    return bytes(data)
-
-
-def _record(codec: Codec, data: bytes) -> Record:
-    framer = codec.framer("both")
-    events = joined([*framer.feed(data), *framer.flush()])
-    return {"name": data.hex(), "direction": "both", "bytes": data.hex(" "), "events": events}
-
-
-@pytest.mark.parametrize("kind", WRONG)
-def test_decoder_page_of_a_wrong_model_differs_from_the_vectors(kind: str) -> None:
-    wrong = with_wrong_angles(vectors.edition("mycobot"), WRONG[kind])
-    script = edition_script(wrong)
-    found = judged(read("mycobot"), script).differences
-    assert found
-    assert all("get_angles" in difference for difference in found)

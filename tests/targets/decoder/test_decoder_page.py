@@ -18,8 +18,7 @@ from cobotwire_codegen.emit import Target, write
 from cobotwire_codegen.project import edition_files
 from cobotwire_codegen.targets.decoder import edition_script, render_decoder
 from strategies import TABLES, codec_of
-from targets.c.specs import SPECS, edition_of
-from targets.comparison import ToolMissing
+from targets.specs import SPECS, edition_of
 from targets.decoder import browser
 from targets.decoder.browser import SHOWN
 from targets.vectors.comparison import Record, read
@@ -36,12 +35,7 @@ NOTATIONS = [
     ("hello <script>", "not hex"),
 ]
 WRONG = "FE FE 03 12 07 FA"
-try:
-    browser.chromium()
-    MISSING = ""
-except ToolMissing as error:
-    MISSING = str(error)
-pytestmark = pytest.mark.skipif(bool(MISSING), reason=MISSING)
+pytestmark = browser.needs_chromium
 
 
 @pytest.fixture(scope="module")
