@@ -8,6 +8,7 @@ from pathlib import Path
 from textwrap import dedent, indent
 
 import pytest
+from ruamel.yaml import YAML
 
 import vectors
 from cobotwire_codegen.author.codes import CODES, Explanation
@@ -17,6 +18,7 @@ from cobotwire_codegen.language.schema import records
 from codegen.author import samples
 
 SOURCES = vectors.ROOT / "codegen/src/cobotwire_codegen"
+EXPLAINED: dict[str, list[str]] = YAML(typ="safe").load(Path(__file__).with_name("explained.yaml"))
 # Codes about a folder and about files that do not belong to an edition. Without the lines of its
 # commands, an edition has other problems first.
 WITHOUT_LINES = {
@@ -100,18 +102,18 @@ def _with_wrong_lines(folder: Path, explanation: Explanation) -> Iterator[Path]:
 
 
 @pytest.mark.parametrize("code", sorted(CODES.keys() - WITHOUT_LINES))
-def test_wrong_lines_of_an_explanation_cause_the_code_and_right_ones_do_not(
+def test_wrong_lines_of_an_explanation_cause_exactly_the_stated_problems(
     tmp_path: Path, code: str
 ) -> None:
     folder = samples.copied(tmp_path)
     (folder / "photo.jpg").write_bytes(b"\xff\xd8\xff")
-    found = {
-        problem.code
+    reported = (
+        samples.problems(folder / name)
         for _ in _with_wrong_lines(folder, CODES[code])
         for name in samples.EDITIONS
-        for problem in samples.problems(folder / name)
-    }
-    assert code in found
+    )
+    found = next(found for found in reported if code in {problem.code for problem in found})
+    assert [str(problem) for problem in found] == EXPLAINED[code]
 
 
 def test_explain_prints_all_parts_of_a_code(tmp_path: Path) -> None:
