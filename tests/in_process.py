@@ -9,6 +9,8 @@ from typing import NamedTuple
 import click
 from click.testing import CliRunner
 
+from cobotwire.cli.app import app
+
 
 class Ended(NamedTuple):
     """How a program ended, with the attributes of a ``CompletedProcess``."""
@@ -34,3 +36,8 @@ def run(
             command, words, input=given, prog_name=program
         )
     return Ended(done.exit_code, done.stdout, done.stderr)
+
+
+def cobotwire(*words: str | Path, given: bytes = b"") -> Ended:
+    """Run the command line of the package."""
+    return run(app, "cobotwire", *map(str, words), given=given)

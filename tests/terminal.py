@@ -67,6 +67,11 @@ class Terminal:
         """Return everything shown without the breaks between rows and the spaces around them."""
         return "".join("".join(self.rows()).split())
 
+    @property
+    def has_cursor(self) -> bool:
+        """Whether the cursor is shown."""
+        return not self._screen.cursor.hidden
+
     def until(self, shown: Callable[[], bool]) -> None:
         """Read until ``shown`` is true."""
         end = time.monotonic() + SECONDS

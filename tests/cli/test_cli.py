@@ -1,4 +1,4 @@
-"""Run the command line in another process; check its output and exit code."""
+"""Run the command line; check its output and exit code."""
 
 from __future__ import annotations
 
@@ -17,8 +17,10 @@ from cobotwire.cli.conform import VERBS as CONFORM_VERBS
 from cobotwire.cli.conform import conform
 from cobotwire.editions import mycobot280
 from cobotwire.editions.mycobot import TABLE
+from cobotwire.inspect import demo
 from cobotwire.simulator import PtyServer, SimulatedArm
-from command_line import run_program as run
+from command_line import run_program
+from in_process import cobotwire as run
 
 
 @pytest.mark.parametrize("codec", ["native", "reference"])
@@ -32,15 +34,10 @@ def test_demo_decodes_every_reply_correctly(codec: str) -> None:
     assert "\x1b[" not in result.stdout, "there is no colour without a terminal"
 
 
-def test_demo_with_a_wrong_reply_fails() -> None:
-    wrong = (
-        "import cobotwire.inspect.demo as d; "
-        "d.OPENING = 55; d.TOOL = d.TOOL._replace(z=50.004); "
-        "from cobotwire.cli import main; main()"
-    )
-    result = subprocess.run(
-        [sys.executable, "-c", wrong, "demo"], capture_output=True, text=True, check=False
-    )
+def test_demo_with_a_wrong_reply_fails(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(demo, "OPENING", 55)
+    monkeypatch.setattr(demo, "TOOL", demo.TOOL._replace(z=50.004))
+    result = run("demo")
     assert result.returncode == 1
     assert "WRONG  get_tool_reference" in result.stdout
     assert "7 of 8 replies are right" in result.stdout
@@ -56,9 +53,9 @@ def test_help_lists_verbs_and_exit_codes() -> None:
 
 def test_version_names_the_codec_in_use() -> None:
     assert run("--version").stdout == f"cobotwire {__version__}, native codec\n"
-    forced = run("--version", COBOTWIRE_CODEC="reference")
+    forced = run_program("--version", COBOTWIRE_CODEC="reference")
     assert forced.stdout == f"cobotwire {__version__}, reference codec\n"
-    assert run("--version", COBOTWIRE_CODEC="quick").returncode == 2
+    assert run_program("--version", COBOTWIRE_CODEC="quick").returncode == 2
 
 
 def test_call_prints_the_result(server: PtyServer) -> None:
@@ -90,11 +87,12 @@ def test_call_accepts_lists_enum_names_and_negative_numbers(
     assert run(*call, "power_on").returncode == 0
     moved = run(*call, "send_angles", "-10,0,0,0,0,5.5", "speed=100")
     assert moved.returncode == 0, moved.stderr
-    assert simulated.state.angles.target(0.0) == pytest.approx((-10, 0, 0, 0, 0, 5.5), abs=0.044)
     assert run(*call, "set_end_type", "tool").returncode == 0
-    assert simulated.state.end_type == 1
     assert run(*call, "set_digital_output", "23", "on").returncode == 0
-    assert simulated.state.pins == {23: True}
+    # Requests without a reply have been received once a later one is answered.
+    assert run(*call, "is_power_on").stdout == "True\n"
+    assert simulated.state.angles.target(0.0) == pytest.approx((-10, 0, 0, 0, 0, 5.5), abs=0.044)
+    assert (simulated.state.end_type, simulated.state.pins) == (1, {23: True})
 
 
 @pytest.mark.parametrize(
@@ -169,20 +167,16 @@ def test_help_of_call_keeps_the_lines_of_its_examples() -> None:
     assert "\\b" not in "".join(lines)
 
 
-def test_commands_prints_text_of_the_spec_without_markup() -> None:
-    script = (
-        "import cobotwire.editions.mycobot280 as e\n"
-        "word = 'the [bold]first[/] of :warning: [/nothing]'\n"
-        "stop = e.TABLE.command('stop')._replace(title=word, doc=word, notes=(word,))\n"
-        "e.TABLE = e.TABLE._replace(commands=(stop,))\n"
-        "from cobotwire.cli import main; main()"
-    )
-    for words in (["commands"], ["commands", "stop"]):
-        result = subprocess.run(
-            [sys.executable, "-c", script, *words], capture_output=True, text=True, check=False
-        )
-        assert result.returncode == 0, result.stderr
-        assert "the [bold]first[/] of :warning: [/nothing]" in result.stdout
+@pytest.mark.parametrize("words", [["commands"], ["commands", "stop"]])
+def test_commands_prints_text_of_the_spec_without_markup(
+    monkeypatch: pytest.MonkeyPatch, words: list[str]
+) -> None:
+    text = "the [bold]first[/] of :warning: [/nothing]"
+    stop = mycobot280.TABLE.command("stop")._replace(title=text, doc=text, notes=(text,))
+    monkeypatch.setattr(mycobot280, "TABLE", mycobot280.TABLE._replace(commands=(stop,)))
+    result = run(*words)
+    assert result.returncode == 0, result.stderr
+    assert text in result.stdout
 
 
 def test_commands_lists_every_command() -> None:

@@ -9,7 +9,7 @@ import pytest
 
 from cobotwire.capture import CaptureWriter, Interface, Packet, read
 from cobotwire.simulator import PtyServer, SimulatedArm
-from command_line import run_program as run
+from in_process import cobotwire as run
 from scripted_peer import ScriptedPeer
 
 QUERY = bytes.fromhex("FE FE 02 20 FA")

@@ -16,10 +16,10 @@ from cobotwire.capture import read
 from cobotwire.editions.mycobot import TABLE
 from cobotwire.inspect.doctor import SLOW_SECONDS
 from cobotwire.simulator import PtyServer, SimulatedArm
-from command_line import run_program
+from in_process import cobotwire
 from scripted_peer import ScriptedPeer, ScriptedTcpPeer, Step
 
-run = partial(run_program, "--edition", "mycobot", "doctor")
+run = partial(cobotwire, "--edition", "mycobot", "doctor")
 POWERED = bytes.fromhex("FE FE 03 12 01 FA")
 RUNNING = bytes.fromhex("FE FE 03 27 00 FA")
 STILL = bytes.fromhex("FE FE 03 2B 00 FA")
@@ -153,7 +153,7 @@ def test_doctor_diagnoses_noise_before_the_first_request() -> None:
 @pytest.mark.parametrize(("client", "arm"), [("mycobot280", "mycobot"), ("mycobot", "mycobot280")])
 def test_doctor_with_the_wrong_edition_names_the_arms_edition(client: str, arm: str) -> None:
     with PtyServer(SimulatedArm(editions.load(arm).TABLE, powered=True)) as server:
-        result = run_program(
+        result = cobotwire(
             "--edition", client, "doctor", server.url, "--json", "--count", "2", "--timeout", "0.2"
         )
         assert result.returncode == 1, result.stdout
@@ -163,5 +163,5 @@ def test_doctor_with_the_wrong_edition_names_the_arms_edition(client: str, arm: 
         assert problem["kind"] == "other-edition"
         assert f"the arm speaks edition {arm}, not {client}" in problem["text"]
         assert f"--edition {arm}" in problem["advice"]
-        right = run_program("--edition", arm, "doctor", server.url, "--count", "2")
+        right = cobotwire("--edition", arm, "doctor", server.url, "--count", "2")
         assert (right.returncode, right.stdout.endswith("healthy\n")) == (0, True)

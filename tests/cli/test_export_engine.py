@@ -10,7 +10,7 @@ import pyarrow.parquet as pq
 import pytest
 
 from capture.archive.captures import noisy_stream
-from command_line import run_program
+from in_process import cobotwire
 
 
 @pytest.fixture
@@ -21,8 +21,8 @@ def capture(tmp_path: Path) -> str:
 
 
 def test_threads_write_parts_and_report_the_same(capture: str, tmp_path: Path) -> None:
-    one = run_program("export", capture, "-o", str(tmp_path / "one"), "--json")
-    many = run_program(
+    one = cobotwire("export", capture, "-o", str(tmp_path / "one"), "--json")
+    many = cobotwire(
         "export", capture, "-o", str(tmp_path / "many"), "--json", "--engine", "threads"
     )
     assert (many.returncode, many.stderr) == (one.returncode, one.stderr) == (1, "")
@@ -52,7 +52,7 @@ def test_options_that_do_not_fit_are_refused(
     capture: str, tmp_path: Path, words: list[str], sentence: str
 ) -> None:
     output = [] if "--output" in words else ["-o", str(tmp_path / "out")]
-    found = run_program("export", capture, *output, *words)
+    found = cobotwire("export", capture, *output, *words)
     assert found.returncode == 2
     assert sentence in found.stderr
     assert not (tmp_path / "out").exists()

@@ -13,11 +13,12 @@ from pathlib import Path
 from cobotwire import MyCobot
 from cobotwire.capture import read
 from cobotwire.simulator import PtyServer
-from command_line import PROGRAM, run_program
+from command_line import PROGRAM
+from in_process import cobotwire
 from scripted_peer import ScriptedPeer
 
 COMMAND = [*PROGRAM, "monitor"]
-run = partial(run_program, "monitor")
+run = partial(cobotwire, "monitor")
 ANGLES = bytes.fromhex("FE FE 0E 20 00 8C 00 3D FF E6 FF 3F 00 AF FF 51 FA")
 COORDS = bytes.fromhex("FE FE 0E 23 00 00 00 00 00 00 00 00 00 00 00 00 FA")
 REQUEST_SIZE = len(bytes.fromhex("FE FE 02 20 FA"))

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import json
-import subprocess
+import time
 from collections.abc import Callable
 
 import pytest
 
 from cobotwire.editions import mercury_a1, mycobot280
 from cobotwire.simulator import PtyServer, SimulatedArm
-from command_line import PROGRAM, run_program
+from command_line import printed, started
+from in_process import cobotwire
 from scripted_peer import ScriptedPeer
 
 MOTION = ("send_angles", "10,0,0,0,0,0", "30")
@@ -45,9 +46,9 @@ def test_motion_that_the_arm_does_not_obey_is_not_sent_unless_forced(
     arm = SimulatedArm(mycobot280.TABLE, powered=True)
     spoil(arm)
     with PtyServer(arm) as server:
-        refused = run_program("call", server.url, *MOTION)
+        refused = cobotwire("call", server.url, *MOTION)
         target = arm.state.angles.target(0.0)
-        forced = run_program("call", server.url, *MOTION, "--force")
+        forced = cobotwire("call", server.url, *MOTION, "--force")
     assert (refused.returncode, refused.stdout) == (7, "")
     assert refused.stderr.startswith(f"cobotwire: send_angles was not sent: {text}")
     assert len(refused.stderr.splitlines()) == 1
@@ -60,8 +61,8 @@ def test_doctor_reports_why_an_arm_does_not_move_and_not_that_it_is_healthy() ->
     for spoil in (_cut, _pause, _fail):
         spoil(arm)
     with PtyServer(arm) as server:
-        human = run_program("doctor", server.url, "--count", "1")
-        machine = run_program("doctor", server.url, "--count", "1", "--json")
+        human = cobotwire("doctor", server.url, "--count", "1")
+        machine = cobotwire("doctor", server.url, "--count", "1", "--json")
     assert (human.returncode, machine.returncode) == (1, 1)
     assert "healthy" not in human.stdout
     report = json.loads(machine.stdout)
@@ -75,7 +76,7 @@ def test_doctor_reports_why_an_arm_does_not_move_and_not_that_it_is_healthy() ->
 
 def test_coordinates_that_a_simulated_arm_cannot_compute_are_not_a_lost_reply() -> None:
     with PtyServer(SimulatedArm(mercury_a1.TABLE, powered=True)) as server:
-        human = run_program("--edition", "mercury_a1", "doctor", server.url, "--count", "1")
+        human = cobotwire("--edition", "mercury_a1", "doctor", server.url, "--count", "1")
     assert (human.returncode, human.stderr) == (0, "")
     assert (
         "- no-coordinates: no reply to get_coords; the edition has no geometry of" in human.stdout
@@ -85,7 +86,7 @@ def test_coordinates_that_a_simulated_arm_cannot_compute_are_not_a_lost_reply() 
 
 def test_doctor_names_the_command_that_switches_a_mercury_on() -> None:
     with PtyServer(SimulatedArm(mercury_a1.TABLE)) as server:
-        human = run_program("--edition", "mercury_a1", "doctor", server.url, "--count", "1")
+        human = cobotwire("--edition", "mercury_a1", "doctor", server.url, "--count", "1")
     assert human.returncode == 1
     assert "cobotwire call URL power_on switches it on" in human.stdout
 
@@ -94,7 +95,7 @@ def test_motion_is_not_sent_while_the_emergency_stop_is_pressed() -> None:
     state = bytes.fromhex("FE FE 04 12 02 9C F0")
     with ScriptedPeer([state], [state]) as peer:
         motion = ("call", peer.url, "send_angles", "10,0,0,0,0,0,0", "30", "--timeout", "0.1")
-        result = run_program("--edition", "mercury_a1", *motion)
+        result = cobotwire("--edition", "mercury_a1", *motion)
         received = peer.received
     assert result.returncode == 7
     assert "the arm has no power: it reports EMERGENCY_STOP; end that state first" in result.stderr
@@ -103,7 +104,7 @@ def test_motion_is_not_sent_while_the_emergency_stop_is_pressed() -> None:
 
 def test_motion_that_the_arm_rejects_is_reported_after_it_was_sent() -> None:
     with PtyServer(SimulatedArm(mycobot280.TABLE, powered=True)) as server:
-        result = run_program("call", server.url, "send_coords", "281,281,281,0,0,0", "30")
+        result = cobotwire("call", server.url, "send_coords", "281,281,281,0,0,0", "30")
     assert result.returncode == 7
     said = "send_coords was sent, but the arm's error register is 32: the inverse kinematics has no"
     assert said in result.stderr
@@ -114,14 +115,16 @@ def test_commands_that_end_a_motion_are_sent_to_any_arm() -> None:
     arm.state.paused = True
     with PtyServer(arm) as server:
         for name in ("pause", "resume", "stop", "clear_queue", "power_on"):
-            result = run_program("call", server.url, name)
+            result = cobotwire("call", server.url, name)
             assert (result.returncode, result.stderr) == (0, ""), name
+        # Requests without a reply have been received once a later one is answered.
+        assert cobotwire("call", server.url, "is_power_on").returncode == 0
     assert (arm.state.paused, arm.state.powered) == (False, True)
 
 
 def test_motion_to_a_silent_arm_is_not_sent() -> None:
     with ScriptedPeer() as peer:
-        result = run_program("call", peer.url, *MOTION, "--timeout", "0.1")
+        result = cobotwire("call", peer.url, *MOTION, "--timeout", "0.1")
         received = peer.received
     assert result.returncode == 4
     assert "no reply to is_power_on" in result.stderr
@@ -130,20 +133,20 @@ def test_motion_to_a_silent_arm_is_not_sent() -> None:
 
 def test_state_that_a_firmware_does_not_report_does_not_keep_a_motion_back() -> None:
     on = bytes.fromhex("FE FE 03 12 01 FA")
+    motion = bytes.fromhex("FE FE 0F 22 03 E8 00 00 00 00 00 00 00 00 00 00 1E FA")
     with ScriptedPeer([on]) as peer:
-        result = run_program("--edition", "mycobot", "call", peer.url, *MOTION, "--timeout", "0.1")
-        received = peer.received
+        result = cobotwire("--edition", "mycobot", "call", peer.url, *MOTION, "--timeout", "0.1")
+        until = time.monotonic() + 20
+        while not peer.received.endswith(motion):
+            assert time.monotonic() < until, peer.received
+            time.sleep(0.01)
     assert (result.returncode, result.stderr) == (0, "")
-    assert received.endswith(bytes.fromhex("FE FE 0F 22 03 E8 00 00 00 00 00 00 00 00 00 00 1E FA"))
 
 
 def test_simulated_arm_without_powered_refuses_the_motion_from_the_command_line() -> None:
-    simulator = [*PROGRAM, "sim", "--quiet"]
-    with subprocess.Popen(simulator, stdout=subprocess.PIPE, text=True) as process:
-        assert process.stdout is not None
-        url = process.stdout.readline().split()[-1]
-        result = run_program("call", url, *MOTION)
-        doctor = run_program("doctor", url, "--count", "1")
-        process.terminate()
+    with started("sim", "--quiet") as sim:
+        url = printed(sim).split()[-1]
+        result = cobotwire("call", url, *MOTION)
+        doctor = cobotwire("doctor", url, "--count", "1")
     assert (result.returncode, NO_POWER in result.stderr) == (7, True)
     assert (doctor.returncode, "healthy" in doctor.stdout) == (1, False)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import signal
-import subprocess
 import time
 from functools import partial
 from pathlib import Path
@@ -17,10 +16,10 @@ from cobotwire.capture import Recording, read
 from cobotwire.editions.mycobot import TABLE
 from cobotwire.simulator import PtyServer
 from cobotwire.transport import TappedTransport, open_transport
-from command_line import PROGRAM, run_program
+from command_line import printed, started
+from in_process import cobotwire
 
-COMMAND = [*PROGRAM, "replay"]
-run = partial(run_program, "replay")
+run = partial(cobotwire, "replay")
 ANGLES = (10.0, -20.0, 30.0, 0.0, 5.5, 0.0)
 
 
@@ -68,12 +67,8 @@ def test_json_output_is_an_object_per_packet(recorded: tuple[Path, list[object]]
 
 def test_served_recording_gives_the_recorded_replies(recorded: tuple[Path, list[object]]) -> None:
     path, results = recorded
-    process = subprocess.Popen(
-        [*COMMAND, str(path), "--serve"], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
-    )
-    try:
-        assert process.stdout is not None
-        url = process.stdout.readline().strip()
+    with started("replay", path, "--serve") as process:
+        url = printed(process).strip()
         assert converse(url) == results
         # A second client gets the same replies from the beginning.
         assert converse(url) == results
@@ -81,13 +76,9 @@ def test_served_recording_gives_the_recorded_replies(recorded: tuple[Path, list[
             arm.get_coords()
         process.send_signal(signal.SIGTERM)
         output, errors = process.communicate(timeout=10)
-        assert process.returncode == 0
-        assert errors == ""
+        assert (process.returncode, errors) == (0, "")
         assert "FE FE 02 12 FA   replied with 6 bytes" in output
         assert "FE FE 02 23 FA   this request was not recorded" in output
-    finally:
-        process.kill()
-        process.communicate()
 
 
 def test_truncated_recording_is_printed_with_a_warning(recorded: tuple[Path, list[object]]) -> None:

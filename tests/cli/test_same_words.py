@@ -10,7 +10,7 @@ import pytest
 
 from cobotwire.cli.app import app
 from cobotwire.simulator import PtyServer
-from command_line import run_program
+from in_process import cobotwire
 
 
 def _verbs(group: click.Group, *names: str) -> Iterator[tuple[str, click.Command]]:
@@ -47,11 +47,11 @@ def test_json_option_needs_no_value(name: str) -> None:
 
 
 def test_port_comes_before_the_command(server: PtyServer) -> None:
-    result = run_program("call", server.url, "is_power_on", "--json")
+    result = cobotwire("call", server.url, "is_power_on", "--json")
     assert json.loads(result.stdout) == {"command": "is_power_on", "result": False}
 
 
 def test_json_option_of_conform_prints_the_report() -> None:
-    result = run_program("conform", "device", "--simulated", "--json")
+    result = cobotwire("conform", "device", "--simulated", "--json")
     assert json.loads(result.stdout)["edition"]
     assert "pass" in result.stderr

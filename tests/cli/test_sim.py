@@ -2,77 +2,77 @@
 
 from __future__ import annotations
 
-import fcntl
 import json
 import os
 import re
 import select
 import signal
 import socket
-import struct
-import subprocess
-import termios
 import time
 from collections.abc import Iterator
 from pathlib import Path
+from subprocess import Popen
 
 import pytest
 
 from cobotwire import MyCobot, MyCobot280
-from command_line import PROGRAM, run_program
+from cobotwire.transport.opening import open_transport
+from command_line import printed, started
+from in_process import cobotwire
 
-COMMAND = [*PROGRAM, "sim"]
+QUERY = "received FE FE 02 12 FA   is_power_on()   reply FE FE 03 12 00 FA\n"
+
+
+def with_options(*words: str) -> pytest.MarkDecorator:
+    """Start the program of a test with these options."""
+    return pytest.mark.parametrize("sim", [words], indirect=True, ids=["sim"])
 
 
 @pytest.fixture
-def sim(request: pytest.FixtureRequest) -> Iterator[subprocess.Popen[str]]:
-    process = subprocess.Popen(
-        [*COMMAND, *getattr(request, "param", ())],
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
-    )
-    try:
+def sim(request: pytest.FixtureRequest) -> Iterator[Popen[str]]:
+    with started("sim", *getattr(request, "param", ())) as process:
         yield process
-    finally:
-        process.kill()
-        process.communicate()
 
 
-@pytest.mark.parametrize("how", [signal.SIGINT, signal.SIGTERM])
-def test_sim_serves_a_port_prints_the_traffic_and_ends_on_a_signal(
-    sim: subprocess.Popen[str], how: signal.Signals
-) -> None:
-    assert sim.stdout is not None
-    url = sim.stdout.readline().strip()
-    assert url.startswith("/dev/")
-    with MyCobot(url) as arm:
-        assert arm.is_power_on() is False
-    line = sim.stdout.readline()
-    assert line == "received FE FE 02 12 FA   is_power_on()   reply FE FE 03 12 00 FA\n"
+def end(sim: Popen[str], how: signal.Signals = signal.SIGTERM) -> None:
+    """End the program with a signal; check that it obeys."""
     sim.send_signal(how)
     assert sim.wait(timeout=10) == 0
 
 
-def test_sim_continues_when_its_output_is_closed(sim: subprocess.Popen[str]) -> None:
-    assert sim.stdout is not None
+def errors(sim: Popen[str]) -> str:
     assert sim.stderr is not None
-    url = sim.stdout.readline().strip()
+    return sim.stderr.read()
+
+
+@pytest.mark.parametrize("how", [signal.SIGINT, signal.SIGTERM])
+def test_sim_serves_a_port_prints_the_traffic_and_ends_on_a_signal(
+    sim: Popen[str], how: signal.Signals
+) -> None:
+    url = printed(sim).strip()
+    assert url.startswith("/dev/")
+    with MyCobot(url) as arm:
+        assert arm.is_power_on() is False
+    assert printed(sim) == QUERY
+    end(sim, how)
+
+
+def test_sim_continues_when_its_output_is_closed(sim: Popen[str]) -> None:
+    url = printed(sim).strip()
+    assert sim.stdout is not None
     sim.stdout.close()  # as head -1 does
     with MyCobot(url, timeout=5.0) as arm:
         arm.power_on()
         for _ in range(20):
             assert arm.is_power_on() is True
-    sim.send_signal(signal.SIGTERM)
-    assert sim.wait(timeout=10) == 0
-    assert sim.stderr.read() == ""
+    end(sim)
+    assert errors(sim) == ""
     sim.stdout = None
 
 
 @pytest.mark.parametrize("sim", [[], ["--json"]], indirect=True, ids=["text", "json"])
-def test_arm_replies_while_nobody_reads_the_output(sim: subprocess.Popen[str]) -> None:
-    assert sim.stdout is not None
-    first = sim.stdout.readline().strip()
+def test_arm_replies_while_nobody_reads_the_output(sim: Popen[str]) -> None:
+    first = printed(sim).strip()
     url = json.loads(first)["url"] if first.startswith("{") else first
     # A pipe holds 64 KiB, and the program keeps 1 MiB.
     with MyCobot(url, timeout=5.0) as arm:
@@ -80,73 +80,59 @@ def test_arm_replies_while_nobody_reads_the_output(sim: subprocess.Popen[str]) -
             assert arm.is_power_on() is False
         # A reader that comes late gets the first lines, and how many are missing.
         lines = []
-        while "left out" not in (line := sim.stdout.readline()):
+        while "left out" not in (line := printed(sim)):
             assert "FE FE 02 12 FA" in line
             lines.append(line)
         assert len(lines) + int(re.findall(r"\d+", line)[0]) == 20_000
         # From then on no line is missing.
         arm.power_on()
-        assert "power_on" in sim.stdout.readline()
-    sim.send_signal(signal.SIGTERM)
-    assert sim.wait(timeout=10) == 0
+        assert "power_on" in printed(sim)
+    end(sim)
 
 
-def test_sim_whose_output_nobody_reads_ends_on_a_signal(sim: subprocess.Popen[str]) -> None:
-    assert sim.stdout is not None
-    url = sim.stdout.readline().strip()
-    with MyCobot(url, timeout=5.0) as arm:
+def test_sim_whose_output_nobody_reads_ends_on_a_signal(sim: Popen[str]) -> None:
+    with MyCobot(printed(sim).strip(), timeout=5.0) as arm:
         for _ in range(2000):
             arm.is_power_on()
-    started = time.monotonic()
-    sim.send_signal(signal.SIGTERM)
-    assert sim.wait(timeout=10) == 0
-    assert time.monotonic() - started < 5
+    started_at = time.monotonic()
+    end(sim)
+    assert time.monotonic() - started_at < 5
 
 
-@pytest.mark.parametrize("sim", [["--quiet"]], indirect=True)
+@with_options("--quiet")
 @pytest.mark.parametrize("how", [signal.SIGINT, signal.SIGTERM])
-def test_sim_ends_while_a_client_does_not_read(
-    sim: subprocess.Popen[str], how: signal.Signals
-) -> None:
-    assert sim.stdout is not None
-    client = os.open(sim.stdout.readline().strip(), os.O_RDWR | os.O_NOCTTY | os.O_NONBLOCK)
+def test_sim_ends_while_a_client_does_not_read(sim: Popen[str], how: signal.Signals) -> None:
+    client = os.open(printed(sim).strip(), os.O_RDWR | os.O_NOCTTY | os.O_NONBLOCK)
     try:
         for _ in range(400):
             assert select.select([], [client], [], 10.0)[1], "the arm still reads"
             os.write(client, bytes.fromhex("FE FE 02 20 FA") * 20)
-        sim.send_signal(how)
-        assert sim.wait(timeout=10) == 0
+        end(sim, how)
     finally:
         os.close(client)
 
 
-@pytest.mark.parametrize("sim", [["--tcp", ":0"]], indirect=True)
-def test_sim_over_tcp_numbers_the_clients(sim: subprocess.Popen[str]) -> None:
-    assert sim.stdout is not None
-    assert sim.stderr is not None
-    url = sim.stdout.readline().strip()
+@with_options("--tcp", ":0")
+def test_sim_over_tcp_numbers_the_clients(sim: Popen[str]) -> None:
+    url = printed(sim).strip()
     assert url.startswith("socket://127.0.0.1:")
     with MyCobot(url) as one:
         assert one.is_power_on() is False
         with MyCobot(url) as two:
             assert two.is_power_on() is False
-    line = "received FE FE 02 12 FA   is_power_on()   reply FE FE 03 12 00 FA\n"
-    assert [sim.stdout.readline() for _ in range(2)] == [f"  1 {line}", f"  2 {line}"]
-    sim.send_signal(signal.SIGTERM)
-    assert sim.wait(timeout=10) == 0
-    assert sim.stderr.read() == ""
+    assert [printed(sim) for _ in range(2)] == [f"  1 {QUERY}", f"  2 {QUERY}"]
+    end(sim)
+    assert errors(sim) == ""
 
 
-@pytest.mark.parametrize("sim", [["--tcp", "0.0.0.0:0", "--json", "--no-acks"]], indirect=True)
-def test_sim_on_all_interfaces_prints_json_and_a_warning(sim: subprocess.Popen[str]) -> None:
-    assert sim.stdout is not None
-    assert sim.stderr is not None
-    serving = json.loads(sim.stdout.readline())
+@with_options("--tcp", "0.0.0.0:0", "--json", "--no-acks")
+def test_sim_on_all_interfaces_prints_json_and_a_warning(sim: Popen[str]) -> None:
+    serving = json.loads(printed(sim))
     assert serving["event"] == "serving"
     with MyCobot(serving["url"]) as arm:
         arm.set_color(1, 2, 3)
         assert arm.is_power_on() is False
-    events = [json.loads(sim.stdout.readline()) for _ in range(2)]
+    events = [json.loads(printed(sim)) for _ in range(2)]
     assert events[0]["command"] == "set_color"
     assert events[0]["fields"] == {"red": 1, "green": 2, "blue": 3}
     assert "reply" not in events[0]
@@ -158,136 +144,133 @@ def test_sim_on_all_interfaces_prints_json_and_a_warning(sim: subprocess.Popen[s
         "fields": {},
         "reply": "FE FE 03 12 00 FA",
     }
+    assert sim.stderr is not None
     assert "anyone who can reach 0.0.0.0" in sim.stderr.readline()
 
 
-@pytest.mark.parametrize("sim", [["--json"]], indirect=True)
-def test_sim_prints_why_a_request_is_ignored(sim: subprocess.Popen[str]) -> None:
-    assert sim.stdout is not None
-    url = json.loads(sim.stdout.readline())["url"]
-    with MyCobot(url) as arm:
+@with_options("--json")
+def test_sim_prints_why_a_request_is_ignored(sim: Popen[str]) -> None:
+    with MyCobot(json.loads(printed(sim))["url"]) as arm:
         arm.send_angles([10, 0, 0, 0, 0, 0], speed=30)
         assert arm.is_moving() is False
-    note = json.loads(sim.stdout.readline())
-    assert note["event"] == "note"
-    assert note["command"] == "send_angles"
+    note = json.loads(printed(sim))
+    assert (note["event"], note["command"]) == ("note", "send_angles")
     assert "power" in note["text"]
 
 
-@pytest.mark.parametrize("sim", [["--speed", "100"]], indirect=True)
-def test_speed_option_makes_the_arm_faster(sim: subprocess.Popen[str]) -> None:
-    assert sim.stdout is not None
-    with MyCobot(sim.stdout.readline().strip()) as arm:
+@with_options("--speed", "100")
+def test_speed_option_makes_the_arm_faster(sim: Popen[str]) -> None:
+    with MyCobot(printed(sim).strip()) as arm:
         arm.power_on()
-        started = time.monotonic()
+        started_at = time.monotonic()
         arm.move_angles([100, 0, 0, 0, 0, 0], 5)  # some 13 s
-        assert time.monotonic() - started < 5
+        assert time.monotonic() - started_at < 5
 
 
-def test_sim_shows_a_table_of_the_joints_on_a_terminal() -> None:
-    master, slave = os.openpty()
-    fcntl.ioctl(slave, termios.TIOCSWINSZ, struct.pack("4H", 24, 120, 0, 0))
-    process = subprocess.Popen(COMMAND, stdout=slave, stderr=slave, text=True)
-    try:
-        shown = _until(master, b"Ctrl-C ends")
-        url = next(word for word in shown.decode().split() if word.startswith("/dev/"))
-        with MyCobot(url) as arm:
-            arm.power_on()
-            arm.move_angles([45, 0, 0, 0, 0, 0], 100)
-        shown += _until(master, b"j1=45.0")
-        process.send_signal(signal.SIGINT)
-        assert process.wait(timeout=10) == 0
-        shown += _until(master, b"\x1b[?25h")  # the cursor is shown again
-    finally:
-        process.kill()
-        process.wait()
-        os.close(master)
-        os.close(slave)
-    assert b"send_angles" in shown
-    assert b"joints, degrees" in shown
-    assert b"Traceback" not in shown
-
-
-def _until(descriptor: int, wanted: bytes) -> bytes:
-    shown = b""
-    deadline = time.monotonic() + 20
-    while wanted not in shown and time.monotonic() < deadline:
-        if select.select([descriptor], [], [], 0.1)[0]:
-            shown += os.read(descriptor, 65536)
-    assert wanted in shown, shown[-2000:]
-    return shown
+@pytest.mark.parametrize("port", [[], ["--tcp", ":0"]], ids=["pty", "tcp"])
+@pytest.mark.parametrize("powered", [False, True])
+def test_powered_arm_moves_without_power_on(port: list[str], powered: bool) -> None:
+    options = ["--powered"] if powered else []
+    with started("sim", "--quiet", *options, *port) as sim:
+        with MyCobot280(printed(sim).strip(), timeout=5.0) as arm:
+            assert arm.is_power_on() is powered
+            assert arm.is_all_servo_enable() is powered
+            arm.send_angle(1, 5, 100)
+            time.sleep(0.3)
+            assert (arm.get_angles().j1 > 1) is powered
 
 
 @pytest.mark.parametrize(
-    ("words", "message"),
+    ("option", "expected"),
+    [([], "FE FE 03 16 01 FA FE FE 03 12 00 FA"), (["--no-acks"], "FE FE 03 12 00 FA")],
+)
+def test_arm_without_acks_replies_to_queries_alone(option: list[str], expected: str) -> None:
+    with started("sim", "--quiet", *option) as sim:
+        transport = open_transport(printed(sim).strip(), 115200)
+        transport.write(bytes.fromhex("FE FE 03 16 01 FA FE FE 02 12 FA"))
+        received, until = b"", time.monotonic() + 5
+        while (left := until - time.monotonic()) > 0 and received[-4:-2] != b"\x03\x12":
+            received += transport.read(left)
+        transport.close()
+    assert received == bytes.fromhex(expected)
+
+
+def test_arm_that_is_led_moves_when_it_is_released(tmp_path: Path) -> None:
+    path = tmp_path / "hand.txt"
+    path.write_text("0.1 10 0 0 0 0 0\n0.2 10 -20 0 0 0 0\n")
+    with started("sim", "--quiet", "--powered", "--led", path) as sim:
+        with MyCobot280(printed(sim).strip(), timeout=5.0) as arm:
+            assert tuple(arm.get_angles()) == (0.0,) * 6
+            arm.release_all_servos()
+            time.sleep(0.4)
+            assert tuple(arm.get_angles()) == pytest.approx((10, -20, 0, 0, 0, 0), abs=0.1)
+
+
+@pytest.mark.parametrize(
+    ("words", "code", "message"),
     [
-        (["--tcp", "9000"], "HOST:PORT"),
-        (["--tcp", ":70000"], "70000"),
-        (["--pty", "--tcp", ":0"], "use either --pty or --tcp, not both"),
-        (["--speed", "0"], "speed"),
-        (["--speed", "nan"], "speed"),
+        (["--tcp", "9000"], 2, "HOST:PORT"),
+        (["--tcp", ":70000"], 2, "70000"),
+        (["--pty", "--tcp", ":0"], 2, "use either --pty or --tcp, not both"),
+        (["--speed", "0"], 2, "speed"),
+        (["--speed", "nan"], 2, "speed"),
+        (["--scenario", "merged-aks"], 2, "did you mean merged-acks?"),
+        (["--seed", "3"], 2, "--seed needs --scenario"),
+        (["--scenario", "BAD"], 2, "bad.yaml:1:18: there is no fault lots; did you mean lost?"),
+        (["--led", "/nowhere/hand.txt"], 2, "/nowhere/hand.txt: No such file"),
+        (["--tcp", "TAKEN"], 3, "cannot listen"),
     ],
 )
-def test_wrong_options_are_rejected(words: list[str], message: str) -> None:
-    result = run_program("sim", *words)
-    assert result.returncode == 2
-    assert message in result.stderr
-    assert "Traceback" not in result.stderr
-
-
-def test_tcp_port_in_use_has_the_exit_code_of_a_failed_port() -> None:
+def test_wrong_options_are_rejected(
+    tmp_path: Path, words: list[str], code: int, message: str
+) -> None:
+    bad = tmp_path / "bad.yaml"
+    bad.write_text("faults: [{fault: lots}]")
     with socket.create_server(("127.0.0.1", 0)) as taken:
-        result = run_program("sim", "--tcp", f"127.0.0.1:{taken.getsockname()[1]}")
-    assert result.returncode == 3
-    assert "cannot listen" in result.stderr
-
-
-SLOW = """\
-faults:
-  - fault: late
-    seconds: 0.01
-"""
+        known = {"BAD": str(bad), "TAKEN": f"127.0.0.1:{taken.getsockname()[1]}"}
+        result = cobotwire("sim", *(known.get(word, word) for word in words))
+    assert (result.returncode, result.stdout) == (code, "")
+    assert message in result.stderr
 
 
 def test_faults_are_injected_for_every_client_and_printed(tmp_path: Path) -> None:
     path = tmp_path / "slow.yaml"
-    path.write_text(SLOW)
-    process = subprocess.Popen(
-        [*COMMAND, "--scenario", str(path), "--json", "--tcp", ":0"],
-        stdout=subprocess.PIPE,
-        text=True,
-    )
-    try:
-        assert process.stdout is not None
-        url = json.loads(process.stdout.readline())["url"]
+    path.write_text("faults:\n  - {fault: late, seconds: 0.01}\n")
+    with started("sim", "--scenario", path, "--json", "--tcp", ":0") as sim:
+        url = json.loads(printed(sim))["url"]
         for _ in range(2):
             with MyCobot(url) as arm:
                 assert arm.is_power_on() is False
-        process.send_signal(signal.SIGTERM)
-        events = [json.loads(line) for line in process.stdout]
-    finally:
-        process.kill()
-        process.communicate()
-    assert [(line["client"], line["event"]) for line in events] == [
-        (1, "received"),
-        (1, "fault"),
-        (2, "received"),
-        (2, "fault"),
-    ]
+        events = [json.loads(printed(sim)) for _ in range(4)]
+    found = [(line["client"], line["event"]) for line in events]
+    assert found == [(1, "received"), (1, "fault"), (2, "received"), (2, "fault")]
+
+
+@with_options("--scenario", "servo-leaks")
+def test_faults_of_a_shipped_scenario_are_injected_and_printed(sim: Popen[str]) -> None:
+    with MyCobot(printed(sim).strip()) as arm:
+        assert list(arm.get_angles()) == list(arm.get_angles()) == [0.0] * 6
+    (line,) = [line for line in (printed(sim) for _ in range(3)) if "servo-leak" in line]
+    assert "at get_angles: FF FF" in line
+    assert "before the reply" in line
+
+
+def test_list_scenarios_prints_a_sentence_for_each() -> None:
+    listed = cobotwire("sim", "--list-scenarios").stdout
+    assert len(listed.splitlines()) == 39
+    assert re.search(r"^panic +The firmware panics", listed, re.MULTILINE)
 
 
 @pytest.mark.skipif(
     not Path("/proc/self/maps").exists(), reason="reads /proc, which only Linux has"
 )
 def test_sim_solves_a_target_at_the_edge_of_the_reach_without_numpy_and_scipy(
-    sim: subprocess.Popen[str],
+    sim: Popen[str],
 ) -> None:
     # Their import takes longer than the deadline of the reply.
-    assert sim.stdout is not None
     stretched, given = (48.6, -64.6, 410.9, -90.0, 0.0, -90.0), (0.0, 0.0, 10.0, 0.0, 0.0, 0.0)
-    with MyCobot280(sim.stdout.readline().strip()) as arm:
-        solved = arm.solve_inv_kinematics(stretched, given)
-    assert solved != given
+    with MyCobot280(printed(sim).strip()) as arm:
+        assert arm.solve_inv_kinematics(stretched, given) != given
     maps = Path(f"/proc/{sim.pid}/maps").read_text()
     assert "/python" in maps
     assert "/numpy/" not in maps

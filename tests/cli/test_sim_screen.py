@@ -31,6 +31,7 @@ def test_sim_screen_holds_every_line_of_traffic_above_one_whole_table(
         terminal.until(lambda: "j1=45" in terminal.text())
         terminal.press(b"\x03")
         assert terminal.finish() == 0
+        assert terminal.has_cursor
     rows = [row for row in terminal.rows() if row]
     assert sum(TITLE in row for row in rows) == 1, "\n".join(rows)
     start = next(index for index, row in enumerate(rows) if TITLE in row)

@@ -21,7 +21,7 @@ from cobotwire.simulator.clock import SteppedClock
 from cobotwire.simulator.faults import Scenario, Silent
 from cobotwire.simulator.memory import MemoryTransport
 from cobotwire.transport import open_transport
-from command_line import run_program
+from in_process import cobotwire as run_program
 from scripted_peer import ScriptedPeer
 
 ANGLES = bytes.fromhex("FE FE 0E 20" + "00 00" * 6 + "FA")

@@ -18,9 +18,9 @@ from cobotwire_codegen.emit import Target, write
 from cobotwire_codegen.project import edition_files
 from cobotwire_codegen.targets.decoder import edition_script, render_decoder
 from strategies import TABLES, codec_of
-from targets.specs import SPECS, edition_of
 from targets.decoder import browser
 from targets.decoder.browser import SHOWN
+from targets.specs import SPECS, edition_of
 from targets.vectors.comparison import Record, read
 from vectors import ROOT
 

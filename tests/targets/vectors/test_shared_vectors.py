@@ -23,8 +23,8 @@ from cobotwire_codegen.targets.vectors.document import document
 from random_editions import editions
 from strategies import TABLES, codec_of
 from targets.built import built
-from targets.specs import SPECS, edition_of
 from targets.expected import codec_of_edition
+from targets.specs import SPECS, edition_of
 from targets.vectors.comparison import CODECS, Record, judged, read
 from wrong_models import WRONG, with_wrong_angles
 
