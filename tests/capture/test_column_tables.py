@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 import polars
 import pyarrow as pa
+import pyarrow.parquet as pq
 import pytest
 
 from capture.lines import FRAMES, written
@@ -80,6 +81,47 @@ def test_rows_of_several_interfaces_are_joined_or_chosen(name: codecs.CodecName)
     assert found.to_arrow("get_angles", "request", interface=1).num_rows == 3
     with pytest.raises(UsageError, match=r"interface is 2; allowed: 0\.\.1"):
         found.rows("get_angles", interface=2)
+
+
+# Rows of several streams, whose times alternate.
+MIXED = [
+    Packet(START + 1, "sent", REQUEST),
+    Packet(START + 2, "received", REPLY),
+    Packet(START + 4, "received", REPLY + FRAMES[2], interface=1),
+    Packet(START + 3, "unknown", b"\0" + REPLY),
+    Packet(START + 5, "received", REPLY),
+]
+
+
+def test_table_has_the_rows_of_all_streams_in_the_order_of_their_times() -> None:
+    columns = read_columns(written(MIXED, "/dev/a", "/dev/b"), NATIVE, "reply")
+    table = columns.to_arrow("get_angles", wide=True)
+    joints = [f"j{joint}" for joint in range(1, 7)]
+    assert table.column_names == ["time", "direction", "interface", "offset", *joints]
+    assert table["time"].type == pa.timestamp("ns", "UTC")
+    assert table["time"].cast(pa.int64()).to_pylist() == [START + n for n in (2, 3, 4, 5)]
+    assert table["direction"].to_pylist() == ["received", "unknown", "received", "received"]
+    assert table["interface"].to_pylist() == [0, 0, 1, 0]
+    assert table["offset"].to_pylist() == [0, 1, 0, 17]
+    assert table["j2"].to_pylist() == [-0.01] * 4
+    assert table.schema.field("j2").metadata == {b"unit": b"degree"}
+    assert columns.to_arrow("get_angles", captured="unknown").num_rows == 1
+
+
+@pytest.mark.parametrize("wide", [False, True], ids=["nested", "wide"])
+def test_batches_with_and_without_rows_fill_one_parquet_file(wide: bool, tmp_path: Path) -> None:
+    data = written(MIXED, "/dev/a", "/dev/b")
+    whole = read_columns(data, NATIVE, "reply").to_arrow("get_angles", wide=wide)
+    path = tmp_path / "angles.parquet"
+    counts = []
+    with pq.ParquetWriter(path, whole.schema) as writer:
+        for batch in read_batches(data, NATIVE, "reply", piece=40):
+            if batch.streams:
+                table = batch.to_arrow("get_angles", wide=wide)
+                writer.write_table(table)
+                counts.append(table.num_rows)
+    assert 0 in counts
+    assert pq.read_table(path).sort_by("time").to_pylist() == whole.to_pylist()
 
 
 def test_message_that_did_not_occur_has_the_same_columns() -> None:

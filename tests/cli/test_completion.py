@@ -10,10 +10,12 @@ from pathlib import Path
 import click
 import pytest
 
+from cli.test_same_words import verbs
 from cobotwire import editions
-from cobotwire.cli.app import VERBS, app
 from cobotwire.cli.completion import SHELLS
 from cobotwire.simulator.faults import shipped
+from cobotwire.transport.serial import ports as serial_ports
+from cobotwire.transport.serial.ports import Port
 from command_line import PROGRAM, run_program
 
 CASES = [
@@ -39,8 +41,10 @@ def complete(shell: str, line: str) -> set[str]:
     return {line.partition(",")[2].partition("\t")[0] for line in lines}
 
 
-@pytest.mark.parametrize("shell", SHELLS)
-@pytest.mark.parametrize(("line", "expected"), CASES)
+@pytest.mark.parametrize(
+    ("shell", "line", "expected"),
+    [("bash", *case) for case in CASES] + [(shell, *CASES[0]) for shell in SHELLS[1:]],
+)
 def test_words_are_completed_in_every_shell(shell: str, line: str, expected: set[str]) -> None:
     words = complete(shell, line)
     assert expected <= words
@@ -48,26 +52,19 @@ def test_words_are_completed_in_every_shell(shell: str, line: str, expected: set
     assert all(word.startswith(start) for word in words)
 
 
-def test_ports_are_completed_for_every_verb_that_opens_one(tmp_path: Path) -> None:
+def test_ports_are_completed_for_every_verb_that_opens_one(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     # pyserial finds no port on most test machines, so the list is replaced.
-    script = (
-        "from types import SimpleNamespace as Port\n"
-        "import cobotwire.transport.serial.ports as serial_ports\n"
-        "serial_ports.ports = lambda: [Port(device='/dev/ttyACM7')]\n"
-        "from cobotwire.cli import main; main()"
-    )
-    assert _taking_a_port() == {"call", "doctor", "identify", "monitor", "conform device"}
-    for verb in _taking_a_port():
-        words = ["cobotwire", *verb.split(), "/dev/ttyA"]
-        given = {"COMP_WORDS": " ".join(words), "COMP_CWORD": str(len(words) - 1)}
-        result = subprocess.run(
-            [*PROGRAM[:-1], script],
-            capture_output=True,
-            text=True,
-            env={**os.environ, **given, "_COBOTWIRE_COMPLETE": "bash_complete"},
-            check=False,
-        )
-        assert result.stdout.split() == ["plain,/dev/ttyACM7"], verb
+    monkeypatch.setattr(serial_ports, "ports", lambda: [Port("/dev/ttyACM7", False, "", False)])
+    completed = {
+        name: [item.value for item in parameter.shell_complete(click.Context(verb), "/dev/ttyA")]
+        for name, verb in verbs()
+        for parameter in verb.params
+        if isinstance(parameter, click.Argument) and parameter.metavar == "URL"
+    }
+    names = ("call", "doctor", "identify", "monitor", "conform device")
+    assert completed == dict.fromkeys(names, ["/dev/ttyACM7"])
 
 
 @pytest.mark.parametrize("shell", SHELLS)
@@ -153,22 +150,3 @@ def run_shell(shell: str, script: str, path: str) -> subprocess.CompletedProcess
         env={**os.environ, "PATH": path},
         check=False,
     )
-
-
-def _taking_a_port() -> set[str]:
-    """Return the verbs that take the URL of an arm."""
-    context = click.Context(app)
-    found = {verb: app.get_command(context, verb) for verb in VERBS}
-    conform = found["conform"]
-    assert isinstance(conform, click.Group)
-    names = conform.list_commands(context)
-    found |= {f"conform {name}": conform.get_command(context, name) for name in names}
-    return {
-        verb
-        for verb, command in found.items()
-        if command and any(each.metavar == "URL" for each in command.params if _is_argument(each))
-    }
-
-
-def _is_argument(parameter: click.Parameter) -> bool:
-    return isinstance(parameter, click.Argument)

@@ -15,17 +15,16 @@ from capture.export.exporting import CODEC, START, polled, recording, reply
 from cli.test_missing_packages import run_without
 from cobotwire.capture import Packet
 from cobotwire.capture.export import OutputFile, Report
-from cobotwire.cli.app import app
 from cobotwire.cli.shared.export_report import report_lines
-from in_process import Ended, run
+from in_process import Ended, cobotwire
 from terminal import Terminal
 
 SECOND = 10**9
 POWERED = reply("is_power_on", 1)
 
 
-def exported(*words: str | Path, given: bytes = b"") -> Ended:
-    return run(app, "cobotwire", "export", *map(str, words), given=given)
+def exported(*words: str | Path) -> Ended:
+    return cobotwire("export", *words)
 
 
 @pytest.fixture

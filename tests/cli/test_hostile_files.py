@@ -9,17 +9,16 @@ import sys
 from pathlib import Path
 
 import pytest
-from click.testing import CliRunner
 
 from cobotwire import MyCobot
 from cobotwire import codec as codecs
 from cobotwire.capture import CaptureWriter, Interface, Packet, Piece, read
 from cobotwire.capture import block_encoding as blocks
-from cobotwire.cli.app import app
 from cobotwire.editions.mycobot import TABLE
 from cobotwire.protocol.errors import ScenarioError
 from cobotwire.simulator import PtyServer, ReplayedArm
 from cobotwire.simulator.faults import load
+from in_process import cobotwire
 from scripted_peer import ScriptedPeer
 
 SECOND = 10**9
@@ -31,10 +30,8 @@ PANIC = f"Guru Meditation Error: Core  {DIGITS} panic'ed (LoadProhibited). \r\nR
 
 def run(*words: str | Path) -> tuple[int, str]:
     """Run the CLI in this process; return its exit code and output. A traceback is raised."""
-    result = CliRunner().invoke(app, list(map(str, words)))
-    if result.exception is not None and not isinstance(result.exception, SystemExit):
-        raise result.exception
-    return result.exit_code, result.output
+    done = cobotwire(*words)
+    return done.returncode, done.stdout + done.stderr
 
 
 def write(path: Path, comment: str = "", options: list[tuple[int, bytes]] | None = None) -> Path:

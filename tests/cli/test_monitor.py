@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import json
-import os
-import pty
 import signal
 import subprocess
 from functools import partial
@@ -16,6 +14,7 @@ from cobotwire.simulator import PtyServer
 from command_line import PROGRAM
 from in_process import cobotwire
 from scripted_peer import ScriptedPeer
+from terminal import Terminal
 
 COMMAND = [*PROGRAM, "monitor"]
 run = partial(cobotwire, "monitor")
@@ -110,19 +109,7 @@ def test_lost_port_ends_monitor_with_its_exit_code() -> None:
 
 
 def test_monitor_shows_a_table_on_a_terminal(server: PtyServer) -> None:
-    terminal, inner = pty.openpty()
-    environment = {**os.environ, "TERM": "xterm", "COLUMNS": "100"}
-    process = subprocess.Popen(
-        [*COMMAND, server.url, "--count", "2"], stdout=inner, stderr=inner, env=environment
-    )
-    os.close(inner)
-    shown = b""
-    try:
-        while chunk := os.read(terminal, 4096):
-            shown += chunk
-    except OSError:
-        pass  # the other end is closed
-    os.close(terminal)
-    assert process.wait(timeout=30) == 0
-    assert b"get_angles" in shown
-    assert "│".encode() in shown
+    with Terminal("monitor", server.url, "--count", "2", columns=100, lines=30) as terminal:
+        assert terminal.finish() == 0
+        assert "get_angles" in terminal.text()
+        assert "│" in terminal.text()

@@ -13,18 +13,19 @@ from cobotwire.simulator import PtyServer
 from in_process import cobotwire
 
 
-def _verbs(group: click.Group, *names: str) -> Iterator[tuple[str, click.Command]]:
+def verbs(group: click.Group = app, *names: str) -> Iterator[tuple[str, click.Command]]:
+    """Yield each verb of the command line with its name."""
     context = click.Context(group)
     for name in group.list_commands(context):
         verb = group.get_command(context, name)
         assert verb is not None
         if isinstance(verb, click.Group):
-            yield from _verbs(verb, *names, name)
+            yield from verbs(verb, *names, name)
         else:
             yield " ".join([*names, name]), verb
 
 
-VERBS = dict(_verbs(app))
+VERBS = dict(verbs())
 
 
 def test_verbs_that_open_a_port_take_it_as_their_first_argument_url() -> None:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from typing import Any
 
-import strategies
 from cobotwire import codec as codecs
 from cobotwire.protocol.messages import Reply
 from cobotwire.protocol.table import Table
@@ -30,21 +29,3 @@ class Bench:
         reply = self._codec.decode("reply", self.send(name, *values), of=name).typed
         assert isinstance(reply, Reply)
         return reply.result
-
-
-def check_legal_replies(
-    table: Table, requests: list[tuple[strategies.CommandVariant, Any]]
-) -> None:
-    """Check that an arm without power sends exactly the legal reply to each legal request."""
-    bench = Bench(table, powered=False)
-    codec = codecs.load(table, "reference")
-    for variant, values in requests:
-        bench.clock.sleep(0.1)
-        reply = bench.send(variant.command.name, *values)
-        command = variant.command
-        if command.text is not None:
-            assert reply.startswith(b"ssid: ")
-        elif command.reply:
-            assert codec.decode("reply", reply, of=command.name).command is command
-        else:
-            assert reply == b""

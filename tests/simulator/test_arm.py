@@ -5,18 +5,12 @@ from __future__ import annotations
 from typing import Any
 
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
-import strategies
-from cobotwire import codec as codecs
 from cobotwire.editions import mycobot280
 from cobotwire.editions.mycobot import TABLE, TargetKind
 from cobotwire.simulator.behaviour import BEHAVIOURS
 from cobotwire.simulator.behaviour.by_role import PERFORMED
-from simulator.bench import Bench, check_legal_replies
-
-REFERENCE = codecs.load(TABLE, "reference")
+from simulator.bench import Bench
 
 
 @pytest.fixture
@@ -29,13 +23,6 @@ def test_every_command_has_a_behaviour_and_every_behaviour_a_command() -> None:
     with_role = {command.name for command in TABLE.commands if command.role in PERFORMED}
     assert ours == set(BEHAVIOURS) & ours | with_role
     assert set(BEHAVIOURS) <= ours | {command.name for command in mycobot280.TABLE.commands}
-
-
-@given(st.lists(strategies.messages().filter(lambda m: m[0].direction == "request"), max_size=8))
-def test_every_legal_request_gets_exactly_its_legal_reply(
-    requests: list[tuple[strategies.CommandVariant, Any]],
-) -> None:
-    check_legal_replies(TABLE, requests)
 
 
 # The tolerance of a reported angle: a tick, and the truncation to hundredths.
@@ -100,6 +87,19 @@ def test_pause_keeps_the_targets_and_stop_forgets_them(bench: Bench) -> None:
     bench.send("send_angle", 1, 0.0, 20)
     assert bench.query("is_moving") == 1, "after a stop, the next motion is obeyed"
     assert not bench.arm.notes
+
+
+def test_stop_ends_a_pause_and_the_next_motion_moves(bench: Bench) -> None:
+    bench.send("send_angle", 1, 160.0, 20)
+    bench.clock.sleep(0.5)
+    bench.send("pause")
+    bench.clock.sleep(1.0)
+    bench.send("stop")
+    stood = bench.query("get_angles")
+    assert bench.query("is_paused") == 0
+    bench.send("send_angle", 3, 40.0, 20)
+    bench.clock.sleep(5.0)
+    assert bench.query("get_angles") == near(*stood[:2], 40.0, *stood[3:])
 
 
 def test_target_sent_during_a_pause_starts_with_resume(bench: Bench) -> None:

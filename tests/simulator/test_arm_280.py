@@ -2,32 +2,16 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
-import strategies
-from cobotwire import codec as codecs
 from cobotwire.editions.mycobot280 import TABLE, MyCobot280
 from cobotwire.simulator import PtyServer, SimulatedArm
-from simulator.bench import Bench, check_legal_replies
-
-REFERENCE = codecs.load(TABLE, "reference")
-REQUESTS = strategies.messages(TABLE).filter(lambda message: message[0].direction == "request")
+from simulator.bench import Bench
 
 
 @pytest.fixture
 def bench() -> Bench:
     return Bench(TABLE)
-
-
-@given(st.lists(REQUESTS, max_size=8))
-def test_every_legal_request_gets_exactly_its_legal_reply(
-    requests: list[tuple[strategies.CommandVariant, Any]],
-) -> None:
-    check_legal_replies(TABLE, requests)
 
 
 def test_setters_are_acknowledged_unless_acks_are_off(bench: Bench) -> None:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import importlib
-import subprocess
 import sys
 from collections.abc import Iterator
 from pathlib import Path
@@ -22,9 +21,9 @@ from cobotwire_codegen.build import build_edition
 from cobotwire_codegen.check import check
 from cobotwire_codegen.emit import Target, write
 from cobotwire_codegen.render import render_python
+from command_line import printed, started
 from trial_specs import HEAD, package_of
 
-CLI = "from cobotwire.cli import main; main()"
 LAMP = Path(__file__).parent.parent / "codegen" / "lamp.yaml"
 GETTER = """
   get_mode:
@@ -171,21 +170,11 @@ def test_module_without_behaviours_is_refused(module: str, message: str) -> None
 
 
 def test_sim_takes_the_behaviours_of_a_file(folder: Path) -> None:
-    command = [sys.executable, "-c", CLI, "--edition", str(folder / "bedside"), "sim"]
-    process = subprocess.Popen(
-        [*command, "--tcp", "127.0.0.1:0", "--behaviours", str(folder / "bedside_behaviours.py")],
-        stdout=subprocess.PIPE,
-        text=True,
-    )
-    try:
-        assert process.stdout is not None
-        url = process.stdout.readline().split()[-1]
+    own = ("--behaviours", folder / "bedside_behaviours.py")
+    with started("--edition", folder / "bedside", "sim", "--tcp", "127.0.0.1:0", *own) as sim:
         package: Any = importlib.import_module("bedside")
-        with package.CLIENT(url) as lamp:
+        with package.CLIENT(printed(sim).split()[-1]) as lamp:
             assert lamp.get_warmth(2) == 40.0
-    finally:
-        process.terminate()
-        process.communicate()
 
 
 @pytest.mark.parametrize("base", ["mercury_x1", "mybuddy", "mycobot280"])

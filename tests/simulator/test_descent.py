@@ -11,40 +11,16 @@ from scipy.optimize import least_squares
 
 from cobotwire.editions import load, names
 from cobotwire.simulator.kinematics import Effort, Geometry, Pose, flange, geometry_of
-from cobotwire.simulator.kinematics.descent import _columns, descend
-from cobotwire.simulator.kinematics.forward import frames
+from cobotwire.simulator.kinematics.descent import descend
 from cobotwire.simulator.kinematics.inverse import REFINING_RADIAN
 from cobotwire.simulator.kinematics.nearness import DEGREES as NEAR_DEGREES
 from cobotwire.simulator.kinematics.nearness import MILLIMETRES as NEAR_MILLIMETRES
 from cobotwire.simulator.kinematics.nearness import misses
-from cobotwire.simulator.kinematics.pose import cross
 from kinematic_samples import LIMITS, MYCOBOT_280
 
-DEGREES = 1e-5
 GEOMETRIES = {
     name: found for name in names() if (found := geometry_of(load(name).TABLE)) is not None
 }
-
-
-@pytest.mark.parametrize("name", GEOMETRIES)
-def test_slopes_are_those_of_the_forward_kinematics(name: str) -> None:
-    geometry, chance = GEOMETRIES[name], random.Random(1)
-    for _ in range(5):
-        angles = [chance.uniform(-150, 150) for _ in range(geometry.joints)]
-        here = frames(geometry, angles)
-        columns = _columns(geometry, here, REFINING_RADIAN)
-        for joint, (*moved, a, b, c) in enumerate(columns):
-            turned = [cross((a, b, c), axis) for axis in here[-1][:3]]
-            ends = []
-            for way in (-DEGREES, DEGREES):
-                others = [angle + way * (at == joint) for at, angle in enumerate(angles)]
-                ends.append(flange(geometry, others))
-            before, after = ([*end.origin, *end.x, *end.y, *end.z] for end in ends)
-            slopes = [*moved, *(part for axis in turned for part in axis)]
-            for row, (one, other) in enumerate(zip(before, after)):
-                weight = 1.0 if row < 3 else REFINING_RADIAN
-                slope = (other - one) * weight / (2 * DEGREES)
-                assert slopes[row] == pytest.approx(slope, abs=1e-3)
 
 
 @pytest.mark.parametrize("name", GEOMETRIES)

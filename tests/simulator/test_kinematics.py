@@ -32,10 +32,6 @@ RECORDED = [
     ),
     ((95.18, -0.61, -0.61, -0.61, 88.85, -1.31), (15.3, 7.9, 410.7, -90.03, 0.52, 94.04)),
 ]
-# The document prints angles (line 257) and coordinates (line 378) in examples of two commands. They
-# belong to different poses: their orientations differ by half a degree for any link lengths.
-NO_PAIR = (1.40, 0.61, -0.26, -1.93, 1.75, -1.75), (44.4, -60.8, 411.7, -91.14, -1.72, -86.71)
-
 angles_on_wire = st.tuples(*(st.integers(-18000, 18000).map(lambda n: n / 100) for _ in range(6)))
 
 
@@ -46,14 +42,6 @@ def test_recorded_pairs_of_a_real_arm_are_reproduced_bit_for_bit(
     standing = tuple(map(ENCODERS.on_tick, angles))
     assert reported_angles(standing) == angles
     assert reported_coords(coords_of(MYCOBOT_280, standing)) == coords
-
-
-def test_two_examples_of_the_document_are_not_a_pair() -> None:
-    angles, coords = NO_PAIR
-    standing = tuple(map(ENCODERS.on_tick, angles))
-    assert reported_angles(standing) == angles, "these stand on ticks"
-    _, turn = flange(MYCOBOT_280, standing).distance(Pose.of(coords))
-    assert turn > 0.4
 
 
 def _by_matrices(angles: tuple[float, ...]) -> list[list[float]]:

@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import math
-import os
 import signal
-import subprocess
 import time
 from itertools import pairwise
 from pathlib import Path
@@ -22,7 +20,7 @@ from cobotwire.inspect.plot import draw_pose
 from cobotwire.inspect.plot.pose import points
 from cobotwire.protocol.robot import Robot
 from cobotwire.simulator.kinematics import coords_of, geometry_of
-from command_line import PROGRAM
+from command_line import printed, started
 
 # The lengths of the arm's parts in millimetres, from kinematics.md.
 LENGTHS = [131.22, 110.4, 96.0, 64.62, 73.18, 48.6]
@@ -65,31 +63,18 @@ def test_pose_of_a_recording_without_joints_is_rejected(tmp_path: Path) -> None:
 
 def test_sim_view_keeps_the_picture_up_to_date(tmp_path: Path) -> None:
     path = tmp_path / "view.svg"
-    process = subprocess.Popen(
-        [*PROGRAM, "--edition", "mycobot280", "sim", "--quiet", "--view", str(path)],
-        stdout=subprocess.PIPE,
-        text=True,
-    )
-    try:
-        assert process.stdout is not None
-        url = process.stdout.readline().strip()
+    with started("sim", "--quiet", "--view", path) as sim:
+        url = printed(sim).strip()
         assert "J1 0.0°" in path.read_text()
         with MyCobot280(url, timeout=30) as arm:
             arm.power_on()
             arm.move_angles([45, 0, 0, 0, 0, 0], 100)
             until = time.monotonic() + 60
-            while time.monotonic() < until and not _contains(path, "J1 45.0°"):
+            while "J1 45.0°" not in path.read_text():
+                assert time.monotonic() < until
                 time.sleep(0.05)
-            assert _contains(path, "J1 45.0°")
             arm.send_angles([0] * 6, 100)
             time.sleep(0.3)  # the arm is moving
-        os.kill(process.pid, signal.SIGTERM)
-        assert process.wait(timeout=60) == 0
-        assert not _contains(path, "J1 45.0°")
-    finally:
-        process.kill()
-        process.communicate()
-
-
-def _contains(path: Path, text: str) -> bool:
-    return text in path.read_text()
+        sim.send_signal(signal.SIGTERM)
+        assert sim.wait(timeout=60) == 0
+        assert "J1 45.0°" not in path.read_text()
