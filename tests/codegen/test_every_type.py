@@ -1,70 +1,107 @@
-"""A made-up sensor uses every type: its vectors, its client and its simulated device agree."""
+"""A made-up sensor with every type, and the maker's other frame formats, work in all parts."""
 
 from __future__ import annotations
 
-import importlib
 import math
-import sys
-from pathlib import Path
 from typing import Any
 
 import pytest
 
+import small_specs
 from cobotwire import codec as codecs
 from cobotwire.codec.interface import Frame
 from cobotwire.diagnose.explain import format_message, frame_parts
 from cobotwire.inspect import call_arguments
 from cobotwire.protocol.errors import ProtocolError, UsageError
 from cobotwire.simulator import PtyServer, SimulatedArm
-from cobotwire_codegen.build import build_edition
-from cobotwire_codegen.check import check
-from cobotwire_codegen.emit import Target, write
-from cobotwire_codegen.model import Edition
-from cobotwire_codegen.render import render_python
+from cobotwire_codegen.render.vectors_json import plain
+from targets.specs import SPECS, edition_of
 
-HERE = Path(__file__).parent / "families"
 CODECS: tuple[codecs.CodecName, ...] = ("reference", "native")
+each_codec = pytest.mark.parametrize("name", CODECS)
+# Frames that pymycobot 4.0.7's MyBuddy writes: limb, method, arguments, frame.
+BUDDY = [
+    (0, "power_on", (), "FE FE 00 02 10 10"),
+    (1, "power_on", (), "FE FE 01 02 10 10"),
+    (1, "get_angles", (), "FE FE 01 02 20 20"),
+    (2, "send_angle", (3, -12.5, 30), "FE FE 02 06 21 03 FB 1E 1E 5B"),
+    (
+        1,
+        "send_angles",
+        ((1, 2, 3, 4, 5, 6), 50),
+        "FE FE 01 0F 22 00 64 00 C8 01 2C 01 90 01 F4 02 58 32 8D",
+    ),
+]
 
 
 @pytest.fixture(scope="module")
-def edition() -> Edition:
-    found = build_edition(HERE / "sensor.yaml", HERE)
-    check(found)
-    return found
+def packages(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
+    """Generate the packages of the made-up sensor and of two other families, and import them."""
+    folder = tmp_path_factory.mktemp("families")
+    names = ("sensor", "mercury", "mybuddy")
+    return {name: small_specs.package(folder, edition_of(SPECS[name])) for name in names}
 
 
 @pytest.fixture(scope="module")
-def package(edition: Edition, tmp_path_factory: pytest.TempPathFactory) -> Any:
-    folder = tmp_path_factory.mktemp("types")
-    write(Target(folder / "every_type_sensor", render_python(edition)))
-    sys.path.insert(0, str(folder))
-    importlib.invalidate_caches()
-    try:
-        yield importlib.import_module("every_type_sensor")
-    finally:
-        sys.path.remove(str(folder))
+def package(packages: dict[str, Any]) -> Any:
+    return packages["sensor"]
 
 
-@pytest.mark.parametrize("name", CODECS)
+@each_codec
+@pytest.mark.parametrize("spec", ["sensor", "mercury", "mybuddy"])
 def test_vectors_decode_to_typed_messages_that_encode_to_the_same_bytes(
-    package: Any, edition: Edition, name: codecs.CodecName
+    packages: dict[str, Any], spec: str, name: codecs.CodecName
 ) -> None:
-    codec = codecs.load(package.TABLE, name)
+    table, edition = packages[spec].TABLE, edition_of(SPECS[spec])
+    codec = codecs.load(table, name)
+    real = [vector for vector in edition.vectors if vector.name.startswith("real")]
+    assert len(real) == (7 if spec == "mercury" else 0), "the frames of the notes on families"
     for vector in edition.vectors:
         assert vector.frame is not None
         decoded = codec.decode(vector.direction, vector.frame, of=vector.command)
-        command = package.TABLE.command(vector.command)
+        command = table.command(vector.command)
         types = command.request_type, command.reply_type
         message = types[vector.direction == "reply"].from_fields(decoded.fields)
         assert codec.encode(vector.command, vector.direction, message.values) == vector.frame
-        parts = list(frame_parts(package.TABLE, vector.frame, decoded))
+        parts = list(frame_parts(table, vector.frame, decoded))
         assert b"".join(part.data for part in parts) == vector.frame
         assert format_message(decoded)
+        if spec != "sensor":
+            found = [plain(edition, vector, field, value) for field, value in vector.values]
+            values = tuple(tuple(value) if isinstance(value, list) else value for value in found)
+            assert decoded.values == values
 
 
-def test_codecs_agree_on_the_stream_and_the_columns_of_all_vectors(
-    package: Any, edition: Edition
+@each_codec
+@pytest.mark.parametrize(("limb", "command", "values", "frame"), BUDDY)
+def test_frame_with_an_address_is_encoded_and_decoded(
+    packages: dict[str, Any],
+    name: codecs.CodecName,
+    limb: int,
+    command: str,
+    values: Any,
+    frame: str,
 ) -> None:
+    used = codecs.load(packages["mybuddy"].TABLE, name)
+    assert used.encode(command, "request", values, address=limb) == bytes.fromhex(frame)
+    message = used.decode("request", bytes.fromhex(frame))
+    assert (message.address, message.command.name, message.values) == (limb, command, values)
+    events = used.framer("request").feed(b"\xfe" + bytes.fromhex(frame))
+    assert [event.offset for event in events if isinstance(event, Frame)] == [1]
+
+
+@pytest.mark.parametrize("spec", ["mercury", "mybuddy"])
+def test_clients_of_other_families_talk_to_their_simulated_arms(
+    packages: dict[str, Any], spec: str
+) -> None:
+    package = packages[spec]
+    with PtyServer(SimulatedArm(package.TABLE)) as server, package.CLIENT(server.url) as arm:
+        assert arm.get_angles() == (0.0,) * 6
+        arm.send_angles([1, 2, 3, 4, 5, 6], speed=50)
+
+
+def test_codecs_agree_on_the_stream_and_the_columns_of_all_vectors(package: Any) -> None:
+    edition = edition_of(SPECS["sensor"])
     stream = b"\xfe".join(vector.frame or b"" for vector in edition.vectors)
     reference, native = (codecs.load(package.TABLE, name) for name in CODECS)
     events = [codec.framer("both") for codec in (reference, native)]
@@ -81,8 +118,7 @@ def test_codecs_agree_on_the_stream_and_the_columns_of_all_vectors(
 
 
 def test_generated_client_sets_and_reads_every_type_on_a_simulated_sensor(package: Any) -> None:
-    from every_type_sensor.enums import Mode  # type: ignore[import-not-found]  # generated above
-
+    Mode = package.Mode
     with PtyServer(SimulatedArm(package.TABLE)) as server, package.CLIENT(server.url) as sensor:
         sensor.set_torque(-2.5)
         assert sensor.get_torque() == (-2.5, 0.0, 0.0)
@@ -120,7 +156,7 @@ def test_generated_client_sets_and_reads_every_type_on_a_simulated_sensor(packag
         ("set_torque", (math.nan,), "torque is nan; allowed: a number -50..50 newton metres"),
     ],
 )
-@pytest.mark.parametrize("name", CODECS)
+@each_codec
 def test_illegal_value_is_refused_with_its_element(
     package: Any, name: codecs.CodecName, method: str, arguments: Any, message: str
 ) -> None:

@@ -11,7 +11,6 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
-import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
@@ -27,6 +26,7 @@ from cobotwire_codegen.model import Command, Edition, Field, Value, Variant, Vec
 from cobotwire_codegen.render import render_python
 from cobotwire_codegen.wire import build_frame, encode_variant
 from random_values import as_codec, counted, type_of
+from silent_peer import SilentPeer
 
 NUMBERS = itertools.count()
 EXAMPLES = settings(
@@ -142,25 +142,9 @@ def _assert_remembered(
     assert arm.state.remembered.recall(query, asked)[name] == given_values[argument]
 
 
-class Silent:
-    """A peer that keeps what it receives and never replies."""
-
-    wait = None
-
-    def __init__(self) -> None:
-        self.received = b""
-
-    def receive(self, data: bytes) -> bytes:
-        self.received += data
-        return b""
-
-    def flush(self) -> bytes:
-        return b""
-
-
 def _sent(package: ModuleType, name: str, given_values: dict[str, Any]) -> bytes:
     """Return what a call sends; nothing if it raises the error of a wrong call."""
-    peer, clock = Silent(), SteppedClock()
+    peer, clock = SilentPeer(), SteppedClock()
     with package.CLIENT(
         MemoryTransport(peer, clock), on_error="leave", retry=RetryPolicy(attempts=1)
     ) as arm:
@@ -235,7 +219,9 @@ def _subsets(names: list[str]) -> list[set[str]]:
     return [set(found) for size in sizes for found in itertools.combinations(names, size)]
 
 
-def test_generated_code_passes_mypy_strict(tmp_path: Path, mypy_cache: str) -> None:
+def test_generated_code_passes_mypy_strict_and_is_formatted(
+    tmp_path: Path, mypy_cache: str
+) -> None:
     """Check several protocols at once, since starting mypy takes longer than checking them."""
 
     @settings(EXAMPLES, max_examples=15)
@@ -245,31 +231,15 @@ def test_generated_code_passes_mypy_strict(tmp_path: Path, mypy_cache: str) -> N
         write(Target(tmp_path / "made" / f"rnd{next(NUMBERS)}", render_python(edition)))
 
     generate()
-    result = subprocess.run(
-        [sys.executable, "-m", "mypy", "--strict", "--no-error-summary", mypy_cache, "made"],
-        capture_output=True,
-        text=True,
-        check=False,
-        cwd=tmp_path,
-    )
-    if result.returncode:
-        pytest.fail(result.stdout + result.stderr)
-
-
-def test_generated_code_is_formatted(tmp_path: Path) -> None:
-    @settings(EXAMPLES, max_examples=15)
-    @given(st.data())
-    def generate(data: st.DataObject) -> None:
-        _, edition = data.draw(random_specs.specs(tmp_path))
-        write(Target(tmp_path / "made" / f"rnd{next(NUMBERS)}", render_python(edition)))
-
-    generate()
-    command = [sys.executable, "-m", "ruff", "format", "--check", "--isolated"]
-    result = subprocess.run(
-        [*command, "--line-length", "100", "made"],
-        capture_output=True,
-        text=True,
-        check=False,
-        cwd=tmp_path,
-    )
-    assert result.returncode == 0, result.stdout
+    for command in (
+        ("mypy", "--strict", "--no-error-summary", mypy_cache, "made"),
+        ("ruff", "format", "--check", "--isolated", "--line-length", "100", "made"),
+    ):
+        result = subprocess.run(
+            [sys.executable, "-m", *command],
+            capture_output=True,
+            text=True,
+            check=False,
+            cwd=tmp_path,
+        )
+        assert result.returncode == 0, result.stdout + result.stderr

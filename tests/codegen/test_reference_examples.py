@@ -17,6 +17,7 @@ from cobotwire.editions import load, names
 from cobotwire.protocol.errors import ReplyTimeout
 from cobotwire.simulator import MemoryTransport, SteppedClock
 from cobotwire_codegen.render import render_reference
+from silent_peer import SilentPeer
 
 SECTION = re.compile(r"^## (\w+)$(.*?)(?=^## |\Z)", re.DOTALL | re.MULTILINE)
 # The first thing of a section.
@@ -64,22 +65,6 @@ def texts(section: str) -> list[bytes]:
     return [text[1].encode() for text in TEXT.finditer(section)]
 
 
-class Device:
-    """Replies to every request with one frame, and keeps what it received last."""
-
-    wait = None
-
-    def __init__(self) -> None:
-        self.received = self.reply = b""
-
-    def receive(self, data: bytes) -> bytes:
-        self.received = data
-        return self.reply
-
-    def flush(self) -> bytes:
-        return b""
-
-
 def equal(got: object, wanted: object) -> bool:
     """Return whether two values have the same type; radians are shown with five digits."""
     if isinstance(got, float) and isinstance(wanted, float):
@@ -100,13 +85,12 @@ def run(edition: str, example: Example) -> str:
     frames = [*example.requests, *example.replies]
     addresses = [None] if at is None else dict.fromkeys(frame[at] for frame in frames)
     for address, reply in product(addresses, example.replies or [b""]):
-        device = Device()
-        device.reply = reply
+        device = SilentPeer(reply)
         with module.CLIENT(MemoryTransport(device, SteppedClock()), on_error="leave") as client:
             arm: Any = client if address is None else client.at(address)
             with suppress(ReplyTimeout):
                 returned.append(eval(example.call, {**known, "arm": arm}))
-        sent.append(device.received)
+        sent.append(device.writes[-1] if device.writes else b"")
     if not any(data.startswith(request) for data in sent for request in example.requests):
         return f"sent {[data.hex(' ').upper() for data in sent]}"
     wanted = eval(example.returned, known) if example.returned else None

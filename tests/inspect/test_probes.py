@@ -13,22 +13,7 @@ from cobotwire.inspect.identification import identify_on, newest_first
 from cobotwire.protocol.errors import ProtocolError
 from cobotwire.simulator import MemoryTransport, SimulatedArm, SteppedClock
 from request_parsers import PARSERS, Parser
-
-
-class SilentPeer:
-    """Receive everything, and never reply."""
-
-    wait = None
-
-    def __init__(self) -> None:
-        self.received: list[bytes] = []
-
-    def receive(self, data: bytes) -> bytes:
-        self.received.append(data)
-        return b""
-
-    def flush(self) -> bytes:
-        return b""
+from silent_peer import SilentPeer
 
 
 @pytest.fixture(scope="module")
@@ -38,7 +23,7 @@ def probes() -> list[bytes]:
     found = identify_on(MemoryTransport(peer, SteppedClock()), timeout=0.3)
     assert (found.edition, found.candidates, found.replied) == ("", (), False)
     assert len(found.evidence) >= len(families(newest_first())) > 1
-    return peer.received
+    return peer.writes
 
 
 @pytest.mark.parametrize("parser", PARSERS, ids=lambda parser: parser.__name__)

@@ -34,12 +34,6 @@ def line(edition: str, *frames: tuple[int, Listening, str, tuple[object, ...]]) 
     ]
 
 
-def exchanges(chunks: list[Chunk], edition: str, path: Path) -> list[dict[str, str]]:
-    """Return the exchange and the expert message of each packet's only item."""
-    path.write_bytes(serial(chunks, edition))
-    return [exchange(items[0]) for items in dissected(path, edition, *TWICE)]
-
-
 def exchange(item: Item) -> dict[str, str]:
     ends = ("request_in", "response_in")
     found: dict[str, str] = {key: item.own[key] for key in ends if key in item.own}
@@ -90,67 +84,56 @@ def test_recording_of_the_simulated_arm_is_dissected(
     assert not [item.experts for item in items if item.experts]
 
 
-def test_reply_names_its_request_and_query_without_reply_is_marked(
-    tmp_path: Path,
-) -> None:
-    chunks = line(
-        "mycobot",
-        (0, "request", "get_angles", ()),
-        (8, "reply", "get_angles", ((0,) * 6,)),
-        (20, "request", "get_angles", ()),
-        (30, "reply", "is_power_on", (True,)),
-    )
-    assert exchanges(chunks, "mycobot", tmp_path / "line") == [
-        {"response_in": "2"},
-        {"request_in": "1", "ms": "8"},
-        {"expert": "unanswered"},
-        {},
-    ]
-
-
-def test_lost_request_does_not_delay_later_matches(tmp_path: Path) -> None:
-    request, reply = ("request", "get_angles", ()), ("reply", "get_angles", ((0,) * 6,))
-    times = [(0, request), (100, request), (108, reply)]
-    times += [(200, request), (208, reply), (300, request), (308, reply)]
-    chunks = line("mycobot", *((at, *what) for at, what in times))  # type: ignore[arg-type]
-    shown = exchanges(chunks, "mycobot", tmp_path / "line")
+ASK, ANSWER = ("request", "get_angles", ()), ("reply", "get_angles", ((0,) * 6,))
+UNANSWERED = {"expert": "unanswered"}
+# Frames with their times in milliseconds, and the exchange that each packet shows.
+EXCHANGES: dict[str, tuple[list[Any], list[dict[str, str]]]] = {
+    "a query without a reply": (
+        [(0, *ASK), (8, *ANSWER), (20, *ASK), (30, "reply", "is_power_on", (True,))],
+        [{"response_in": "2"}, {"request_in": "1", "ms": "8"}, UNANSWERED, {}],
+    ),
     # Either of the first two requests may be the one that got a reply; later pairs are certain.
-    assert [found["ms"] for found in shown if "ms" in found] == ["108", "8", "8"]
-    assert shown[1] == {"expert": "unanswered"}
+    "a lost request": (
+        [(0, *ASK), (100, *ASK), (108, *ANSWER), (200, *ASK), (208, *ANSWER)],
+        [
+            *({"response_in": "3"}, UNANSWERED, {"request_in": "1", "ms": "108"}),
+            *({"response_in": "5"}, {"request_in": "4", "ms": "8"}),
+        ],
+    ),
+    "simultaneous requests": (
+        [(0, *ASK), (1, *ASK), (8, *ANSWER), (9, *ANSWER)],
+        [
+            *({"response_in": "3"}, {"response_in": "4"}),
+            *({"request_in": "1", "ms": "8"}, {"request_in": "2", "ms": "8"}),
+        ],
+    ),
+    "a late reply, and one with other arguments": (
+        [
+            (0, "request", "get_joint_min_angle", (1,)),
+            (1, "request", "get_joint_min_angle", (2,)),
+            (9, "reply", "get_joint_min_angle", (2, -100.0)),
+            (1500, "reply", "get_joint_min_angle", (1, -90.0)),
+        ],
+        [UNANSWERED, {"response_in": "3"}, {"request_in": "2", "ms": "8"}, {}],
+    ),
+}
 
 
-def test_simultaneous_requests_match_replies_in_order(tmp_path: Path) -> None:
-    request, reply = ("request", "get_angles", ()), ("reply", "get_angles", ((0,) * 6,))
-    times = [(0, request), (1, request), (8, reply), (9, reply)]
-    chunks = line("mycobot", *((at, *what) for at, what in times))  # type: ignore[arg-type]
-    shown = exchanges(chunks, "mycobot", tmp_path / "line")
-    assert [found["ms"] for found in shown if "ms" in found] == ["8", "8"]
-    # Two requests in one segment, their replies in another one.
-    both = [
-        Chunk(0, "request", chunks[0].data * 2, 0),
-        Chunk(0, "reply", chunks[2].data * 2, 5 * MS),
-    ]
+@pytest.mark.parametrize("case", EXCHANGES)
+def test_replies_are_matched_to_their_requests(case: str, tmp_path: Path) -> None:
+    frames, expected = EXCHANGES[case]
+    path = tmp_path / "line"
+    path.write_bytes(serial(line("mycobot", *frames), "mycobot"))
+    assert [exchange(items[0]) for items in dissected(path, "mycobot", *TWICE)] == expected
+
+
+def test_requests_in_one_segment_match_the_replies_in_another(tmp_path: Path) -> None:
+    request, reply = line("mycobot", (0, *ASK), (5, *ANSWER))  # type: ignore[arg-type]
     path = tmp_path / "segments"
-    path.write_bytes(tcp(both))
+    path.write_bytes(tcp([each._replace(data=each.data * 2) for each in (request, reply)]))
     two_requests, two_replies = dissected(path, "mycobot280", *TWICE)
     assert [exchange(item) for item in two_requests] == [{"response_in": "2"}] * 2
     assert [exchange(item) for item in two_replies] == [{"request_in": "1", "ms": "5"}] * 2
-
-
-def test_late_reply_and_reply_with_other_arguments_match_no_other_request(tmp_path: Path) -> None:
-    chunks = line(
-        "mycobot",
-        (0, "request", "get_joint_min_angle", (1,)),
-        (1, "request", "get_joint_min_angle", (2,)),
-        (9, "reply", "get_joint_min_angle", (2, -100.0)),
-        (1500, "reply", "get_joint_min_angle", (1, -90.0)),
-    )
-    assert exchanges(chunks, "mycobot", tmp_path / "line") == [
-        {"expert": "unanswered"},
-        {"response_in": "3"},
-        {"request_in": "2", "ms": "8"},
-        {},
-    ]
 
 
 def test_text_over_tcp_in_pieces_is_joined(tmp_path: Path) -> None:

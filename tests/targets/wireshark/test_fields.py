@@ -7,20 +7,16 @@ from pathlib import Path
 import pytest
 
 import vectors
-from cobotwire_codegen import lower
-from cobotwire_codegen.build import build_edition
 from cobotwire_codegen.emit import Target, write
-from cobotwire_codegen.render.vectors_json import plain
 from cobotwire_codegen.targets.wireshark import render_wireshark
 from strategies import TABLES, codec_of
 from targets.wireshark.captures import Chunk, serial
 from targets.wireshark.comparison import compare, compared, lines_of
-from targets.wireshark.dissecting import dissected, needs_tshark, tshark
+from targets.wireshark.dissecting import needs_tshark, tshark
 from wrong_models import WRONG, with_wrong_angles
 
 pytestmark = needs_tshark
 EDITIONS = sorted(TABLES)
-FAMILIES = vectors.ROOT / "tests" / "codegen" / "families"
 
 
 @pytest.mark.parametrize("edition", EDITIONS)
@@ -40,32 +36,6 @@ def test_fields_of_a_wrong_model_differ_from_codec(fault: str, tmp_path: Path) -
     assert found.differences
     # The wrong field is reported, and nothing else.
     assert {text.split(" reply")[0] for text in found.differences} == {"messages: get_angles"}
-
-
-@pytest.mark.parametrize("name", ["mercury", "mybuddy"])
-def test_other_frame_formats_are_dissected(name: str, tmp_path: Path) -> None:
-    edition = build_edition(FAMILIES / f"{name}.yaml", FAMILIES)
-    write(Target(tmp_path / "lua", render_wireshark([edition])))
-    script = tmp_path / "lua" / f"{name}.lua"
-    chunks = []
-    for number, vector in enumerate(edition.vectors):
-        assert vector.frame is not None
-        damaged = vector.frame[:-1] + bytes([vector.frame[-1] ^ 1])
-        chunks.append(Chunk(2 * number, vector.direction, vector.frame))
-        chunks.append(Chunk(2 * number + 1, vector.direction, damaged))
-    path = tmp_path / "frames.pcapng"
-    path.write_bytes(serial(chunks, name))
-    shown = dissected(path, name, scripts=[script])
-    for vector, packet, broken in zip(edition.vectors, shown[::2], shown[1::2], strict=True):
-        (item,) = packet
-        assert item.own["frame.command"] == vector.command
-        wanted = [plain(edition, vector, field, value) for field, value in vector.values]
-        flat = [
-            part for value in wanted for part in (value if isinstance(value, list) else [value])
-        ]
-        assert [float(leaf.value) for leaf in item.leaves] == [float(value) for value in flat]
-        assert broken[0].kind == "bad-check"
-        assert ("frame.address" in item.own) == bool(lower.table(edition)["frame"]["addresses"])
 
 
 def test_filters_find_values_by_field_and_by_label(tmp_path: Path) -> None:
