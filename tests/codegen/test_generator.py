@@ -1,4 +1,4 @@
-"""``cobotwire-gen`` writes and checks the generated files."""
+"""``cobotwire-gen`` writes and checks the generated files; `make lint` checks those of the project."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def run(root: Path, *words: str) -> Ended:
     return in_process.run(main, "cobotwire-gen", "--root", str(root), *words)
 
 
-def _copy_spec(root: Path) -> None:
+def copy_spec(root: Path) -> None:
     """Copy two editions of the spec, one of them a delta; all of them would take minutes."""
     shutil.copytree(vectors.ROOT / "spec", root / "spec")
     for path in (root / "spec" / "editions").glob("*.yaml"):
@@ -38,7 +38,7 @@ def _copy_spec(root: Path) -> None:
 @pytest.fixture
 def project(tmp_path: Path) -> Path:
     """Copy the spec into a project without generated files."""
-    _copy_spec(tmp_path)
+    copy_spec(tmp_path)
     return tmp_path
 
 
@@ -46,7 +46,7 @@ def project(tmp_path: Path) -> Path:
 def template(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Generate a project in another process; a test changes only a copy of it."""
     root = tmp_path_factory.mktemp("template")
-    _copy_spec(root)
+    copy_spec(root)
     _generate(root, seed="1")
     return root
 
@@ -70,16 +70,10 @@ def _files(root: Path) -> dict[str, bytes]:
     return {str(path.relative_to(root)): path.read_bytes() for path in found}
 
 
-def test_committed_files_are_fresh(tmp_path: Path) -> None:
-    shutil.copytree(vectors.ROOT / "spec", tmp_path / "spec")
-    _generate(tmp_path, seed="1")
-    assert _files(tmp_path) == _files(vectors.ROOT)
-    assert len(_files(tmp_path)) > 30
-
-
 def test_output_does_not_depend_on_the_hash_seed(project: Path, template: Path) -> None:
     _generate(project, seed="2")
     assert _files(project) == _files(template)
+    assert len(_files(project)) > 30
 
 
 def test_second_run_of_the_generator_changes_nothing(generated: Path) -> None:
@@ -121,7 +115,6 @@ def test_products_are_written_only_with_their_option(generated: Path) -> None:
     assert (generated / "rust/core/tests/data/mycobot280.json").exists()
     assert (generated / "docs/_static/decoder/editions/mycobot280.js").exists()
     assert (generated / "docs/reference/language.md").read_text() == language_page()
-    assert run(generated, "--products", "--check").stdout == "fresh\n"
     (generated / "targets/wireshark/mycobot.lua").unlink()
     assert run(generated, "--check").returncode == 0
     assert run(generated, "--products", "--check").returncode == 1

@@ -30,7 +30,7 @@ from silent_peer import SilentPeer
 
 NUMBERS = itertools.count()
 EXAMPLES = settings(
-    max_examples=40,
+    max_examples=25,
     suppress_health_check=[HealthCheck.function_scoped_fixture, HealthCheck.too_slow],
 )
 

@@ -18,6 +18,7 @@ from cobotwire_codegen.load import Node, load
 from cobotwire_codegen.project import SERVO_BUS, edition_files
 from codegen.author import samples
 from codegen.author.schema_walk import Closed, Walk, Word, plain
+from codegen.test_generator import EDITIONS, copy_spec
 
 Found = Closed | Word
 # Files of the spec that the schema does not describe: one has types of its own, one is no edition.
@@ -139,12 +140,12 @@ def test_types_of_every_edition_can_be_named() -> None:
 
 
 def test_schema_command_writes_and_compares_the_file(tmp_path: Path) -> None:
-    shutil.copytree(vectors.ROOT / "spec", tmp_path / "spec")
+    copy_spec(tmp_path)
     path = tmp_path / "spec/schema.json"
     path.write_text("{}")
     assert samples.run(tmp_path, "schema", "--check").returncode == 1
     assert samples.run(tmp_path, "schema").returncode == 0
-    assert path.read_text() == schema_json([*vectors.editions().values()])
+    assert path.read_text() == schema_json([vectors.edition(name) for name in EDITIONS])
     assert samples.run(tmp_path, "schema", "--check").stdout == "fresh\n"
 
 
