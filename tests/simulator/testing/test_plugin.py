@@ -16,10 +16,11 @@ GUIDE = (vectors.ROOT / "docs" / "testing.md").read_text()
 EXAMPLES = re.findall(r"```python\n(.*?)```", GUIDE, re.DOTALL)
 
 
-def run(folder: Path, test: str, *words: str) -> str:
-    """Run ``test`` as a separate project; return what pytest printed."""
+def run(folder: Path, *tests: str, words: tuple[str, ...] = ()) -> str:
+    """Run test files as a separate project; return what pytest printed."""
     (folder / "pytest.ini").write_text(INI)
-    (folder / "test_it.py").write_text(test)
+    for number, test in enumerate(tests):
+        (folder / f"test_it{number}.py").write_text(test)
     result = subprocess.run(
         [sys.executable, "-m", "pytest", *words],
         cwd=folder,
@@ -31,18 +32,13 @@ def run(folder: Path, test: str, *words: str) -> str:
     return result.stdout + result.stderr
 
 
-def test_example_of_the_guide_runs(tmp_path: Path) -> None:
-    assert "2 passed" in (output := run(tmp_path, EXAMPLES[0])), output
-
-
 def test_example_without_fixtures_runs(capsys: pytest.CaptureFixture[str]) -> None:
     exec(EXAMPLES[1], {})
     seconds = int(capsys.readouterr().out.split()[0])
     assert 11 < seconds < 16
 
 
-def test_url_fixture_serves_each_kind_of_port(tmp_path: Path) -> None:
-    test = """
+PORTS = """
 import pytest, serial, time
 
 def ask(url):
@@ -66,12 +62,7 @@ def test_a_client_over_tcp_in_faster_time(simulated_arm):
     simulated_arm.move_angles([100, 0, 0, 0, 0, 0], 5)
     assert time.monotonic() - started < 5
 """
-    assert "3 passed" in (output := run(tmp_path, test)), output
-
-
-def test_marks_combine_and_scenarios_are_found_beside_the_test(tmp_path: Path) -> None:
-    (tmp_path / "sick.yaml").write_text("faults:\n  - {fault: lost, only: replies}\n")
-    test = """
+MARKS = """
 import pytest
 from cobotwire import ReplyTimeout
 from cobotwire.simulator.faults import Lost, Scenario
@@ -98,7 +89,12 @@ def test_scenario_as_an_object(simulated_arm):
 def test_no_scenario(simulated_arm):
     assert simulated_arm.is_power_on() is False
 """
-    assert "4 passed" in (output := run(tmp_path, test)), output
+
+
+def test_example_of_the_guide_ports_and_marks_work_in_another_project(tmp_path: Path) -> None:
+    (tmp_path / "sick.yaml").write_text("faults:\n  - {fault: lost, only: replies}\n")
+    # The example has 2 tests, the kinds of ports 3, and the marks, with a scenario beside them, 4.
+    assert "9 passed" in (output := run(tmp_path, EXAMPLES[0], PORTS, MARKS)), output
 
 
 WRONG = {
@@ -152,5 +148,5 @@ def test_it():
 
 
 def test_mark_is_listed_by_pytest(tmp_path: Path) -> None:
-    printed = run(tmp_path, "", "--markers")
+    printed = run(tmp_path, words=("--markers",))
     assert "@pytest.mark.simulated_arm(edition='mycobot280'" in printed

@@ -18,8 +18,7 @@ from cobotwire_codegen.emit import Target, write
 from cobotwire_codegen.project import edition_files
 from cobotwire_codegen.targets.decoder import edition_script, render_decoder
 from strategies import TABLES, codec_of
-from targets.decoder import browser
-from targets.decoder.browser import SHOWN
+from targets.decoder.browser import SHOWN, Tab, needs_chromium
 from targets.specs import SPECS, edition_of
 from targets.vectors.comparison import Record, read
 from vectors import ROOT
@@ -35,7 +34,7 @@ NOTATIONS = [
     ("hello <script>", "not hex"),
 ]
 WRONG = "FE FE 03 12 07 FA"
-pytestmark = browser.needs_chromium
+pytestmark = needs_chromium
 
 
 @pytest.fixture(scope="module")
@@ -51,19 +50,32 @@ def page(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return path
 
 
-def _shown(page: Path, **state: str) -> str:
+@pytest.fixture(scope="module")
+def tab() -> Iterator[Tab]:
+    """Start a browser for all tests of the page: it starts slowly."""
+    with Tab("about:blank") as started:
+        yield started
+
+
+def _open(tab: Tab, page: Path, **state: str) -> Tab:
+    """Open the page anew, with a state in its address."""
+    tab.open("about:blank")
+    tab.open(f"{page.as_uri()}#{urlencode(state)}")
+    tab.evaluate(SHOWN)
+    return tab
+
+
+def _shown(tab: Tab, page: Path, **state: str) -> str:
     """Return what the page shows of the state in its address."""
-    _, output = browser.evaluate(f"{page.as_uri()}#{urlencode(state)}", SHOWN, "shown()")
-    return html.unescape(output)
+    return html.unescape(_open(tab, page, **state).evaluate("shown()"))
 
 
 @pytest.fixture(scope="module")
-def typed(page: Path) -> dict[str, str]:
-    """Return what the page shows of each pasted text; one browser, since it starts slowly."""
+def typed(tab: Tab, page: Path) -> dict[str, str]:
+    """Return what the page shows of each pasted text."""
     states = [*_streams(), *(_state(pasted) for pasted, _ in NOTATIONS), _state(WRONG, "reply")]
-    calls = (f"shown({json.dumps(state)})" for state in states)
-    _, *shown = browser.evaluate(page.as_uri(), SHOWN, *calls)
-    return {state["hex"]: text for state, text in zip(states, shown, strict=True)}
+    _open(tab, page)
+    return {each["hex"]: tab.evaluate(f"shown({json.dumps(each)})") for each in states}
 
 
 def _state(pasted: str, direction: str = "both", edition: str = "mycobot") -> dict[str, str]:
@@ -85,10 +97,9 @@ def _cells(shown: str) -> list[list[str]]:
     return [re.sub(r"<[^>]*>", "\t", row).split("\t") for row in rows]
 
 
-def test_decoder_page_offers_every_edition_of_the_spec(page: Path) -> None:
-    [found] = browser.evaluate(
-        page.as_uri(), "[...document.querySelectorAll('option')].map((each) => each.value)"
-    )
+def test_decoder_page_offers_every_edition_of_the_spec(tab: Tab, page: Path) -> None:
+    options = "[...document.querySelectorAll('option')].map((each) => each.value)"
+    found = _open(tab, page).evaluate(options)
     assert found[: -len(WAYS)] == sorted(path.stem for path in edition_files(ROOT))
 
 
@@ -116,31 +127,30 @@ EXPLAINED = {
 }
 
 
-def test_message_without_a_request_is_shown_as_an_event(page: Path) -> None:
+def test_message_without_a_request_is_shown_as_an_event(tab: Tab, page: Path) -> None:
     [found] = [
         vector
         for vector in vectors.edition("mercury_a1").vectors
         if vector.command == "motion_ended" and vector.frame and vector.direction == "reply"
     ][:1]
     assert found.frame is not None
-    shown = _shown(page, edition="mercury_a1", hex=found.frame.hex(" "), direction="reply")
+    shown = _shown(tab, page, edition="mercury_a1", hex=found.frame.hex(" "), direction="reply")
     assert "event at 0: <code>motion_ended</code>" in shown
 
 
-def test_each_type_of_the_language_is_explained(page: Path) -> None:
+def test_each_type_of_the_language_is_explained(tab: Tab, page: Path) -> None:
     script = edition_script(edition_of(SPECS["sensor"]))
     own = page.with_name("sensor.html")
     own.write_text(page.read_text().replace("</body>", f"<script>{script}</script></body>"))
-    states = [_state(pasted, "reply", "sensor") for pasted in EXPLAINED]
-    calls = (f"shown({json.dumps(state)})" for state in states)
-    _, *shown = browser.evaluate(own.as_uri(), SHOWN, *calls)
-    for text, right in zip(shown, EXPLAINED.values(), strict=True):
+    _open(tab, own)
+    for pasted, right in EXPLAINED.items():
+        text = tab.evaluate(f"shown({json.dumps(_state(pasted, 'reply', 'sensor'))})")
         rows = [" ".join(cell for cell in row if cell) for row in _cells(html.unescape(text))]
         assert rows[3:-1] == right
 
 
-def test_each_byte_of_a_frame_is_labelled(page: Path) -> None:
-    shown = _shown(page, edition="mycobot", hex="FE FE 06 21 01 00 1D 14 FA", direction="both")
+def test_each_byte_of_a_frame_is_labelled(tab: Tab, page: Path) -> None:
+    shown = _shown(tab, page, edition="mycobot", hex="FE FE 06 21 01 00 1D 14 FA", direction="both")
     rows = [[cell for cell in row if cell] for row in _cells(shown)]
     assert rows == [
         ["0", "FE FE", "header", "a frame starts here"],
@@ -154,9 +164,9 @@ def test_each_byte_of_a_frame_is_labelled(page: Path) -> None:
     assert "request at 0: <code>send_angle</code>" in shown
 
 
-def test_page_without_an_edition_in_its_address_decodes_as_todays_arm(page: Path) -> None:
+def test_page_without_an_edition_in_its_address_decodes_as_todays_arm(tab: Tab, page: Path) -> None:
     # 0x02 is a command of mycobot280 only.
-    assert "get_system_version" in _shown(page, hex="FE FE 02 02 FA", direction="request")
+    assert "get_system_version" in _shown(tab, page, hex="FE FE 02 02 FA", direction="request")
 
 
 @pytest.mark.parametrize("edition", sorted(TABLES))
@@ -222,10 +232,12 @@ LONG_INPUTS = {
 
 
 @pytest.mark.parametrize("pasted", LONG_INPUTS)
-def test_long_input_is_decoded_beside_the_page(page: Path, pasted: str) -> None:
+def test_long_input_is_decoded_beside_the_page(tab: Tab, page: Path, pasted: str) -> None:
     short = LONG_INPUTS[pasted].replace("000)", "00)").replace("333_333", "33_333")
-    calls = [LONG.replace("PASTED", text) for text in (short, LONG_INPUTS[pasted])]
-    small, large = browser.evaluate(page.as_uri(), *calls)
+    _open(tab, page)
+    small, large = (
+        tab.evaluate(LONG.replace("PASTED", text)) for text in (short, LONG_INPUTS[pasted])
+    )
     # On two busy cores each takes 1 to 5 s. The first one has a tenth of the bytes.
     assert large["seconds"] < 30
     assert large["seconds"] < 40 * max(small["seconds"], 0.1)
@@ -236,7 +248,7 @@ def test_long_input_is_decoded_beside_the_page(page: Path, pasted: str) -> None:
     assert ("of noise" in large["text"]) == (pasted != "not hex")
 
 
-def test_rest_of_a_long_input_is_shown_on_request(page: Path) -> None:
+def test_rest_of_a_long_input_is_shown_on_request(tab: Tab, page: Path) -> None:
     script = """
     (async () => {
       await shown({ edition: "mycobot", direction: "both", hex: "FE FE 02 20 FA 00 ".repeat(250) });
@@ -260,11 +272,10 @@ def test_rest_of_a_long_input_is_shown_on_request(page: Path) -> None:
       return counts;
     })()
     """
-    _, counts = browser.evaluate(page.as_uri(), SHOWN, script)
-    assert counts == [200, 400, 500, 0, 1024, 2048, 2500, 0]
+    assert _open(tab, page).evaluate(script) == [200, 400, 500, 0, 1024, 2048, 2500, 0]
 
 
-def test_newest_input_is_shown_if_the_page_is_still_busy_with_another(page: Path) -> None:
+def test_newest_input_is_shown_if_the_page_is_still_busy_with_another(tab: Tab, page: Path) -> None:
     script = """
     (async () => {
       const root = document.getElementById("decoder");
@@ -273,5 +284,4 @@ def test_newest_input_is_shown_if_the_page_is_still_busy_with_another(page: Path
       return shown({ hex: "FE FE 02 20 FA" });
     })()
     """
-    _, output = browser.evaluate(page.as_uri(), SHOWN, script)
-    assert "5 bytes: 1 frame, 0 bytes of noise" in output
+    assert "5 bytes: 1 frame, 0 bytes of noise" in _open(tab, page).evaluate(script)

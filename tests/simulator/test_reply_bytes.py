@@ -1,42 +1,22 @@
-"""Test the bytes of replies that have several legal variants, as a client receives them."""
+"""Test the bytes of replies that have several legal variants."""
 
 from __future__ import annotations
-
-import time
-from collections.abc import Iterator
 
 import pytest
 
 from cobotwire import editions
-from cobotwire.simulator import PtyServer, SimulatedArm, TcpServer
+from cobotwire.simulator import SimulatedArm
 from cobotwire.simulator.arm import Note
-from cobotwire.transport.interface import OpenedTransport
-from cobotwire.transport.opening import open_transport
 
-SECONDS = 5.0
 POWER_ON, RELEASE_THE_THIRD = "FE FE 02 10 FA", "FE FE 03 56 03 FA"
 ARE_ALL_ENABLED = "FE FE 02 51 FA"
 # Write 10 into register 21, and 1000 into register 24; the last byte of the second is the mode.
 WRITE_A_BYTE, WRITE_A_WORD = "FE FE 05 52 01 15 0A FA", "FE FE 07 52 01 18 03 E8 01 FA"
 
 
-@pytest.fixture(params=["pty", "tcp"])
-def port(request: pytest.FixtureRequest, edition: str) -> Iterator[OpenedTransport]:
-    arm = SimulatedArm(editions.load(edition).TABLE, acks=False)
-    with PtyServer(arm) if request.param == "pty" else TcpServer(arm.connect) as server:
-        transport = open_transport(server.url, 115200)
-        yield transport
-        transport.close()
-
-
-def _replies(port: OpenedTransport, *requests: str) -> str:
-    """Send requests in hex; return the frame that is received."""
-    port.write(bytes.fromhex("".join(requests)))
-    received, until = b"", time.monotonic() + SECONDS
-    while len(received) < 4 or len(received) < received[2] + 3:
-        assert time.monotonic() < until, f"received only {received.hex(' ')}"
-        received += port.read(0.05)
-    return received.hex(" ").upper()
+def _reply(arm: SimulatedArm, *requests: str) -> str:
+    """Send requests in hex; return all replies."""
+    return arm.receive(bytes.fromhex("".join(requests))).hex(" ").upper()
 
 
 def _with_one_flag() -> list[str]:
@@ -51,13 +31,13 @@ def _with_one_flag() -> list[str]:
 
 
 @pytest.mark.parametrize("edition", _with_one_flag())
-def test_is_all_servo_enable_is_one_byte_that_is_1_when_all_are_on(port: OpenedTransport) -> None:
-    assert _replies(port, ARE_ALL_ENABLED) == "FE FE 03 51 00 FA"
-    assert _replies(port, POWER_ON, ARE_ALL_ENABLED) == "FE FE 03 51 01 FA"
-    assert _replies(port, RELEASE_THE_THIRD, ARE_ALL_ENABLED) == "FE FE 03 51 00 FA"
+def test_is_all_servo_enable_is_one_byte_that_is_1_when_all_are_on(edition: str) -> None:
+    arm = SimulatedArm(editions.load(edition).TABLE, acks=False)
+    assert _reply(arm, ARE_ALL_ENABLED) == "FE FE 03 51 00 FA"
+    assert _reply(arm, POWER_ON, ARE_ALL_ENABLED) == "FE FE 03 51 01 FA"
+    assert _reply(arm, RELEASE_THE_THIRD, ARE_ALL_ENABLED) == "FE FE 03 51 00 FA"
 
 
-@pytest.mark.parametrize("edition", ["mycobot280"])
 @pytest.mark.parametrize(
     ("request_words", "reply"),
     [
@@ -70,9 +50,10 @@ def test_is_all_servo_enable_is_one_byte_that_is_1_when_all_are_on(port: OpenedT
     ],
 )
 def test_servo_register_has_two_bytes_with_mode_1_and_else_one(
-    port: OpenedTransport, request_words: str, reply: str
+    request_words: str, reply: str
 ) -> None:
-    assert _replies(port, WRITE_A_BYTE, WRITE_A_WORD, request_words) == reply
+    arm = SimulatedArm(editions.load("mycobot280").TABLE, acks=False)
+    assert _reply(arm, WRITE_A_BYTE, WRITE_A_WORD, request_words) == reply
 
 
 @pytest.mark.parametrize(
@@ -87,12 +68,7 @@ def test_command_without_effect_is_acknowledged_with_a_note(
 ) -> None:
     notes: list[Note] = []
     arm = SimulatedArm(editions.load("mycobot280").TABLE, powered=True, on_note=notes.append)
-    with PtyServer(arm) as server:
-        transport = open_transport(server.url, 115200)
-        try:
-            assert _replies(transport, words) == reply
-        finally:
-            transport.close()
+    assert _reply(arm, words) == reply
     [note] = notes
     assert note.command == name
     assert why in note.text
