@@ -1,4 +1,4 @@
-"""``cobotwire-gen`` writes and checks the generated files; ``make lint`` checks the committed ones."""
+"""``cobotwire-gen`` writes and checks generated files; ``make lint`` checks the committed ones."""
 
 from __future__ import annotations
 

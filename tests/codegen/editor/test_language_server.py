@@ -144,41 +144,35 @@ def test_problems_of_unsaved_text_appear_at_their_place_and_go_away(folder: Path
     assert lamp.read_text() == text
 
 
-def test_hover_completion_and_definition_of_the_280(tmp_path: Path) -> None:
-    spec = vectors.ROOT / "spec"
-    changes = spec / "editions" / "mycobot280" / "changes.yaml"
-    replies = spec / "editions" / "mycobot280" / "vectors" / "replies.yaml"
+def test_hover_completion_and_definition_in_a_delta(folder: Path) -> None:
+    delta = folder / "lamp2.yaml"
+    text = delta.read_text()
 
     async def play(editor: Editor) -> None:
-        text = replies.read_text()
-        await editor.show(replies, text)
-        assert editor.problems(replies) == []
-        shown = await editor.hover(
-            replies, text, "values", "name: get-coords-reply-twos-complement"
+        await editor.show(delta, text)
+        assert editor.problems(delta) == []
+        place = "name: angle-reply-2"
+        assert "values: The values of the fields" in await editor.hover(
+            delta, text, "values", place
         )
-        assert "values: The values of the fields" in shown
-        shown = await editor.hover(replies, text, "FE", "name: get-coords-reply-twos-complement")
-        assert "coords" in shown
-        assert "millimetre (raw " in shown
-        shown = await editor.hover(replies, text, "get_coords", "get-coords-reply-twos-complement")
-        assert shown.startswith("```text\nget_coords: ")
-        goal = await editor.definition(replies, text, "get_coords", "get-coords-reply-twos")
-        assert goal == "coords.yaml:8"
+        shown = await editor.hover(delta, text, "FE", place)
+        assert "degree (raw -15)" in shown
+        shown = await editor.hover(delta, text, "get_angle", place)
+        assert shown.startswith("```text\nget_angle: ")
+        # From the delta to what it uses, changes and removes in its base.
+        base = (folder / "lamp.yaml").read_text().splitlines()
+        for word, after in (
+            *(("get_angle", place), ("set_light", "- change: ")),
+            ("read_angle", "- remove: "),
+        ):
+            goal = await editor.definition(delta, text, word, after)
+            assert goal == f"lamp.yaml:{1 + base.index(f'  {word}:')}"
 
-        editor.version = 0
-        text = changes.read_text()
-        await editor.show(changes, text)
-        # From the delta to what it removes and changes in its base.
-        changed = await editor.definition(changes, text, "send_angle", "- change: ")
-        assert changed.startswith("motion.yaml:")
-        removed = await editor.definition(changes, text, "get_speed", "- remove:")
-        assert removed.startswith(("motion.yaml:", "jog.yaml:", "servo.yaml:"))
-
-        added = f"{text}  - change: get_coords\n    set: {{safety: \n"
-        await editor.show(changes, added)
+        added = f"{text.partition('commands:')[0]}  - change: get_angle\n    set: {{safety: \n"
+        await editor.show(delta, added)
         end = lsp.Position(added.count("\n") - 1, len("    set: {safety: "))
-        assert "motion" in await editor.complete(changes, end)
+        assert "motion" in await editor.complete(delta, end)
         line = lsp.Position(added.count("\n") - 2, len("  - change: "))
-        assert "get_angles" in await editor.complete(changes, line)
+        assert "get_angle" in await editor.complete(delta, line)
 
-    session(vectors.ROOT, play)
+    session(folder, play)
