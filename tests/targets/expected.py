@@ -67,10 +67,14 @@ class Document:
             return
         variants = found.command.variants(direction)
         number = next(i for i, each in enumerate(variants) if each is found.variant)
+        # Damage may have changed bits that no field has: they are 0 in the frame that is built.
+        name, address = found.command.name, self.codec.table.frame.address(data)
+        built = self.codec.encode(name, direction, found.values, variant=number, address=address)
         self.record["messages"].append(
             record
             | {
-                "command": found.command.name,
+                "built": built.hex(" "),
+                "command": name,
                 "read_as": self.codec.decode(direction, data).command.name,
                 "variant": _number(found.variant, number),
                 "fields": self._fields(found.variant, found.values, data, direction),

@@ -96,9 +96,10 @@ class Judge:
         values = [float(value) for value in self._given(record, "value")]
         address = data[self._frame.offset("address")] if self._frame.address_values else 0
         right = Read(index, raw, list(map(comparable, values)))
-        yield from _unequal("built", self._peer.encode(index, raw, address), data)
+        frame = bytes.fromhex(record.get("built", record["bytes"]))
+        yield from _unequal("built", self._peer.encode(index, raw, address), frame)
         yield from _unequal(
-            "built of values", self._peer.encode_values(index, values, address), data
+            "built of values", self._peer.encode_values(index, values, address), frame
         )
         yield from _unequal("read", self._peer.decode(index, data), right)
         found = self._peer.read(record["direction"], data)
