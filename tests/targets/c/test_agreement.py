@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import os
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -26,8 +27,7 @@ from targets.specs import SPECS, edition_of
 
 pytestmark = pytest.mark.skipif(bool(missing("gcc")), reason=missing("gcc"))
 NUMBERS = itertools.count()
-# A deep profile of Hypothesis draws more.
-QUICK = settings(max_examples=settings.default.max_examples * 3 // 5)
+QUICK = settings(max_examples=int(os.environ.get("HYPOTHESIS_EXAMPLES", "40")))
 
 
 class Sides:
