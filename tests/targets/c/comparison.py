@@ -96,7 +96,7 @@ class Judge:
         values = [float(value) for value in self._given(record, "value")]
         address = data[self._frame.offset("address")] if self._frame.address_values else 0
         right = Read(index, raw, list(map(comparable, values)))
-        frame = bytes.fromhex(record.get("built", record["bytes"]))
+        frame = bytes.fromhex(record["built" if "built" in record else "bytes"])
         yield from _unequal("built", self._peer.encode(index, raw, address), frame)
         yield from _unequal(
             "built of values", self._peer.encode_values(index, values, address), frame
