@@ -11,6 +11,7 @@ from typing import Any, Literal
 from hypothesis import strategies as st
 
 import strategies
+from cobotwire.editions.mybuddy import TABLE as MYBUDDY
 from cobotwire.protocol.numbers import raw_of_float
 from cobotwire.protocol.table import (
     Case,
@@ -21,6 +22,7 @@ from cobotwire.protocol.table import (
     Table,
     Variant,
 )
+from frame_format_tables import ALIKE, CRC, SUM
 from random_formats import frame_formats
 
 SCALES = [(1, 1), (1, 10), (-1, 10), (1, -10), (-1, 1), (3, -20), (-7, 100), (-1, -1), (1, 3)]
@@ -161,19 +163,20 @@ def tables(draw: st.DrawFn) -> Table:
 
 
 @st.composite
-def frames(draw: st.DrawFn, table: Table) -> bytes:
-    """Draw a frame of the table with any data bytes, or one with any id and size."""
+def frames(draw: st.DrawFn, table: Table, *, unknown: bool = True) -> bytes:
+    """Draw a frame of the table with any data bytes; with ``unknown`` also of any id and size."""
     command = draw(st.sampled_from(table.commands))
     ways: list[Direction] = ["request", "reply"] if command.reply else ["request"]
     direction = draw(st.sampled_from(ways))
     variant = draw(st.sampled_from(command.variants(direction)))
     id, size = command.id, variant.size
-    if draw(st.integers(0, 4)) == 0:
+    if unknown and draw(st.integers(0, 4)) == 0:
         id, size = draw(st.integers(0, 255)), draw(st.integers(2, 40))
     data = draw(
         st.sampled_from([bytes(size), b"\xff" * size]) | st.binary(min_size=size, max_size=size)
     )
-    address = draw(st.none() | st.sampled_from(table.frame.addresses or [None]))
+    addresses = st.sampled_from(table.frame.addresses or [None])
+    address = draw(st.none() | addresses if unknown else addresses)
     return table.frame.enclose(id, data, address, direction)
 
 
@@ -181,6 +184,20 @@ def streams(table: Table) -> st.SearchStrategy[bytes]:
     """Draw frames with a little noise between them."""
     pieces: Any = st.one_of(frames(table), frames(table), frames(table), st.binary(max_size=3))
     return st.lists(pieces, max_size=8).map(b"".join)
+
+
+# The maker's other formats: an edition with addresses, and tables that no edition has.
+FORMATS = [MYBUDDY, CRC, SUM, ALIKE]
+
+
+def any_tables() -> st.SearchStrategy[Table]:
+    """Draw the table of an edition or of one of the maker's other formats, or a random one."""
+    return st.sampled_from([*strategies.TABLES.values(), *FORMATS]) | tables()
+
+
+def any_streams(table: Table) -> st.SearchStrategy[bytes]:
+    """Draw the bytes of a line with frames of any table."""
+    return streams(table) if table.edition == "random" else strategies.streams(table)
 
 
 def values(variant: Variant) -> st.SearchStrategy[tuple[Any, ...]]:

@@ -17,6 +17,8 @@ from cobotwire.editions.mycobot280 import TABLE as TABLE_280
 from cobotwire.protocol.table import Case, Command, Direction, Field, Number, Table, Variant
 
 TABLES = {table.edition: table for table in (TABLE, TABLE_280)}
+CODECS: tuple[codecs.CodecName, ...] = ("reference", "native")
+DIRECTIONS: tuple[Direction, ...] = ("request", "reply")
 
 
 class CommandVariant(NamedTuple):
@@ -33,7 +35,7 @@ def variants_of(table: Table) -> list[CommandVariant]:
     return [
         CommandVariant(command, direction, variant, index)
         for command in table.commands
-        for direction in ("request", "reply")
+        for direction in DIRECTIONS
         for index, variant in enumerate(command.variants(direction))
     ]
 
@@ -142,7 +144,7 @@ def near_frames(table: Table = TABLE) -> st.SearchStrategy[bytes]:
 
 def real_frames(table: Table = TABLE) -> st.SearchStrategy[bytes]:
     """Draw a legal frame, built by the reference codec."""
-    codec = codec_of(table.edition, "reference")
+    codec = codecs.load(table, "reference")
     addresses = st.sampled_from(table.frame.addresses or (None,))
     return st.builds(
         lambda message, address: frame_of(codec, message[0], message[1], address),
@@ -166,7 +168,7 @@ def line_noise(table: Table = TABLE) -> st.SearchStrategy[bytes]:
 
 def received(table: Table, listening: Listening) -> st.SearchStrategy[noisy_lines.Received]:
     """Draw frames received over a bad line, and which of them arrive undamaged."""
-    codec = codec_of(table.edition, "reference")
+    codec = codecs.load(table, "reference")
     expected = [
         variant for variant in variants_of(table) if listening in (variant.direction, "both")
     ]

@@ -6,18 +6,21 @@ from itertools import pairwise
 from typing import Any
 
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
+import random_tables
 import strategies
+from cobotwire import codec as codecs
 from cobotwire.codec.interface import Codec, Columns, Frame, Listening, Noise
 from cobotwire.protocol.errors import ProtocolError, UsageError
-from strategies import TABLES, codec_of
+from cobotwire.protocol.table import Table
+from codec.results import joined_columns
+from strategies import CODECS, TABLES, codec_of
 
-CODECS = ["reference", "native"]
 LISTENING = st.sampled_from(["request", "reply", "both"])
 EACH_EDITION = pytest.mark.parametrize("edition", TABLES)
-WITH_ADDRESSES = pytest.mark.parametrize("edition", [*TABLES, "mybuddy"])
+MORE = settings(max_examples=2 * (settings.default or settings()).max_examples)
 ANGLES = bytes.fromhex("FE FE 0E 20 00 64 00 C8 01 2C 01 90 01 F4 02 8A FA")
 COORDS = bytes.fromhex("FE FE 0E 23 01 BC FD A0 10 0D DC 66 FF 54 DE 21 FA")
 FLAG = bytes.fromhex("FE FE 03 12 01 FA")
@@ -28,84 +31,35 @@ def plain(columns: Columns) -> Any:
     return columns.rows("get_angles")["angles"].tolist()
 
 
-def contents(columns: Columns) -> Any:
-    """Return everything that columns hold, as plain Python values."""
-    rows = [
-        (
-            rows.command.name,
-            rows.direction,
-            rows.variant,
-            rows.offset.tolist(),
-            list(rows.address or ()),
-            {
-                name: (rows[name].format, rows[name].shape, rows[name].tolist())
-                for name in rows.names
-            },
-        )
-        for rows in columns
-    ]
-    noise = columns.noise
-    rejected = columns.rejected.tolist()
-    return rows, sorted(rejected), noise.offset.tolist(), noise.size.tolist(), columns.counters
-
-
-def joined(parts: list[Columns]) -> Any:
-    """Join the contents of consecutive columns as if they were one."""
-    rows: dict[Any, Any] = {}
-    rejected: list[int] = []
-    noise: tuple[list[int], list[int]] = ([], [])
-    for part in parts:
-        for found in part:
-            key = found.command.name, found.direction, found.variant
-            fresh: Any = ([], [], {name: [] for name in found.names})
-            offsets, addresses, fields = rows.setdefault(key, fresh)
-            offsets += found.offset.tolist()
-            addresses += found.address or ()
-            for name in found.names:
-                fields[name] += found[name].tolist()
-        rejected += part.rejected.tolist()
-        noise[0].extend(part.noise.offset.tolist())
-        noise[1].extend(part.noise.size.tolist())
-    return rows, sorted(rejected), noise, parts[-1].counters
-
-
-@WITH_ADDRESSES
-@given(listening=LISTENING, raw=st.booleans(), data=st.data())
-def test_both_codecs_return_the_same_columns(
-    edition: str, listening: Listening, raw: bool, data: st.DataObject
-) -> None:
-    stream = data.draw(strategies.streams(codec_of(edition, "native").table))
-    found = [codec_of(edition, name).decode_columns(stream, listening, raw=raw) for name in CODECS]
-    assert contents(found[0]) == contents(found[1])
-
-
-@WITH_ADDRESSES
-@pytest.mark.parametrize("name", CODECS)
-@given(listening=LISTENING, raw=st.booleans(), data=st.data())
+@MORE
+@given(random_tables.any_tables(), LISTENING, st.booleans(), st.data())
 def test_stream_in_pieces_has_the_same_rows(
-    edition: str, name: Any, listening: Listening, raw: bool, data: st.DataObject
+    table: Table, listening: Listening, raw: bool, data: st.DataObject
 ) -> None:
-    codec = codec_of(edition, name)
-    stream = data.draw(strategies.streams(codec.table))
+    codec = codecs.load(table, data.draw(st.sampled_from(CODECS)))
+    stream = data.draw(random_tables.any_streams(table))
     reader = codec.column_reader(listening, raw=raw)
     parts = [reader.feed(chunk) for chunk in data.draw(strategies.chunked(stream))]
     parts.append(reader.flush())
     assert reader.pending == 0
-    assert joined(parts) == joined([codec.decode_columns(stream, listening, raw=raw)])
+    whole = codec.decode_columns(stream, listening, raw=raw)
+    assert joined_columns(parts) == joined_columns([whole])
+    assert parts[-1].counters == whole.counters
 
 
 @EACH_EDITION
 @pytest.mark.parametrize("name", CODECS)
 @given(listening=LISTENING, data=st.data())
-def test_columns_equal_the_decoded_frames_of_a_framer(
+def test_columns_and_scan_equal_the_decoded_frames_and_the_noise_of_a_framer(
     edition: str, name: Any, listening: Listening, data: st.DataObject
 ) -> None:
     codec = codec_of(edition, name)
     stream = data.draw(strategies.streams(TABLES[edition]))
     framer = codec.framer(listening)
+    events = framer.feed(stream) + framer.flush()
     rows: dict[Any, list[Any]] = {}
     rejected = []
-    for event in framer.feed(stream) + framer.flush():
+    for event in events:
         if isinstance(event, Noise):
             continue
         try:
@@ -126,24 +80,12 @@ def test_columns_equal_the_decoded_frames_of_a_framer(
     assert {key: sorted(all_rows) for key, all_rows in found.items()} == rows
     assert sorted(columns.rejected.tolist()) == rejected
     assert columns.counters == framer.counters
-
-
-@EACH_EDITION
-@given(listening=LISTENING, unknown=st.booleans(), data=st.data())
-def test_scan_finds_the_frames_and_accounts_for_every_other_byte(
-    edition: str, listening: Listening, unknown: bool, data: st.DataObject
-) -> None:
-    stream = data.draw(strategies.streams(TABLES[edition]))
-    for name in CODECS:
-        codec = codec_of(edition, name)
-        framer = codec.framer(listening, accept_unknown=unknown)
-        events = framer.feed(stream) + framer.flush()
-        scan = codec.scan(stream, listening, accept_unknown=unknown)
-        assert scan.offset.tolist() == [e.offset for e in events if isinstance(e, Frame)]
-        assert scan.counters == framer.counters
-        spans = list(zip(scan.noise.offset.tolist(), scan.noise.size.tolist()))
-        assert sum(size for _, size in spans) == sum(scan.counters.noise.values())
-        assert all(a + size < b for (a, size), (b, _) in pairwise(spans)), "adjacent spans join"
+    scan = codec.scan(stream, listening)
+    assert scan.offset.tolist() == [e.offset for e in events if isinstance(e, Frame)]
+    assert scan.counters == framer.counters
+    spans = list(zip(scan.noise.offset.tolist(), scan.noise.size.tolist()))
+    assert sum(size for _, size in spans) == sum(scan.counters.noise.values())
+    assert all(at + size < next for (at, size), (next, _) in pairwise(spans)), "adjacent spans join"
 
 
 @pytest.mark.parametrize("kind", [bytes, bytearray, memoryview])

@@ -1,6 +1,6 @@
 """The native class of frames: its memory, its arguments and its attributes.
 
-That its values are those of the reference is tested in test_agreement and test_frame_decode.
+That its values are those of the reference is tested in test_agreement.
 """
 
 from __future__ import annotations

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Sequence
 from itertools import pairwise
 from typing import Any, NamedTuple
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 import random_tables
@@ -18,13 +19,11 @@ from cobotwire.codec.interface import Codec, Listening
 from cobotwire.codec.stretches import PATIENCE, Divider, decode_stretch, even_cuts
 from cobotwire.protocol.errors import UsageError
 from cobotwire.protocol.table import Table
-from strategies import TABLES, codec_of
+from codec.results import joined_columns
+from strategies import CODECS, TABLES, codec_of
 
 LISTENING = st.sampled_from(["request", "reply", "both"])
-NAMES: list[codecs.CodecName] = ["reference", "native"]
-EACH_CODEC = pytest.mark.parametrize("name", NAMES)
-# Each example decodes several pieces; `make fuzz` sets how many it has time for.
-SOME = settings(max_examples=max(1, (settings.default or settings()).max_examples // 3))
+EACH_CODEC = pytest.mark.parametrize("name", CODECS)
 FLAG = bytes.fromhex("FE FE 03 12 01 FA")
 # Frames of 17 bytes that hold a frame of 6 each: a scan that starts inside one finds others.
 OUTER = bytes.fromhex("FE FE 0E 20 FE FE 03 12 01 FA FE FE 03 12 01 FA FA")
@@ -43,47 +42,17 @@ class Bytes(NamedTuple):
         return self.data[offset : offset + size]
 
 
-class Found(NamedTuple):
-    """Everything that columns hold, as plain values."""
-
-    rows: dict[Any, list[str]]
-    rejected: list[int]
-    noise: list[tuple[int, int]]
-    bytes: int
-    frames: dict[int, int]
-    reasons: dict[str, int]
-
-
-def found(parts: Sequence[Columns], ends: Sequence[Columns]) -> Found:
+def found(parts: Sequence[Columns], ends: Sequence[Columns]) -> Any:
     """Join columns in their order; ``ends`` have the counters of the stretches."""
-    rows: dict[Any, list[str]] = {}
-    rejected: list[int] = []
-    noise: list[tuple[int, int]] = []
-    frames: dict[int, int] = {}
-    reasons: dict[str, int] = {}
-    for part in parts:
-        for each in part:
-            key = each.command.name, each.direction, each.variant_index
-            columns = [each[name].tolist() for name in each.names]
-            columns += [] if each.address is None else [each.address.tolist()]
-            # Written out, because a float may be no number, which does not equal itself.
-            rows.setdefault(key, []).extend(map(repr, zip(each.offset.tolist(), *columns)))
-        rejected += part.rejected.tolist()
-        for at, size in zip(part.noise.offset.tolist(), part.noise.size.tolist()):
-            if noise and sum(noise[-1]) == at:
-                noise[-1] = noise[-1][0], noise[-1][1] + size
-            else:
-                noise.append((at, size))
+    counts: Counter[Any] = Counter()
     for end in ends:
-        for id, count in end.counters.frames.items():
-            frames[id] = frames.get(id, 0) + count
-        for reason, size in end.counters.noise.items():
-            reasons[reason] = reasons.get(reason, 0) + size
-    total = sum(end.counters.bytes for end in ends)
-    return Found(rows, rejected, noise, total, frames, reasons)
+        counts.update(end.counters.frames)
+        counts.update(end.counters.noise)
+        counts["bytes"] += end.counters.bytes
+    return joined_columns(parts), counts
 
 
-def whole(codec: Codec, listening: Listening, data: bytes, raw: bool = False) -> Found:
+def whole(codec: Codec, listening: Listening, data: bytes, raw: bool = False) -> Any:
     columns = codec.decode_columns(data, listening, raw=raw)
     return found([columns], [columns])
 
@@ -96,7 +65,7 @@ def divided(
     patience: int = PATIENCE,
     chunk: int = 1 << 20,
     raw: bool = False,
-) -> Found:
+) -> Any:
     """Decode every piece on its own."""
     stream = Bytes(data)
     parts: list[Columns] = []
@@ -128,21 +97,19 @@ def adversarial(draw: st.DrawFn) -> bytes:
 @st.composite
 def streams(draw: st.DrawFn, table: Table) -> bytes:
     """Draw the bytes of a bad line, with stretches that were made to mislead among them."""
-    parts = [draw(strategies.streams(table))]
-    if draw(st.booleans()):
+    parts = [draw(random_tables.any_streams(table))]
+    if table in TABLES.values() and draw(st.booleans()):
         parts += [adversarial(draw), draw(strategies.streams(table))]
     return b"".join(parts)
 
 
-@EACH_CODEC
-@pytest.mark.parametrize("edition", TABLES)
-@SOME
-@given(data=st.data(), listening=LISTENING, raw=st.booleans())
+@given(table=random_tables.any_tables(), data=st.data(), listening=LISTENING, raw=st.booleans())
 def test_pieces_cut_at_any_bytes_hold_what_one_scan_finds(
-    name: codecs.CodecName, edition: str, data: st.DataObject, listening: Listening, raw: bool
+    table: Table, data: st.DataObject, listening: Listening, raw: bool
 ) -> None:
-    codec = codec_of(edition, name)
-    stream = data.draw(streams(codec.table))
+    """With other headers, layouts, checks and ids, too, and replies without an id."""
+    codec = codecs.load(table, data.draw(st.sampled_from(CODECS)))
+    stream = data.draw(streams(table))
     pieces = divided(
         codec,
         listening,
@@ -153,22 +120,6 @@ def test_pieces_cut_at_any_bytes_hold_what_one_scan_finds(
         raw=raw,
     )
     assert pieces == whole(codec, listening, stream, raw)
-
-
-@SOME
-@given(data=st.data(), listening=LISTENING)
-def test_pieces_of_random_tables_hold_what_one_scan_finds(
-    data: st.DataObject, listening: Listening
-) -> None:
-    """With other headers, layouts, checks and ids, and replies without an id."""
-    table = data.draw(random_tables.tables())
-    stream = data.draw(random_tables.streams(table))
-    places = data.draw(cuts(len(stream)))
-    patience = data.draw(st.sampled_from([3, PATIENCE]))
-    for name in NAMES:
-        codec = codecs.load(table, name)
-        pieces = divided(codec, listening, stream, places, patience)
-        assert pieces == whole(codec, listening, stream)
 
 
 @EACH_CODEC

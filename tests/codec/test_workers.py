@@ -19,8 +19,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import strategies
-from cobotwire.codec.interface import Codec, Columns, Data, Listening, Scan
+from cobotwire.codec.interface import Codec, Columns, Data, Listening
 from cobotwire.protocol.errors import UsageError
+from codec.results import everything
 from strategies import codec_of
 
 ANGLES = bytes.fromhex("FE FE 0E 20 00 64 00 C8 01 2C 01 90 01 F4 02 8A FA")
@@ -36,25 +37,6 @@ def processors() -> int:
     if sys.platform == "linux":
         return len(os.sched_getaffinity(0))
     return os.cpu_count() or 1
-
-
-def everything(found: Scan | Columns) -> Any:
-    """Return all that was found, as bytes."""
-    noise = bytes(found.noise.offset), bytes(found.noise.size)
-    if isinstance(found, Scan):
-        return bytes(found.offset), noise, found.counters
-    rows = [
-        (
-            each.command.name,
-            each.direction,
-            each.variant_index,
-            bytes(each.offset),
-            bytes(each.address or b""),
-            [(each[name].format, each[name].shape, bytes(each[name])) for name in each.names],
-        )
-        for each in found
-    ]
-    return rows, bytes(found.rejected), noise, found.counters
 
 
 @pytest.mark.parametrize("edition", FAMILIES)
