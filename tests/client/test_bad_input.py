@@ -86,9 +86,12 @@ def test_usage_error_is_a_value_error() -> None:
         ({"port": ""}, "port"),
         ({"port": 5}, "port"),
         ({"port": "nosuch://thing"}, "port"),
-        ({"port": "loop://", "baudrate": -1}, "baudrate"),
-        ({"port": "loop://", "timeout": 0}, "timeout"),
-        ({"port": "loop://", "timeout": math.nan}, "timeout"),
+        *[
+            ({"port": "loop://", "baudrate": wrong}, "baudrate")
+            for wrong in (True, 0, -1, 2**31, 10**30, 9600.0, "9600")
+        ],
+        *[({"port": "loop://", "timeout": wrong}, "timeout") for wrong in (True, 0, math.nan)],
+        *[({"port": "loop://", "codec": wrong}, "codec") for wrong in ("foo", "", 5, ["native"])],
     ],
 )
 def test_wrong_option_is_named(options: dict[str, Any], argument: str) -> None:

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import logging
-import subprocess
-import sys
 
 import pytest
 
@@ -37,20 +35,3 @@ def test_log_has_frames_noise_timeouts_and_lost_transports(
     ]
     assert ("INFO", f"{url}: no reply to is_power_on, attempts: 1") in logged
     assert logged[-1][0] == "WARNING"
-
-
-def test_nothing_is_logged_to_stderr_by_default() -> None:
-    program = (
-        "from cobotwire import MyCobot, LinkError\n"
-        "import sys\n"
-        "try:\n"
-        "    with MyCobot(sys.argv[1], timeout=0.1) as arm:\n"
-        "        arm.get_angles(); arm.get_angles()\n"
-        "except LinkError:\n"
-        "    pass\n"
-    )
-    with ScriptedPeer([SERVO_LEAK + ANGLES], [None]) as peer:
-        result = subprocess.run(
-            [sys.executable, "-c", program, peer.url], capture_output=True, text=True, check=True
-        )
-    assert result.stdout == result.stderr == ""

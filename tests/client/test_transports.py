@@ -19,8 +19,6 @@ from cobotwire import codec as codecs
 from cobotwire.client import Traffic
 from scripted_peer import ScriptedPeer
 
-ENABLED = bytes.fromhex("FE FE 03 50 01 FA")
-
 
 @pytest.mark.parametrize(
     ("url", "kind", "text"),
@@ -50,29 +48,10 @@ def test_error_gives_the_reason_why_a_port_cannot_be_opened(
     assert isinstance(caught.value, UsageError | LinkError)
 
 
-@pytest.mark.parametrize("baudrate", [True, False, 0, -1, 2**31, 10**30, 9600.0, "9600"])
-def test_wrong_baud_rate_is_named(baudrate: Any) -> None:
-    with pytest.raises(UsageError, match=r"a whole number 1\.\.2147483647") as caught:
-        MyCobot("loop://", baudrate=baudrate)
-    assert caught.value.argument == "baudrate"
-
-
-@pytest.mark.parametrize("codec", ["foo", "", 5, True, ["native"]])
-def test_unknown_codec_is_named(codec: Any) -> None:
-    with pytest.raises(UsageError, match="allowed: native, reference or None") as caught:
-        MyCobot("loop://", codec=codec)
-    assert caught.value.argument == "codec"
-
-
 def test_native_codec_without_its_binary_is_rejected(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(codecs, "native_available", lambda: False)
     with pytest.raises(UsageError, match="the native codec is not installed; use 'reference'"):
         MyCobot("loop://", codec="native")
-
-
-def test_true_is_not_a_timeout() -> None:
-    with pytest.raises(UsageError, match="timeout is True"):
-        MyCobot("loop://", timeout=True)
 
 
 def _query_forever(arm: MyCobot) -> None:
@@ -145,24 +124,6 @@ def test_waiting_does_not_configure_the_port_again(monkeypatch: pytest.MonkeyPat
             monkeypatch.setattr(port, "_reconfigure_port", lambda *a, **k: calls.append("again"))
             assert arm.is_power_on() is True
             assert calls == []
-
-
-def test_loop_url_echoes_and_the_copy_is_not_a_reply() -> None:
-    with MyCobot("loop://", timeout=0.1) as arm:
-        arm.power_on()
-        with pytest.raises(ReplyTimeout, match="the request's own bytes FE FE 03 50 01 FA"):
-            arm.is_servo_enable(1)
-
-
-def test_reply_of_older_firmware_equal_to_the_request_is_used() -> None:
-    with ScriptedPeer([ENABLED]) as peer, MyCobot(peer.url, timeout=0.2) as arm:
-        assert arm.is_servo_enable(1) is True
-
-
-def test_reply_after_the_echo_is_used() -> None:
-    with ScriptedPeer([ENABLED, 0.05, bytes.fromhex("FE FE 03 50 00 FA")]) as peer:
-        with MyCobot(peer.url) as arm:
-            assert arm.is_servo_enable(1) is False
 
 
 def test_spy_url_opens_a_port() -> None:

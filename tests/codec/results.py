@@ -9,7 +9,7 @@ from cobotwire.codec.interface import Columns, Scan
 
 
 def everything(found: Scan | Columns) -> Any:
-    """Return all that was found, in its order, as bytes: 0.0 equals -0.0, and NaN equals nothing."""
+    """Return all that was found, in its order; columns as bytes, since NaN equals nothing."""
     noise = bytes(found.noise.offset), bytes(found.noise.size)
     if isinstance(found, Scan):
         return bytes(found.offset), noise, found.counters

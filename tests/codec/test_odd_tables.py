@@ -1,4 +1,4 @@
-"""Both codecs on tables that no edition has: the sign of a zero, the order of lists, their sizes."""
+"""Both codecs on tables that no edition has: signs of zero, order and sizes of lists."""
 
 from __future__ import annotations
 

@@ -81,31 +81,6 @@ def test_illegal_reply_ends_the_wait_with_its_reason(codec: Codec) -> None:
     assert event.error.reason == "bad-value"
 
 
-def test_text_reply_ends_after_a_silence(codec: Codec) -> None:
-    session = OneCaller(codec)
-    session.request("get_ssid_pwd", (), now=0.0)
-    session.receive(TEXT[:10], now=0.10)
-    silence = TABLE.command("get_ssid_pwd").text
-    assert silence is not None
-    assert session.wake_at == pytest.approx(0.10 + silence.silence_ms / 1000)
-    session.receive(TEXT[10:], now=0.12)
-    assert session.wake(0.13) == []
-    [event] = [e for e in session.wake(0.5) if not isinstance(e, Noise)]
-    assert isinstance(event, ReplyMatched)
-    assert event.fields == {"ssid": "one two", "password": "three four"}
-
-
-def test_text_that_never_falls_silent_is_not_a_reply(codec: Codec) -> None:
-    session = OneCaller(codec)
-    session.request("get_ssid_pwd", (), now=0.0)
-    now = 0.0
-    events = []
-    while session.waiting and now < 5.0:
-        now += 0.01
-        events = session.receive(b"x", now) + session.wake(now)
-    assert [type(event) for event in events if not isinstance(event, Noise)] == [RequestExpired]
-
-
 @given(
     st.sampled_from(["reference", "native"]),
     st.lists(st.sampled_from([ANGLES, POWERED, b"\xff\xff\x01\x02", b"\xfe", TEXT]), max_size=6),
