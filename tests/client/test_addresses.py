@@ -19,6 +19,7 @@ from cobotwire.protocol.addresses import find_address
 from cobotwire.session import AckReceived, Exchange, LateReply, ReplyMatched, RetryPolicy
 from cobotwire.session.request import RequestEncoder
 from cobotwire.simulator import MemoryTransport, PtyServer, SimulatedArm, SteppedClock
+from scripted_peer import MemoryPeer
 from session.one_caller import submit
 from trial_specs import HEAD, edition_of, package_of
 
@@ -89,23 +90,6 @@ def duo(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Any]:
         yield package
 
 
-class Peer:
-    """Reply to each request with fixed bytes."""
-
-    wait = None
-
-    def __init__(self, *replies: bytes) -> None:
-        self.received = b""
-        self._replies = list(replies)
-
-    def receive(self, data: bytes) -> bytes:
-        self.received += data
-        return self._replies.pop(0) if self._replies else b""
-
-    def flush(self) -> bytes:
-        return b""
-
-
 def angles_from(duo: Any, address: int, first: float) -> bytes:
     """Return the reply of the device that has an address."""
     codec = codecs.load(duo.TABLE)
@@ -133,7 +117,7 @@ def test_each_address_is_an_arm_with_a_state_of_its_own(duo: Any, asynchronous: 
 
 
 def test_reply_of_another_address_is_rejected(duo: Any) -> None:
-    peer = Peer(
+    peer = MemoryPeer(
         angles_from(duo, RIGHT, 5.0), angles_from(duo, RIGHT, 6) + angles_from(duo, LEFT, 7)
     )
     arm = duo.Trial(
@@ -146,7 +130,7 @@ def test_reply_of_another_address_is_rejected(duo: Any) -> None:
 
 
 def test_broadcast_takes_the_reply_of_any_address(duo: Any) -> None:
-    arm = duo.Trial(MemoryTransport(Peer(angles_from(duo, RIGHT, 5.0))))
+    arm = duo.Trial(MemoryTransport(MemoryPeer(angles_from(duo, RIGHT, 5.0))))
     assert arm.get_angles() == (5.0, 0.0)
 
 
@@ -165,14 +149,14 @@ def test_broadcast_reaches_every_device(duo: Any) -> None:
 
 def test_acknowledgement_of_another_address_is_not_counted(duo: Any) -> None:
     codec = codecs.load(duo.TABLE)
-    peer = Peer(codec.encode("set_color", "reply", [True], address=RIGHT))
+    peer = MemoryPeer(codec.encode("set_color", "reply", [True], address=RIGHT))
     arm = duo.Trial(MemoryTransport(peer), address=LEFT)
     with pytest.raises(ReplyTimeout):
         arm.set_color(1, 2, 3, ack_within=0.05)
 
 
 def test_failure_in_the_block_stops_every_address_that_was_used(duo: Any) -> None:
-    peer = Peer()
+    peer = MemoryPeer()
     with suppress(ZeroDivisionError), duo.Trial(MemoryTransport(peer), address=LEFT) as arm:
         arm.right.send_angles((1, 2), 50)
         raise ZeroDivisionError
@@ -182,18 +166,18 @@ def test_failure_in_the_block_stops_every_address_that_was_used(duo: Any) -> Non
 @pytest.mark.parametrize("given", [7, "top", True])
 def test_unknown_address_is_an_error_that_lists_the_known_ones(duo: Any, given: Any) -> None:
     with pytest.raises(UsageError, match=r"ALL \(0\), LEFT \(1\), RIGHT \(2\), QUIET \(9\)"):
-        duo.Trial(MemoryTransport(Peer()), address=given)
+        duo.Trial(MemoryTransport(MemoryPeer()), address=given)
 
 
 def test_edition_without_addresses_takes_none() -> None:
     from cobotwire import MyCobot280
 
     with pytest.raises(UsageError, match="edition mycobot280 has no addresses"):
-        MyCobot280(MemoryTransport(Peer()), address=1)
+        MyCobot280(MemoryTransport(MemoryPeer()), address=1)
 
 
 def test_stream_samples_the_address_of_its_client(duo: Any) -> None:
-    arm = duo.Trial(MemoryTransport(Peer(angles_from(duo, RIGHT, 3))), address=LEFT)
+    arm = duo.Trial(MemoryTransport(MemoryPeer(angles_from(duo, RIGHT, 3))), address=LEFT)
     query = duo.GetAngles()
     assert next(iter(arm.right.stream(query, rate=50)))[query] == (3.0, 0.0)
 

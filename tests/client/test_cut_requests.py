@@ -14,7 +14,8 @@ from both_ways import InLoop
 from cobotwire import LinkError
 from cobotwire.editions.mycobot280 import AsyncMyCobot280, MyCobot280
 from cobotwire.transport.aio import WRITE_TIMEOUT
-from stuck_pty import ANGLES, MOTION, STOP, StuckPty, frames
+from cut_motion import ANGLES, MOTION, STOP, frames
+from transport.ends import PtyEnd
 
 # More than the buffer of a pseudo-terminal holds, which is 64 KiB.
 REQUESTS = 4000
@@ -66,7 +67,7 @@ def test_stop_after_a_cut_motion_arrives_and_nothing_else(
 def test_stop_arrives_first_once_a_stuck_port_recovers(
     before: int, who: Callable[[Any], Any]
 ) -> None:
-    pty = StuckPty()
+    pty = PtyEnd()
     whole = 0
     with who(pty.url) as arm:
         for _ in range(before):
@@ -84,11 +85,11 @@ def test_stop_arrives_first_once_a_stuck_port_recovers(
         arm.stop()
         received += pty.drain()
     assert frames(received) == [STOP] * before + [MOTION] * whole + [STOP]
-    pty.close()
+    pty.unplug()
 
 
 def test_asyncio_client_sends_every_request_on_a_slow_line() -> None:
-    pty = StuckPty()
+    pty = PtyEnd()
 
     async def flood() -> None:
         async with AsyncMyCobot280(pty.url) as arm:
@@ -99,9 +100,9 @@ def test_asyncio_client_sends_every_request_on_a_slow_line() -> None:
     started = time.monotonic()
     sending.start()
     while sending.is_alive():
-        received += pty.read(300)
+        received += pty.poll(0, 300)
         time.sleep(0.02)
     # Longer than the time after which a line that takes nothing at all is an error.
     assert time.monotonic() - started > 1.5 * WRITE_TIMEOUT
     assert frames(received + pty.drain()) == [MOTION] * REQUESTS
-    pty.close()
+    pty.unplug()

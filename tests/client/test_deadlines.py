@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 
 import pytest
 
-from attack.ends import PtyEnd
+from attack import ends
 from both_ways import InLoop, Opener
 from cobotwire import LinkError, MyCobot, MyCobot280, ReplyTimeout, RetryPolicy, UsageError
 from cobotwire import codec as codecs
@@ -25,11 +25,12 @@ from cobotwire.session import Exchange, RequestReceived
 from cobotwire.session.request import RequestEncoder
 from cobotwire.simulator import PtyServer, SimulatedArm
 from cobotwire.simulator.faults import Echo, Fault, Late
+from cut_motion import ANGLES, MOTION, STOP
 from faulty_arm import faulty_arm
 from scripted_peer import ScriptedPeer
 from session.one_caller import submit
 from stalls import unstalled
-from stuck_pty import ANGLES, MOTION, STOP, StuckPty
+from transport.ends import PtyEnd
 
 TIMEOUT, DEADLINE = 0.4, 0.5
 # What a call may take besides: until its thread or task has its turn.
@@ -173,7 +174,7 @@ def fill(arm: Any) -> int:
 def test_full_line_delays_no_call_and_gets_none_of_it_later_but_the_stop_of_a_failed_block(
     open_arm: Opener,
 ) -> None:
-    pty, received = StuckPty(), list[bytes]()
+    pty, received = PtyEnd(), list[bytes]()
     # Later than the deadline, earlier than a write fails.
     drained = threading.Timer(0.3, lambda: received.append(pty.drain()))
 
@@ -192,12 +193,12 @@ def test_full_line_delays_no_call_and_gets_none_of_it_later_but_the_stop_of_a_fa
         drained.start()
         sent //= 0
     drained.join()
-    pty.close()
+    pty.unplug()
     assert received == [MOTION * sent + STOP]
 
 
 def test_request_of_which_the_line_takes_a_part_ends_in_time(open_arm: Opener) -> None:
-    end = PtyEnd()
+    end = ends.PtyEnd()
     with open_arm(end.url, deadline=0.2) as arm:
         end.fill(10, lambda data: None)
         calls: list[Callable[[], object]] = [
@@ -209,6 +210,20 @@ def test_request_of_which_the_line_takes_a_part_ends_in_time(open_arm: Opener) -
             with pytest.raises((LinkError, ReplyTimeout), match=r"only 1. of 21|was not sent"):
                 call()
             assert time.monotonic() - began < 0.2 + MORE
+    end.close()
+
+
+def test_query_that_is_repeated_into_a_full_line_ends_in_time(open_arm: Opener) -> None:
+    end = ends.PtyEnd()
+    retry = RetryPolicy(attempts=3, shortest_attempt=0.05)
+    with open_arm(end.url, timeout=0.3, retry=retry) as arm:
+        filling = threading.Timer(0.05, end.fill, (0, lambda data: None))
+        filling.start()
+        began = time.monotonic()
+        with pytest.raises(ReplyTimeout):
+            arm.get_encoder(1)
+        assert time.monotonic() - began < 0.3 + 2 * MORE
+        filling.join()
     end.close()
 
 

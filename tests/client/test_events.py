@@ -22,6 +22,7 @@ from cobotwire.protocol.messages import Event
 from cobotwire.session import EventReceived, Traffic
 from cobotwire.simulator import MemoryTransport, PtyServer, SimulatedArm, SteppedClock
 from cobotwire_codegen.errors import SpecError
+from scripted_peer import MemoryPeer
 from trial_specs import HEAD, edition_of, package_of
 
 STAGED = f"""
@@ -91,23 +92,6 @@ def frame(package: Any, name: str, *values: Any) -> bytes:
     return codecs.load(package.TABLE).encode(name, "reply", values)
 
 
-class Peer:
-    """Send fixed bytes after each request."""
-
-    wait = None
-
-    def __init__(self, *sent: bytes) -> None:
-        self.received = b""
-        self._sent = list(sent)
-
-    def receive(self, data: bytes) -> bytes:
-        self.received += data
-        return self._sent.pop(0) if self._sent else b""
-
-    def flush(self) -> bytes:
-        return b""
-
-
 @pytest.mark.parametrize("codec", ["reference", "native"])
 def test_event_is_a_typed_message_without_a_request(staged: Any, codec: codecs.CodecName) -> None:
     used = codecs.load(staged.TABLE, codec)
@@ -123,7 +107,7 @@ def test_event_is_a_typed_message_without_a_request(staged: Any, codec: codecs.C
 def test_event_between_request_and_reply_is_queued(staged: Any) -> None:
     both = frame(staged, "button_pressed", 1, 7) + frame(staged, "get_angles", (1.0, 2.0, 3.0))
     traffic: list[Traffic] = []
-    arm = staged.Trial(MemoryTransport(Peer(both)), trace=traffic.append)
+    arm = staged.Trial(MemoryTransport(MemoryPeer(both)), trace=traffic.append)
     with arm.events(staged.ButtonPressed, timeout=0.05) as events:
         assert arm.get_angles() == (1.0, 2.0, 3.0)
         assert list(events) == [staged.ButtonPressed(1)]
@@ -132,7 +116,7 @@ def test_event_between_request_and_reply_is_queued(staged: Any) -> None:
 
 def test_stream_yields_only_the_events_of_its_types(staged: Any) -> None:
     sent = [frame(staged, "button_pressed", n, 7) for n in range(3)]
-    arm = staged.Trial(MemoryTransport(Peer(frame(staged, "motion_ended", 1).join(sent))))
+    arm = staged.Trial(MemoryTransport(MemoryPeer(frame(staged, "motion_ended", 1).join(sent))))
     some = arm.events(staged.ButtonPressed, timeout=0.05)
     every = arm.events(timeout=0.05)
     arm.stop()
@@ -142,7 +126,7 @@ def test_stream_yields_only_the_events_of_its_types(staged: Any) -> None:
 
 def test_full_queue_drops_the_oldest_and_counts_it(staged: Any) -> None:
     sent = b"".join(frame(staged, "button_pressed", n, 7) for n in range(5))
-    arm = staged.Trial(MemoryTransport(Peer(sent)))
+    arm = staged.Trial(MemoryTransport(MemoryPeer(sent)))
     events = arm.events(capacity=2, timeout=0.05)
     arm.stop()
     arm.listen(0.01)
@@ -180,7 +164,7 @@ def test_handler_is_called_and_its_errors_are_reported(
             raise ValueError("a mistake")
 
     both = b"".join(frame(staged, "button_pressed", n, 7) for n in (1, 2))
-    arm = staged.Trial(MemoryTransport(Peer(both + frame(staged, "get_angles", (0, 0, 0)))))
+    arm = staged.Trial(MemoryTransport(MemoryPeer(both + frame(staged, "get_angles", (0, 0, 0)))))
     handler = arm.on(staged.ButtonPressed, handle)
     arm.get_angles()
     assert seen == [(1, threading.get_ident()), (2, threading.get_ident())]
@@ -194,7 +178,7 @@ def test_wrong_event_or_handler_is_an_error(staged: Any) -> None:
     async def coroutine(event: Any) -> None:
         pass
 
-    arm = staged.Trial(MemoryTransport(Peer()))
+    arm = staged.Trial(MemoryTransport(MemoryPeer()))
     with pytest.raises(UsageError, match="motion_ended, button_pressed"):
         arm.events(staged.GetAngles)
     with pytest.raises(UsageError, match="a function"):
@@ -204,7 +188,7 @@ def test_wrong_event_or_handler_is_an_error(staged: Any) -> None:
     from cobotwire import MyCobot280
 
     with pytest.raises(UsageError, match="has no events"):
-        MyCobot280(MemoryTransport(Peer())).events()
+        MyCobot280(MemoryTransport(MemoryPeer())).events()
 
 
 def test_asyncio_client_iterates_events(staged: Any) -> None:
@@ -225,11 +209,11 @@ def test_asyncio_client_iterates_events(staged: Any) -> None:
 
 
 def test_refused_status_is_an_error_with_its_word(staged: Any) -> None:
-    arm = staged.Trial(MemoryTransport(Peer(frame(staged, "power_on", 255, 3))))
+    arm = staged.Trial(MemoryTransport(MemoryPeer(frame(staged, "power_on", 255, 3))))
     with pytest.raises(RequestRefused, match=r"power_on\(\): status is NO_POWER \(3\)") as caught:
         arm.power_on(ack_within=0.5)
     assert (caught.value.field, caught.value.status) == ("status", "NO_POWER (3)")
-    accepted = staged.Trial(MemoryTransport(Peer(frame(staged, "power_on", 255, 1))))
+    accepted = staged.Trial(MemoryTransport(MemoryPeer(frame(staged, "power_on", 255, 1))))
     accepted.power_on(ack_within=0.5)
     with pytest.raises(ReplyTimeout):
         accepted.power_on(ack_within=0.05)
@@ -249,7 +233,7 @@ def test_waited_motion_ends_with_its_event(staged: Any) -> None:
 
 
 def test_refused_motion_is_not_waited_for(staged: Any) -> None:
-    peer = Peer(frame(staged, "send_angles", 255, 3))
+    peer = MemoryPeer(frame(staged, "send_angles", 255, 3))
     arm = staged.Trial(MemoryTransport(peer))
     with pytest.raises(RequestRefused, match="NO_POWER"):
         arm.move_angles((60.0, 0.0, 0.0), 50)
@@ -257,7 +241,7 @@ def test_refused_motion_is_not_waited_for(staged: Any) -> None:
 
 def test_motion_that_ends_with_a_bad_status_is_stopped(staged: Any) -> None:
     here = frame(staged, "get_angles", (0.0, 0.0, 0.0))
-    peer = Peer(frame(staged, "send_angles", 255, 1), here + frame(staged, "motion_ended", 0))
+    peer = MemoryPeer(frame(staged, "send_angles", 255, 1), here + frame(staged, "motion_ended", 0))
     arm = staged.Trial(MemoryTransport(peer))
     with pytest.raises(RequestRefused, match=r"REFUSED \(0\)"):
         arm.move_angles((60.0, 0.0, 0.0), 50)
@@ -268,7 +252,9 @@ def test_lost_event_is_made_up_for_by_queries(staged: Any) -> None:
     there = frame(staged, "get_angles", (60.0, 0.0, 0.0))
     away = frame(staged, "get_angles", (0.0, 0.0, 0.0))
     clock = SteppedClock()
-    transport = MemoryTransport(Peer(frame(staged, "send_angles", 255, 1), away, there), clock)
+    transport = MemoryTransport(
+        MemoryPeer(frame(staged, "send_angles", 255, 1), away, there), clock
+    )
     staged.Trial(transport).move_angles((60.0, 0.0, 0.0), 50)
     assert clock() < 3
 

@@ -28,9 +28,10 @@ from cobotwire.session.request import RequestEncoder
 from cobotwire.simulator.faults import Late
 from cobotwire.transport import open_transport
 from command_line import run_program
+from cut_motion import ANGLES, CODEC, MOTION, STOP, frames
 from faulty_arm import faulty_arm
 from scripted_peer import ScriptedPeer
-from stuck_pty import ANGLES, CODEC, MOTION, STOP, StuckPty, frames
+from transport.ends import PtyEnd
 
 LATE = 0.75
 # The attempts of the first query.
@@ -68,7 +69,7 @@ def test_late_reply_to_one_program_is_not_printed_by_the_next_one(folder: Path) 
 def test_half_a_request_of_a_closed_client_is_ended_by_the_next_one(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    pty, whole, written = StuckPty(), 0, None
+    pty, whole, written = PtyEnd(), 0, None
     with MyCobot280(pty.url) as arm:
         while written is None:
             try:
@@ -82,7 +83,7 @@ def test_half_a_request_of_a_closed_client_is_ended_by_the_next_one(
     with MyCobot280(pty.url) as arm:
         arm.stop()
     assert frames(received + pty.drain()) == [MOTION] * whole + [STOP]
-    pty.close()
+    pty.unplug()
 
 
 def test_late_reply_is_expected_on_a_link_whose_device_has_another_name_by_now(

@@ -12,6 +12,7 @@ from cobotwire.editions import load, names
 from cobotwire.protocol.errors import ArmState
 from cobotwire.simulator import MemoryTransport, SimulatedArm
 from cobotwire.simulator.clock import SteppedClock
+from scripted_peer import MemoryPeer
 
 OFF, ON, EMERGENCY_STOP = range(3)
 TABLES = [load(name).TABLE for name in names()]
@@ -22,25 +23,10 @@ WITH_STATES = [
 ]
 
 
-class Reporting:
-    """A simulated arm that reports a state of its power to everything it receives."""
-
-    wait = None
-
-    def __init__(self, frame: bytes) -> None:
-        self._frame = frame
-
-    def receive(self, data: bytes) -> bytes:
-        return self._frame
-
-    def flush(self) -> bytes:
-        return b""
-
-
 def client_of(table: Any, codec: CodecName, state: int) -> Any:
     """Return a client of an arm whose power is in a state."""
     frame = codecs.load(table).encode("is_power_on", "reply", (state,))
-    transport = MemoryTransport(Reporting(frame), SteppedClock())
+    transport = MemoryTransport(MemoryPeer(frame), SteppedClock())
     return load(table.edition).CLIENT(transport, codec=codec)
 
 

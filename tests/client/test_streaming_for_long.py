@@ -9,9 +9,9 @@ from itertools import islice
 
 from accelerated import LATE, LOST, Checker, accelerated
 
-SAMPLES = 24_000
+SAMPLES = 12_000
 # At the end, memory is traced, which takes most of the time; before, objects are counted.
-TRACED = 12_000
+TRACED = 6_000
 
 
 def test_long_stream_keeps_memory_flat_and_samples_in_order() -> None:
@@ -41,7 +41,7 @@ def test_long_stream_keeps_memory_flat_and_samples_in_order() -> None:
             tracemalloc.stop()
         assert late - early < 5_000, "bytes"
         report = stream.report
-        assert arm.now - begun > 240
+        assert arm.now - begun > 120
         assert report.samples == SAMPLES
         # Lost and late replies are counted as unanswered, and every slot is accounted for.
         assert report.unanswered == arm.requests // LOST + arm.requests // LATE

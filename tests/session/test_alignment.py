@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import pytest
-from hypothesis import assume, given
+from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 import json_tables
@@ -20,6 +19,8 @@ TABLES = {
     "CRC": json_tables.sample("crc"),
     "sum and address": json_tables.sample("sum"),
 }
+# An example draws one of several tables and one of the codecs.
+MORE = settings(max_examples=2 * (settings.default or settings()).max_examples)
 
 
 def holds_a_frame(parser: Parser, codec: Codec, part: bytes) -> bool:
@@ -42,8 +43,8 @@ def _cut(alignment: Alignment, request: bytes, written: int) -> None:
     alignment.cut(alignment.align, request, written)
 
 
-@pytest.mark.parametrize("table", TABLES)
-@given(data=st.data())
+@MORE
+@given(st.sampled_from(sorted(TABLES)), st.data())
 def test_next_request_is_the_only_frame_after_a_cut_at_any_position(
     table: str, data: st.DataObject
 ) -> None:
@@ -67,8 +68,8 @@ def test_next_request_is_the_only_frame_after_a_cut_at_any_position(
             assert parser(codec, received) == [following], parser.__name__
 
 
-@pytest.mark.parametrize("table", TABLES)
-@given(data=st.data())
+@MORE
+@given(st.sampled_from(sorted(TABLES)), st.data())
 def test_unknown_cut_is_ended_whatever_was_written(table: str, data: st.DataObject) -> None:
     codec = _codec(table, data)
     cut, following = _request(codec, data), _request(codec, data)
@@ -82,8 +83,8 @@ def test_unknown_cut_is_ended_whatever_was_written(table: str, data: st.DataObje
             assert parser(codec, cut[:size] + written) == [*whole, following], size
 
 
-@pytest.mark.parametrize("table", TABLES)
-@given(data=st.data())
+@MORE
+@given(st.sampled_from(sorted(TABLES)), st.data())
 def test_cut_within_the_aligning_bytes_is_ended_too(table: str, data: st.DataObject) -> None:
     codec = _codec(table, data)
     cut, second, third = (_request(codec, data) for _ in range(3))

@@ -235,4 +235,4 @@ def bytes_until(line: list[Reply], reply: Reply) -> int:
 
 
 TestSharing = Sharing.TestCase
-TestSharing.settings = settings(max_examples=200, stateful_step_count=50, deadline=None)
+TestSharing.settings = settings(max_examples=120, stateful_step_count=50, deadline=None)

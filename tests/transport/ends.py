@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 import os
+import select
 import socket
 import tty
+from contextlib import suppress
 from types import TracebackType
 from typing import Self
 
 from cobotwire.transport import OpenedTransport, open_transport
 
 FAST = 4_000_000
+READ_SIZE = 65_536
 
 
 class PtyEnd:
@@ -37,6 +40,15 @@ class PtyEnd:
         while len(received) < size:
             received += os.read(self._master, size - len(received))
         return received
+
+    def poll(self, seconds: float, size: int = READ_SIZE) -> bytes:
+        """Return what comes within some seconds, up to a size."""
+        ready = select.select([self._master], [], [], seconds)[0]
+        return os.read(self._master, size) if ready else b""
+
+    def drain(self) -> bytes:
+        """Return all that was written, when no more comes."""
+        return b"".join(iter(lambda: self.poll(0.2), b""))
 
     def unplug(self) -> None:
         for descriptor in (self._master, self._slave):
@@ -69,6 +81,17 @@ class TcpEnd:
         while len(received) < size:
             received += self._peer.recv(size - len(received))
         return received
+
+    def poll(self, seconds: float) -> bytes:
+        """Return what comes within some seconds, of the first client that connects."""
+        with suppress(TimeoutError, ConnectionResetError):
+            if self._peer is None:
+                self._server.settimeout(seconds)
+                self.accept()
+            assert self._peer is not None
+            if select.select([self._peer], [], [], seconds)[0]:
+                return self._peer.recv(READ_SIZE)
+        return b""
 
     def hang_up(self) -> None:
         """Close the connection; the server continues to listen."""
