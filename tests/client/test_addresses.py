@@ -172,8 +172,9 @@ def test_unknown_address_is_an_error_that_lists_the_known_ones(duo: Any, given: 
 def test_edition_without_addresses_takes_none() -> None:
     from cobotwire import MyCobot280
 
-    with pytest.raises(UsageError, match="edition mycobot280 has no addresses"):
+    with pytest.raises(UsageError, match="edition mycobot280 has no addresses") as caught:
         MyCobot280(MemoryTransport(MemoryPeer()), address=1)
+    assert (caught.value.argument, caught.value.value) == ("address", 1)
 
 
 def test_stream_samples_the_address_of_its_client(duo: Any) -> None:

@@ -95,13 +95,17 @@ def test_speed_of_the_line_is_the_second_argument() -> None:
 
 def test_asyncio_client_has_the_same() -> None:
     clock = RunningClock()
-    simulated = SimulatedArm(TABLE, clock=clock, powered=True)
+    received: list[Any] = []
+    simulated = SimulatedArm(
+        TABLE, clock=clock, powered=True, on_event=lambda event, _: received.append(event)
+    )
 
     async def use() -> None:
         async with AsyncMyCobot280(MemoryTransport(simulated, clock)) as arm:
             await arm.go_home(wait=False)
             await arm.open_gripper()
             await arm.close_gripper()
-            await arm.get_angles()
 
     asyncio.run(use())
+    sent = [(each.message.command.name, each.message.values[0]) for each in received]
+    assert sent == [("send_angles", (0.0,) * 6), ("set_gripper_state", 0), ("set_gripper_state", 1)]

@@ -164,7 +164,8 @@ def test_handler_is_called_and_its_errors_are_reported(
             raise ValueError("a mistake")
 
     both = b"".join(frame(staged, "button_pressed", n, 7) for n in (1, 2))
-    arm = staged.Trial(MemoryTransport(MemoryPeer(both + frame(staged, "get_angles", (0, 0, 0)))))
+    reply = frame(staged, "get_angles", (0, 0, 0))
+    arm = staged.Trial(MemoryTransport(MemoryPeer(both + reply, both + reply)))
     handler = arm.on(staged.ButtonPressed, handle)
     arm.get_angles()
     assert seen == [(1, threading.get_ident()), (2, threading.get_ident())]
@@ -172,6 +173,8 @@ def test_handler_is_called_and_its_errors_are_reported(
     assert (handler.failures, handler.error) == (1, errors[0])
     handler.remove()
     handler.remove()
+    arm.get_angles()
+    assert len(seen) == 2, "a removed handler is not called"
 
 
 def test_wrong_event_or_handler_is_an_error(staged: Any) -> None:
@@ -200,7 +203,10 @@ def test_asyncio_client_iterates_events(staged: Any) -> None:
             async with arm.events(staged.MotionEnded, timeout=5) as events:
                 await arm.send_angles((3.0, 0.0, 0.0), 100, ack_within=2)
                 async for event in events:
-                    return [event, *seen]
+                    some = [
+                        button async for button in arm.events(staged.ButtonPressed, timeout=0.1)
+                    ]
+                    return [event, *seen, *some]
             return []
 
     with PtyServer(SimulatedArm(staged.TABLE)) as server:

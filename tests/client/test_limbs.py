@@ -47,30 +47,6 @@ def test_limbs_move_apart_over_a_port(robot: SimulatedArm, asynchronous: bool) -
             assert arm.waist.get_angle(1) == pytest.approx(15, abs=near)
 
 
-def test_settings_of_one_limb_leave_the_others_alone(
-    stepped: tuple[MyBuddy, SimulatedArm],
-) -> None:
-    arm, robot = stepped
-    arm.left.set_color(1, 2, 3)
-    arm.waist.power_off()
-    assert [arm.at(each).is_power_on() for each in ("left", "right", "waist")] == [
-        True,
-        True,
-        False,
-    ]
-    assert [robot.state_at(each).colour for each in ("left", "right")] == [(1, 2, 3), (0, 0, 0)]
-
-
-def test_requests_to_the_whole_robot_reach_every_limb_and_have_one_reply(
-    stepped: tuple[MyBuddy, SimulatedArm],
-) -> None:
-    arm, robot = stepped
-    arm.all.power_off()
-    assert [robot.state_at(each).powered for each in (1, 2, 3)] == [False] * 3
-    assert arm.all.is_power_on() == arm.is_power_on() == 0
-    assert arm.all.get_error_information() == 0
-
-
 def test_waist_has_one_joint(stepped: tuple[MyBuddy, SimulatedArm]) -> None:
     arm, robot = stepped
     assert robot.state_at("waist").joints == 1

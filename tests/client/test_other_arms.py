@@ -149,6 +149,9 @@ def test_coordinates_without_geometry_have_no_reply(package: Any) -> None:
     with pytest.raises(ReplyTimeout):
         arm.read_place()
     assert "geometry" in simulated.notes[-1].text
+    stream = arm.stream(package.ReadPlace(), rate=10)
+    with pytest.raises(ReplyTimeout, match="because the arm is simulated"):
+        next(stream)
 
 
 def test_limits_find_the_targets_in_any_order(package: Any) -> None:
@@ -187,6 +190,7 @@ def test_orientation_is_compared_across_half_a_turn(package: Any) -> None:
     goal = goal_of(package.TABLE, target, 1)
     assert isinstance(goal, Goal)
     assert goal.is_met([96.0, 4.0, 50.0, -190.3, *target[4:]])
+    assert goal.is_met([95.0, 0.0, 50.0, 170.0, *target[4:]]), "the tolerance itself is within it"
     assert not goal.is_met([100.0, 0.0, 50.0, -170.0, *target[4:]])
     assert not goal.is_met([94.0, 0.0, 50.0, 170.0, *target[4:]])
 

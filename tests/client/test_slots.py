@@ -182,29 +182,16 @@ def test_forked_child_neither_reads_nor_writes_the_line_of_a_stream() -> None:
     assert run(peer, drive, timeout=20) == ((0, 1.4), REQUEST)
 
 
-def test_asyncio_stream_that_is_closed_before_its_slot_sends_nothing() -> None:
-    async def drive(url: str) -> int:
-        async with AsyncMyCobot(url) as arm:
-            stream = arm.stream(GetAngles(), rate=2)
-            asyncio.get_running_loop().call_later(0.1, stream.close)
-            return len([sample async for sample in stream])
+# At 25 Hz, the wait for the next slot is so short that only the timer checks.
+@pytest.mark.parametrize(("rate", "closed_after"), [(2, 0.1), (25, 0.0)])
+def test_stream_that_is_closed_before_its_slot_sends_nothing(
+    rate: float, closed_after: float
+) -> None:
+    async def drive(arm: AsyncMyCobot) -> int:
+        stream, count = arm.stream(GetAngles(), rate=rate), 0
+        async for _ in stream:
+            count += 1
+            asyncio.get_running_loop().call_later(closed_after, stream.close)
+        return count
 
-    with ScriptedPeer([ANGLES]) as peer:
-        assert asyncio.run(drive(peer.url)) == 1
-        assert peer.received == REQUEST
-
-
-def test_asyncio_stream_that_is_closed_just_before_its_slot_sends_nothing() -> None:
-    async def drive(url: str) -> int:
-        async with AsyncMyCobot(url) as arm:
-            # The wait for the next slot is so short that only the timer checks.
-            stream = arm.stream(GetAngles(), rate=25)
-            count = 0
-            async for _ in stream:
-                count += 1
-                asyncio.get_running_loop().call_soon(stream.close)
-            return count
-
-    with ScriptedPeer([ANGLES]) as peer:
-        assert asyncio.run(drive(peer.url)) == 1
-        assert peer.received == REQUEST
+    assert run(ScriptedPeer([ANGLES]), drive) == (1, REQUEST)

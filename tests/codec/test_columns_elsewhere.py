@@ -56,12 +56,6 @@ def test_polars_duckdb_and_pandas_read_rows_directly(rows: Rows) -> None:
     assert pd.DataFrame.from_arrow(rows)["offset"].tolist() == [1, 18, 35]
 
 
-def test_message_that_did_not_occur_is_an_empty_table(codec: Codec) -> None:
-    rows = codec.decode_columns(ANGLES, "reply").rows("get_coords")
-    assert pa.table(rows).num_rows == 0
-    assert rows.to_numpy()["offset"].tolist() == []
-
-
 def test_memory_outlives_columns_and_codec(codec: Codec) -> None:
     array = codec.decode_columns(ANGLES * 1000, "reply").rows("get_angles").to_numpy()["angles"]
     others = [codec.decode_columns(ANGLES * 1000, "reply") for _ in range(20)]

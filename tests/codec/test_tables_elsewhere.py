@@ -97,28 +97,6 @@ def test_batches_with_and_without_rows_are_concatenated(
 
 
 @EACH_SHAPE
-def test_codecs_return_the_same_tables(wide: bool) -> None:
-    for command in COMMANDS:
-        native, reference = [
-            codec_of("mycobot280", name)
-            .decode_columns(STREAM, "reply")
-            .to_arrow(command, wide=wide)
-            for name in ("native", "reference")
-        ]
-        assert native.equals(reference, check_metadata=True)
-
-
-def test_angles_of_a_wide_table_are_those_of_numpy(mycobot280: Codec) -> None:
-    columns = mycobot280.decode_columns(STREAM, "reply")
-    array = columns.rows("get_angles").to_numpy()["angles"]
-    table = columns.to_arrow("get_angles", wide=True)
-    assert table.select([f"j{joint}" for joint in range(1, 7)]).to_pandas().to_numpy().tolist() == (
-        array.tolist()
-    )
-    assert array.shape == (4, 6)
-
-
-@EACH_SHAPE
 @pytest.mark.parametrize("command", COMMANDS)
 def test_rows_beyond_the_offsets_of_an_array_go_into_further_arrays(
     mycobot280: Codec, command: str, wide: bool, monkeypatch: pytest.MonkeyPatch
