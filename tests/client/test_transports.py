@@ -20,34 +20,6 @@ from cobotwire.client import Traffic
 from scripted_peer import ScriptedPeer
 
 
-@pytest.mark.parametrize(
-    ("url", "kind", "text"),
-    [
-        ("hwgrep://nothing-like-this", LinkError, "no ports found"),
-        ("/dev/tty\0S0", UsageError, "printable"),
-        ("/dev/tty\ud800", UsageError, "printable"),
-        ("loop://?x=1", UsageError, "unknown option: 'x'"),
-        ("loop://?logging=loud", UsageError, "loud"),
-        ("spy:///dev/null?file=/nosuchfolder/f", LinkError, "No such file.*/nosuchfolder/f"),
-        ("socket://localhost", UsageError, "host:port"),
-        ("socket://127.0.0.1:abc", UsageError, "host:port"),
-        ("socket://127.0.0.1:0", UsageError, "host:port"),
-        ("socket://127.0.0.1:70000", UsageError, "host:port"),
-        ("rfc2217://localhost", UsageError, "host:port"),
-        ("socket://127.0.0.1:1", LinkError, "refused"),
-        ("alt://x?class=Nope", UsageError, "Nope"),
-        ("/dev/null", LinkError, "Inappropriate ioctl"),
-        ("/", LinkError, "Is a directory"),
-    ],
-)
-def test_error_gives_the_reason_why_a_port_cannot_be_opened(
-    url: str, kind: type[Exception], text: str
-) -> None:
-    with pytest.raises(kind, match=text) as caught:
-        MyCobot(url)
-    assert isinstance(caught.value, UsageError | LinkError)
-
-
 def test_native_codec_without_its_binary_is_rejected(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(codecs, "native_available", lambda: False)
     with pytest.raises(UsageError, match="the native codec is not installed; use 'reference'"):
