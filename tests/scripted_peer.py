@@ -39,6 +39,11 @@ class _Peer:
         self._thread.join()
         self.end.unplug()
 
+    def send(self, data: bytes) -> None:
+        """Send bytes now, if somebody is connected."""
+        with suppress(BrokenPipeError, ConnectionResetError):
+            self.end.send(data)
+
     def _play(self) -> None:
         scripts = list(self._scripts)
         while not self._stop:
@@ -51,8 +56,7 @@ class _Peer:
                     self.end.unplug()
                     return
                 if isinstance(step, bytes):
-                    with suppress(BrokenPipeError, ConnectionResetError):
-                        self.end.send(step)
+                    self.send(step)
                 else:
                     time.sleep(step)
 

@@ -25,33 +25,13 @@ def edition(name: str = "mycobot") -> Edition:
     return editions()[name]
 
 
-# Each vector of these editions is a test of its own; a further edition is one test.
+# These editions have tests of their own for much; a further edition is a difference from another.
 ONE_BY_ONE = ("mycobot", "mycobot280")
 
 
 def further() -> list[str]:
     """Return the names of the other editions."""
     return [name for name in editions() if name not in ONE_BY_ONE]
-
-
-def every() -> list[tuple[str, Vector]]:
-    """Return the vectors of two editions, each with its edition's name."""
-    return [(name, vector) for name in ONE_BY_ONE for vector in edition(name).vectors]
-
-
-def framed() -> list[tuple[str, Vector]]:
-    """Return the vectors that are legal frames."""
-    return [(name, vector) for name, vector in every() if vector.frame is not None]
-
-
-def rejected() -> list[tuple[str, Vector]]:
-    """Return the vectors with bytes that are not a legal frame."""
-    return [(name, vector) for name, vector in every() if vector.rejected is not None]
-
-
-def limited() -> list[tuple[str, Vector]]:
-    """Return the vectors that state values which a field accepts or refuses."""
-    return [(name, vector) for name, vector in every() if vector.accepted or vector.refused]
 
 
 def limits(name: str, vector: Vector) -> Iterator[tuple[dict[str, Any], bool]]:
