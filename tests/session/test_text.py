@@ -60,3 +60,10 @@ def test_text_in_another_format_is_rejected(data: bytes, detail: str) -> None:
     assert REPLY is not None
     with pytest.raises(ProtocolError, match=detail):
         decode(REPLY, data)
+
+
+@pytest.mark.parametrize("data", [b"'a'(b", b"'"])
+def test_text_without_its_suffix_is_rejected(data: bytes) -> None:
+    variant = TextRequest(("'", "'("), ("account", "password"), ")")
+    with pytest.raises(ProtocolError, match=r"the text ends with '\)'"):
+        decode(variant, data)
