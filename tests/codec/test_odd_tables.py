@@ -125,6 +125,7 @@ def test_wrong_text_is_named_with_its_index_and_its_sizes() -> None:
         (texts, ("ab", "€"), r"names\[1\] is '€'"),
         (texts, ("abcd", "b"), r"names\[0\] is 'abcd'"),
         (sized, "€", r"label is '€'; allowed: Latin-1 text of 1..2 bytes"),
+        (replace(sized, sizes=None), "€", r"label is '€'; allowed: Latin-1 text of 2 bytes"),
     ]
     for field, value, message in wrong:
         table = small_tables.table(small_tables.command(1, "set", (Variant((field,)),)))
