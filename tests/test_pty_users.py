@@ -16,7 +16,7 @@ TESTS = Path(__file__).parent
     [
         ("transport/test_port.py", True),  # imports termios
         ("simulator/test_pty.py", True),  # starts a server on a pty
-        ("client/test_cut_requests.py", True),  # a helper does
+        ("client/test_field_notes.py", True),  # a helper does
         ("codec/test_framing_laws.py", False),
         ("protocol", False),
     ],
