@@ -8,7 +8,7 @@ from __future__ import annotations
 from itertools import pairwise
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 import random_tables
@@ -23,7 +23,6 @@ from strategies import TABLES, codec_of
 
 KNOWN = [*TABLES.values(), *random_tables.FORMATS]
 LISTENING: st.SearchStrategy[Listening] = st.sampled_from(["request", "reply", "both"])
-MORE = settings(max_examples=2 * (settings.default or settings()).max_examples)
 EACH_CODEC = pytest.mark.parametrize("name", strategies.CODECS)
 
 
@@ -51,7 +50,6 @@ def _covered(events: list[Event], start: int, frame: bytes) -> bool:
 
 
 @EACH_CODEC
-@MORE
 @given(random_tables.any_tables(), LISTENING, st.booleans(), st.data())
 def test_every_byte_is_in_exactly_one_event_for_any_chunking(
     name: codecs.CodecName, table: Table, listening: Listening, unknown: bool, data: st.DataObject
@@ -78,7 +76,6 @@ def test_every_byte_is_in_exactly_one_event_for_any_chunking(
 
 
 @EACH_CODEC
-@MORE
 @given(st.sampled_from(KNOWN), LISTENING, st.data())
 def test_undamaged_frame_is_found_unless_a_legal_one_covers_it_and_no_other_frame_is(
     name: codecs.CodecName, table: Table, listening: Listening, data: st.DataObject
