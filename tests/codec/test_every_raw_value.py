@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import pytest
 
 import small_tables
@@ -22,7 +20,7 @@ def _kinds() -> list[Number]:
     """Return each kind of scaled 16-bit number of the shipped editions: what its bytes mean."""
     tables = [editions.load(name).TABLE for name in editions.names()]
     found = {
-        replace(number, name="", unit="")
+        number._replace(name="", unit="")
         for table in tables
         for command in table.commands
         for variant in (*command.request, *command.reply)
@@ -37,7 +35,7 @@ def _kinds() -> list[Number]:
 KINDS = _kinds()
 # Without limits, what the bytes hold.
 WIDE = {
-    replace(kind, minimum=kind.raw_range[0], maximum=kind.raw_range[1], choices=())
+    kind._replace(minimum=kind.raw_range[0], maximum=kind.raw_range[1], choices=())
     for kind in KINDS
 }
 

@@ -108,15 +108,13 @@ def test_counted_list_takes_the_variant_of_its_size_and_names_the_element_at_fau
 
 def test_wrong_text_is_named_with_its_index_and_its_sizes() -> None:
     letters = [small_tables.number()] * 6
-    texts = replace(
-        small_tables.field("names", *letters, many=True),
+    texts = small_tables.field("names", *letters, many=True)._replace(
         kind="text",
         each=3,
         encoding="latin-1",
         padding=0,
     )
-    sized = replace(
-        small_tables.field("label", *letters[:2], many=True),
+    sized = small_tables.field("label", *letters[:2], many=True)._replace(
         kind="text",
         encoding="latin-1",
         sizes=(1, 2),
@@ -125,7 +123,7 @@ def test_wrong_text_is_named_with_its_index_and_its_sizes() -> None:
         (texts, ("ab", "€"), r"names\[1\] is '€'"),
         (texts, ("abcd", "b"), r"names\[0\] is 'abcd'"),
         (sized, "€", r"label is '€'; allowed: Latin-1 text of 1..2 bytes"),
-        (replace(sized, sizes=None), "€", r"label is '€'; allowed: Latin-1 text of 2 bytes"),
+        (sized._replace(sizes=None), "€", r"label is '€'; allowed: Latin-1 text of 2 bytes"),
     ]
     for field, value, message in wrong:
         table = small_tables.table(small_tables.command(1, "set", (Variant((field,)),)))
