@@ -1,4 +1,4 @@
-"""Judge the outcomes of each run, and format them as the page of bad lines."""
+"""Rate the outcomes of each run, and format them as the page of bad lines."""
 
 from __future__ import annotations
 

@@ -38,7 +38,7 @@ LINES: dict[str, Line] = {
 }
 
 
-def judged(client: str, line: Line) -> tuple[Report, list[str]]:
+def checked(client: str, line: Line) -> tuple[Report, list[str]]:
     """Run the session; return the report, and the calls that raised or returned an error."""
     kind, play = CLIENTS[client]
     referee = Referee(
@@ -74,7 +74,7 @@ def main() -> None:
 
 
 def _print(client: str, name: str, line: Line) -> None:
-    report, failures = judged(client, line)
+    report, failures = checked(client, line)
     found = report.failures
     print(f"{client}, {name} ({line.text}): {len(found)} failures, {len(failures)} calls failed")
     for result in found:

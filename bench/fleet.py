@@ -1,7 +1,7 @@
 """Poll 500 arms at 20 Hz in one process, then 1,000: lateness, CPU time and memory.
 
 The arms are TCP connections to another process (`fleet_responder.py`). A sample is late by the time
-from the moment of its slot until the consumer has it. On Linux, one core is the client's and
+from the begin of its period until the consumer has it. On Linux, one core is the client's and
 another the arms'. The CPU time is that of the client's process. Its memory is what the process
 grows by for each open arm with a stream, and what Python allocates for it (tracemalloc, measured
 with few arms).
@@ -90,7 +90,7 @@ def _show(result: Result, count: int, rate: float) -> bool:
     late = sorted(result.lateness)
     p99, cpu, resident = late[len(late) * 99 // 100], result.cpu_per_sample, result.resident
     print(
-        f"{count} arms at {rate:g} Hz: {len(late)} samples, {result.missed} slots missed\n"
+        f"{count} arms at {rate:g} Hz: {len(late)} samples, {result.missed} periods missed\n"
         f"  late by {late[len(late) // 2] * 1e3:.1f} ms (median), {p99 * 1e3:.1f} ms (99 %), "
         f"{late[-1] * 1e3:.0f} ms (most)   {within(p99 <= LATE_SECONDS)} "
         f"{LATE_SECONDS * 1e3:.0f} ms at 99 %\n"
@@ -153,10 +153,10 @@ async def _run(url: str, count: int, rate: float, seconds: float, rarely: bool) 
     ]
     await asyncio.sleep(begin - time.monotonic())
     started, cpu = time.monotonic(), time.process_time()
-    missed = sum(stream.report.slots - stream.report.samples for stream in streams)
+    missed = sum(stream.report.periods - stream.report.samples for stream in streams)
     await asyncio.gather(*polls)
     spent, cpu = time.monotonic() - started, time.process_time() - cpu
-    missed = sum(stream.report.slots - stream.report.samples for stream in streams) - missed
+    missed = sum(stream.report.periods - stream.report.samples for stream in streams) - missed
     resident = (_resident() - before) / count
     await _closed(arms)
     return Result(lateness, missed, cpu / max(1, len(lateness)), cpu / spent, resident)
@@ -176,7 +176,7 @@ async def _poll(
         if now >= begin + seconds:
             break
         if now >= begin:
-            late.append(now - first - sample.slot / rate)
+            late.append(now - first - sample.period / rate)
     stream.close()
 
 

@@ -1,12 +1,12 @@
 """Measure how late the samples of a stream are: 100 Hz alone, 50 Hz beside a busy thread.
 
 The arm is a trivial responder in another process, on a pty. For each sample there are two figures:
-how far from its moment the request was written, and how late the consumer had the result. A slot
-without a sample counts as late by a whole period.
+how far from the beginning of its period the request was written, and how late the consumer had the
+result. A period without a sample counts as late by a whole period.
 
-A bare `time.sleep` until each moment takes turns with the streams. It shows how late the machine
-and the interpreter are by themselves: no stream can be more punctual. Python lets a busy thread run
-for 5 ms (its switch interval) before another one gets its turn.
+A bare `time.sleep` until each of these times takes turns with the streams. It shows how late the
+machine and the interpreter are by themselves: no stream can be more punctual. Python lets a busy
+thread run for 5 ms (its switch interval) before another one gets its turn.
 """
 
 from __future__ import annotations
@@ -25,9 +25,9 @@ from cobotwire.editions.mycobot280 import AsyncMyCobot280, GetAngles, MyCobot280
 from cobotwire.session.sample import Sample
 from responder import responder, within
 
-# At 100 Hz, a busy thread takes about every second slot.
+# At 100 Hz, a busy thread takes about every second period.
 QUIET_RATE, BUSY_RATE = 100.0, 50.0
-# How late 99 % of the samples have come, in seconds; and the share of slots without a sample.
+# How late 99 % of the samples have come, in seconds; and the share of periods without a sample.
 QUIET_LIMIT, BUSY_LIMIT = 0.0015, 0.01
 ROUND_SECONDS = 2.0
 
@@ -35,7 +35,7 @@ ROUND_SECONDS = 2.0
 class Punctuality(NamedTuple):
     """For each sample, in seconds, how far off it was sent and how late the result was.
 
-    ``missed`` is the number of slots without a sample.
+    ``missed`` is the number of periods without a sample.
     """
 
     off: list[float]
@@ -75,15 +75,15 @@ def main() -> None:
 
 
 def _show(name: str, rate: float, run: Punctuality, busy: bool) -> bool:
-    slots = len(run.late) + run.missed
+    periods = len(run.late) + run.missed
     if busy:
-        met, limit = run.missed <= BUSY_LIMIT * slots, f"{BUSY_LIMIT:.0%} missed"
+        met, limit = run.missed <= BUSY_LIMIT * periods, f"{BUSY_LIMIT:.0%} missed"
     else:
         met, limit = _percentile(run.late) <= QUIET_LIMIT, f"{QUIET_LIMIT * 1e3:g} ms at 99 %"
     print(
         f"{rate:.0f} Hz, {name + (', busy' if busy else ', alone'):17} "
         f"sent {_both(run.off)} off, had {_both(run.late)} late (median, 99 %), "
-        f"{run.missed} of {slots} missed   {within(met)} {limit}"
+        f"{run.missed} of {periods} missed   {within(met)} {limit}"
     )
     return met
 
@@ -117,10 +117,10 @@ def _busy_thread() -> Iterator[None]:
 def _sleeps(_: str, rate: float) -> Punctuality:
     started = time.monotonic()
     late = []
-    for slot in range(1, int(ROUND_SECONDS * rate)):
-        moment = started + slot / rate
-        time.sleep(max(0.0, moment - time.monotonic()))
-        late.append(time.monotonic() - moment)
+    for period in range(1, int(ROUND_SECONDS * rate)):
+        due = started + period / rate
+        time.sleep(max(0.0, due - time.monotonic()))
+        late.append(time.monotonic() - due)
     return Punctuality(late, late)
 
 
@@ -143,11 +143,11 @@ async def _asyncio(url: str, rate: float) -> Punctuality:
 
 
 def _note(found: Punctuality, started: float, sample: Sample, rate: float) -> int:
-    """Note a sample, and return its slot; slot 0 is when the stream started."""
-    moment = started + sample.slot / rate
-    found.off.append(abs(sample.requested_at - moment))
-    found.late.append(time.monotonic() - moment)
-    return sample.slot
+    """Note a sample, and return its period; period 0 is when the stream started."""
+    due = started + sample.period / rate
+    found.off.append(abs(sample.requested_at - due))
+    found.late.append(time.monotonic() - due)
+    return sample.period
 
 
 if __name__ == "__main__":

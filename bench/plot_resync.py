@@ -12,7 +12,7 @@ import matplotlib as mpl
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from judge import STEPS
+from scoring import STEPS
 
 Rows = Sequence[dict[str, Any]]
 

@@ -25,8 +25,8 @@ from cobotwire.editions.mycobot import TABLE
 from cobotwire.editions.mycobot280 import TABLE as TABLE_280
 from cobotwire.protocol.table import Table
 from damage import KINDS, damage, noisy
-from judge import as_json, ideal_distances, judge, spread
 from readers import Reader
+from scoring import as_json, ideal_distances, score, spread
 from streams import Line
 
 TABLES = {table.edition: table for table in (TABLE, TABLE_280)}
@@ -82,7 +82,7 @@ def measure(scenario: Scenario, frames: int, seed: int, reference_bytes: int) ->
         "pymycobot by request": readers.pymycobot_by_request(line),
     }
     verdicts = {
-        name: judge(table, scenario.listening, line, frames) for name, frames in read.items()
+        name: score(table, scenario.listening, line, frames) for name, frames in read.items()
     }
     return {
         **asdict(scenario),
@@ -112,7 +112,7 @@ def bounded(edition: str, frames: int, seed: int) -> list[dict[str, Any]]:
     for name, longest in lengths.items():
         scans[name] = readers.any_length(longest)
     return [
-        {"edition": edition, "bound": name, **as_json(judge(table, "reply", line, read(line.data)))}
+        {"edition": edition, "bound": name, **as_json(score(table, "reply", line, read(line.data)))}
         for name, read in scans.items()
     ]
 

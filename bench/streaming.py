@@ -1,7 +1,7 @@
 """Stream for a day at 100 Hz in accelerated time; check memory, repetition and order.
 
     python bench/streaming.py              run for about a minute of real time
-    python bench/streaming.py --whole-day  run all of the day's 8.64 million slots
+    python bench/streaming.py --whole-day  run all of the day's 8.64 million periods
 
 The transport is in memory and owns the clock (tests/accelerated.py); client, session and native
 codec are the ordinary ones. Some replies are lost, some are slow, and some exceed their deadline.
@@ -34,27 +34,27 @@ def main() -> None:
     with accelerated(RATE) as (arm, stream):
         checker = Checker(arm)
         share = spent = 0.0
-        begun = arm.now
+        started_at = arm.now
         while share < 1.0 and (bound is None or spent < bound):
             for _ in range(CHUNK):
                 sample = next(stream)
                 reading = sample.readings[0]
                 checker.check(
                     sample.number,
-                    sample.slot,
+                    sample.period,
                     reading.value,
                     reading.requested_at,
                     reading.replied_at,
                 )
-            share = (arm.now - begun) / DAY
+            share = (arm.now - started_at) / DAY
             spent = time.perf_counter() - started
             if early is None and (share if bound is None else spent / bound) >= 0.1:
                 early = _resident()
         report = stream.report
     assert early is not None, "a tenth of the run comes before its end"
     grown = _resident() - early
-    slots = round((arm.now - begun) * RATE)
-    assert abs(report.slots - slots) <= 1, "every slot has a sample, or is counted as missed"
+    periods = round((arm.now - started_at) * RATE)
+    assert abs(report.periods - periods) <= 1, "every period has a sample, or is counted as missed"
     print(
         f"a day at {RATE:.0f} Hz: {share:.1%} of it in {spent:.0f} s, {DAY * share / spent:.0f} x "
         f"real time; none twice, none out of order"

@@ -32,7 +32,7 @@ def main(port: str, file: str, seconds: float = 10.0) -> int:
             for sample in stream:
                 start = sample.replied_at if start is None else start
                 block.append(row(sample, start))
-                over = sample.slot >= seconds * RATE
+                over = sample.period >= seconds * RATE
                 if over or len(block) == BLOCK:
                     writer.write_table(pa.Table.from_pylist(block, SCHEMA))
                     rows += len(block)

@@ -31,7 +31,7 @@ def teach(arm: MyCobot280, seconds: float) -> list[Angles]:
     with arm.stream(GetAngles(), rate=RATE) as stream:
         for sample in stream:
             angles = sample[GetAngles()]
-            last = sample.slot >= seconds * RATE
+            last = sample.period >= seconds * RATE
             if last or not way or distance(angles, way[-1]) >= STEP:
                 way.append(angles)
             if last:

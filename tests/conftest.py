@@ -13,7 +13,7 @@ import pytest
 from hypothesis import HealthCheck, settings
 
 from cobotwire import codec as codecs
-from cobotwire.client import port_memory, port_notes
+from cobotwire.client import persisted_state, port_notes
 from cobotwire.codec.interface import Codec
 from cobotwire.editions.mycobot import TABLE, MyCobot
 from cobotwire.simulator import PtyServer, SimulatedArm
@@ -77,7 +77,7 @@ def _ports_without_notes() -> None:
 
     Such a note makes a client send what ends half a request, which that server never received.
     """
-    port_memory._here.clear()
+    persisted_state._here.clear()
     with suppress(FileNotFoundError):
         for note in os.scandir(port_notes._folder(create=False)):
             os.unlink(note.path)

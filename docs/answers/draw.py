@@ -40,8 +40,8 @@ def temperatures(archive: Path) -> Figure:
         column = pl.col(f"j{joint}")
         corners = table.filter((column.diff() != 0).fill_null(True) | (column.diff(-1) != 0))
         axes.plot(corners["time"], corners[f"j{joint}"], color=colour, label=f"joint {joint}")
-    for moment in reboots(archive):
-        axes.axvline(moment, color="#444444", linestyle="--", linewidth=1)
+    for time in reboots(archive):
+        axes.axvline(time, color="#444444", linestyle="--", linewidth=1)
     axes.xaxis.set_major_locator(DayLocator())
     axes.xaxis.set_major_formatter(DateFormatter("%a %d %b", tz=UTC))
     axes.set_ylabel("degrees Celsius")

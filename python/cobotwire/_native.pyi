@@ -19,7 +19,7 @@ from cobotwire.codec.interface import (
     Noise,
 )
 from cobotwire.diagnose.servo_bus import Vocabulary
-from cobotwire.diagnose.survey import Rest
+from cobotwire.diagnose.stream_summary import Rest
 from cobotwire.protocol.table import Command, Direction, Table
 
 __all__ = [
@@ -30,7 +30,7 @@ __all__ = [
     "NativeColumnReader",
     "NativeFrame",
     "NativeFramer",
-    "NativeSurvey",
+    "NativeSummary",
     "__version__",
     "read_within",
     "write_now",
@@ -147,7 +147,7 @@ class NativeFramer:
         """Take bytes; return what is certain by now, in the order of the stream."""
 
     def flush(self) -> list[Event]:
-        """Refute what still waits, because the line is idle; return it and what follows it."""
+        """Reject what still waits, because the line is idle; return it and what follows it."""
 
     @property
     def pending(self) -> int:
@@ -163,7 +163,7 @@ class NativeFramer:
 
 @final
 class AlarmClock:
-    """A descriptor that becomes readable at a moment, for event loops. Only on Linux."""
+    """A descriptor that becomes readable at a given time, for event loops. Only on Linux."""
 
     def __new__(cls) -> AlarmClock:
         """Make one that is not set.
@@ -175,11 +175,11 @@ class AlarmClock:
     def fileno(self) -> int:
         """Return the descriptor, which is open as long as this object exists."""
 
-    def set(self, moment: float | None, /) -> None:
-        """Make it readable from a moment of ``time.monotonic()`` on, and not before; None: never.
+    def set(self, due: float | None, /) -> None:
+        """Make it readable from a time of ``time.monotonic()`` on, and not before; None: never.
 
         Raises:
-            OSError: the moment is beyond what the system can count.
+            OSError: the time is beyond what the system can count.
         """
 
 @final
@@ -206,7 +206,7 @@ class NativeFrame:
     ) -> DecodedMessage:
         """Return what ``codec.decode(direction, frame.data, of=of)`` returns.
 
-        The frame is not judged again; see :meth:`cobotwire.codec.events.Frame.decode`.
+        The frame is not validated again; see :meth:`cobotwire.codec.events.Frame.decode`.
 
         Raises:
             ProtocolError: it is not a frame of that direction or command, or a field holds a value
@@ -245,7 +245,7 @@ class NativeColumnReader:
         """Take bytes; return what has become certain since the last call."""
 
     def flush(self) -> Columns:
-        """Refute what still waits; return the rest."""
+        """Reject what still waits; return the rest."""
 
     @property
     def pending(self) -> int:
@@ -296,12 +296,12 @@ class NativeCaptureReader:
         """
 
 @final
-class NativeSurvey:
+class NativeSummary:
     """Counts the messages and the noise of a stream, and writes lines of JSON.
 
     ``bus`` says how packets of the servo bus are read. ``texts`` are the first four texts of the
-    lines (:class:`cobotwire.diagnose.survey.LineTexts`); None: no lines.
-    :class:`cobotwire.diagnose.survey.StreamSurvey` uses it.
+    lines (:class:`cobotwire.diagnose.stream_summary.LineTexts`); None: no lines.
+    :class:`cobotwire.diagnose.stream_summary.StreamSummary` uses it.
     """
 
     def __new__(
@@ -311,7 +311,7 @@ class NativeSurvey:
         accept_unknown: bool,
         bus: Vocabulary,
         texts: tuple[Any, ...] | None,
-    ) -> NativeSurvey:
+    ) -> NativeSummary:
         """Start a stream."""
 
     def feed(self, data: bytes, rest: Rest) -> list[Noise | tuple[int, int, str]]:

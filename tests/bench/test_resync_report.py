@@ -10,8 +10,8 @@ import readers
 import resync
 from cobotwire.editions.mycobot280 import TABLE
 from damage import damage
-from judge import Verdict, judge
 from readers import Accepted
+from scoring import Verdict, score
 from streams import Line, catalogue
 
 NO_LOSS = "lost that no legal false frame covers: 0"
@@ -22,7 +22,7 @@ def _line(kind: str = "false header") -> Line:
 
 
 def _judged(line: Line, read: Sequence[Accepted]) -> Verdict:
-    return judge(TABLE, "reply", line, read)
+    return score(TABLE, "reply", line, read)
 
 
 def test_every_frame_that_the_codec_loses_is_explained_by_the_table() -> None:

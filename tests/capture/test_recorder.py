@@ -115,9 +115,9 @@ def test_traffic_of_a_client_is_recorded(server: PtyServer, tmp_path: Path) -> N
     codec = codecs.load(TABLE)
     with Recording(path, codec, url=server.url, baudrate=115200) as recording:
 
-        def trace(moment: Any) -> None:
-            traffic.append(Chunk(moment.time, moment.direction, moment.data))
-            recording(moment)
+        def trace(item: Any) -> None:
+            traffic.append(Chunk(item.time, item.direction, item.data))
+            recording(item)
 
         with MyCobot(server.url, trace=trace) as arm:
             arm.power_on()

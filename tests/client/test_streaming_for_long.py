@@ -23,7 +23,7 @@ def test_long_stream_keeps_memory_flat_and_samples_in_order() -> None:
             for sample in islice(stream, count):
                 one = sample.readings[0]
                 checker.check(
-                    sample.number, sample.slot, one.value, one.requested_at, one.replied_at
+                    sample.number, sample.period, one.value, one.requested_at, one.replied_at
                 )
             gc.collect()
 
@@ -43,7 +43,7 @@ def test_long_stream_keeps_memory_flat_and_samples_in_order() -> None:
         report = stream.report
         assert arm.now - begun > 120
         assert report.samples == SAMPLES
-        # Lost and late replies are counted as unanswered, and every slot is accounted for.
+        # Lost and late replies are counted as unanswered, and every period is accounted for.
         assert report.unanswered == arm.requests // LOST + arm.requests // LATE
         assert report.unread == 0
-        assert abs(report.slots - (arm.now - begun) * 100) <= 1.5
+        assert abs(report.periods - (arm.now - begun) * 100) <= 1.5

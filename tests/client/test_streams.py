@@ -1,4 +1,4 @@
-"""Stream over real ptys and real TCP: samples, missed slots, and the end of a stream."""
+"""Stream over real ptys and real TCP: samples, missed periods, and the end of a stream."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ def test_samples_are_numbered_timed_and_typed(open_arm: Opener, server: PtyServe
         assert moments == sorted(moments)
         report = stream.report
         assert report.samples == 25
-        # A busy machine sometimes wakes late; no other slot may be missed.
+        # A busy machine sometimes wakes late; no other period may be missed.
         assert report.unanswered == 0
         assert report.reached > 16
 
@@ -103,8 +103,8 @@ def test_missing_and_illegal_replies_are_counted_and_the_stream_continues(
         assert [sample.values for sample in islice(stream, 3)] == [(True,)] * 3
         report = stream.report
         assert (report.samples, report.unanswered) == (3, 2)
-        assert report.samples + report.missed == report.slots
-        # Each request is sent once: the next slot sends it again anyway.
+        assert report.samples + report.missed == report.periods
+        # Each request is sent once: the next period sends it again anyway.
         assert peer.received == 5 * bytes.fromhex("FE FE 02 12 FA")
 
 

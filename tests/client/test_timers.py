@@ -17,12 +17,12 @@ def test_calls_are_made_in_the_order_of_their_moments() -> None:
         calls: list[str] = []
         over = asyncio.Event()
         now = time.monotonic()
-        moments = {"last": 0.03, "first": 0.01, "second": 0.02, "cancelled": 0.015, "passed": -1.0}
-        timed = {name: Timed(partial(calls.append, name)) for name in moments}
-        for name, seconds in moments.items():
+        times = {"last": 0.03, "first": 0.01, "second": 0.02, "cancelled": 0.015, "passed": -1.0}
+        timed = {name: Timed(partial(calls.append, name)) for name in times}
+        for name, seconds in times.items():
             timers.set(timed[name], now + seconds)
         timed["cancelled"].cancel()
-        # Only its new moment counts.
+        # Only its new time counts.
         timers.set(timed["first"], now + 0.04)
         timers.set(Timed(over.set), now + 0.05)
         await asyncio.wait_for(over.wait(), 10)

@@ -12,10 +12,10 @@ import pytest
 import small_specs
 from cobotwire.protocol.errors import ProtocolError, UsageError
 from cobotwire_codegen.targets.vectors.document import document
-from targets.c.comparison import judged as judged_in_c
+from targets.c.comparison import validated as validated_in_c
 from targets.c.compiled import missing
 from targets.expected import codec_of_edition
-from targets.vectors.comparison import CODECS, judged
+from targets.vectors.comparison import CODECS, validated
 
 COMMANDS = """
 set_x:
@@ -70,6 +70,6 @@ def test_vectors_and_targets_refuse_values_between_choices(edition: Any) -> None
     made = json.loads(document(edition))
     refused = {record["name"] for record in made["rejected"]}
     assert {"set_x request, plain 3", "set_x request, both 3"} <= refused, refused
-    assert judged(made, codec_of_edition(edition)).differences == []
+    assert validated(made, codec_of_edition(edition)).differences == []
     if not missing("gcc"):
-        assert judged_in_c(made, edition, "gcc", ("-O0",), "choices").differences == []
+        assert validated_in_c(made, edition, "gcc", ("-O0",), "choices").differences == []

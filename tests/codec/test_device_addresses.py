@@ -10,7 +10,7 @@ import pytest
 
 from cobotwire import codec as codecs
 from cobotwire.codec.interface import Codec, Columns
-from cobotwire.codec.stretches import Stretch, decode_stretch
+from cobotwire.codec.segments import Segment, decode_segment
 from cobotwire.editions import load, mycobot280
 from cobotwire.editions.mybuddy import TABLE
 from cobotwire.protocol.errors import UsageError
@@ -121,7 +121,7 @@ def test_long_stream_in_pieces_keeps_the_addresses(size: int) -> None:
 
 
 @BOTH
-def test_stretches_keep_the_addresses(codec: Codec) -> None:
+def test_segments_keep_the_addresses(codec: Codec) -> None:
     class Bytes:
         size = len(STREAM)
 
@@ -129,8 +129,8 @@ def test_stretches_keep_the_addresses(codec: Codec) -> None:
             return STREAM[offset : offset + size]
 
     half = STREAM.index(b"noise") + 2
-    ends = [Stretch(0, half), Stretch(half, len(STREAM))]
-    parts = [each for end in ends for each in decode_stretch(codec, "reply", Bytes(), end)]
+    ends = [Segment(0, half), Segment(half, len(STREAM))]
+    parts = [each for end in ends for each in decode_segment(codec, "reply", Bytes(), end)]
     assert [address for part in parts for address in whose(part)] == WHOSE
 
 

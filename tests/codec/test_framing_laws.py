@@ -107,7 +107,7 @@ def test_undamaged_frame_of_a_random_table_is_found_unless_a_legal_one_covers_it
 def test_header_bytes_and_adjacent_frames_hide_no_frame(
     name: codecs.CodecName, edition: str, count: int, times: int, data: st.DataObject
 ) -> None:
-    # FE is not a legal LEN, so FE FE FE is refuted at its first byte.
+    # FE is not a legal LEN, so FE FE FE is rejected at its first byte.
     frame = data.draw(strategies.real_frames(TABLES[edition]))
     events = cut(codec_of(edition, name), "both", [b"\xfe" * count + frame * times])
     found = [event for event in events if isinstance(event, Frame)]

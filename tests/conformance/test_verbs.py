@@ -139,7 +139,7 @@ def test_cases_of_all_three_subjects_are_listed() -> None:
 def test_client_tester_on_a_public_address_warns(host: str, warns: bool) -> None:
     words = ("client", "--listen", f"socket://{host}:0", "--seconds", "0.1")
     ended = _run(*words)
-    warning = f"cobotwire: anyone who can reach {host} can connect, and is judged as the client\n"
+    warning = f"cobotwire: anyone who can reach {host} can connect, and is checked as the client\n"
     assert ended.stderr == (warning if warns else "")
     assert ended.returncode == 2
     assert ended.stdout.endswith("\nThe run is incomplete: the client sent no request.\n")

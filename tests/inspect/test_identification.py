@@ -11,7 +11,7 @@ import pytest
 
 import cobotwire
 from cobotwire import EditionUnknown, LinkError, MyCobot280, codec, connect, identify
-from cobotwire.client.port_memory import PortMemory
+from cobotwire.client.persisted_state import PortMemory
 from cobotwire.editions import load, names
 from cobotwire.inspect.identification import identify_on
 from cobotwire.session import RequestReceived

@@ -59,18 +59,18 @@ def play(sampler: Sampler, start: float, steps: list[tuple[int, int, int, int, s
         report = sampler.report(now)
         assert report.samples == len(samples)
         assert report.unanswered == unanswered
-        # Every slot that has passed is either a sample or missed for one reason. The last slot may
-        # be in use since half a period before its time.
-        assert -0.5 <= report.slots - (now - started) / period <= 1.5
+        # Every period that has passed has a sample or is missed for one reason. The last one may be
+        # in use since half a period before it begins.
+        assert -0.5 <= report.periods - (now - started) / period <= 1.5
         assert sampler.report(now) == report
     assert [sample.number for sample in samples] == list(range(len(samples)))
     for one, other in pairwise(samples):
-        assert one.slot < other.slot
+        assert one.period < other.period
         assert one.replied_at <= other.requested_at
         assert other.requested_at - one.requested_at >= period / 2
     for sample in samples:
         assert started is not None
-        assert abs(sample.requested_at - started - sample.slot * period) <= period / 2
+        assert abs(sample.requested_at - started - sample.period * period) <= period / 2
     return now
 
 
@@ -93,10 +93,10 @@ def test_fast_line_and_fast_consumer_miss_nothing(
     assert report.reached == (rate if steps else 0.0)
 
 
-def test_missed_slot_is_counted_for_line_or_consumer() -> None:
+def test_missed_period_is_counted_for_line_or_consumer() -> None:
     sampler = Sampler((GET_ANGLES,), 10.0)
     assert sampler.plan(100.0) == 100.0
-    # The line takes 0.32 s: slots 1 and 2 pass. The consumer takes until 0.78: 3 to 7 pass.
+    # The line takes 0.32 s: periods 1 and 2 pass. The consumer takes until 0.78: 3 to 7 pass.
     sampler.answered([Reading(1, 100.0, 100.32)], 100.32)
     assert sampler.plan(100.78) == pytest.approx(100.8)
     report = sampler.report(100.78)
@@ -143,5 +143,5 @@ def test_sample_is_a_value_that_cannot_be_changed() -> None:
     assert pickle.loads(pickle.dumps(sample)) == sample == Sample(0, 3, (encoder(2),), (reading,))
     assert sample != Sample(0, 4, (encoder(2),), (reading,))
     assert len({sample, Sample(0, 3, (encoder(2),), (reading,))}) == 1
-    with pytest.raises(AttributeError, match="read-only; cannot set slot"):
-        sample.slot = 4
+    with pytest.raises(AttributeError, match="read-only; cannot set period"):
+        sample.period = 4

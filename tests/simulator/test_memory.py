@@ -83,7 +83,7 @@ def test_stream_uses_the_clock_of_its_transport() -> None:
     began = clock()
     samples = list(islice(arm.stream(TABLE.request_type("get_angles")(), rate=100), 6_001))
     assert clock() - began == pytest.approx(60.0)
-    assert [sample.slot for sample in samples] == list(range(6_001))
+    assert [sample.period for sample in samples] == list(range(6_001))
 
 
 def test_observed_traffic_has_times_of_the_clock() -> None:

@@ -128,7 +128,7 @@ class Document:
         for _ in range(data.draw(st.integers(1, 3))):
             damaged[data.draw(st.integers(0, len(frame) - 1))] = data.draw(st.integers(0, 255))
         self.add(direction, bytes(damaged))
-        # With a right check, most changes are changes of values; without one, the frame is refuted.
+        # With a right check, most changes are changes of values; otherwise the frame is rejected.
         format = self.codec.table.frame
         body = bytes(damaged[: len(frame) - format.check_size])
         self.add(direction, body + format.end(body))

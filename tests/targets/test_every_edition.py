@@ -9,9 +9,9 @@ import pytest
 
 import vectors
 from strategies import codec_of
-from targets.c.comparison import judged as judged_in_c
+from targets.c.comparison import validated as validated_in_c
 from targets.c.compiled import missing
-from targets.vectors.comparison import CODECS, Record, judged, read
+from targets.vectors.comparison import CODECS, Record, read, validated
 
 PARTS = ("messages", "rejected", "malformed", "streams", "texts")
 STEP = 9
@@ -33,7 +33,7 @@ def sample(name: str, command: str = "") -> Record:
 @pytest.mark.parametrize("name", vectors.further())
 def test_sample_of_vectors_agrees_with_both_codecs(name: str) -> None:
     for codec in CODECS:
-        found = judged(sample(name, "set_pro_gripper"), codec_of(name, codec))
+        found = validated(sample(name, "set_pro_gripper"), codec_of(name, codec))
         assert found.differences == []
         assert found.refused > 20
 
@@ -42,5 +42,5 @@ def test_sample_of_vectors_agrees_with_both_codecs(name: str) -> None:
 def test_c_code_refuses_values_that_a_case_does_not_list() -> None:
     document = sample("mycobot320", "set_pro_gripper")
     assert any(r["name"] == "set_pro_gripper request, value 2" for r in document["rejected"])
-    found = judged_in_c(document, vectors.edition("mycobot320"), "gcc", ("-O0",), "sample320")
+    found = validated_in_c(document, vectors.edition("mycobot320"), "gcc", ("-O0",), "sample320")
     assert found.differences == []

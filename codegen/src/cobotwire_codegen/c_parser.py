@@ -44,7 +44,7 @@ _SEQUENCE, _MAPPING = Tag(suffix=f"{_TAG}seq"), Tag(suffix=f"{_TAG}map")
 
 
 class _Unsure(Exception):
-    """The text has something that only the parser in Python may judge."""
+    """The text has something that only the parser in Python may validate."""
 
 
 def plain_root(text: str, deepest: int) -> Node | None:

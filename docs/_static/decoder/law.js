@@ -64,7 +64,7 @@
       return found.length === 1 ? found : found.filter(({ size }) => size <= this.frame.maximum_data);
     }
 
-    // Return frames and noise of a complete stream. Each byte is judged on its own; adjacent noise with
+    // Return frames and noise of a complete stream. Each byte is validated on its own; adjacent noise with
     // the same reason is one event.
     cut(bytes) {
       const events = [];
@@ -124,7 +124,7 @@
         return new Rejection("bad-address", at, () => `the edition has no address ${hex([bytes[at]])}`);
       if (part === "length" && !this.lengths.has(this._length(bytes)))
         return new Rejection("bad-length", at, () => `no message has LEN ${this._length(bytes)}`);
-      // After LEN, the two are judged together.
+      // After LEN, the two are validated together.
       if (part === "command" && layout.indexOf("length") > layout.indexOf("command") && !this._known(this._id(bytes)))
         return this._unknown(bytes);
       return null;

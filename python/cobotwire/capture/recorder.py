@@ -23,7 +23,7 @@ IDLE_NS = 500_000_000
 _log = logging.getLogger("cobotwire.capture")
 
 
-class Moment(Protocol):
+class TrafficItem(Protocol):
     """One item of a client's traffic; ``time`` is in ``time.monotonic()`` seconds."""
 
     @property
@@ -147,9 +147,9 @@ class Recorder:
         self._ended = False
         forks.watch(self)
 
-    def __call__(self, moment: Moment) -> None:
+    def __call__(self, item: TrafficItem) -> None:
         """Record one item of a client's traffic."""
-        self.record(moment.direction, moment.data, moment.time)
+        self.record(item.direction, item.data, item.time)
 
     def record(self, direction: Literal["sent", "received"], data: bytes, at: float) -> None:
         """Record a chunk that was read or written at ``at``, in ``time.monotonic()`` seconds.

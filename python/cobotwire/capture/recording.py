@@ -8,7 +8,7 @@ from types import TracebackType
 from typing import Literal, Self
 
 from cobotwire.capture.file_errors import unusable_file
-from cobotwire.capture.recorder import Moment, Recorder
+from cobotwire.capture.recorder import Recorder, TrafficItem
 from cobotwire.capture.writer import CaptureWriter
 from cobotwire.codec.interface import Codec
 from cobotwire.protocol.errors import CaptureError
@@ -63,9 +63,9 @@ class Recording:
             raise unusable_file("record", path, error) from None
         forks.watch(self)
 
-    def __call__(self, moment: Moment) -> None:
+    def __call__(self, item: TrafficItem) -> None:
         """Record one item of a client's traffic."""
-        self._recorder(moment)
+        self._recorder(item)
 
     def record(self, direction: Literal["sent", "received"], data: bytes, at: float) -> None:
         """Record a chunk that was read or written at ``at``, in ``time.monotonic()`` seconds."""

@@ -8,7 +8,7 @@ from cobotwire.cli.shared.lazy_group import LazyGroup
 
 VERBS = {
     "device": "Test the arm at URL against an edition.",
-    "client": "Serve an arm, and judge the client that controls it.",
+    "client": "Serve an arm, and check the client that controls it.",
     "codec": "Test a codec, which COMMAND runs, against an edition.",
     "compare": "Compare two reports on the same subject.",
     "cases": "List the test cases and the permissions.",

@@ -1,4 +1,4 @@
-"""``cobotwire conform client``: serve an arm that judges every byte a client sends."""
+"""``cobotwire conform client``: serve an arm that checks every byte a client sends."""
 
 from __future__ import annotations
 
@@ -96,7 +96,7 @@ def client(
     again: str | None,
     files: ReportFiles,
 ) -> None:
-    """Serve an arm, and judge the client that controls it.
+    """Serve an arm, and check the client that controls it.
 
     The first line of output is the port that the client must open. Over TCP the run ends when the
     client disconnects. On a pseudo-terminal it ends after --idle or --seconds, or at Ctrl-C. With
@@ -181,10 +181,10 @@ def _server(listen: str, referee: Referee) -> Server:
     if parts.scheme not in ("socket", "tcp") or parts.path.strip("/"):
         raise UsageError("listen", listen, "pty or socket://HOST:PORT")
     host, port = address(parts.netloc)
-    # All connections count as the same client, because the referee judges one client.
+    # All connections count as the same client, because the referee checks one client.
     server = TcpServer(lambda: referee, host, port)
     if not server.loopback:
-        text = f"anyone who can reach {host} can connect, and is judged as the client"
+        text = f"anyone who can reach {host} can connect, and is checked as the client"
         click.echo(f"cobotwire: {text}", err=True)
     return server
 

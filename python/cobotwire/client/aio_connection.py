@@ -9,10 +9,10 @@ from contextlib import suppress
 from functools import partial
 from math import inf
 
-from cobotwire.client.aio_slots import AsyncSlots
+from cobotwire.client.aio_polling import AsyncPoller
 from cobotwire.client.aio_steps import FULL_SECONDS, AsyncSteps
 from cobotwire.client.opening import OpenPort, PortOpener
-from cobotwire.client.port_memory import PortMemory
+from cobotwire.client.persisted_state import PortMemory
 from cobotwire.client.traffic import TrafficListener, TrafficListeners
 from cobotwire.protocol.errors import CaptureError, LinkError, UsageError
 from cobotwire.session import EncodedRequest, Exchange, Pending, PendingRequest, RetryPolicy
@@ -124,9 +124,9 @@ class AsyncConnection:
             steps.give_up(pending)
         return pending
 
-    def slots(self, closed: Callable[[], bool]) -> AsyncSlots:
+    def poller(self, closed: Callable[[], bool]) -> AsyncPoller:
         """Return what sends the requests of a stream until ``closed`` returns True."""
-        return AsyncSlots(self._opened, closed)
+        return AsyncPoller(self._opened, closed)
 
     async def listen(self, seconds: float, done: Callable[[], bool] | None = None) -> None:
         """Wait while the loop reads what comes without a request, and reports it to listeners.

@@ -15,7 +15,7 @@ SLICE_SECONDS = 0.05
 class AsyncEventStream(Generic[EventT]):
     """Events, in the order in which they came; ``lost`` counts those that found the queue full.
 
-    Events are queued from the moment the stream is made until it is closed.
+    Events are queued from when the stream is made until it is closed.
     """
 
     def __init__(

@@ -147,10 +147,10 @@ class AsyncSteps:
         if idle is not None:
             self._wake_at(now + idle)
 
-    def _wake_at(self, moment: float) -> None:
+    def _wake_at(self, due: float) -> None:
         # If it goes off earlier, it is set again then.
-        if self._timed.moment > moment + TIMER_SLACK:
-            self.timers.set(self._timed, moment)
+        if self._timed.due > due + TIMER_SLACK:
+            self.timers.set(self._timed, due)
 
     def _time_passed(self) -> None:
         if self.exchange.busy:

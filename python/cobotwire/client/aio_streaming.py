@@ -42,7 +42,7 @@ class AsyncStream:
             Poll(request, encoder.encode_request(request), retry, wait) for request in requests
         ]
         self._connection = connection
-        self._slots = connection.slots(lambda: self._closed_at is not None)
+        self._poller = connection.poller(lambda: self._closed_at is not None)
         self._sampler = Sampler(requests, rate)
         self._closed_at: float | None = None
 
@@ -61,7 +61,7 @@ class AsyncStream:
         return self
 
     async def __anext__(self) -> Sample:
-        """Wait for the next slot and sample it; a slot without a sample is counted.
+        """Wait for the next period and sample it; a period without a sample is counted.
 
         Raises:
             StopAsyncIteration: the stream is closed.
@@ -72,7 +72,7 @@ class AsyncStream:
         while self._closed_at is None:
             at = self._sampler.plan(now())
             try:
-                readings = await self._slots.readings(self._polls, at)
+                readings = await self._poller.readings(self._polls, at)
             except BaseException as error:
                 self._sampler.interrupted(now())
                 if isinstance(error, LinkError):

@@ -1,9 +1,9 @@
-"""One timer of an event loop for everything that waits for a moment.
+"""One timer of an event loop for everything that waits for a time.
 
-A fleet of arms waits for tens of thousands of moments a second. asyncio compares its timers in
-Python; here they are in one heap of numbers, and the loop waits only for the next of them. On Linux
-it waits for a descriptor that becomes readable at that moment, since asyncio's own timers are up to
-two milliseconds late.
+A fleet of arms needs tens of thousands of timers a second. asyncio compares its timers in Python;
+here they are in one heap of numbers, and the loop waits only for the next of them. On Linux it
+waits for a descriptor that becomes readable at that time, since asyncio's own timers are up to two
+milliseconds late.
 """
 
 from __future__ import annotations
@@ -25,57 +25,57 @@ SECONDS_FOR_EACH, LONGEST_SECONDS = 2e-6, 1e-3
 
 
 class Timed:
-    """A call at a moment of ``time.monotonic()``; it can be set again and again.
+    """A call at a time of ``time.monotonic()``; it can be set again and again.
 
     Attributes:
-        moment: when it is called; inf: it is not.
+        due: when it is called; inf: it is not.
     """
 
-    __slots__ = ("call", "moment")
+    __slots__ = ("call", "due")
 
     def __init__(self, call: Callable[[], object]) -> None:
         self.call = call
-        self.moment = inf
+        self.due = inf
 
-    def plan(self, moment: float) -> None:
-        """Note when it is called, and at no other moment."""
-        self.moment = moment
+    def plan(self, due: float) -> None:
+        """Note when it is called, and at no other time."""
+        self.due = due
 
     def cancel(self) -> None:
         """Do not call it, unless it was called."""
-        self.moment = inf
+        self.due = inf
 
 
 class LoopTimers:
-    """Calls functions at their moments, in the thread of one event loop."""
+    """Calls functions when they are due, in the thread of one event loop."""
 
     def __init__(self, loop: asyncio.AbstractEventLoop) -> None:
         self._loop = loop
-        # Each with its moment, and a number that decides between equal moments. What was cancelled,
-        # or set to another moment, stays until then.
+        # Each with the time at which it is due, and a number that decides between equal times. What
+        # was cancelled, or set to another time, stays until then.
         self._waiting: list[tuple[float, int, Timed]] = []
         self._numbers = count()
         self._wakes_at = inf
         self._handle: asyncio.TimerHandle | None = None
         self._clock = _clock_of(loop, self._run)
 
-    def set(self, timed: Timed, moment: float) -> None:
-        """Make a call at a moment, and at no other; soon if the moment has passed."""
-        timed.plan(moment)
-        heappush(self._waiting, (moment, next(self._numbers), timed))
-        if moment < self._wakes_at:
-            self._wake_at(moment)
+    def set(self, timed: Timed, due: float) -> None:
+        """Make a call at a time, and at no other; soon if that has passed."""
+        timed.plan(due)
+        heappush(self._waiting, (due, next(self._numbers), timed))
+        if due < self._wakes_at:
+            self._wake_at(due)
 
-    def _wake_at(self, moment: float) -> None:
-        self._wakes_at = moment
+    def _wake_at(self, due: float) -> None:
+        self._wakes_at = due
         if self._clock is not None:
-            self._clock.set(None if moment == inf else moment)
+            self._clock.set(None if due == inf else due)
             return
         if self._handle is not None:
             self._handle.cancel()
             self._handle = None
-        if moment < inf:
-            self._handle = self._loop.call_later(moment - time.monotonic(), self._run)
+        if due < inf:
+            self._handle = self._loop.call_later(due - time.monotonic(), self._run)
 
     def _run(self) -> None:
         """Make the calls that are due."""
@@ -84,8 +84,8 @@ class LoopTimers:
         waiting, now = self._waiting, time.monotonic()
         try:
             while waiting and waiting[0][0] <= now:
-                moment, _, timed = heappop(waiting)
-                if timed.moment == moment:
+                due, _, timed = heappop(waiting)
+                if timed.due == due:
                     timed.cancel()
                     timed.call()
         finally:

@@ -195,8 +195,8 @@ class Client:
 
         Requests are sent only when the loop wants a sample, so a slow loop misses samples and piles
         up none. The stream's ``report`` counts what is missed; nothing is made up for. Each request
-        is sent once, since the next slot sends it again anyway. After a request without a reply the
-        next one like it may have to wait: see ``RetryPolicy.grace``.
+        is sent once, since it is sent again in the next period anyway. After a request without a
+        reply the next one like it may have to wait: see ``RetryPolicy.grace``.
 
         Args:
             requests: messages of commands of safety class query.

@@ -8,8 +8,8 @@ from math import inf
 
 from cobotwire.client.leading import CHECK_SECONDS
 from cobotwire.client.opening import PortOpener
-from cobotwire.client.port_memory import PortMemory
-from cobotwire.client.slots import Slots
+from cobotwire.client.persisted_state import PortMemory
+from cobotwire.client.polling import Poller
 from cobotwire.client.steps import SLICE_SECONDS, TURN_SECONDS, Steps
 from cobotwire.client.traffic import TrafficListener, TrafficListeners
 from cobotwire.session import EncodedRequest, Exchange, PendingRequest, RetryPolicy
@@ -98,9 +98,9 @@ class Connection:
             steps.leave(pending)
         return pending
 
-    def slots(self, closed: Callable[[], bool]) -> Slots:
+    def poller(self, closed: Callable[[], bool]) -> Poller:
         """Return what sends the requests of a stream until ``closed`` returns True."""
-        return Slots(self.now, self.sleep, self.request, closed)
+        return Poller(self.now, self.sleep, self.request, closed)
 
     def listen(self, seconds: float, done: Callable[[], bool] | None = None) -> None:
         """Read what comes without a request, and report it to the traffic listeners.

@@ -16,7 +16,7 @@ SLICE_SECONDS = 0.05
 class EventStream(Generic[EventT]):
     """Events, in the order in which they came; ``lost`` counts those that found the queue full.
 
-    Events are queued from the moment the stream is made until it is closed.
+    Events are queued from when the stream is made until it is closed.
     """
 
     def __init__(self, connection: Connection, queue: EventQueue, timeout: float | None) -> None:

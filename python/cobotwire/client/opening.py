@@ -46,7 +46,7 @@ class Settings(NamedTuple):
         return min(longest, usual)
 
     def for_stream(self, timeout: float | None) -> Settings:
-        """Return the settings for a stream, which sends each request once per slot.
+        """Return the settings for a stream, which sends each request once per period.
 
         Raises:
             UsageError: the timeout is not allowed.

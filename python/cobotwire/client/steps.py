@@ -2,10 +2,10 @@
 
 Writing is separate from reading. A thread that sends a one-way request writes it at once. Of the
 threads that wait for replies, one leads: it reads for all, feeds the exchange, sends the next
-request and wakes the others. So a lone caller reads its own reply without a switch of threads, and
-a one-way request never waits for another thread's reply.
+request and wakes the others. So a single caller reads its own reply without a switch of threads,
+and a one-way request never waits for another thread's reply.
 
-Ctrl-C may come anywhere. Locks are taken by ``with`` and held for moments, so none stays locked.
+Ctrl-C may come anywhere. Locks are taken by ``with`` and held briefly, so none stays locked.
 """
 
 from __future__ import annotations

@@ -43,7 +43,7 @@ class Stream:
             Poll(request, encoder.encode_request(request), retry, wait) for request in requests
         ]
         self._connection = connection
-        self._slots = connection.slots(lambda: self._closed_at is not None)
+        self._poller = connection.poller(lambda: self._closed_at is not None)
         self._sampler = Sampler(requests, rate)
         self._closed_at: float | None = None
 
@@ -62,7 +62,7 @@ class Stream:
         return self
 
     def __next__(self) -> Sample:
-        """Wait for the next slot and sample it; a slot without a sample is counted.
+        """Wait for the next period and sample it; a period without a sample is counted.
 
         Raises:
             StopIteration: the stream is closed.
@@ -73,7 +73,7 @@ class Stream:
         while self._closed_at is None:
             at = self._sampler.plan(now())
             try:
-                readings = self._slots.readings(self._polls, at)
+                readings = self._poller.readings(self._polls, at)
             except BaseException as error:
                 self._sampler.interrupted(now())
                 if isinstance(error, LinkError):

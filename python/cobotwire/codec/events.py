@@ -118,7 +118,7 @@ class Frame(metaclass=ABCMeta):  # noqa: B024  (the native class registers as a 
 
 
 class Noise(NamedTuple):
-    """Bytes that belong to no frame, all refuted for the same reason."""
+    """Bytes that belong to no frame, all rejected for the same reason."""
 
     offset: int
     data: bytes

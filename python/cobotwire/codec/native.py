@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from typing import Literal
 
-from cobotwire._native import NativeCaptureReader, NativeCodec, NativeFrame, NativeSurvey
+from cobotwire._native import NativeCaptureReader, NativeCodec, NativeFrame, NativeSummary
 from cobotwire.codec.events import Frame
 from cobotwire.codec.interface import Codec
 from cobotwire.protocol.table import Table
 
-__all__ = ["NativeCaptureReader", "NativeCodec", "NativeSurvey", "native_codec"]
+__all__ = ["NativeCaptureReader", "NativeCodec", "NativeSummary", "native_codec"]
 
 Frame.register(NativeFrame)
 

@@ -69,7 +69,7 @@ class Result:
     test case, ``source`` where the requirement is stated (``spec/commands/motion.yaml:12``),
     ``reason`` a sentence that states what was expected and what came. ``further`` states the same
     of the next failures of the test case on the command; ``reason`` counts them all. ``group`` is
-    the group of test cases that was run; empty if the subject's groups are judged together.
+    the group of test cases that was run; empty if the subject's groups are checked together.
     """
 
     case: str
@@ -112,7 +112,7 @@ class Report:
     ``options`` are those of the command line, without the subject: a run is repeated with them, in
     the order of the results. ``statement`` is the text of the subject's implementation conformance
     statement. ``catalogue`` is the version of the catalogue of test cases; the digests are those of
-    the edition's table and of the code that judges.
+    the edition's table and of the code that checks.
     """
 
     kind: Kind

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     # Every pytest run imports this module with the plugin, and must not load the tables' records.
     from cobotwire.protocol.table import Command, Table
 
-# Exercises or judges the test cases of a group; each kind of subject has its own type.
+# Exercises or checks the test cases of a group; each kind of subject has its own type.
 Body = TypeVar("Body", covariant=True)
 
 Selects = Callable[["Table", "Command"], bool]
@@ -29,7 +29,7 @@ class TestCase:
 
     ``id`` is stable, because reports are compared by it. ``purpose`` states the requirement in one
     sentence. ``source`` says where it comes from; a line of the spec, where there is one, replaces
-    it in reports. ``applies`` selects the commands on which it can be judged.
+    it in reports. ``applies`` selects the commands on which it can be checked.
     """
 
     # pytest would take the class for a class of tests.
@@ -43,12 +43,12 @@ class TestCase:
 
 @dataclass(frozen=True, slots=True)
 class Group(Generic[Body]):
-    """Test cases that one body exercises or judges together.
+    """Test cases that one body exercises or checks together.
 
     ``selects`` picks the commands that the body runs for; without it the body runs once, for the
     line as a whole. ``permission`` is needed in addition to the permission for the command's
     safety class. The catalogue shows ``sends``, what the tester sends, and ``subject``, what
-    ``selects`` picks, in words. With ``declared`` the body judges the statement of the subject: it
+    ``selects`` picks, in words. With ``declared`` the body checks the statement of the subject: it
     runs only if there is one, and for the commands that it declares absent.
     """
 

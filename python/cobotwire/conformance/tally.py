@@ -15,7 +15,7 @@ Evidence = tuple[Exchange, ...]
 class Observation(NamedTuple):
     """One check of a test case; an empty ``complaint`` means that it was met.
 
-    ``command`` is the command that it is about; None: the command of the judged request.
+    ``command`` is the command that it is about; None: the command of the checked request.
     """
 
     case: TestCase
@@ -25,7 +25,7 @@ class Observation(NamedTuple):
 
 # How many failures after the first a result describes; it counts all of them.
 FURTHER = 7
-NOTHING_OBSERVED = "nothing was observed that could be judged"
+NOTHING_OBSERVED = "nothing was observed that could be checked"
 
 
 @dataclass(slots=True)

@@ -13,8 +13,8 @@ from cobotwire.protocol.table import Command
 
 if TYPE_CHECKING:
     from cobotwire.diagnose.diagnoser import Item
+    from cobotwire.diagnose.stream_summary import StreamSummary
     from cobotwire.diagnose.summary import Summary
-    from cobotwire.diagnose.survey import StreamSurvey
 
 
 class Framed(Protocol):
@@ -89,17 +89,17 @@ class StreamCounts:
         self.frames[f"0x{id:02X} {name}"] += count
 
     def add_findings(self, items: Iterable[Item]) -> None:
-        """Count the findings by kind, but not the frames, which :meth:`add_survey` counts."""
+        """Count the findings by kind, but not the frames, which :meth:`add_summary` counts."""
         for item in items:
             if not isinstance(item, Frame):
                 self.findings.add(item)
 
-    def add_survey(self, survey: StreamSurvey) -> None:
-        """Count what a survey has counted; once, after all its findings."""
-        self.framers.append(survey.native)
-        for id, command, count in survey.native.messages:
+    def add_summary(self, summary: StreamSummary) -> None:
+        """Count what a summary has counted; once, after all its findings."""
+        self.framers.append(summary.native)
+        for id, command, count in summary.native.messages:
             self._count(id, command, count)
-        for kind, count, size in survey.native.findings:
+        for kind, count, size in summary.native.findings:
             self.findings.add_more(kind, count, size)
 
     def as_dict(self) -> dict[str, Any]:

@@ -99,7 +99,7 @@ class DamagedFrames(FrameStarts):
         A byte may have been inserted or lost, so the footer is also searched after the end. A
         frame, a servo packet or a firmware message that starts inside ends the damaged frame.
         """
-        limit, final = residue.stretch(at)
+        limit, final = residue.segment_end(at)
         reach = at + self._longest + max(_SLACK)
         if limit < reach and not final:
             return Wait.WAIT

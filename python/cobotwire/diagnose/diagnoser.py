@@ -130,7 +130,7 @@ class Diagnoser:
             if verdict is not None:
                 return None if isinstance(verdict, Wait) else verdict
             self._plain = 1
-        end, final = self._residue.stretch(start)
+        end, final = self._residue.segment_end(start)
         limit = min(end, start + garbage.PIECE_LIMIT)
         place = start + self._plain
         while (place := self._place(place, limit)) < limit:

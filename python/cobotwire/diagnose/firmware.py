@@ -154,7 +154,7 @@ def _text(residue: Residue, start: int, end: int) -> Finding:
 
 
 def _command_error(residue: Residue, at: int, end: int) -> Verdict:
-    limit, final = residue.stretch(end - 1)
+    limit, final = residue.segment_end(end - 1)
     if limit == end:
         closing: int | Wait = end if final else Wait.WAIT
     else:

@@ -83,11 +83,11 @@ class FrameStarts(Recogniser):
         return id if self._format.reply_has_id or self._requests_only else None
 
     def _head(self, residue: Residue, at: int) -> tuple[bytes | None, int, bool]:
-        """Return the bytes up to the id, the end of the stretch, and whether that end is final.
+        """Return the bytes up to the id, the end of the segment, and whether that end is final.
 
-        There are fewer bytes if the stretch ends before the id, and None if no frame starts here.
+        There are fewer bytes if the segment ends before the id, and None if no frame starts here.
         """
-        limit, final = residue.stretch(at)
+        limit, final = residue.segment_end(at)
         head = residue.data[at : min(limit, at + self._format.head_size)]
         fits = self._format.header.startswith(head[: len(self._format.header)])
         return head if fits else None, limit, final

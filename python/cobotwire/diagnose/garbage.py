@@ -49,7 +49,7 @@ class Garbage(Finding):
     )
     piece: ClassVar[int | None] = PIECE_LIMIT
     summary_prefix: ClassVar[str] = "perhaps a wrong baud rate: "
-    summary_noun: ClassVar[str] = "stretch"
+    summary_noun: ClassVar[str] = "segment"
 
     def describe(self) -> str:
         """Describe the guess."""

@@ -54,7 +54,7 @@ class NulRuns(Recogniser):
 
     def recognise(self, residue: Residue, at: int) -> Verdict:
         """Recognise the run at ``at``."""
-        limit, final = residue.stretch(at)
+        limit, final = residue.segment_end(at)
         rest = residue.data[at : min(limit, at + NUL_LIMIT)]
         count = len(rest) - len(rest.lstrip(b"\0"))
         if at + count == limit and count < NUL_LIMIT and not final:

@@ -27,7 +27,7 @@ class Residue:
     """Consecutive bytes of noise, with marks where frames interrupted them.
 
     A servo packet or a line of text may continue after a frame, so its recogniser sees all of
-    ``data``. For everything else a mark is an end: its recogniser sees a :meth:`stretch`.
+    ``data``. For everything else a mark is an end: its recogniser sees a :meth:`segment_end`.
     """
 
     def __init__(self) -> None:
@@ -62,7 +62,7 @@ class Residue:
         self.data = b"".join((self.data, *self._added))
         self._added.clear()
 
-    def stretch(self, at: int) -> tuple[int, bool]:
+    def segment_end(self, at: int) -> tuple[int, bool]:
         """Return where the bytes at ``at`` end before the next frame, and whether that is final."""
         index = bisect_right(self._marks, at)
         if index < len(self._marks):
@@ -71,7 +71,7 @@ class Residue:
 
     def line_end(self, at: int) -> int | Wait:
         """Return the place after the line end at ``at``; ``at`` itself if there is no line end."""
-        limit, final = self.stretch(at)
+        limit, final = self.segment_end(at)
         found = _LINE_END.match(self.data, at, limit)
         end = found.end() if found else at
         undecided = end == limit and self.data[at:end] in (b"", b"\r")

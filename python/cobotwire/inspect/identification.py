@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from cobotwire import editions
 from cobotwire.client.opening import open_port
-from cobotwire.client.port_memory import PortMemory
+from cobotwire.client.persisted_state import PortMemory
 from cobotwire.inspect.evidence import (
     Candidates,
     Evidence,

@@ -58,7 +58,7 @@ def reject_shared(what: str) -> UsageError:
 
 
 def reject_offset(given: Any) -> UsageError:
-    """Return the error for an offset at which no stretch of a stream can begin."""
+    """Return the error for an offset at which no segment of a stream can begin."""
     return UsageError("offset", given, "0 to 2**63 - 1")
 
 

@@ -6,7 +6,7 @@ first. They end the frame that was begun, and make its check wrong, whatever LEN
 believes.
 
 Fill bytes cannot help if the part that was written contains a whole legal frame: a parser that
-refutes the outer frame finds the inner one. Then the rest of the frame is sent instead, so that the
+rejects the outer frame finds the inner one. Then the rest of the frame is sent instead, so that the
 arm executes what the caller requested, and never something else. A caller who got a LinkError does
 not know whether a motion began; ``stop()`` follows in the same write.
 """
@@ -120,7 +120,7 @@ class Alignment:
         return first.rest if not others and self._exposes(first, fill) else fill
 
     def _exposes(self, part: Part, fill: bytes) -> bool:
-        """Return whether a parser finds another frame once the fill bytes refute this one."""
+        """Return whether a parser finds another frame once the fill bytes reject this one."""
         framer = self._codec.framer("request")
         events = [*framer.feed(part.data + fill), *framer.flush()]
         return any(isinstance(event, Frame) for event in events)

@@ -160,7 +160,7 @@ class PendingRequest(Pending):
         queued_at: when it was submitted.
         undrained_since: since when unread bytes have kept it from being sent; inf: they have not.
         attempt_times: when it was sent; empty while it waits for its turn.
-        requested_at: the moment before it was first written.
+        requested_at: the time just before it was first written.
         offset: where in the received stream its reply can begin at the earliest.
         candidate: a copy of the request that is also a legal reply.
         text: collects a reply that is text outside any frame.

@@ -19,37 +19,37 @@ class Reading(NamedTuple, Generic[Result]):
     value: Result
     """What the client's method for the request returns."""
     requested_at: float
-    """The moment before the request was written."""
+    """The time just before the request was written."""
     replied_at: float
     """When its reply was read."""
 
 
 class Sample:  # not a tuple: its keys are requests
-    """The results of a stream's requests in one of its slots.
+    """The results of a stream's requests in one of its periods.
 
     ``sample[GetAngles()]`` is the result of one request, with its precise type.
 
     Attributes:
         number: counts the samples of a stream, from 0.
-        slot: counts the periods of a stream, from 0, also those without a sample.
+        period: counts the periods of a stream, from 0, also those without a sample.
         requests: the requests of the stream, in the order of sending.
         readings: a reading for each request.
     """
 
-    __slots__ = ("number", "slot", "requests", "readings")  # noqa: RUF023  (as __init__ takes them)
+    __slots__ = ("number", "period", "requests", "readings")  # noqa: RUF023  (as __init__ takes them)
     number: int
-    slot: int
+    period: int
     requests: tuple[Request[Any], ...]
     readings: tuple[Reading[Any], ...]
 
     def __init__(
         self,
         number: int,
-        slot: int,
+        period: int,
         requests: tuple[Request[Any], ...],
         readings: tuple[Reading[Any], ...],
     ) -> None:
-        for name, value in zip(self.__slots__, (number, slot, requests, readings)):
+        for name, value in zip(self.__slots__, (number, period, requests, readings)):
             object.__setattr__(self, name, value)
 
     def __setattr__(self, name: str, value: object) -> None:
@@ -65,14 +65,14 @@ class Sample:  # not a tuple: its keys are requests
         return Sample, self._key()
 
     def _key(self) -> tuple[object, ...]:
-        return self.number, self.slot, self.requests, self.readings
+        return self.number, self.period, self.requests, self.readings
 
     def __repr__(self) -> str:
-        return f"Sample(number={self.number}, slot={self.slot}, values={self.values})"
+        return f"Sample(number={self.number}, period={self.period}, values={self.values})"
 
     @property
     def requested_at(self) -> float:
-        """The moment before its first request was written, in seconds."""
+        """The time just before its first request was written, in seconds."""
         return self.readings[0].requested_at
 
     @property
@@ -102,12 +102,12 @@ class Sample:  # not a tuple: its keys are requests
 
 
 class StreamReport(NamedTuple):
-    """How a stream went so far. Every slot has a sample, or is missed for one of three reasons."""
+    """How a stream went so far. Every period has a sample, or is missed for one reason of three."""
 
     rate: float
-    """Slots a second: what was requested."""
+    """Periods a second: what was requested."""
     samples: int
-    """Slots with a sample."""
+    """Periods with a sample."""
     unanswered: int
     """Missed: a request had no reply in time, or one that the edition does not allow."""
     overrun: int
@@ -117,18 +117,18 @@ class StreamReport(NamedTuple):
 
     @property
     def missed(self) -> int:
-        """Slots without a sample."""
+        """Periods without a sample."""
         return self.unanswered + self.overrun + self.unread
 
     @property
-    def slots(self) -> int:
-        """Slots that have passed, or are in use."""
+    def periods(self) -> int:
+        """Periods that have passed, or are in use."""
         return self.samples + self.missed
 
     @property
     def reached(self) -> float:
-        """Samples a second: the rate, less the share of slots that were missed."""
-        return self.rate * self.samples / self.slots if self.slots else 0.0
+        """Samples a second: the rate, less the share of periods that were missed."""
+        return self.rate * self.samples / self.periods if self.periods else 0.0
 
     def __str__(self) -> str:
         return (

@@ -1,12 +1,12 @@
 """When a stream sends its requests; times are numbers, and there is no clock, thread or port.
 
-A stream is cut into slots of one period each. Slot k belongs to the moment ``started + k * period``
-and has at most one sample. Its requests are sent at that moment, or up to half a period later;
-after that the slot is missed, and the stream waits for the next one. So nothing is made up for in
-bursts: two samples are requested at least half a period apart. A sample that was held up (by
-another thread's request, or by an outstanding reply) counts for the slot nearest to its sending.
+A stream is cut into periods. Period k begins at ``started + k / rate`` and has at most one sample.
+Its requests are sent when it begins, or up to half a period later; after that the period is missed,
+and the stream waits for the next one. So nothing is made up for in bursts: two samples are
+requested at least half a period apart. A sample that was held up (by another thread's request, or
+by an outstanding reply) counts for the period that begins nearest to its sending.
 
-Nothing is requested that nobody wants: while the consumer is busy, slots pass unread. So there is
+Nothing is requested that nobody wants: while the consumer is busy, periods pass unread. So there is
 no queue that could grow, and no sample is older than the call that waits for it.
 """
 
@@ -36,14 +36,14 @@ class Poll(NamedTuple):
 
 
 class Sampler:
-    """The slots of one stream; ``now`` is the caller's seconds and never goes back.
+    """The periods of one stream; ``now`` is the caller's seconds and never goes back.
 
     The stream takes turns with it: :meth:`plan`, wait until then, send the requests,
     :meth:`answered` or :meth:`unanswered`; :meth:`interrupted` if it is stopped in between.
     """
 
     def __init__(self, requests: tuple[Request[Any], ...], rate: float) -> None:
-        """Take the requests of each slot in the order of sending, and ``rate`` in slots a second.
+        """Take the requests of each period in the order of sending, and ``rate`` in hertz.
 
         Raises:
             UsageError: the rate is not allowed.
@@ -55,14 +55,14 @@ class Sampler:
         self._requests = requests
         self._rate = float(rate)
         self._started: float | None = None
-        # The first slot that is neither used nor missed.
-        self._slot = 0
+        # The first period that is neither used nor missed.
+        self._next = 0
         # When the last sample was handed over; None while one is waited for.
         self._free: float | None = 0.0
         self._samples = self._unanswered = self._overrun = self._unread = 0
 
     def plan(self, now: float) -> float:
-        """Return when to send the next requests; slots that have passed are missed.
+        """Return when to send the next requests; periods that have passed are missed.
 
         Raises:
             UsageError: another consumer waits for a sample.
@@ -72,36 +72,36 @@ class Sampler:
             raise UsageError("stream", message=message)
         if self._started is None:
             self._started = self._free = now
-        elif self._nearest(now) > self._slot:
+        elif self._nearest(now) > self._next:
             overrun, unread = self._passed(now)
             self._overrun += overrun
             self._unread += unread
-            self._slot += overrun + unread
+            self._next += overrun + unread
         self._free = None
-        at = self._started + self._slot / self._rate
+        at = self._started + self._next / self._rate
         return at if at > now else now
 
     def answered(self, readings: Sequence[Reading[Any]], now: float) -> Sample:
-        """Return the sample of a slot in which every request has its reply."""
-        slot = self._nearest(readings[0].requested_at)
-        if slot > self._slot:
-            # The slots before it were not used, and the consumer is not the reason.
-            self._overrun += slot - self._slot
+        """Return the sample of a period in which every request has its reply."""
+        period = self._nearest(readings[0].requested_at)
+        if period > self._next:
+            # The periods before it were not used, and the consumer is not the reason.
+            self._overrun += period - self._next
         else:
-            slot = self._slot
-        sample = Sample(self._samples, slot, self._requests, tuple(readings))
+            period = self._next
+        sample = Sample(self._samples, period, self._requests, tuple(readings))
         self._samples += 1
-        self._slot = slot + 1
+        self._next = period + 1
         self._free = now
         return sample
 
     def unanswered(self, now: float) -> None:
-        """Count a slot in which a request had no reply in time, or an illegal one."""
+        """Count a period in which a request had no reply in time, or an illegal one."""
         self._unanswered += 1
-        self._slot += 1
-        # The slots that passed meanwhile passed because of that request, not of the consumer.
-        self._overrun += (late := max(0, self._nearest(now) - self._slot))
-        self._slot += late
+        self._next += 1
+        # The periods that passed meanwhile passed because of that request, not of the consumer.
+        self._overrun += (late := max(0, self._nearest(now) - self._next))
+        self._next += late
         self._free = now
 
     def interrupted(self, now: float) -> None:
@@ -120,16 +120,16 @@ class Sampler:
         )
 
     def _passed(self, now: float) -> tuple[int, int]:
-        """Return how many slots passed unused while the stream was busy, and while it was not."""
+        """Return how many periods passed unused while the stream was busy, and while it was not."""
         if self._started is None:
             return 0, 0
-        passed = max(0, self._nearest(now) - self._slot)
+        passed = max(0, self._nearest(now) - self._next)
         busy_until = now if self._free is None else self._free
-        overrun = min(passed, max(0, self._nearest(busy_until) - self._slot))
+        overrun = min(passed, max(0, self._nearest(busy_until) - self._next))
         return overrun, passed - overrun
 
     def _nearest(self, now: float) -> int:
-        """Return the slot whose moment is nearest; of two the earlier."""
+        """Return the period that begins nearest to a time; of two the earlier."""
         assert self._started is not None, "a stream starts with its first plan"
         return ceil((now - self._started) * self._rate - 0.5)
 

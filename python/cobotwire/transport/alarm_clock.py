@@ -1,4 +1,4 @@
-"""A descriptor that becomes readable at a moment, for event loops that wait for descriptors."""
+"""A descriptor that becomes readable at a given time, for event loops that wait for descriptors."""
 
 from __future__ import annotations
 
@@ -9,14 +9,14 @@ from cobotwire.transport.waiting import native_calls
 
 
 class AlarmClock(Protocol):
-    """A descriptor that becomes readable at a moment."""
+    """A descriptor that becomes readable at a given time."""
 
     def fileno(self) -> int:
         """Return the descriptor, which is open as long as this object exists."""
         ...
 
-    def set(self, moment: float | None, /) -> None:
-        """Make it readable from a moment on, and not before; None: never."""
+    def set(self, due: float | None, /) -> None:
+        """Make it readable from a given time on, and not before; None: never."""
         ...
 
 

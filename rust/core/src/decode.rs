@@ -3,11 +3,11 @@
 
 use crate::direction::{Direction, Listening};
 use crate::frame::{Frame, FrameFormat, Layout};
-use crate::judge::{Rules, Verdict};
 use crate::message::VariantId;
 use crate::number::Value;
 use crate::read::{BadRaw, Reader};
 use crate::reason::Reason;
+use crate::rules::{Rules, Verdict};
 use crate::table::Table;
 
 /// Why nothing was decoded.
@@ -49,10 +49,10 @@ pub fn decode(
     of: Option<usize>,
 ) -> Result<Decoded, DecodeError> {
     let rules = table.rules(Listening::To(direction));
-    read(table, rules, judged(table, rules, data, of)?, of)
+    read(table, rules, validated(table, rules, data, of)?, of)
 }
 
-/// Decode a frame that was already judged, as the first message of these rules that allows its
+/// Decode a frame that was already validated, as the first message of these rules that allows its
 /// values. With `of`, only messages of the command with that index count.
 ///
 /// # Errors
@@ -91,21 +91,21 @@ pub fn read(
     Err(rejection.unwrap_or_else(|| no_message(table, rules, frame, of)))
 }
 
-fn judged<'a>(
+fn validated<'a>(
     table: &Table,
     rules: &Rules,
     data: &'a [u8],
     of: Option<usize>,
 ) -> Result<Frame<'a>, DecodeError> {
     let misnamed = misnamed(table, rules, data, of);
-    let reason = match misnamed.map_or_else(|| rules.judge(data), Verdict::Refuted) {
+    let reason = match misnamed.map_or_else(|| rules.validate(data), Verdict::Rejected) {
         Verdict::Frame(frame) if frame.bytes().len() == data.len() => return Ok(frame),
         Verdict::Frame(frame) => {
             let (reason, offset) = (Reason::Trailing, frame.bytes().len());
             return Err(DecodeError::Frame { reason, offset });
         }
         Verdict::Waits => Reason::Truncated,
-        Verdict::Refuted(reason) => reason,
+        Verdict::Rejected(reason) => reason,
     };
     Err(reject(table.frame(), reason, data))
 }
@@ -115,8 +115,8 @@ fn judged<'a>(
 #[cold]
 fn no_message(table: &Table, rules: &Rules, frame: Frame<'_>, of: Option<usize>) -> DecodeError {
     let data = frame.bytes();
-    let reason = misnamed(table, rules, data, of).unwrap_or_else(|| match rules.judge(data) {
-        Verdict::Refuted(reason) => reason,
+    let reason = misnamed(table, rules, data, of).unwrap_or_else(|| match rules.validate(data) {
+        Verdict::Rejected(reason) => reason,
         _ => Reason::UnknownId,
     });
     reject(table.frame(), reason, data)
@@ -136,14 +136,14 @@ fn misnamed(table: &Table, rules: &Rules, data: &[u8], of: Option<usize>) -> Opt
     }
     let command = table.commands().get(of);
     let is_id = command.is_some_and(|command| command.id == claim.id);
-    Some(if is_id || rules.nameless() {
+    Some(if is_id || rules.lacks_ids() {
         Reason::BadLength
     } else {
         Reason::UnknownId
     })
 }
 
-/// Return the error, with the index of the byte that refutes a frame at the start of `data`.
+/// Return the error, with the index of the byte that rejects a frame at the start of `data`.
 fn reject(frame: &FrameFormat, reason: Reason, data: &[u8]) -> DecodeError {
     let Layout {
         length,

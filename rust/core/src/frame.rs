@@ -174,7 +174,7 @@ impl FrameFormat {
     }
 }
 
-/// A legal frame: only [`crate::Rules::judge`] makes these.
+/// A legal frame: only [`crate::Rules::validate`] makes these.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Frame<'a> {
     bytes: &'a [u8],

@@ -1,21 +1,21 @@
 //! Cuts frames out of a byte stream and accounts for every other byte.
 //!
 //! Either a frame starts at position i, or the byte at i is noise. The first byte that contradicts
-//! a candidate refutes it. The scan then continues at i + 1: it never skips the bytes that a false
+//! a candidate rejects it. The scan then continues at i + 1: it never skips the bytes that a false
 //! header claims. A candidate that more bytes could complete waits. Judging a position reads at
 //! most the bytes of the longest frame, once (for a CRC or sum, when all its bytes have come), and
-//! no position is refuted twice. So the work is linear in the size of any input.
+//! no position is rejected twice. So the work is linear in the size of any input.
 
 use std::mem;
 
 use crate::frame::Frame;
-use crate::judge::{Rules, Verdict};
 use crate::reason::Reason;
+use crate::rules::{Rules, Verdict};
 use crate::scan::{Sink, scan};
 use crate::seam::Seam;
 use crate::tally::Tally;
 
-/// A stretch of the stream; `offset` counts from its start, over all calls.
+/// A segment of the stream; `offset` counts from its start, over all calls.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Event<'a> {
     /// A whole, legal frame.
@@ -29,7 +29,7 @@ pub enum Event<'a> {
     Noise {
         /// The position of the first of them in the stream.
         offset: u64,
-        /// Why each of them was refuted.
+        /// Why each of them was rejected.
         reason: Reason,
         /// The bytes, in two pieces: the first may come from earlier calls.
         data: [&'a [u8]; 2],
@@ -74,7 +74,7 @@ impl Framer {
     /// `None`: nothing was fed, and [`Framer::feed`] must take the bytes.
     #[inline]
     pub fn feed_frame<'a>(&mut self, chunk: &'a [u8]) -> Option<(u64, Frame<'a>)> {
-        let Verdict::Frame(frame) = self.rules.judge(chunk) else {
+        let Verdict::Frame(frame) = self.rules.validate(chunk) else {
             return None;
         };
         if frame.bytes().len() != chunk.len() {
@@ -92,7 +92,7 @@ impl Framer {
         self.cut(chunk, false, sink);
     }
 
-    /// Refute the candidate that waits; pass the events of all remaining bytes to `sink`.
+    /// Reject the candidate that waits; pass the events of all remaining bytes to `sink`.
     pub fn flush(&mut self, sink: impl FnMut(Event<'_>)) {
         self.cut(&[], true, sink);
     }

@@ -16,7 +16,7 @@ pub(crate) enum Heading {
     /// A frame with an id that the table lacks and that is accepted.
     Unknown,
     /// Not a frame.
-    Refuted(Reason),
+    Rejected(Reason),
 }
 
 // Cells of `Headings` that are not the index of a group. There are fewer groups than cells.
@@ -38,14 +38,14 @@ pub(crate) struct Legal {
     /// The groups of frames with a LEN or an id above 255, by LEN and id.
     wide: Arc<HashMap<(u16, u16), u16>>,
     /// The groups of frames without an id, by LEN; they have no entry elsewhere.
-    nameless: Arc<HashMap<u16, u16>>,
+    without_id: Arc<HashMap<u16, u16>>,
     /// The variants that share an id and a LEN; the first one that allows a frame's values counts.
     groups: Arc<[Vec<VariantId>]>,
     known: Arc<Set>,
-    /// The LENs of all frames. Any other LEN refutes a candidate before its id has come.
+    /// The LENs of all frames. Any other LEN rejects a candidate before its id has come.
     lengths: Arc<Set>,
     /// Whether ids that the table lacks are accepted.
-    believing: bool,
+    permissive: bool,
 }
 
 impl Legal {
@@ -75,7 +75,7 @@ impl Legal {
                 }
             }
         }
-        for (length, group) in &groups.nameless {
+        for (length, group) in &groups.without_id {
             let Ok(length) = u8::try_from(*length) else {
                 continue;
             };
@@ -90,24 +90,24 @@ impl Legal {
         Self {
             headings: Arc::new(headings),
             wide: Arc::new(wide),
-            nameless: Arc::new(groups.nameless),
+            without_id: Arc::new(groups.without_id),
             groups: groups.variants.into(),
             known: Arc::new(known),
             lengths: Arc::new(lengths),
-            believing: false,
+            permissive: false,
         }
     }
 
     /// Return the same index, but accept ids that the table lacks. Their LEN must be legal for
     /// another id, or lie between `least` and `most`.
-    pub(crate) fn believing(mut self, least: u16, most: u16) -> Self {
+    pub(crate) fn permissive(mut self, least: u16, most: u16) -> Self {
         let mut lengths = Set::clone(&self.lengths);
         (least..=most).for_each(|length| lengths.add(length));
         let mut headings = *self.headings;
         fill_unknown(&mut headings, &self.known, &lengths, BELIEVED);
         self.headings = Arc::new(headings);
         self.lengths = Arc::new(lengths);
-        self.believing = true;
+        self.permissive = true;
         self
     }
 
@@ -124,12 +124,12 @@ impl Legal {
             return self.heading(length, id);
         }
         let group = self.wide.get(&(length, id));
-        if let Some(group) = group.or_else(|| self.nameless.get(&length)) {
+        if let Some(group) = group.or_else(|| self.without_id.get(&length)) {
             return heading(*group);
         }
         if self.known.has(id) || !self.lengths.has(length) {
             heading(BAD_LENGTH)
-        } else if self.believing {
+        } else if self.permissive {
             Heading::Unknown
         } else {
             heading(UNKNOWN_ID)
@@ -149,7 +149,7 @@ impl Legal {
 
     /// Return whether any frame has that id, or unknown ids are accepted.
     pub(crate) fn is_id(&self, id: u16) -> bool {
-        self.believing || self.known.has(id)
+        self.permissive || self.known.has(id)
     }
 
     /// Return the smallest and the largest LEN of any frame; `None`: there are no frames.
@@ -181,8 +181,8 @@ fn cell_of(length: u8, id: u8) -> u16 {
 #[inline]
 fn heading(cell: u16) -> Heading {
     match cell {
-        UNKNOWN_ID => Heading::Refuted(Reason::UnknownId),
-        BAD_LENGTH => Heading::Refuted(Reason::BadLength),
+        UNKNOWN_ID => Heading::Rejected(Reason::UnknownId),
+        BAD_LENGTH => Heading::Rejected(Reason::BadLength),
         BELIEVED => Heading::Unknown,
         group => Heading::Group(group),
     }
@@ -224,7 +224,7 @@ impl Set {
 #[derive(Default)]
 struct Groups {
     named: HashMap<(u16, u16), u16>,
-    nameless: HashMap<u16, u16>,
+    without_id: HashMap<u16, u16>,
     variants: Vec<Vec<VariantId>>,
 }
 
@@ -237,10 +237,10 @@ impl Groups {
             for group in groups {
                 self.push(group, variant);
             }
-            let known = self.nameless.get(&length).copied();
+            let known = self.without_id.get(&length).copied();
             let group = known.or_else(|| self.open());
             if let Some(group) = group {
-                self.nameless.insert(length, group);
+                self.without_id.insert(length, group);
                 self.push(group, variant);
             }
             return;

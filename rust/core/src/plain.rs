@@ -2,8 +2,8 @@
 
 use crate::direction::Direction;
 use crate::frame::Frame;
-use crate::judge::Rules;
 use crate::message::VariantId;
+use crate::rules::Rules;
 use crate::table::Table;
 use crate::template::{Exact, LONGEST_PLAIN, Place, PlainNumbers};
 

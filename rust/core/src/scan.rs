@@ -1,8 +1,8 @@
-//! Scans contiguous bytes: judges each position once and skips the bytes of a frame.
+//! Scans contiguous bytes: validates each position once and skips the bytes of a frame.
 
 use crate::frame::Frame;
-use crate::judge::{Rules, Verdict};
 use crate::reason::Reason;
+use crate::rules::{Rules, Verdict};
 
 /// Receives the finds of a scan in stream order; positions count from the start of its data.
 pub(crate) trait Sink<'a> {
@@ -18,7 +18,7 @@ const LONG_RUN: usize = 8;
 /// The number of bytes that are then examined together.
 const STEP: usize = 16;
 
-/// Judge the positions from `at` to `stop`. Return the first position that waits for more bytes,
+/// Validate the positions from `at` to `stop`. Return the first position that waits for more bytes,
 /// else the end of the last frame, which may be after `stop`. At the end of the stream no position
 /// waits.
 #[inline]
@@ -33,7 +33,7 @@ pub(crate) fn scan<'a>(
     let header = rules.frame().header.first().copied().unwrap_or_default();
     let mut run = (at, Reason::NoHeader);
     while at < stop {
-        let reason = match rules.judge(data.get(at..).unwrap_or_default()) {
+        let reason = match rules.validate(data.get(at..).unwrap_or_default()) {
             Verdict::Frame(frame) => {
                 close(run, at, sink);
                 sink.frame(at, frame);
@@ -41,7 +41,7 @@ pub(crate) fn scan<'a>(
                 run.0 = at;
                 continue;
             }
-            Verdict::Refuted(reason) => reason,
+            Verdict::Rejected(reason) => reason,
             Verdict::Waits if at_end => Reason::Truncated,
             Verdict::Waits => break,
         };

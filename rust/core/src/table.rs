@@ -7,9 +7,9 @@ use std::sync::OnceLock;
 
 use crate::direction::{Direction, Listening};
 use crate::frame::FrameFormat;
-use crate::judge::Rules;
 use crate::message::{Command, Variant, VariantId};
 use crate::number::Misfit;
+use crate::rules::Rules;
 use crate::template::Templates;
 
 /// Why a table was rejected: a mistake in the table, not in any data.

@@ -213,7 +213,7 @@ fn a_frame_of_any_size_owns_the_bytes_that_it_was_made_of() {
         bytes.extend((0..size).map(|index| 200 + index % 50));
         bytes.push(0xFA);
         let rules = table.rules(Listening::To(Direction::Reply));
-        let Verdict::Frame(frame) = rules.judge(&bytes) else {
+        let Verdict::Frame(frame) = rules.validate(&bytes) else {
             panic!("a frame of {size} data bytes was not found");
         };
         let own = OwnedFrame::from(frame);

@@ -102,7 +102,7 @@ fn outcome(input: &Input, oracle: &Oracle, direction: Direction, bytes: &[u8]) -
         Found::Frame(size) => ("trailing", size),
         Found::Waits => ("truncated", bytes.len()),
         Found::Noise(reason) => {
-            // The longest prefix that still waits ends before the byte that refutes the frame.
+            // The longest prefix that still waits ends before the byte that rejects the frame.
             let mut ends = 0..bytes.len();
             let end = ends.rfind(|end| oracle.look(&bytes[..*end]) == Found::Waits);
             (reason.word(), end.unwrap_or_default())

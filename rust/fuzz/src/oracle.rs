@@ -1,4 +1,4 @@
-//! Implements `docs/framing.md` without any optimization: it judges every position separately and
+//! Implements `docs/framing.md` without any optimization: it validates every position separately and
 //! computes the check bit by bit.
 
 use std::collections::HashSet;

@@ -1,4 +1,4 @@
-//! A descriptor that becomes readable at a moment, for event loops: they wait for whole milliseconds.
+//! A descriptor that becomes readable at a given time, for event loops: they wait for whole milliseconds.
 
 use std::os::fd::{AsRawFd, OwnedFd, RawFd};
 use std::time::Duration;
@@ -16,7 +16,7 @@ const NEVER: Timespec = Timespec {
     tv_nsec: 0,
 };
 
-/// A descriptor that becomes readable at a moment.
+/// A descriptor that becomes readable at a given time.
 #[pyclass(frozen, module = "cobotwire._native")]
 pub struct AlarmClock(OwnedFd);
 
@@ -35,14 +35,14 @@ impl AlarmClock {
         self.0.as_raw_fd()
     }
 
-    /// Make it readable from a moment on, in seconds of `time.monotonic`, and not before; None: never.
-    #[pyo3(signature = (moment, /))]
-    fn set(&self, moment: Option<f64>) -> PyResult<()> {
-        let wakes_at = moment.map_or(NEVER, |moment| {
-            // A moment of 0 would switch it off.
-            Duration::try_from_secs_f64(moment.max(1e-9))
+    /// Make it readable from a given time on, in seconds of `time.monotonic`, and not before; None: never.
+    #[pyo3(signature = (due, /))]
+    fn set(&self, due: Option<f64>) -> PyResult<()> {
+        let wakes_at = due.map_or(NEVER, |due| {
+            // A time of 0 would switch it off.
+            Duration::try_from_secs_f64(due.max(1e-9))
                 .ok()
-                .and_then(|moment| Timespec::try_from(moment).ok())
+                .and_then(|due| Timespec::try_from(due).ok())
                 .unwrap_or(NEVER)
         });
         let timer = Itimerspec {

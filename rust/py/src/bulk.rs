@@ -254,7 +254,7 @@ impl NativeColumnReader {
         self.given(data.py(), &mut core)
     }
 
-    /// Refute the candidate that waits; return the remaining rows and noise.
+    /// Reject the candidate that waits; return the remaining rows and noise.
     fn flush<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let mut core = self.core.get(py)?;
         core.flush();

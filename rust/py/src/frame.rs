@@ -166,7 +166,7 @@ impl NativeFrame {
         }
     }
 
-    /// Return what `codec.decode(direction, frame.data, of=of)` returns, without judging it again.
+    /// Return what `codec.decode(direction, frame.data, of=of)` returns, without validating it again.
     #[pyo3(signature = (direction = None, *, of = None))]
     fn decode<'py>(
         &self,

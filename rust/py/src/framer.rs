@@ -65,7 +65,7 @@ impl NativeFramer {
         events.into_list(py, &self.origin)
     }
 
-    /// Refute the candidate that waits; return the events of all remaining bytes.
+    /// Reject the candidate that waits; return the events of all remaining bytes.
     fn flush<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyList>> {
         let mut events = Events::default();
         self.core().flush(|event| events.add(event));

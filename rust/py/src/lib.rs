@@ -27,7 +27,7 @@ mod names;
 mod objects;
 mod parts;
 mod plain;
-mod survey;
+mod summary;
 mod values;
 mod words;
 
@@ -44,7 +44,7 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<bulk::NativeColumnReader>()?;
     module.add_class::<capture::NativeCaptureReader>()?;
     module.add_class::<frame::NativeFrame>()?;
-    module.add_class::<survey::NativeSurvey>()?;
+    module.add_class::<summary::NativeSummary>()?;
     module.add_class::<framer::NativeFramer>()?;
     #[cfg(unix)]
     descriptor::add_to(module)?;

@@ -37,7 +37,7 @@ OFF = bytes.fromhex("FEFE0211FA")
 WIRELESS = bytes.fromhex("FEFE02B0FA")
 
 
-def judged(
+def checked(
     writes: Writes,
     script: Sequence[ScriptLine] | None = None,
     faults: Sequence[str] = (),
@@ -107,7 +107,7 @@ FAILING: dict[str, tuple[Sequence[str], Writes, str]] = {
 @pytest.mark.parametrize("case", FAILING)
 def test_session_fails_the_test_case_that_it_violates(case: str) -> None:
     faults, writes, words = FAILING[case]
-    report = judged(writes, faults=faults)
+    report = checked(writes, faults=faults)
     assert failed(report) <= {case, "frame-footer", "stray-bytes"}, "and no other test case"
     [failure] = [result for result in report.failures if result.case == case]
     assert words in failure.reason != ""
@@ -157,13 +157,13 @@ GIVEN: dict[str, tuple[ScriptLine, bytes]] = {
 @pytest.mark.parametrize("case", [case for case in SCRIPT_CASES if case != "sent-address"])
 def test_difference_from_the_script_is_named(case: str) -> None:
     scripted, sent = GIVEN[case]
-    report = judged(spaced(POWERED, sent), [line("is_power_on"), scripted])
+    report = checked(spaced(POWERED, sent), [line("is_power_on"), scripted])
     assert case in failed(report)
     assert failed(report) <= {case, "sent-all", "change-resent"}
 
 
 def test_script_cases_without_a_script_are_not_supported() -> None:
-    report = judged(spaced(ANGLES))
+    report = checked(spaced(ANGLES))
     unknown = {r.case for r in report.results if r.cause is Cause.NOT_SELECTED}
     assert unknown == set(SCRIPT_CASES)
     assert report.conforms
@@ -196,9 +196,9 @@ def test_client_that_sends_its_script_never_fails(
     ]
     faults = () if fault == "good" else (fault,)
     if len(script) < len(frames):
-        assert not failed(judged(spaced(*frames), None, faults, acks=acks))
+        assert not failed(checked(spaced(*frames), None, faults, acks=acks))
     else:
-        assert not failed(judged(spaced(*frames), script, faults, acks=acks))
+        assert not failed(checked(spaced(*frames), script, faults, acks=acks))
 
 
 @given(st.sampled_from(sorted(FAILING)), st.integers(1, 6))
@@ -209,16 +209,16 @@ def test_verdict_does_not_depend_on_the_chunks_of_a_write(case: str, size: int) 
         for after, data in writes
         for at in range(0, len(data), size)
     ]
-    assert case in failed(judged(cut, faults=faults))
+    assert case in failed(checked(cut, faults=faults))
 
 
 def test_query_may_be_repeated_and_a_stop_may_overtake_it() -> None:
     stop = CODEC.encode("stop", "request", ())
-    assert not failed(judged([(PAUSE, ANGLES), (0.1, ANGLES), (0.002, stop)], faults=("lost",)))
+    assert not failed(checked([(PAUSE, ANGLES), (0.1, ANGLES), (0.002, stop)], faults=("lost",)))
 
 
 def test_acknowledged_change_may_be_sent_again() -> None:
-    assert not failed(judged([(PAUSE, JOG), (0.5, JOG)]))
+    assert not failed(checked([(PAUSE, JOG), (0.5, JOG)]))
 
 
 def test_echoes_distinguish_late_replies() -> None:
@@ -227,5 +227,5 @@ def test_echoes_distinguish_late_replies() -> None:
         any(f.echo for f in variant.fields)
         for variant in TABLE.command("get_joint_min_angle").reply
     )
-    report = judged([(PAUSE, requests[0]), (0.4, requests[1])], faults=("lost",))
+    report = checked([(PAUSE, requests[0]), (0.4, requests[1])], faults=("lost",))
     assert ("late-reply-expected" in failed(report)) is not sure

@@ -8,7 +8,7 @@ from __future__ import annotations
 import pytest
 
 from cobotwire.conformance.report import Report, Result
-from conformance.client.test_cases import judged, line, spaced
+from conformance.client.test_cases import checked, line, spaced
 
 POWER_OFF, RELEASE_ALL = bytes.fromhex("FEFE0211FA"), bytes.fromhex("FEFE0213FA")
 # jog_increment: joint 1, 10 degrees, speed 50. set_gripper_value: 60 percent, speed 80.
@@ -22,14 +22,14 @@ def only(report: Report, case: str) -> Result:
 
 def test_frame_in_pieces_is_one_occurrence_and_shown_whole() -> None:
     pieces = [(1.2, bytes.fromhex("FEFE03")), (0.05, bytes.fromhex("2000")), (0.05, b"\xfa")]
-    found = only(judged(pieces), "frame-length")
+    found = only(checked(pieces), "frame-length")
     assert "FE FE [LEN 03] [id 20] 00 FA" in found.reason
     assert "of" not in found.reason.rpartition("FA")[2]
 
 
 def test_each_occurrence_is_described_and_all_are_counted() -> None:
     frames = [bytes.fromhex(f"FEFE03200{at}FA") for at in range(9)]
-    found = only(judged(spaced(*frames)), "frame-length")
+    found = only(checked(spaced(*frames)), "frame-length")
     assert found.reason.endswith("00 FA (9 of 9 failed)")
     assert len(found.further) == 7
     assert "at 2.400 s: LEN is 03" in found.further[0]
@@ -38,7 +38,7 @@ def test_each_occurrence_is_described_and_all_are_counted() -> None:
 
 def test_scripted_call_with_a_wrong_len_is_not_called_missing() -> None:
     script = [line("get_angles"), line("is_power_on")]
-    report = judged(spaced(bytes.fromhex("FEFE032000FA"), bytes.fromhex("FEFE0212FA")), script)
+    report = checked(spaced(bytes.fromhex("FEFE032000FA"), bytes.fromhex("FEFE0212FA")), script)
     assert {result.case for result in report.failures} == {"frame-length", "sent-variant"}
     found = only(report, "sent-variant")
     assert (found.command, found.reason) == (
@@ -49,7 +49,7 @@ def test_scripted_call_with_a_wrong_len_is_not_called_missing() -> None:
 
 def test_scripted_call_with_an_unknown_id_is_found_by_the_rest_of_its_frame() -> None:
     sent = bytes.fromhex("FEFE059A010203FA")
-    report = judged(spaced(sent), [line("set_color", 1, 2, 3)])
+    report = checked(spaced(sent), [line("set_color", 1, 2, 3)])
     assert {result.case for result in report.failures} == {"frame-id", "sent-variant"}
     assert only(report, "sent-variant").command == "set_color"
 
@@ -57,7 +57,7 @@ def test_scripted_call_with_an_unknown_id_is_found_by_the_rest_of_its_frame() ->
 def test_all_wrong_values_of_a_call_are_named() -> None:
     # 1, 2, 3, 4, 5, 7 degrees at 31 percent, in place of 1, 2, 30, 4, 5, 6 at 30.
     sent = bytes.fromhex("FEFE0F22006400C8012C019001F402BC1FFA")
-    report = judged(spaced(sent), [line("send_angles", [1, 2, 30, 4, 5, 6], 30)])
+    report = checked(spaced(sent), [line("send_angles", [1, 2, 30, 4, 5, 6], 30)])
     assert "angles.j3: expected 30 degrees, got 3 degrees" in only(report, "sent-scale").reason
     others = only(report, "sent-value").reason
     assert "angles.j6: expected 6 degrees, got 7 degrees" in others
@@ -73,28 +73,28 @@ def test_all_wrong_values_of_a_call_are_named() -> None:
     ],
 )
 def test_wrong_number_without_a_scale_is_not_called_rounding(right: object, sent: str) -> None:
-    report = judged(spaced(bytes.fromhex(sent)), [right])  # type: ignore[list-item]
+    report = checked(spaced(bytes.fromhex(sent)), [right])  # type: ignore[list-item]
     assert {result.case for result in report.failures} == {"sent-value"}
 
 
 @pytest.mark.parametrize("frame", ["29", "26", "28", "05"])
 @pytest.mark.parametrize("off", [POWER_OFF, RELEASE_ALL])
 def test_stop_pause_resume_and_clear_queue_are_legal_without_power(off: bytes, frame: str) -> None:
-    assert judged(spaced(off, bytes.fromhex(f"FEFE02{frame}FA"))).conforms
+    assert checked(spaced(off, bytes.fromhex(f"FEFE02{frame}FA"))).conforms
 
 
 @pytest.mark.parametrize("motion", [STEP, bytes.fromhex("FEFE02D4FA")])
 def test_motion_with_released_joints_fails(motion: bytes) -> None:
-    assert "released" in only(judged(spaced(RELEASE_ALL, motion)), "motion-powered").reason
+    assert "released" in only(checked(spaced(RELEASE_ALL, motion)), "motion-powered").reason
 
 
 def test_gripper_and_joints_that_are_held_again_may_move_after_a_release() -> None:
-    assert judged(spaced(RELEASE_ALL, GRIP)).conforms
+    assert checked(spaced(RELEASE_ALL, GRIP)).conforms
     focus = bytes.fromhex("FEFE035701FA")
-    assert judged(spaced(RELEASE_ALL, focus, STEP)).conforms
+    assert checked(spaced(RELEASE_ALL, focus, STEP)).conforms
 
 
 @pytest.mark.parametrize("mode", range(3))
 def test_send_coords_accepts_each_mode_that_clients_send(mode: int) -> None:
     sent = bytes.fromhex("FEFE102503E8000007D00000000000001E") + bytes([mode, 0xFA])
-    assert judged(spaced(sent)).conforms
+    assert checked(spaced(sent)).conforms

@@ -6,7 +6,7 @@ from functools import partial
 
 import pytest
 
-from client_findings import LINES, Line, judged
+from client_findings import LINES, Line, checked
 from cobotwire.conformance import Report
 from machine_stalls import PtyMeter
 from stalls import unstalled
@@ -18,7 +18,7 @@ ALLOWED_STALL = 0.1
 
 def judged_on_time(client: str, line: Line) -> tuple[Report, list[str]]:
     """Run the session; run it again if the machine or its ptys stalled long enough to matter."""
-    return unstalled(partial(judged, client, line), ALLOWED_STALL, PtyMeter)
+    return unstalled(partial(checked, client, line), ALLOWED_STALL, PtyMeter)
 
 
 OURS = ["cobotwire", "cobotwire tcp", "cobotwire asyncio", "cobotwire asyncio tcp"]
@@ -41,7 +41,7 @@ def test_our_client_passes_on_a_bad_line(line: str) -> None:
 
 @pytest.mark.filterwarnings("ignore:.*getdefaultlocale:DeprecationWarning")
 def test_pymycobot_on_a_good_line_fails_only_by_rounding() -> None:
-    report, failures = judged("pymycobot", LINES["good"])
+    report, failures = checked("pymycobot", LINES["good"])
     found = {(r.case, r.command) for r in report.failures}
     assert found == {("sent-rounded", "send_radians"), ("sent-rounded", "send_coord")}
     assert failures == []

@@ -10,13 +10,13 @@ from cobotwire.codec.events import Event, Frame, Noise, NoiseReason, Read
 from cobotwire.codec.interface import Data, Listening
 from cobotwire.codec.reference import ReferenceCodec
 from cobotwire.codec.reference.framer import ReferenceFramer
-from cobotwire.codec.reference.judge import Heading, Judge
+from cobotwire.codec.reference.validator import Heading, Validator
 from cobotwire.protocol.table import Table
 
 Verdict = int | NoiseReason
 Change = Callable[["BrokenFramer", Event], list[Event]]
 # The correct methods, which a flaw may call.
-RightJudge = Callable[[bytes, int], Verdict]
+RightValidate = Callable[[bytes, int], Verdict]
 RightFeed = Callable[[Data], list[Event]]
 RightFlush = Callable[[], list[Event]]
 
@@ -25,11 +25,11 @@ class Flaw(NamedTuple):
     """What is wrong with a framer. Without a flaw, each hook does what is right."""
 
     text: str
-    judge: Callable[[Judge, RightJudge, bytes, int], Verdict] = lambda _, right, data, at: right(
-        data, at
+    validate: Callable[[Validator, RightValidate, bytes, int], Verdict] = (
+        lambda _, right, data, at: right(data, at)
     )
     forgives: NoiseReason | None = None
-    skip: Callable[[Judge, bytes, int, NoiseReason], int] = lambda *_: 1
+    skip: Callable[[Validator, bytes, int, NoiseReason], int] = lambda *_: 1
     feed: Callable[[BrokenFramer, RightFeed, Data], list[Event]] = lambda _, right, data: right(
         data
     )
@@ -37,24 +37,24 @@ class Flaw(NamedTuple):
     event: Change = lambda _, event: [event]
 
 
-class _BrokenJudge(Judge):
-    def __init__(self, right: Judge, flaw: Flaw) -> None:
+class _BrokenValidator(Validator):
+    def __init__(self, right: Validator, flaw: Flaw) -> None:
         super().__init__(right.frame, right.indexes, right.accept_unknown)
         self._flaw = flaw
 
-    def judge(self, data: bytes, start: int = 0) -> Verdict:
-        return self._flaw.judge(self, super().judge, data, start)
+    def validate(self, data: bytes, start: int = 0) -> Verdict:
+        return self._flaw.validate(self, super().validate, data, start)
 
-    def refute(self, heading: Heading) -> NoiseReason | None:
-        reason = super().refute(heading)
+    def reject(self, heading: Heading) -> NoiseReason | None:
+        reason = super().reject(heading)
         return None if reason == self._flaw.forgives else reason
 
 
 class BrokenFramer(ReferenceFramer):
     """A framer with a flaw, which may be in the legality check that it uses."""
 
-    def __init__(self, right: Judge, read: Read, flaw: Flaw) -> None:
-        super().__init__(_BrokenJudge(right, flaw), read)
+    def __init__(self, right: Validator, read: Read, flaw: Flaw) -> None:
+        super().__init__(_BrokenValidator(right, flaw), read)
         self._flaw = flaw
 
     def feed(self, data: Data) -> list[Event]:
@@ -69,7 +69,7 @@ class BrokenFramer(ReferenceFramer):
         return [changed for event in events for changed in self._flaw.event(self, event)]
 
     def _refuted_size(self, data: bytes, start: int, reason: NoiseReason) -> int:
-        return self._flaw.skip(self._judge, data, start, reason)
+        return self._flaw.skip(self._validator, data, start, reason)
 
     def forget(self) -> list[Event]:
         """Drop the waiting bytes without an event."""
@@ -92,28 +92,28 @@ class BrokenFramer(ReferenceFramer):
 
     def at_len(self, event: Frame) -> Frame:
         """Return the frame at the offset of its LEN."""
-        offset = event.offset + self._judge.frame.length_at
+        offset = event.offset + self._validator.frame.length_at
         return Frame(offset, event.data, event.command, self._read)
 
 
-def _claimed(judge: Judge, data: bytes, start: int) -> int:
+def _claimed(validator: Validator, data: bytes, start: int) -> int:
     """Return how many bytes a header claims."""
-    return judge.frame.overhead + data[start + judge.frame.length_at]
+    return validator.frame.overhead + data[start + validator.frame.length_at]
 
 
-def _no_footer(judge: Judge, right: RightJudge, data: bytes, start: int) -> Verdict:
+def _no_footer(validator: Validator, right: RightValidate, data: bytes, start: int) -> Verdict:
     verdict = right(data, start)
-    return _claimed(judge, data, start) if verdict == "bad-check" else verdict
+    return _claimed(validator, data, start) if verdict == "bad-check" else verdict
 
 
-def _half_header(judge: Judge, right: RightJudge, data: bytes, start: int) -> Verdict:
-    head = judge.frame.header
+def _half_header(validator: Validator, right: RightValidate, data: bytes, start: int) -> Verdict:
+    head = validator.frame.header
     if data[start : start + 1] == head[:1] and len(data) > start + 1:
         data = data[:start] + head + data[start + len(head) :]
     return right(data, start)
 
 
-def _inner_first(judge: Judge, right: RightJudge, data: bytes, start: int) -> Verdict:
+def _inner_first(validator: Validator, right: RightValidate, data: bytes, start: int) -> Verdict:
     verdict = right(data, start)
     if isinstance(verdict, int):
         for inside in range(start + 1, start + verdict):
@@ -122,7 +122,7 @@ def _inner_first(judge: Judge, right: RightJudge, data: bytes, start: int) -> Ve
     return verdict
 
 
-def _low_half(judge: Judge, right: RightJudge, data: bytes, start: int) -> Verdict:
+def _low_half(validator: Validator, right: RightValidate, data: bytes, start: int) -> Verdict:
     verdict = right(data, start)
     return "bad-length" if isinstance(verdict, int) and verdict > 16 else verdict
 
@@ -151,20 +151,20 @@ def _of_frames(
 
 
 FLAWS = (
-    Flaw("ignores the footer", judge=_no_footer),
+    Flaw("ignores the footer", validate=_no_footer),
     Flaw("accepts ids that the edition lacks", forgives="unknown-id"),
     Flaw("accepts any LEN of the edition for any id", forgives="bad-length"),
-    Flaw("checks only the first byte of the header", judge=_half_header),
+    Flaw("checks only the first byte of the header", validate=_half_header),
     Flaw(
         "skips the whole claimed frame if its footer is wrong",
-        skip=lambda judge, data, start, reason: (
-            _claimed(judge, data, start) if reason == "bad-check" else 1
+        skip=lambda validator, data, start, reason: (
+            _claimed(validator, data, start) if reason == "bad-check" else 1
         ),
     ),
     Flaw(
         "skips the whole header of a refuted frame",
-        skip=lambda judge, data, start, reason: (
-            1 if reason == "no-header" else len(judge.frame.header)
+        skip=lambda validator, data, start, reason: (
+            1 if reason == "no-header" else len(validator.frame.header)
         ),
     ),
     Flaw(
@@ -214,8 +214,8 @@ FLAWS = (
         event=_of_noise(lambda noise: [noise._replace(data=noise.data[:-1])]),
     ),
     Flaw("returns each frame twice", event=_of_frames(lambda _, frame: [frame, frame])),
-    Flaw("prefers a frame inside another one", judge=_inner_first),
-    Flaw("rejects frames longer than sixteen bytes", judge=_low_half),
+    Flaw("prefers a frame inside another one", validate=_inner_first),
+    Flaw("rejects frames longer than sixteen bytes", validate=_low_half),
 )
 
 
@@ -233,7 +233,7 @@ class FramingCodec(ReferenceCodec):
         if listening != self._listening:
             return super().framer(listening, accept_unknown=accept_unknown)
         right = super().framer(self._used, accept_unknown=accept_unknown)
-        return BrokenFramer(right._judge, right._read, self._flaw) if self._flaw else right
+        return BrokenFramer(right._validator, right._read, self._flaw) if self._flaw else right
 
 
 Broken = Callable[[Table], ReferenceCodec]

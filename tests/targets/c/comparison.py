@@ -25,10 +25,10 @@ def compare(edition: str) -> Comparison:
     compiler = next(filter(shutil.which, COMPILERS), None)
     if compiler is None:
         raise ToolMissing("a C compiler: gcc or clang")
-    return judged(read(edition), edition_of(edition), compiler)
+    return validated(read(edition), edition_of(edition), compiler)
 
 
-def judged(
+def validated(
     document: Record,
     edition: Edition,
     compiler: str,
@@ -37,10 +37,10 @@ def judged(
 ) -> Comparison:
     """Run a document's vectors on the C code of an edition, which may be a changed one."""
     with CPeer(program(edition, compiler, flags, name)) as peer:
-        return Judge(edition, peer).compare(document)
+        return Validator(edition, peer).compare(document)
 
 
-class Judge:
+class Validator:
     """Compare documents with what the C code does; text outside frames is not compared."""
 
     def __init__(self, edition: Edition, peer: CPeer) -> None:
@@ -67,9 +67,9 @@ class Judge:
         }
         differences = [
             f"{part}: {record['name']}: {difference}"
-            for part, (judge, records) in parts.items()
+            for part, (validate, records) in parts.items()
             for record in records
-            for difference in judge(record)
+            for difference in validate(record)
         ]
         fields = sum(len(f["raw"]) for r in document["messages"] for f in r["fields"])
         count = sum(len(records) for _, records in parts.values())

@@ -19,7 +19,7 @@ from cobotwire_codegen.targets.c.messages import messages
 from random_editions import editions
 from raw_messages import raw_messages
 from strategies import TABLES, CommandVariant, chunked, legal_values, variants_of
-from targets.c.comparison import Judge, joined
+from targets.c.comparison import Validator, joined
 from targets.c.compiled import missing, program
 from targets.c.peer import CPeer, Event
 from targets.expected import LISTENING, Document
@@ -40,7 +40,7 @@ class Sides:
         self.codec = self.document.codec
         self.table = self.codec.table
         self.peer = CPeer(program(edition, name=name))
-        self._judge = Judge(edition, self.peer)
+        self._judge = Validator(edition, self.peer)
 
     def compare(self) -> None:
         """Compare the vectors of the document, and begin a new one."""

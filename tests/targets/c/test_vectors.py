@@ -10,7 +10,7 @@ import pytest
 import vectors
 from cobotwire_codegen.targets.vectors.document import document
 from strategies import TABLES
-from targets.c.comparison import compare, judged
+from targets.c.comparison import compare, validated
 from targets.c.compiled import missing
 from targets.specs import SPECS, edition_of
 from targets.vectors.comparison import read
@@ -29,7 +29,7 @@ WITH_GCC = pytest.mark.skipif(bool(missing("gcc")), reason=missing("gcc"))
     ],
 )
 def test_c_code_agrees_with_every_vector(name: str, compiler: str) -> None:
-    found = judged(read(name), vectors.edition(name), compiler)
+    found = validated(read(name), vectors.edition(name), compiler)
     assert found.differences == []
     assert found.vectors > 1000
     assert found.fields > 300
@@ -39,7 +39,7 @@ def test_c_code_agrees_with_every_vector(name: str, compiler: str) -> None:
 @pytest.mark.parametrize("name", sorted(SPECS))
 def test_c_code_of_other_types_and_frames_agrees_with_vectors(name: str) -> None:
     edition = edition_of(SPECS[name])
-    found = judged(json.loads(document(edition)), edition, "gcc")
+    found = validated(json.loads(document(edition)), edition, "gcc")
     assert found.differences == []
     assert found.vectors > 50
 
@@ -51,11 +51,11 @@ def test_c_code_of_a_wrong_model_differs_from_the_vectors(kind: str) -> None:
     wrong = with_wrong_angles(
         vectors.edition("mycobot"), lambda part: replace(WRONG[kind](part), name="wrong_angle")
     )
-    found = judged(read("mycobot"), wrong, "gcc", QUICK, kind).differences
+    found = validated(read("mycobot"), wrong, "gcc", QUICK, kind).differences
     assert found
     assert all("get_angles" in difference or "streams" in difference for difference in found)
 
 
 @WITH_GCC
 def test_report_counts_what_the_tests_compare() -> None:
-    assert compare("mycobot") == judged(read("mycobot"), vectors.edition("mycobot"), "gcc")
+    assert compare("mycobot") == validated(read("mycobot"), vectors.edition("mycobot"), "gcc")

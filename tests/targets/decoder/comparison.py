@@ -25,10 +25,10 @@ def compare(edition: str) -> Comparison:
     Raises:
         ToolMissing: Chromium is not installed.
     """
-    return judged(read(edition), edition_script(vectors.edition(edition)))
+    return validated(read(edition), edition_script(vectors.edition(edition)))
 
 
-def judged(document: Record, table: str) -> Comparison:
+def validated(document: Record, table: str) -> Comparison:
     """Run a document's messages, malformed bytes and streams with a table's script."""
     [found] = judged_all([(document, table)])
     return found
@@ -44,15 +44,15 @@ def judged_all(documents: Sequence[tuple[Record, str]]) -> list[Comparison]:
 
 
 def _compared(document: Record, found: Any) -> Comparison:
-    judges = {"messages": _message, "malformed": _malformed, "streams": _stream}
+    validates = {"messages": _message, "malformed": _malformed, "streams": _stream}
     differences = [
         f"{record['name']}: {text}"
-        for part, judge in judges.items()
+        for part, validate in validates.items()
         for record, made in zip(document[part], found[part])
-        for text in judge(record, made)
+        for text in validate(record, made)
     ]
-    count = sum(len(found[part]) for part in judges)
-    assert count == sum(len(document[part]) for part in judges)
+    count = sum(len(found[part]) for part in validates)
+    assert count == sum(len(document[part]) for part in validates)
     fields = sum(len(f["raw"]) for record in document["messages"] for f in record["fields"])
     return Comparison(count, fields, differences, len(document["malformed"]))
 

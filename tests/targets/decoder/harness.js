@@ -1,5 +1,5 @@
 "use strict";
-// Decode every vector with the page's own code, and write the results as JSON, for Python to judge.
+// Decode every vector with the page's own code, and write the results as JSON, for Python to validate.
 (function () {
   const bytes = (text) => cobotwire.parse(text);
   const parts = {
@@ -30,9 +30,9 @@
   };
   const found = cobotwireVectors.map((document) => {
     const table = cobotwire.tables[document.edition];
-    return Object.fromEntries(Object.entries(parts).map(([part, judge]) => [part, document[part].map((record) => {
+    return Object.fromEntries(Object.entries(parts).map(([part, validate]) => [part, document[part].map((record) => {
       try {
-        return judge(record, table);
+        return validate(record, table);
       } catch (error) {
         return { error: String(error) };
       }

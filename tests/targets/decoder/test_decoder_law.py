@@ -21,7 +21,7 @@ from targets.vectors.comparison import read
 from wrong_models import WRONG, with_wrong_angles
 
 pytestmark = needs_chromium
-# Shrinking is of no use, since the browser judges the documents of all examples at once: it starts
+# Shrinking is of no use, since the browser reads the documents of all examples at once: it starts
 # slowly.
 COLLECT = settings(phases=[Phase.generate], suppress_health_check=list(HealthCheck))
 

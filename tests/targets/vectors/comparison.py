@@ -31,7 +31,7 @@ def read(edition: str) -> Record:
 def compare(edition: str) -> Comparison:
     """Run an edition's document on both codecs."""
     document = read(edition)
-    found = [judged(document, codec_of(edition, name)) for name in CODECS]
+    found = [validated(document, codec_of(edition, name)) for name in CODECS]
     return Comparison(
         sum(each.vectors for each in found),
         sum(each.fields for each in found),
@@ -40,7 +40,7 @@ def compare(edition: str) -> Comparison:
     )
 
 
-def judged(document: Record, codec: Codec) -> Comparison:
+def validated(document: Record, codec: Codec) -> Comparison:
     """Run the document on one codec."""
     parts = {
         "messages": _message,
@@ -51,9 +51,9 @@ def judged(document: Record, codec: Codec) -> Comparison:
     }
     differences = [
         f"{part}: {record.get('name', record.get('command'))}: {difference}"
-        for part, judge in parts.items()
+        for part, validate in parts.items()
         for record in document[part]
-        for difference in judge(record, codec)
+        for difference in validate(record, codec)
     ]
     fields = sum(len(f["raw"]) for record in document["messages"] for f in record["fields"])
     count = sum(len(document[part]) for part in parts)

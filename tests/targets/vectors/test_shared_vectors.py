@@ -25,7 +25,7 @@ from strategies import TABLES, codec_of
 from targets.built import built
 from targets.expected import codec_of_edition
 from targets.specs import SPECS, edition_of
-from targets.vectors.comparison import CODECS, Record, judged, read
+from targets.vectors.comparison import CODECS, Record, read, validated
 from wrong_models import WRONG, with_wrong_angles
 
 EDITIONS = sorted(TABLES)
@@ -34,7 +34,7 @@ EDITIONS = sorted(TABLES)
 @pytest.mark.parametrize("name", CODECS)
 @pytest.mark.parametrize("edition", EDITIONS)
 def test_every_vector_agrees_with_codec(edition: str, name: codecs.CodecName) -> None:
-    found = judged(read(edition), codec_of(edition, name))
+    found = validated(read(edition), codec_of(edition, name))
     assert found.differences == []
     assert found.vectors > 1000
     assert found.fields > 300
@@ -45,7 +45,7 @@ def test_vectors_of_other_types_and_frames_agree_with_codecs(name: str) -> None:
     edition = edition_of(SPECS[name])
     found = json.loads(document(edition))
     for codec in CODECS:
-        assert judged(found, codec_of_edition(edition, codec)).differences == []
+        assert validated(found, codec_of_edition(edition, codec)).differences == []
     assert list(_validator().iter_errors(found)) == []
 
 
@@ -66,7 +66,7 @@ def test_vectors_of_floats_and_texts_have_their_ends() -> None:
 def test_vectors_of_random_protocols_agree_with_codec(tmp_path: Path, data: st.DataObject) -> None:
     edition = data.draw(editions(tmp_path, "rnd"))
     found = json.loads(document(edition))
-    assert judged(found, codec_of_edition(edition)).differences == []
+    assert validated(found, codec_of_edition(edition)).differences == []
 
 
 def _validator() -> jsonschema.Draft202012Validator:
@@ -129,7 +129,7 @@ def test_vectors_contain_every_kind_of_fault_and_event(edition: str) -> None:
 @pytest.mark.parametrize("kind", WRONG)
 def test_vectors_of_a_wrong_model_differ_from_codec(kind: str) -> None:
     wrong = json.loads(document(with_wrong_angles(vectors.edition("mycobot"), WRONG[kind])))
-    found = judged(wrong, codec_of("mycobot", "reference")).differences
+    found = validated(wrong, codec_of("mycobot", "reference")).differences
     assert any("get_angles" in difference for difference in found)
     # A reply of id 20 that neither command allows is reported with the values of the first one.
     assert all("get_angles" in one or "get_radians" in one for one in found)

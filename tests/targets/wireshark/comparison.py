@@ -78,10 +78,12 @@ def all_compared(
             shown[chunk.line].append(items)
     fields, refused, differences = 0, 0, []
     for number, (line, codec) in enumerate(lines):
-        judged = list(_judge(line, codec, shown[number]))
+        validated = list(_judge(line, codec, shown[number]))
         refused += line.name.startswith("malformed: ")
-        fields += sum(check.is_field for check in judged)
-        differences += [f"{line.name}: {check.difference}" for check in judged if check.difference]
+        fields += sum(check.is_field for check in validated)
+        differences += [
+            f"{line.name}: {check.difference}" for check in validated if check.difference
+        ]
     return Comparison(len(lines), fields, differences, refused)
 
 

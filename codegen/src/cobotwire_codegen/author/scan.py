@@ -1,10 +1,10 @@
 """Finds frames in a capture by the framing law, knowing the frame format but no commands.
 
 docs/framing.md states the law for unknown firmware: any id is legal, and any LEN up to the longest
-of the frame format. The first illegal byte refutes a candidate, and the scan continues one byte
+of the frame format. The first illegal byte rejects a candidate, and the scan continues one byte
 after the start of the candidate. A valid frame is consumed as a whole. This scan looks for unknown
-lengths, so it differs in two ways. A known id may have any length. An unknown frame is refuted if a
-known frame starts inside it; otherwise noise would be reported as an unknown message.
+lengths, so it differs in two ways. A known id may have any length. An unknown frame is rejected if
+a known frame starts inside it; otherwise noise would be reported as an unknown message.
 """
 
 from __future__ import annotations

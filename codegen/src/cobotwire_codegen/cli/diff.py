@@ -14,7 +14,7 @@ from cobotwire_codegen.diff import diff as diff_two
 from cobotwire_codegen.diff import report as reports
 from cobotwire_codegen.diff.rules import Level
 from cobotwire_codegen.diff.sources import Source, SourceError, paired, read
-from cobotwire_codegen.diff.waivers import Judged, judge, read_waivers
+from cobotwire_codegen.diff.waivers import Outcome, apply_waivers, read_waivers
 
 _COLOURS = {
     "wire": "red",
@@ -99,9 +99,9 @@ def diff(
             findings = _compare(read(old), read(new))
         except SourceError as error:
             raise click.UsageError(str(error)) from error
-    judged = judge(findings, accepted)
-    _print(judged, old, new, variant)
-    sys.exit(1 if fails(judged.findings, None if fail_on == "none" else fail_on) else 0)
+    outcome = apply_waivers(findings, accepted)
+    _print(outcome, old, new, variant)
+    sys.exit(1 if fails(outcome.findings, None if fail_on == "none" else fail_on) else 0)
 
 
 def _compare(old: Source, new: Source) -> tuple[Finding, ...]:
@@ -112,11 +112,11 @@ def _compare(old: Source, new: Source) -> tuple[Finding, ...]:
     return diff_all(*paired(old, new))
 
 
-def _print(judged: Judged, old: str, new: str, variant: str) -> None:
+def _print(outcome: Outcome, old: str, new: str, variant: str) -> None:
     if variant == "json":
-        click.echo(reports.as_json(judged, old, new))
+        click.echo(reports.as_json(outcome, old, new))
     elif variant == "markdown":
-        click.echo("\n".join(reports.markdown(judged)))
+        click.echo("\n".join(reports.markdown(outcome)))
     else:
-        for kind, line in reports.text(judged):
+        for kind, line in reports.text(outcome):
             click.secho(line, fg=_COLOURS.get(kind), bold=bool(kind) or None)

@@ -8,7 +8,7 @@ from dataclasses import asdict
 
 from cobotwire_codegen.diff.finding import Finding, bump, bump_before_1_0
 from cobotwire_codegen.diff.rules import LEVELS, Level
-from cobotwire_codegen.diff.waivers import Judged, Waiver
+from cobotwire_codegen.diff.waivers import Outcome, Waiver
 
 VERSION = 2
 _TITLES: dict[Level, str] = {
@@ -23,62 +23,63 @@ _TITLES: dict[Level, str] = {
 _MARKS = {mark: f"\\{mark}" for mark in "\\`*_[]<>|#"}
 
 
-def text(judged: Judged) -> Iterator[tuple[str, str]]:
+def text(outcome: Outcome) -> Iterator[tuple[str, str]]:
     """Return the lines, each with its kind: a level for a heading, else empty."""
-    for level, findings in _grouped(judged):
+    for level, findings in _grouped(outcome):
         yield level, f"{level} ({len(findings)}): {LEVELS[level]}"
         for one in findings:
             yield "", f"  {one.rule}: {one.where}: {one.message}"
-    if judged.waived:
-        yield "waived", f"waived ({len(judged.waived)}): accepted, and not counted"
-    for one, waiver in judged.waived:
+    if outcome.waived:
+        yield "waived", f"waived ({len(outcome.waived)}): accepted, and not counted"
+    for one, waiver in outcome.waived:
         yield "", f"  {one.rule}: {one.where}: {one.message}"
         yield "", f"    because: {waiver.reason}"
-    for waiver in judged.unused:
+    for waiver in outcome.unused:
         yield "unused", f"{waiver.place}: unused-waiver: {_unused(waiver)}"
-    yield "", _summary(judged)
+    yield "", _summary(outcome)
 
 
-def as_json(judged: Judged, old: str, new: str) -> str:
+def as_json(outcome: Outcome, old: str, new: str) -> str:
     """Return one document; ``version`` is raised when older readers could misread it."""
     data = {
         "format": "cobotwire-diff",
         "version": VERSION,
         "old": old,
         "new": new,
-        "bump": bump(judged.findings),
-        "bump_before_1_0": bump_before_1_0(judged.findings),
-        "findings": [asdict(one) for one in judged.findings],
-        "waived": [{**asdict(one), "reason": waiver.reason} for one, waiver in judged.waived],
+        "bump": bump(outcome.findings),
+        "bump_before_1_0": bump_before_1_0(outcome.findings),
+        "findings": [asdict(one) for one in outcome.findings],
+        "waived": [{**asdict(one), "reason": waiver.reason} for one, waiver in outcome.waived],
         "unused_waivers": [
-            {"rule": one.rule, "where": one.where, "place": str(one.place)} for one in judged.unused
+            {"rule": one.rule, "where": one.where, "place": str(one.place)}
+            for one in outcome.unused
         ],
     }
     return json.dumps(data, indent=1)
 
 
-def markdown(judged: Judged) -> Iterator[str]:
+def markdown(outcome: Outcome) -> Iterator[str]:
     """Return the lines for the changelog."""
-    for level, findings in _grouped(judged):
+    for level, findings in _grouped(outcome):
         yield from (f"### {_TITLES[level]}", "")
         for one in findings:
             yield f"- `{one.where}`: {_escaped(one.message)} (`{one.rule}`)"
         yield ""
-    if judged.waived:
+    if outcome.waived:
         yield from ("### Waived", "")
-    for one, waiver in judged.waived:
+    for one, waiver in outcome.waived:
         reason = _escaped(waiver.reason)
         yield f"- `{one.where}`: {_escaped(one.message)} (`{one.rule}`). Waived: {reason}"
-    if judged.waived:
+    if outcome.waived:
         yield ""
-    for waiver in judged.unused:
+    for waiver in outcome.unused:
         yield from (f"> Unused waiver: {_escaped(_unused(waiver))}", "")
-    yield _escaped(_summary(judged))
+    yield _escaped(_summary(outcome))
 
 
-def _grouped(judged: Judged) -> Iterator[tuple[Level, list[Finding]]]:
+def _grouped(outcome: Outcome) -> Iterator[tuple[Level, list[Finding]]]:
     for level in LEVELS:
-        findings = [one for one in judged.findings if one.level == level]
+        findings = [one for one in outcome.findings if one.level == level]
         if findings:
             yield level, findings
 
@@ -87,11 +88,11 @@ def _unused(waiver: Waiver) -> str:
     return f"{waiver.rule} at {waiver.where} matches nothing; remove it"
 
 
-def _summary(judged: Judged) -> str:
-    if not judged.findings:
-        return "no difference" if not judged.waived else "no difference except those waived"
-    counts = ", ".join(f"{len(found)} {level}" for level, found in _grouped(judged))
-    after, before = bump(judged.findings), bump_before_1_0(judged.findings)
+def _summary(outcome: Outcome) -> str:
+    if not outcome.findings:
+        return "no difference" if not outcome.waived else "no difference except those waived"
+    counts = ", ".join(f"{len(found)} {level}" for level, found in _grouped(outcome))
+    after, before = bump(outcome.findings), bump_before_1_0(outcome.findings)
     return f"{counts}; version bump: {after} (before 1.0: {before})"
 
 

@@ -31,8 +31,8 @@ def message_changes(
     # optional fields.
     rest = Matched(sorted(matched.removed, key=len), sorted(matched.added, key=len))
     rest = rest.further(len).further(lambda variant: None)
-    for gone, came in rest.pairs:
-        yield from _reshaped(where, direction, gone, came, after, names)
+    for removed_one, added_one in rest.pairs:
+        yield from _reshaped(where, direction, removed_one, added_one, after, names)
     for variant in rest.removed:
         yield from _removed_variant(where, direction, variant, after, names)
     for variant in rest.added:
@@ -104,21 +104,24 @@ def _named(variant: Variant, names: dict[str, str]) -> list[str]:
 def _reshaped(
     where: str,
     direction: Direction,
-    gone: Variant,
-    came: Variant,
+    removed_one: Variant,
+    added_one: Variant,
     legal: tuple[Variant, ...],
     names: dict[str, str],
 ) -> Iterator[Finding]:
     """Compare a variant with the one that replaced it."""
-    before, after = _named(gone, names), _named(came, names)
-    removed = [field for field in gone if names.get(field.name, field.name) not in after]
-    added = [field for field in came if field.name not in before]
+    before, after = _named(removed_one, names), _named(added_one, names)
+    removed = [field for field in removed_one if names.get(field.name, field.name) not in after]
+    added = [field for field in added_one if field.name not in before]
     stayed = [n for n in before if n in after], [n for n in after if n in before]
     constant = any(field.const is not None for field in (*removed, *added))
     moved = stayed[0] != stayed[1] or constant
     if moved:
         yield finding(
-            f"{direction}-variant-changed", where, words.variant(gone), words.variant(came)
+            f"{direction}-variant-changed",
+            where,
+            words.variant(removed_one),
+            words.variant(added_one),
         )
     lost = [field for field in removed if field.const is None]
     for field in lost:
@@ -128,7 +131,9 @@ def _reshaped(
         yield finding(rule, f"{where}/{name}", "", name)
     # The shorter variant is rejected, even if another variant leaves out what was added.
     if not (moved or lost) and {*rules.values()} <= {"argument-added-optional"}:
-        yield finding(f"{direction}-variant-removed", where, words.variant(gone) or "no fields")
+        yield finding(
+            f"{direction}-variant-removed", where, words.variant(removed_one) or "no fields"
+        )
 
 
 def _added(direction: Direction, field: Field, legal: tuple[Variant, ...]) -> str:

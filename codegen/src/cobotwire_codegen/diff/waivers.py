@@ -68,7 +68,7 @@ def _near(rule: str) -> str:
 
 
 @dataclass(frozen=True, slots=True)
-class Judged:
+class Outcome:
     """Findings that count, findings with their waivers, and waivers without a finding."""
 
     findings: tuple[Finding, ...]
@@ -76,11 +76,11 @@ class Judged:
     unused: tuple[Waiver, ...]
 
 
-def judge(findings: Sequence[Finding], waivers: Sequence[Waiver]) -> Judged:
+def apply_waivers(findings: Sequence[Finding], waivers: Sequence[Waiver]) -> Outcome:
     """Separate findings that are waived from those that count."""
     known = {(waiver.rule, waiver.where): waiver for waiver in reversed(waivers)}
     keys = {(finding.rule, finding.where) for finding in findings}
-    return Judged(
+    return Outcome(
         findings=tuple(one for one in findings if (one.rule, one.where) not in known),
         waived=tuple(
             (one, known[one.rule, one.where]) for one in findings if (one.rule, one.where) in known

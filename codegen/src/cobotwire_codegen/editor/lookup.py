@@ -58,8 +58,8 @@ def _vector_at(workspace: Workspace, edition: Edition, path: Path, line: int) ->
     """Return the vector whose entry contains a line."""
     path = path.resolve()
     here = [v for v in edition.vectors if workspace.path(v.place) == path]
-    begun = [vector for vector in here if vector.place.line <= line + 1]
-    return max(begun, key=lambda vector: vector.place.line, default=None)
+    started = [vector for vector in here if vector.place.line <= line + 1]
+    return max(started, key=lambda vector: vector.place.line, default=None)
 
 
 def definition(workspace: Workspace, path: Path, line: int, column: int) -> tuple[Path, Place]:

@@ -1,6 +1,6 @@
 """The JSON Schema of the spec's files, with which editors complete, describe and check keys.
 
-The schema covers what can be judged from one file alone; the checker covers the rest.
+The schema covers what can be validated from one file alone; the checker covers the rest.
 """
 
 from __future__ import annotations

@@ -13,7 +13,7 @@ from cobotwire.capture.export.opening import InputStream
 from cobotwire.capture.export.plan import ExportPlan
 from cobotwire.capture.export.sources import MAGIC, Source
 from cobotwire.capture.reader import is_capture
-from cobotwire.codec.stretches import Divider, decode_stretch, even_cuts
+from cobotwire.codec.segments import Divider, decode_segment, even_cuts
 from cobotwire.protocol.errors import UsageError
 
 # The bytes that a task decodes at a time.
@@ -51,8 +51,8 @@ class Piece(NamedTuple):
         codec = plan.editions.codec("")
         with Stored(self.input) as stored:
             cuts = even_cuts(stored.size, self.size)
-            stretch = Divider(codec, plan.direction, stored, cuts).stretch(self.number)
-            parts = decode_stretch(codec, plan.direction, stored, stretch, chunk=CHUNK)
+            segment = Divider(codec, plan.direction, stored, cuts).segment(self.number)
+            parts = decode_segment(codec, plan.direction, stored, segment, chunk=CHUNK)
             yield from source.decoded(self.input, parts, first=self.number == 0)
 
 

@@ -18,7 +18,7 @@ from cobotwire.diagnose.counts import StreamCounts
 
 if TYPE_CHECKING:
     from cobotwire.diagnose import Item
-    from cobotwire.diagnose.survey import StreamSurvey
+    from cobotwire.diagnose.stream_summary import StreamSummary
 
 # Printing the frames of this many bytes takes some seconds, so a progress bar is shown.
 LONG_FILE = 4 << 20
@@ -27,11 +27,11 @@ LONG_FILE = 4 << 20
 def decode_bytes(source: ByteSource, options: DecodeOptions, counts: StreamCounts) -> None:
     """Decode bytes that have no times and one direction."""
     codec = _codec(options.edition, codecs.chosen())
-    survey = None if source.from_arguments else _survey(codec, options)
-    if survey is None:
+    summary = None if source.from_arguments else _summary_of(codec, options)
+    if summary is None:
         diagnose_bytes(codec, source, options, counts)
     else:
-        _survey_bytes(survey, codec, source, options, counts)
+        _summarize_bytes(summary, codec, source, options, counts)
 
 
 @lru_cache
@@ -40,29 +40,29 @@ def _codec(edition: str, name: codecs.CodecName) -> Codec:
     return codecs.load(editions.load(edition).TABLE, name)
 
 
-def _survey(codec: Codec, options: DecodeOptions) -> StreamSurvey | None:
-    """Return a survey, if it can do what the options ask for."""
+def _summary_of(codec: Codec, options: DecodeOptions) -> StreamSummary | None:
+    """Return a summary, if it can do what the options ask for."""
     if not options.as_json and not options.quiet:
         return None
-    from cobotwire.diagnose.survey import StreamSurvey
+    from cobotwire.diagnose.stream_summary import StreamSummary
 
-    if not StreamSurvey.reads(codec):
+    if not StreamSummary.reads(codec):
         return None
     texts = None if options.quiet else line_texts(codec.table, options.file)
-    return StreamSurvey(
+    return StreamSummary(
         codec, options.direction, accept_unknown=options.accept_unknown, texts=texts
     )
 
 
-def _survey_bytes(
-    survey: StreamSurvey,
+def _summarize_bytes(
+    summary: StreamSummary,
     codec: Codec,
     source: ByteSource,
     options: DecodeOptions,
     counts: StreamCounts,
 ) -> None:
     """Decode bytes, as :func:`diagnose_bytes` does, without an object for each frame."""
-    from cobotwire.diagnose.survey import Lines
+    from cobotwire.diagnose.stream_summary import Lines
 
     printer = StreamPrinter(codec, options.direction, options, StreamCounts())
 
@@ -77,10 +77,10 @@ def _survey_bytes(
     try:
         with _progress(source, options.quiet) as blocks:
             for block in blocks:
-                report(survey.feed(block))
-            report(survey.flush())
+                report(summary.feed(block))
+            report(summary.flush())
     finally:
-        counts.add_survey(survey)
+        counts.add_summary(summary)
 
 
 def diagnose_bytes(

@@ -25,7 +25,7 @@ from cobotwire.protocol.table import Table
 
 if TYPE_CHECKING:
     from cobotwire.diagnose import Finding, Item
-    from cobotwire.diagnose.survey import LineTexts
+    from cobotwire.diagnose.stream_summary import LineTexts
 
 # Bytes of a finding that are shown on its line.
 SHOWN = 16
@@ -121,7 +121,7 @@ def line_texts(table: Table, file: str | None) -> LineTexts:
 
     ``file`` is the first value of each line; None: it has none.
     """
-    from cobotwire.diagnose.survey import LineTexts
+    from cobotwire.diagnose.stream_summary import LineTexts
 
     requests, replies = (
         [

@@ -14,7 +14,7 @@ from cobotwire.codec.reference.columns import ReferenceColumnReader, scan
 from cobotwire.codec.reference.decode import decode, read
 from cobotwire.codec.reference.encode import encode
 from cobotwire.codec.reference.framer import ReferenceFramer
-from cobotwire.codec.reference.judge import Judge
+from cobotwire.codec.reference.validator import Validator
 from cobotwire.protocol.frame_index import FrameIndex
 from cobotwire.protocol.rejection import reject_direction, reject_workers
 from cobotwire.protocol.table import Direction, Table
@@ -28,10 +28,10 @@ class ReferenceCodec:
     def __init__(self, table: Table) -> None:
         self.table = table
         request, reply = FrameIndex(table, "request"), FrameIndex(table, "reply")
-        self._judges: dict[str, Judge] = {
-            "request": Judge(table.frame, [request]),
-            "reply": Judge(table.frame, [reply]),
-            "both": Judge(table.frame, [request, reply]),
+        self._validators: dict[str, Validator] = {
+            "request": Validator(table.frame, [request]),
+            "reply": Validator(table.frame, [reply]),
+            "both": Validator(table.frame, [request, reply]),
         }
 
     def encode(
@@ -45,27 +45,29 @@ class ReferenceCodec:
     ) -> bytes:
         """Build one frame."""
         found = self.table.command(command)
-        self._judge(direction)
+        self._validator(direction)
         return encode(self.table.frame, found, direction, values, variant, address)
 
     def decode(self, direction: Direction, data: bytes, *, of: str | None = None) -> DecodedMessage:
         """Decode exactly one frame."""
         command = None if of is None else self.table.command(of)
-        return decode(self._judge(direction), data, command)
+        return decode(self._validator(direction), data, command)
 
     def framer(self, listening: Listening, *, accept_unknown: bool = False) -> ReferenceFramer:
         """Return a new framer."""
-        judge = self._judges["both"] if listening == "both" else self._judge(listening)
+        validator = self._validators["both"] if listening == "both" else self._validator(listening)
         if accept_unknown:
-            judge = Judge(judge.frame, judge.indexes, accept_unknown=True)
+            validator = Validator(validator.frame, validator.indexes, accept_unknown=True)
 
         def read_frame(
             data: bytes, direction: Direction | None = None, of: str | None = None
         ) -> DecodedMessage:
             command = None if of is None else self.table.command(of)
-            return read(judge if direction is None else self._judge(direction), data, command)
+            return read(
+                validator if direction is None else self._validator(direction), data, command
+            )
 
-        return ReferenceFramer(judge, read_frame)
+        return ReferenceFramer(validator, read_frame)
 
     def scan(
         self,
@@ -103,10 +105,10 @@ class ReferenceCodec:
         framer.start_at(offset)
         return ReferenceColumnReader(self.table, framer, raw)
 
-    def _judge(self, direction: Direction) -> Judge:
+    def _validator(self, direction: Direction) -> Validator:
         if direction not in ("request", "reply"):
             raise reject_direction(direction)
-        return self._judges[direction]
+        return self._validators[direction]
 
 
 def _check_workers(workers: int) -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from cobotwire.codec.events import DecodedMessage, NoiseReason
-from cobotwire.codec.reference.judge import Judge
+from cobotwire.codec.reference.validator import Validator
 from cobotwire.protocol.errors import ProtocolError
 from cobotwire.protocol.frame_format import FrameFormat
 from cobotwire.protocol.frame_index import MessageVariant
@@ -11,56 +11,56 @@ from cobotwire.protocol.rejection import FrameFault, reject_frame, reject_raw
 from cobotwire.protocol.table import Case, Command, Field
 
 
-def decode(judge: Judge, data: bytes, of: Command | None = None) -> DecodedMessage:
+def decode(validator: Validator, data: bytes, of: Command | None = None) -> DecodedMessage:
     """Decode exactly one frame; see :meth:`cobotwire.codec.interface.Codec.decode`."""
     data = bytes(data)
-    verdict = _misnamed(judge, data, of) or judge.judge(data)
+    verdict = _misnamed(validator, data, of) or validator.validate(data)
     if isinstance(verdict, str):
-        raise _rejection(judge, verdict, data)
+        raise _rejection(validator, verdict, data)
     if verdict < len(data):
-        index = judge.indexes[0]
+        index = validator.indexes[0]
         raise reject_frame(index.table, index.direction, "trailing", verdict, data)
-    return read(judge, data, of)
+    return read(validator, data, of)
 
 
-def read(judge: Judge, data: bytes, of: Command | None = None) -> DecodedMessage:
+def read(validator: Validator, data: bytes, of: Command | None = None) -> DecodedMessage:
     """Decode a frame that is known to be legal, as the first message that allows its values."""
-    heading = judge.heading_of(data)
+    heading = validator.heading_of(data)
     rejection: ProtocolError | None = None
-    for message in judge.messages(heading, of):
+    for message in validator.messages(heading, of):
         try:
-            start = judge.frame.data_start(message.direction)
+            start = validator.frame.data_start(message.direction)
             values = _values(start, message, data)
         except ProtocolError as error:
             rejection = rejection or error
             continue
-        address = judge.frame.address(data)
+        address = validator.frame.address(data)
         return DecodedMessage(message.command, message.direction, message.variant, values, address)
-    raise rejection or _rejection(judge, _why_no_message(judge, data, of), data)
+    raise rejection or _rejection(validator, _why_no_message(validator, data, of), data)
 
 
-def _misnamed(judge: Judge, data: bytes, of: Command | None) -> NoiseReason | None:
+def _misnamed(validator: Validator, data: bytes, of: Command | None) -> NoiseReason | None:
     if of is None:
         return None
-    heading = judge.heading(data)
-    return None if isinstance(heading, str) else judge.misnamed(heading, of)
+    heading = validator.heading(data)
+    return None if isinstance(heading, str) else validator.misnamed(heading, of)
 
 
-def _why_no_message(judge: Judge, data: bytes, of: Command | None) -> NoiseReason:
-    heading = judge.heading(data)
+def _why_no_message(validator: Validator, data: bytes, of: Command | None) -> NoiseReason:
+    heading = validator.heading(data)
     if isinstance(heading, str):
         return heading
-    return judge.misnamed(heading, of) or judge.refute(heading) or "unknown-id"
+    return validator.misnamed(heading, of) or validator.reject(heading) or "unknown-id"
 
 
-def _rejection(judge: Judge, reason: NoiseReason, data: bytes) -> ProtocolError:
-    frame, index = judge.frame, judge.indexes[0]
+def _rejection(validator: Validator, reason: NoiseReason, data: bytes) -> ProtocolError:
+    frame, index = validator.frame, validator.indexes[0]
     at = _refuted_at(frame, reason, data)
     return reject_frame(index.table, index.direction, reason, at, data)
 
 
 def _refuted_at(frame: FrameFormat, reason: FrameFault, data: bytes) -> int:
-    """Return the offset of the byte that refutes a frame at the start of ``data``."""
+    """Return the offset of the byte that rejects a frame at the start of ``data``."""
     if reason == "no-header":
         return next(i for i, byte in enumerate(frame.header) if data[i] != byte)
     if reason == "bad-check":

@@ -1,7 +1,7 @@
 """Cut frames out of a stream, and resynchronise after noise.
 
 A frame stands at position i if the header is there, LEN is legal for CMD, and the check is right.
-The first byte that contradicts a candidate refutes it. The scan then continues at i + 1, and never
+The first byte that contradicts a candidate rejects it. The scan then continues at i + 1, and never
 skips the bytes that a false header claimed. A candidate that more bytes could complete waits.
 """
 
@@ -11,7 +11,7 @@ from typing import NamedTuple, SupportsIndex
 
 from cobotwire.codec.events import Counters, Event, Frame, Noise, NoiseReason, Read
 from cobotwire.codec.interface import Data
-from cobotwire.codec.reference.judge import Judge
+from cobotwire.codec.reference.validator import Validator
 from cobotwire.protocol.rejection import reject_offset
 
 
@@ -30,8 +30,8 @@ class _State(NamedTuple):
 class ReferenceFramer:
     """Cuts frames out of a byte stream; see :class:`cobotwire.codec.interface.Framer`."""
 
-    def __init__(self, judge: Judge, read: Read) -> None:
-        self._judge = judge
+    def __init__(self, validator: Validator, read: Read) -> None:
+        self._validator = validator
         self._read = read
         self._state = _State(b"", 0, Counters(0, {}, {}, 0), False)
 
@@ -76,10 +76,10 @@ class ReferenceFramer:
         before, start = self._state, 0
         events: list[Event] = []
         while start < len(data):
-            verdict = self._judge.judge(data, start)
+            verdict = self._validator.validate(data, start)
             if isinstance(verdict, int):
                 frame = data[start : start + verdict]
-                id = self._judge.frame.read_id(frame)
+                id = self._validator.frame.read_id(frame)
                 events.append(Frame(before.offset + start, frame, id, self._read))
                 start += verdict
             elif verdict == "truncated" and not at_end:
@@ -88,7 +88,7 @@ class ReferenceFramer:
                 end = start + self._refuted_size(data, start, verdict)
                 if verdict == "no-header":
                     # Up to the next byte that may begin a header, nothing else is possible.
-                    found = data.find(self._judge.frame.header[:1], end)
+                    found = data.find(self._validator.frame.header[:1], end)
                     end = len(data) if found < 0 else found
                 self._add_noise(events, before.offset + start, data[start:end], verdict)
                 start = min(end, len(data))
@@ -97,7 +97,7 @@ class ReferenceFramer:
         return events
 
     def _refuted_size(self, data: bytes, start: int, reason: NoiseReason) -> int:
-        """Return the number of bytes to skip for a refuted candidate: 1, whatever LEN it has."""
+        """Return the number of bytes to skip for a rejected candidate: 1, whatever LEN it has."""
         return 1
 
     @staticmethod

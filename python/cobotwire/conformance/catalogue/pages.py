@@ -18,7 +18,7 @@ ABOUT = """\
 `cobotwire conform` tests devices, clients and codecs by these test cases.
 [Conformance](../../conformance.md) describes the runs. The id of a test case on a command has both
 names: `reply-once/get_angles`. A report states the version of the catalogue, and the digest of the
-code that judged."""
+code that checked."""
 OF_EDITION = """\
 `conform device` tests each command of `{edition}` by these test cases. A line shows a group of test
 cases, and the permissions (`--allow`) that it needs; [the catalogue](index.md) describes them."""

@@ -1,4 +1,4 @@
-"""The digest of the code that runs and judges the test cases."""
+"""The digest of the code that runs and checks the test cases."""
 
 from __future__ import annotations
 

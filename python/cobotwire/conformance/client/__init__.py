@@ -1,4 +1,4 @@
-"""Test whether a client conforms to an edition: a simulated arm judges every byte."""
+"""Test whether a client conforms to an edition: a simulated arm checks every byte."""
 
 from cobotwire.conformance.client.delivery import FAULTS, faulty_replies, possible_faults
 from cobotwire.conformance.client.options import ClientOptions

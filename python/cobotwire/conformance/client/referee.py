@@ -1,4 +1,4 @@
-"""The referee: a simulated arm that judges the client that uses it, and writes a report."""
+"""The referee: a simulated arm that checks the client that uses it, and writes a report."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ DELAY_SECONDS = 0.008
 
 
 class Referee:
-    """A peer that replies as an arm does and judges every request."""
+    """A peer that replies as an arm does and checks every request."""
 
     def __init__(
         self,
@@ -67,7 +67,7 @@ class Referee:
         self._power = self._powered_devices()
         self._script = None if script is None else Script(codec, script)
         self._tally = Tally(sources)
-        # Noise that is not judged yet, because a frame in pieces may not be complete.
+        # Noise that is not checked yet, because a frame in pieces may not be complete.
         self._pieces: list[Received] = []
         self._last_byte: float | None = None
         self._arrival = 0.0
@@ -102,7 +102,7 @@ class Referee:
         return self._take_due()
 
     def finish(self) -> Report:
-        """Judge what is left after the client has disconnected, and close the report."""
+        """Check what is left after the client has disconnected, and close the report."""
         self._arrival = self._now()
         self._arm.flush()
         self._judge_noise()
@@ -137,7 +137,7 @@ class Referee:
         self._due += self._delivery.plan(now)
 
     def _judge_noise(self) -> None:
-        """Judge the noise so far, as whole broken frames."""
+        """Check the noise so far, as whole broken frames."""
         pieces, self._pieces = self._pieces, []
         for whole in joined(pieces):
             self._judge(whole)
@@ -148,7 +148,7 @@ class Referee:
             for observation in group.body(self._history, now):
                 self._observe(observation, now)
         if self._script is not None:
-            for observation in self._script.judge(now):
+            for observation in self._script.check(now):
                 self._observe(observation, now)
         self._history.entries.append(now)
         self._power = self._powered_devices()

@@ -27,7 +27,7 @@ ONCE = TestCase("sent-once", "A change that is once in the script is sent once."
 ALL = TestCase("sent-all", "Everything in the script is sent.", SOURCE)
 NOTHING_ELSE = TestCase("sent-nothing-else", "Nothing is sent that is not in the script.", SOURCE)
 
-# One state machine, the class Script, judges them all.
+# One state machine, the class Script, checks them all.
 SCRIPT = Group(
     "script",
     (SCALE, SIGN, BYTE_ORDER, ORDER, ROUNDED, VALUE, ADDRESS, VARIANT, ONCE, ALL, NOTHING_ELSE),
@@ -77,8 +77,8 @@ class Script:
         # The frame that was matched with the previous line: a wrong one may be repeated, too.
         self._taken = b""
 
-    def judge(self, now: Received) -> Iterator[Observation]:
-        """Judge a frame by the line that is due; anything else is not judged."""
+    def check(self, now: Received) -> Iterator[Observation]:
+        """Check a frame by the line that is due; anything else is not checked."""
         if not now.is_frame:
             yield from self._broken(now)
             return
@@ -99,12 +99,12 @@ class Script:
         self._taken = data
 
     def end(self) -> Iterator[Observation]:
-        """Judge what was never sent."""
+        """Check what was never sent."""
         yield from self._missing(len(self._lines))
         self._at = len(self._lines)
 
     def _broken(self, now: Received) -> Iterator[Observation]:
-        """Judge a broken frame that is meant as the line that is due."""
+        """Check a broken frame that is meant as the line that is due."""
         if self._at == len(self._frames) or not self._is_meant(now.data):
             return
         line, right = self._lines[self._at], self._frames[self._at]
@@ -129,13 +129,13 @@ class Script:
         return same and data not in self._frames[self._at :]
 
     def _again(self) -> Iterator[Observation]:
-        """Judge a repetition. A query may be repeated, because its reply may have been lost."""
+        """Check a repetition. A query may be repeated, because its reply may have been lost."""
         line = self._lines[self._at - 1]
         if line.command.safety != "query":
             yield Observation(ONCE, f"{line.place}: sent once more", line.command.name)
 
     def _out_of_turn(self, now: Received) -> Iterator[Observation]:
-        """Judge a frame that is a later line, or not in the script."""
+        """Check a frame that is a later line, or not in the script."""
         rest = self._frames[self._at :]
         if now.data in rest:
             later = self._at + rest.index(now.data)
@@ -171,7 +171,7 @@ def differences(
         return [(VALUE, frames)]
     values = "; ".join(map(str, wrong))
     if all(each.given == each.right[::-1] for each in wrong):
-        return [(BYTE_ORDER, f"{values}: with the bytes swapped")]
+        return [(BYTE_ORDER, f"{values}: with the bytes in reverse order")]
     if len(wrong) > 1 and sorted(w.right for w in wrong) == sorted(w.given for w in wrong):
         return [(ORDER, f"{values}: the right values in another order")]
     found: dict[TestCase, list[str]] = {}

@@ -1,4 +1,4 @@
-"""The test cases for clients, in the order in which each request is judged."""
+"""The test cases for clients, in the order in which each request is checked."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ from cobotwire.conformance.suite import Group, Suite
 from cobotwire.conformance.tally import Observation
 
 # Judges something that was received by what was received before.
-Judge = Callable[[History, Received], Iterator[Observation]]
+Check = Callable[[History, Received], Iterator[Observation]]
 
-# What needs no script: these bodies judge everything that is received.
-WITHOUT_SCRIPT: tuple[Group[Judge], ...] = (
+# What needs no script: these bodies check everything that is received.
+WITHOUT_SCRIPT: tuple[Group[Check], ...] = (
     frames.FRAMES,
     frames.INTERLEAVED_WRITES,
     frames.TEXTS,
@@ -24,4 +24,4 @@ WITHOUT_SCRIPT: tuple[Group[Judge], ...] = (
     timing.LATE_REPLIES,
     values.VALUES,
 )
-SUITE: Suite[Judge | None] = Suite("client", (*WITHOUT_SCRIPT, SCRIPT))
+SUITE: Suite[Check | None] = Suite("client", (*WITHOUT_SCRIPT, SCRIPT))

@@ -7,9 +7,9 @@ import time
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
+from cobotwire.conformance.codec.check import ABILITIES, check
 from cobotwire.conformance.codec.expected import Expectation, expectation_of
 from cobotwire.conformance.codec.implementation import Implementation, NoAnswer
-from cobotwire.conformance.codec.judge import ABILITIES, judge
 from cobotwire.conformance.codec.questions.question import Question
 from cobotwire.conformance.codec.suite import ANSWERS, EXPECTED_FAILURE
 from cobotwire.conformance.report import Cause, Exchange, Report, Result, Verdict
@@ -151,7 +151,7 @@ class Run:
         if "unsupported" in answer:
             self._unsupported(question, str(answer["unsupported"]))
             return [], evidence
-        found = judge(self._table, question, answer, self.greeting.can)
+        found = check(self._table, question, answer, self.greeting.can)
         return [Observation(ANSWERS), *found], evidence
 
     def _unsupported(self, question: Question, reason: str) -> None:

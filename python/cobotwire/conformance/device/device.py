@@ -81,7 +81,7 @@ class Device:
         self.tried_with_pauses: set[str] = set()
         # The poses from which the arm has moved when it was sent a little way, by their index.
         self.preferred_poses: list[int] = []
-        # How often each command that may be acknowledged was sent and judged.
+        # How often each command that may be acknowledged was sent and checked.
         self.changes: Counter[str] = Counter()
         # What to restore after a body, and what at the end of the run.
         self.restore_after_body: dict[str, Restore] = {}

@@ -1,4 +1,4 @@
-"""Sends malformed requests, and judges that they get no reply and do no harm."""
+"""Sends malformed requests, and checks that they get no reply and do no harm."""
 
 from __future__ import annotations
 

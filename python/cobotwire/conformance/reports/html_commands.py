@@ -68,7 +68,7 @@ def _step(kind: Kind, group: str, results: list[Result]) -> Iterator[Element]:
         same.setdefault(key, []).append(result)
     for alike in same.values():
         yield _alike(alike)
-        # The test cases of a group are judged by the same exchanges.
+        # The test cases of a group are checked by the same exchanges.
         for evidence in dict.fromkeys(r.evidence for r in alike if r.verdict is Verdict.FAIL):
             yield from _evidence(kind, evidence)
     passed = dict.fromkeys(r.evidence for r in results if r.verdict is not Verdict.FAIL)

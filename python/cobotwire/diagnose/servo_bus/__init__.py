@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 from cobotwire.codec.events import DecodedMessage
 from cobotwire.codec.reference.decode import read
-from cobotwire.codec.reference.judge import Judge
+from cobotwire.codec.reference.validator import Validator
 from cobotwire.protocol.errors import ProtocolError
 from cobotwire.protocol.frame_index import FrameIndex
 from cobotwire.protocol.loading import load_table
@@ -60,7 +60,7 @@ class InstructionForm(NamedTuple):
 
 
 class Vocabulary(NamedTuple):
-    """What the native survey needs to read packets.
+    """What the native summary needs to read packets.
 
     Attributes:
         frame: the format of packets.
@@ -86,10 +86,10 @@ class ServoBusReader:
         self.table = table = load_table(__name__, checksum=None)
         self.every = next(a.value for a in table.addresses if a.replies == "none")
         requests, replies = FrameIndex(table, "request"), FrameIndex(table, "reply")
-        self._judge = Judge(table.frame, [requests, replies])
+        self._validator = Validator(table.frame, [requests, replies])
         # A status packet carries no instruction, so these are legal with any byte after LEN.
         self.lengths = sorted(replies.lengths)
-        self._requests = Judge(table.frame, [requests])
+        self._requests = Validator(table.frame, [requests])
         self._names = {c.id: c.name.replace("_", " ") for c in table.commands}
         query = table.command("read")
         registers = _field(query.request[0].fields, "register")
@@ -102,7 +102,7 @@ class ServoBusReader:
 
     @cached_property
     def vocabulary(self) -> Vocabulary:
-        """What the native survey needs to read packets."""
+        """What the native summary needs to read packets."""
         return Vocabulary(
             frame=self.table.frame,
             lengths=self.lengths,
@@ -131,7 +131,7 @@ class ServoBusReader:
             packet = data[at : at + frame.overhead + frame.read_length(head)]
             if packet in self._sizes:
                 return self._sizes[packet]
-        verdict = self._judge.judge(data, at)
+        verdict = self._validator.validate(data, at)
         if not isinstance(verdict, int):
             return None if verdict == "truncated" else 0
         if len(self._sizes) >= REMEMBERED:

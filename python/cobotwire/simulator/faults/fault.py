@@ -32,7 +32,7 @@ COUNT = integer(1, 1_000_000)
 
 
 @dataclass(slots=True)
-class Moment:
+class Context:
     """A request to which a fault is applied, and what the fault may use.
 
     Attributes:
@@ -135,11 +135,11 @@ class Fault:
             allowed = f"more than from_seconds, {self.from_seconds:g}, up to {LONGEST_SECONDS:g}"
             raise UsageError(f"{self.kind}.until_seconds", self.until_seconds, allowed)
 
-    def change_request(self, data: bytes, moment: Moment) -> bytes:
+    def change_request(self, data: bytes, context: Context) -> bytes:
         """Return what the arm receives of a request."""
         return data
 
-    def change_reply(self, reply: Reply, moment: Moment) -> Reply:
+    def change_reply(self, reply: Reply, context: Context) -> Reply:
         """Return what the host receives of a reply."""
         return reply
 
@@ -155,15 +155,15 @@ class Damage(Fault, ABC):
     of: Literal["reply", "request"] = ruled(one_of(("reply", "request")), "reply")
 
     @abstractmethod
-    def spoil(self, data: bytes, moment: Moment) -> bytes:
+    def spoil(self, data: bytes, context: Context) -> bytes:
         """Return the damaged bytes; there is at least one byte to damage."""
 
-    def change_request(self, data: bytes, moment: Moment) -> bytes:
+    def change_request(self, data: bytes, context: Context) -> bytes:
         """Damage the request, if the fault is one of requests."""
-        return self.spoil(data, moment) if self.of == "request" else data
+        return self.spoil(data, context) if self.of == "request" else data
 
-    def change_reply(self, reply: Reply, moment: Moment) -> Reply:
+    def change_reply(self, reply: Reply, context: Context) -> Reply:
         """Damage the reply, if the fault is one of replies."""
         if self.of == "request":
             return reply
-        return recut(reply, self.spoil(joined(reply), moment))
+        return recut(reply, self.spoil(joined(reply), context))

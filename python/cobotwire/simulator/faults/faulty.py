@@ -10,11 +10,11 @@ from cobotwire.protocol.errors import ProtocolError
 from cobotwire.protocol.table import Command
 from cobotwire.simulator.faults.chooser import Chooser
 from cobotwire.simulator.faults.exchange import AppliedFault, Piece, Reply, Request, joined
-from cobotwire.simulator.faults.fault import Moment
+from cobotwire.simulator.faults.fault import Context
 from cobotwire.simulator.faults.faulty_connection import FaultyConnection
 from cobotwire.simulator.peer import IDLE_SECONDS, Peer, PeerDisconnected, SharedPeer
 
-Chosen = list[tuple[Chooser, Moment]]
+Chosen = list[tuple[Chooser, Context]]
 
 
 class FaultyPeer:
@@ -155,23 +155,25 @@ class FaultyPeer:
             return next(named, None)
 
     def _choose(self, request: Request) -> Chosen:
-        return [(one, self._moment(one, request)) for one in self._choosers if one.chooses(request)]
+        return [
+            (one, self._context(one, request)) for one in self._choosers if one.chooses(request)
+        ]
 
     def _continued(self, data: bytes) -> Chosen:
         """Return what is applied to the rest of malformed input, or to the text of a request."""
         rest = Request(self._clock() - self._began, data, None, None)
         going_on = (one for one, _ in self._begun if one.fault.goes_on)
-        return [(one, self._moment(one, rest)) for one in going_on]
+        return [(one, self._context(one, rest)) for one in going_on]
 
-    def _moment(self, chooser: Chooser, request: Request) -> Moment:
-        return Moment(request, chooser.random, self._connection, self._codec.table, self._replies)
+    def _context(self, chooser: Chooser, request: Request) -> Context:
+        return Context(request, chooser.random, self._connection, self._codec.table, self._replies)
 
     def _exchange(self, data: bytes, chosen: Chosen) -> None:
         """Pass a request to the other peer, and its reply to the host."""
-        for chooser, moment in chosen:
+        for chooser, context in chosen:
             if data:
-                data = chooser.fault.change_request(data, moment)
-                self._report(chooser, moment, 0)
+                data = chooser.fault.change_request(data, context)
+                self._report(chooser, context, 0)
         self._last = chosen
         reply = self._peer.receive(data) if data else b""
         self._plan_flush()
@@ -186,17 +188,17 @@ class FaultyPeer:
         number = self._replies if data else None
         self._replies += bool(data)
         delay = 0.0
-        for chooser, moment in chosen:
+        for chooser, context in chosen:
             needs_no_reply = not chooser.fault.wants_reply
             if (late and needs_no_reply) or not (reply or needs_no_reply):
                 continue
-            size, moment.delay, moment.number = len(joined(reply)), 0.0, number
+            size, context.delay, context.number = len(joined(reply)), 0.0, number
             try:
-                reply = chooser.fault.change_reply(reply, moment)
+                reply = chooser.fault.change_reply(reply, context)
             finally:
                 # A fault that disconnects is reported, too.
-                self._report(chooser, moment, len(joined(reply)) - size)
-            delay += moment.delay
+                self._report(chooser, context, len(joined(reply)) - size)
+            delay += context.delay
         self._connection.put(reply, delay, number)
         # What is due now is sent before the next request of the same chunk is handled: a fault
         # that drops unsent replies must not depend on how the requests were cut.
@@ -219,10 +221,10 @@ class FaultyPeer:
         wait = self._peer.wait
         self._peer_due = None if wait is None else self._clock() + wait
 
-    def _report(self, chooser: Chooser, moment: Moment, added: int) -> None:
-        detail, moved = moment.take_report()
+    def _report(self, chooser: Chooser, context: Context, added: int) -> None:
+        detail, moved = context.take_report()
         if detail and self._on_fault is not None:
-            request, kind = moment.request, chooser.fault.kind
+            request, kind = context.request, chooser.fault.kind
             self._on_fault(AppliedFault(request.at, kind, request.name, detail, added + moved))
 
     def _report_lost_reply(self, data: bytes) -> None:

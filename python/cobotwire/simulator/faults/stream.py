@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 from cobotwire.protocol.table import Table
 from cobotwire.simulator.faults.exchange import Request
-from cobotwire.simulator.faults.fault import Damage, Moment
+from cobotwire.simulator.faults.fault import Context, Damage
 from cobotwire.simulator.faults.faulty_connection import FaultyConnection
 
 
@@ -36,22 +36,22 @@ def edits(
         table: the edition of the frames in the stream.
         random: the source of the fault's random numbers.
     """
-    moment = _moment(data, table, random)
-    return [_edit(place, data[place : place + 1], fault, moment) for place in places]
+    context = _context(data, table, random)
+    return [_edit(place, data[place : place + 1], fault, context) for place in places]
 
 
 def damaged(fault: Damage, data: bytes, table: Table, random: Random) -> bytes:
     """Return what a fault leaves of a piece of a stream, such as a frame."""
-    return fault.spoil(data, _moment(data, table, random))
+    return fault.spoil(data, _context(data, table, random))
 
 
-def _moment(data: bytes, table: Table, random: Random) -> Moment:
+def _context(data: bytes, table: Table, random: Random) -> Context:
     connection = FaultyConnection(lambda: 0.0, lambda: None)
-    return Moment(Request(0.0, data, None, None), random, connection, table)
+    return Context(Request(0.0, data, None, None), random, connection, table)
 
 
-def _edit(place: int, byte: bytes, fault: Damage, moment: Moment) -> Edit:
-    instead = fault.spoil(byte, moment)
+def _edit(place: int, byte: bytes, fault: Damage, context: Context) -> Edit:
+    instead = fault.spoil(byte, context)
     if instead.endswith(byte):
         return Edit(place, 0, instead[: len(instead) - 1])
     return Edit(place, 1, instead)

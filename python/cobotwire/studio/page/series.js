@@ -43,7 +43,7 @@ export class Series {
   }
 
   // Return times and columns from a time on, as arrays of at most about `most` points. Each pair
-  // of points has the lowest and the highest value of its stretch, so that no peak is lost.
+  // of points has the lowest and the highest value of its segment, so that no peak is lost.
   since(time, most) {
     const first = Math.max(0, this.find(time) - 1);
     const count = this.length - first;
@@ -51,11 +51,11 @@ export class Series {
       const cut = (column) => Array.from(column.subarray(first, this.length), finite);
       return [cut(this.times), ...this.columns.map(cut)];
     }
-    const stretches = most >> 1;
+    const segments = most >> 1;
     const found = [[], ...this.columns.map(() => [])];
-    for (let part = 0; part < stretches; part++) {
-      const begin = first + Math.floor((count * part) / stretches);
-      const end = first + Math.floor((count * (part + 1)) / stretches);
+    for (let part = 0; part < segments; part++) {
+      const begin = first + Math.floor((count * part) / segments);
+      const end = first + Math.floor((count * (part + 1)) / segments);
       found[0].push(this.times[begin], (this.times[begin] + this.times[end - 1]) / 2 + 1e-9);
       this.columns.forEach((column, index) => {
         let low = Infinity;

@@ -4,9 +4,9 @@
 //! array. Positions are cut to the size of the block; the compiler then needs no bounds checks.
 
 use crate::check::Check;
-use crate::judge::Rules;
 use crate::legal::{BELIEVED, Headings, UNKNOWN_ID};
 use crate::reason::Reason;
+use crate::rules::Rules;
 use cobotwire_simd::{Pattern, SEEN, Window};
 
 /// Positions of a block.

@@ -7,16 +7,16 @@ use super::buckets::Buckets;
 use super::cells::{Advise, Numbers, reserve};
 use super::decode::Job;
 use super::plan::Plans;
-use super::relay::{Share, Workers};
 use super::rows::Rows;
 use super::sample::expected;
 use super::search::{Collect, Space};
 use super::spans::Spans;
+use super::speculative::{Share, Workers};
 use super::stream::Stream;
 use crate::table::Table;
 use crate::tally::Tally;
 
-/// The messages of a stretch of a stream.
+/// The messages of a segment of a stream.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Columns {
     /// One entry for each variant of the table in the reader's directions.
@@ -93,7 +93,7 @@ impl ColumnReader {
         }
     }
 
-    /// Return the reader of a stretch that begins at `offset` of its stream.
+    /// Return the reader of a segment that begins at `offset` of its stream.
     #[must_use]
     pub fn starting_at(mut self, offset: u64) -> Self {
         self.stream.start_at(offset);
@@ -138,7 +138,7 @@ impl ColumnReader {
         self.stream.feed_with(self.workers, chunk, &mut self.sorter);
     }
 
-    /// Refute the candidate that waits.
+    /// Reject the candidate that waits.
     pub fn flush(&mut self) {
         self.stream.flush(&mut self.sorter);
     }

@@ -150,7 +150,7 @@ fn pass_headers(
     reason: Reason,
     runs: &mut Runs,
 ) -> usize {
-    let (mut at, mut lengths, mut judged) = (from + 1, 0, 1);
+    let (mut at, mut lengths, mut validated) = (from + 1, 0, 1);
     runs.count(reason, 1);
     let mut frame = false;
     while at < end && !frame {
@@ -163,7 +163,7 @@ fn pass_headers(
                 Look::Frame { .. } => (passed, frame) = (place, true),
                 Look::Noise(reason) => {
                     runs.count(reason, 1);
-                    judged += 1;
+                    validated += 1;
                 }
             }
             candidates &= candidates - 1;
@@ -173,7 +173,7 @@ fn pass_headers(
     }
     runs.span(from, at);
     runs.count(Reason::BadLength, lengths);
-    runs.count(Reason::NoHeader, at - from - judged - lengths);
+    runs.count(Reason::NoHeader, at - from - validated - lengths);
     at
 }
 

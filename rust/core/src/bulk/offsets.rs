@@ -2,15 +2,15 @@
 
 use super::block::{Block, Found, LANES};
 use super::cells::{Advise, reserve};
-use super::relay::{Share, Workers};
 use super::sample::expected;
 use super::search::Collect;
 use super::spans::Spans;
+use super::speculative::{Share, Workers};
 use super::stream::Stream;
-use crate::judge::Rules;
+use crate::rules::Rules;
 use crate::tally::Tally;
 
-/// The frames of a stretch of a stream.
+/// The frames of a segment of a stream.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Offsets {
     /// Where each frame starts.
@@ -69,7 +69,7 @@ impl OffsetReader {
             .feed_with(self.workers, chunk, &mut self.collected);
     }
 
-    /// Refute the candidate that waits.
+    /// Reject the candidate that waits.
     pub fn flush(&mut self) {
         self.stream.flush(&mut self.collected);
     }

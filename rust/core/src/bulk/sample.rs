@@ -3,7 +3,7 @@
 use super::block::{Block, Found, LANES};
 use super::search::Collect;
 use super::stream::Stream;
-use crate::judge::Rules;
+use crate::rules::Rules;
 
 /// For smaller input, an estimate costs more than it saves.
 const WORTH: usize = 1 << 20;

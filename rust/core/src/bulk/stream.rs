@@ -1,9 +1,9 @@
 //! Scans a stream in bulk: first the seam between two calls, then a chunk.
 
-use super::relay::{self, Share, Workers};
 use super::search::{Collect, Search, Space};
 use super::spans::{Noise, Spans};
-use crate::judge::Rules;
+use super::speculative::{self, Share, Workers};
+use crate::rules::Rules;
 use crate::seam::Seam;
 use crate::tally::Tally;
 
@@ -71,7 +71,7 @@ impl Stream {
     /// Feed a chunk that several threads read, if it is large.
     pub(crate) fn feed_with(&mut self, workers: Workers, chunk: &[u8], collect: &mut impl Share) {
         self.cut(chunk, false, collect, |search, offset, data, collect| {
-            relay::read(workers, search, offset, data, collect)
+            speculative::read(workers, search, offset, data, collect)
         });
     }
 

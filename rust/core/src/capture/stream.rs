@@ -11,7 +11,7 @@ use crate::tally::Tally;
 /// stay in the processor's cache.
 const ENOUGH: usize = 1 << 18;
 
-/// The times of a stretch of a stream, in nanoseconds since 1970.
+/// The times of a segment of a stream, in nanoseconds since 1970.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Times {
     /// For each entry of [`Columns::rows`], the time of the first byte of each message.

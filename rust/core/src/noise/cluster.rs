@@ -1,7 +1,7 @@
 //! Noise with at most a few frames in between, and with nothing near it.
 
-use crate::judge::{Rules, Verdict};
 use crate::reason::Reason;
+use crate::rules::{Rules, Verdict};
 
 /// Bytes of noise, without the frames that interrupt them.
 pub(crate) struct Cluster<'a> {
@@ -19,7 +19,7 @@ pub(crate) struct Cluster<'a> {
 
 impl Cluster<'_> {
     /// Return where the bytes at `at` end before the next frame.
-    pub(crate) fn stretch(&self, at: usize) -> usize {
+    pub(crate) fn segment_end(&self, at: usize) -> usize {
         let later = self.marks.iter().find(|mark| **mark > at);
         later.copied().unwrap_or(self.data.len())
     }
@@ -31,7 +31,7 @@ impl Cluster<'_> {
 
     /// Return the bytes from `at` up to the next frame.
     pub(crate) fn rest(&self, at: usize) -> &[u8] {
-        self.data.get(at..self.stretch(at)).unwrap_or_default()
+        self.data.get(at..self.segment_end(at)).unwrap_or_default()
     }
 
     /// Return the place after the line end at `at`; `at` itself if there is no line end.
@@ -60,7 +60,7 @@ impl Cluster<'_> {
         let mut all = Vec::with_capacity(1);
         let mut at = start;
         while at < end {
-            let to = self.stretch(at).min(end);
+            let to = self.segment_end(at).min(end);
             let place = self.place(at);
             all.push((place, place + (to - at) as u64));
             at = to;
@@ -77,8 +77,8 @@ impl Cluster<'_> {
 
 /// Return why the first byte of the rest of a stream is noise.
 pub(crate) fn reason(rules: &Rules, rest: &[u8]) -> Reason {
-    match rules.judge(rest) {
-        Verdict::Refuted(reason) => reason,
+    match rules.validate(rest) {
+        Verdict::Rejected(reason) => reason,
         // The stream ended, or was flushed.
         Verdict::Waits | Verdict::Frame(_) => Reason::Truncated,
     }

@@ -69,7 +69,7 @@ fn text(cluster: &Cluster<'_>, start: usize, end: usize) -> (Kind, usize) {
 }
 
 fn command_error(cluster: &Cluster<'_>, end: usize) -> (Kind, usize) {
-    let cut = cluster.stretch(end - 1) == end;
+    let cut = cluster.segment_end(end - 1) == end;
     let end = if cut { end } else { cluster.line_end(end) };
     (Kind::CommandError, end)
 }

@@ -1,8 +1,8 @@
 //! Whole frames in the noise: of the other direction, or with an id that the edition lacks.
 
 use super::{Cluster, Diagnosis, Kind, Verdict};
-use crate::judge;
-use crate::judge::Rules;
+use crate::rules;
+use crate::rules::Rules;
 
 impl Diagnosis {
     /// Recognise the whole frame at `at`.
@@ -55,5 +55,5 @@ impl Diagnosis {
 }
 
 fn is_frame(rules: &Rules, data: &[u8]) -> bool {
-    matches!(rules.judge(data), judge::Verdict::Frame(frame) if frame.bytes().len() == data.len())
+    matches!(rules.validate(data), rules::Verdict::Frame(frame) if frame.bytes().len() == data.len())
 }

@@ -19,7 +19,7 @@ pub use servo::{Expected, Instruction, Operand, ServoBus};
 use std::sync::Arc;
 
 use crate::direction::{Direction, Listening};
-use crate::judge::Rules;
+use crate::rules::Rules;
 use crate::table::Table;
 use damaged::Lengths;
 
@@ -192,7 +192,7 @@ impl Diagnosis {
 
     /// Return the end of the plain noise at `start`, and what starts there.
     fn plain(&self, cluster: &Cluster<'_>, start: usize) -> (usize, Verdict) {
-        let limit = cluster.stretch(start).min(start + plain::PIECE);
+        let limit = cluster.segment_end(start).min(start + plain::PIECE);
         let rest = cluster.data.get(start + 1..limit).unwrap_or_default();
         for (place, byte) in (start + 1..).zip(rest) {
             if self.starts_with(*byte) != 0

@@ -37,7 +37,7 @@ pub fn frames_read_as_the_oracles(data: &[u8]) {
     }
 }
 
-/// Check that reading a judged frame has the same result as judging and decoding its bytes.
+/// Check that reading a validated frame has the same result as validating and decoding its bytes.
 fn as_received(table: &Table, rules: &Rules, listening: Listening, frame: Frame<'_>) {
     let bytes = frame.bytes();
     let expected = match reading::received(table, listening, bytes) {
@@ -81,7 +81,7 @@ pub fn hold(table: &Table, oracle: &Oracle, direction: Direction, data: &[u8]) {
     };
     assert_eq!((given, at), (reason, offset.unwrap_or(at)));
     if offset.is_none() {
-        assert!(at < data.len(), "a byte of the data refutes it");
+        assert!(at < data.len(), "a byte of the data rejects it");
         assert_eq!(
             oracle.look(&data[..at]),
             Found::Waits,

@@ -38,7 +38,7 @@ BY_REASON: Mapping[NoiseReason, TestCase] = {
 
 
 def _framing(history: History, now: Received) -> Iterator[Observation]:
-    """Judge noise by the reason why its bytes are not a frame."""
+    """Check noise by the reason why its bytes are not a frame."""
     if now.noise is None:
         yield from (Observation(case) for case in BY_REASON.values())
         return
@@ -108,7 +108,7 @@ def missing_text(request: Received) -> Observation:
 
 
 def _texts(history: History, now: Received) -> Iterator[Observation]:
-    """Judge a frame that comes where a text is due."""
+    """Check a frame that comes where a text is due."""
     due = history.missing_text()
     if now.is_frame and due is not None:
         yield missing_text(due)

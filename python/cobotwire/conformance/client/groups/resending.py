@@ -38,7 +38,7 @@ def _resending(history: History, now: Received) -> Iterator[Observation]:
 
 
 def _power(history: History, now: Received) -> Iterator[Observation]:
-    """Judge a motion after the client itself has switched the arm off or released its joints."""
+    """Check a motion after the client itself has switched the arm off or released its joints."""
     table = history.codec.table
     if now.command is None or not starts_motion(table, now.command):
         return

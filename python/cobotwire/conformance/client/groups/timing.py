@@ -29,7 +29,7 @@ LATE_EXPECTED = TestCase(
 
 
 def _waiting(history: History, now: Received) -> Iterator[Observation]:
-    """Judge a request that comes while another one still awaits its reply.
+    """Check a request that comes while another one still awaits its reply.
 
     Frames carry no sequence numbers, so a reply cannot be assigned to one of two outstanding
     requests. One-way requests are legal at any time, because a stop must not wait.
@@ -48,7 +48,7 @@ def _waiting(history: History, now: Received) -> Iterator[Observation]:
 
 
 def _late_replies(history: History, now: Received) -> Iterator[Observation]:
-    """Judge a request whose reply could be the late reply to another request."""
+    """Check a request whose reply could be the late reply to another request."""
     if not now.awaits_reply:
         return
     complaint = ""

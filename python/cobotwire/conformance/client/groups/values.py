@@ -16,7 +16,7 @@ LISTED = TestCase("value-listed", "A value of a closed list is one of the list."
 
 
 def _values(history: History, now: Received) -> Iterator[Observation]:
-    """Judge a frame that is legal except for a value; a wrong scale often shows here."""
+    """Check a frame that is legal except for a value; a wrong scale often shows here."""
     if now.error is not None:
         field = _field_at(history.codec.table, now.data, now.error.offset)
         listed = field is not None and bool(field.choices)

@@ -50,7 +50,7 @@ AFTER_CHANGE_OR_REPLY = (*AFTER_CHANGE, REPLIED)
 
 
 def request_change(probe: Probe, request: Request[Any]) -> Response:
-    """Send a request that changes something, and judge what comes."""
+    """Send a request that changes something, and check what comes."""
     response = probe.device.request(request)
     command = response.request.command
     call = probe.device.requester.describe(response.request)

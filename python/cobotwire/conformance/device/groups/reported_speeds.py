@@ -22,7 +22,7 @@ STEPS, TURNS = "step_per_second", "revolution_per_minute"
 TURN = 6.0
 # The angles are read this long before and after the speeds, in seconds.
 BESIDE = 0.1
-# A joint is judged if it turns at least this far between the two readings of its angle, in degrees.
+# A joint is checked if it turns at least this far between the readings of its angle, in degrees.
 LEAST = 0.4
 # How many times too large or too small a speed may be: an arm speeds up and slows down.
 APART = 3.0

@@ -108,7 +108,7 @@ def _is_unread(table: Table, command: Command) -> bool:
 
 
 def _send_unread(probe: Probe) -> None:
-    """Send the command once, with the mildest arguments, and judge what comes."""
+    """Send the command once, with the mildest arguments, and check what comes."""
     power = probe.command.safety == "power"
     if power:
         give_power(probe.device)
@@ -130,7 +130,7 @@ def _is_light(table: Table, command: Command) -> bool:
 
 
 def _send_colours(probe: Probe) -> None:
-    """Send colours that differ in each part, the darkest last, and judge what comes."""
+    """Send colours that differ in each part, the darkest last, and check what comes."""
     variant = probe.command.request[0]
     for turn in (0, 7):
         values = physical_values(variant, ordinary(variant, turn=turn))

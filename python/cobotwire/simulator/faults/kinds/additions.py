@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 from cobotwire.simulator.faults.exchange import Piece, Reply, enlarged, followed_by, joined
-from cobotwire.simulator.faults.fault import ONLY, Damage, Fault, Moment, Only
+from cobotwire.simulator.faults.fault import ONLY, Context, Damage, Fault, Only
 from cobotwire.simulator.faults.noise import COMMAND_ERROR, LEAKS, NOISE, mixed_noise
 from cobotwire.simulator.faults.registry import kind
 from cobotwire.simulator.faults.rules import (
@@ -39,28 +39,28 @@ class Addition(Damage):
     times: int = ruled(TIMES, 1)
 
     @abstractmethod
-    def drawn(self, moment: Moment) -> bytes:
+    def drawn(self, context: Context) -> bytes:
         """Return the bytes to add once."""
 
-    def spoil(self, data: bytes, moment: Moment) -> bytes:
+    def spoil(self, data: bytes, context: Context) -> bytes:
         """Add the bytes; ``inside`` data that is too short, they are added after it."""
-        cut, added = self._addition(len(data), moment)
+        cut, added = self._addition(len(data), context)
         return data[:cut] + added + data[cut:]
 
-    def change_reply(self, reply: Reply, moment: Moment) -> Reply:
+    def change_reply(self, reply: Reply, context: Context) -> Reply:
         """Add the bytes to a reply; its pauses stay where they are."""
         if self.of == "request":
             return reply
-        return enlarged(reply, *self._addition(len(joined(reply)), moment))
+        return enlarged(reply, *self._addition(len(joined(reply)), context))
 
-    def _addition(self, size: int, moment: Moment) -> tuple[int, bytes]:
+    def _addition(self, size: int, context: Context) -> tuple[int, bytes]:
         """Return after how many of ``size`` bytes to add, and the bytes to add."""
-        added = b"".join(self.drawn(moment) for _ in range(self.times))
+        added = b"".join(self.drawn(context) for _ in range(self.times))
         cut = {"before": 0, "after": size}.get(self.where, self.after_bytes or 0)
         if self.where == "inside" and not cut and size > 1:
-            cut = moment.random.randrange(1, size)
+            cut = context.random.randrange(1, size)
         shown = added.hex(" ").upper() if len(added) <= 32 else f"{len(added)} bytes"
-        moment.report(f"{shown} {self.where} the {self.of}")
+        context.report(f"{shown} {self.where} the {self.of}")
         return min(cut, size), added
 
 
@@ -75,7 +75,7 @@ class Inserted(Addition):
 
     data: bytes = ruled(pairs_of_hex, b"\x00")
 
-    def drawn(self, moment: Moment) -> bytes:
+    def drawn(self, context: Context) -> bytes:
         """Return the bytes as they are."""
         return self.data
 
@@ -93,18 +93,18 @@ class Noise(Addition):
 
     classes: tuple[str, ...] = ruled(Several(one_of(NOISE)), ())
 
-    def drawn(self, moment: Moment) -> bytes:
+    def drawn(self, context: Context) -> bytes:
         """Draw a piece of noise."""
         if not self.classes:
-            return mixed_noise(moment.random, moment.table)
-        return NOISE[moment.random.choice(self.classes)].draw(moment.random, moment.table)
+            return mixed_noise(context.random, context.table)
+        return NOISE[context.random.choice(self.classes)].draw(context.random, context.table)
 
-    def change_reply(self, reply: Reply, moment: Moment) -> Reply:
+    def change_reply(self, reply: Reply, context: Context) -> Reply:
         """Add the noise; without a reply, send it alone."""
         if reply or self.of == "request":
             # Not super(): a dataclass with slots is a new class, which super() does not know.
-            return Addition.change_reply(self, reply, moment)
-        return (Piece(0.0, self._addition(0, moment)[1]),)
+            return Addition.change_reply(self, reply, context)
+        return (Piece(0.0, self._addition(0, context)[1]),)
 
 
 @kind("servo-leak")
@@ -118,9 +118,9 @@ class ServoLeak(Addition):
 
     packets: tuple[str, ...] = ruled(Several(one_of(LEAKS), empty=False), tuple(LEAKS))
 
-    def drawn(self, moment: Moment) -> bytes:
+    def drawn(self, context: Context) -> bytes:
         """Draw one of the packets."""
-        return LEAKS[moment.random.choice(self.packets)]
+        return LEAKS[context.random.choice(self.packets)]
 
 
 @kind("command-error")
@@ -139,9 +139,9 @@ class CommandError(Fault):
     times: int = ruled(TIMES, 1)
     seconds: float = ruled(SECONDS, 0.0)
 
-    def change_reply(self, reply: Reply, moment: Moment) -> Reply:
+    def change_reply(self, reply: Reply, context: Context) -> Reply:
         """Send the text before the reply, if there is one."""
-        moment.report(f"{COMMAND_ERROR.decode().strip()}, {self.times} times")
+        context.report(f"{COMMAND_ERROR.decode().strip()}, {self.times} times")
         texts = tuple(Piece(self.seconds if n else 0.0, COMMAND_ERROR) for n in range(self.times))
         return followed_by(texts, self.seconds, reply)
 
@@ -158,11 +158,11 @@ class Duplicated(Fault):
 
     seconds: float = ruled(SECONDS, 0.0)
 
-    def change_reply(self, reply: Reply, moment: Moment) -> Reply:
+    def change_reply(self, reply: Reply, context: Context) -> Reply:
         """Send the reply twice."""
-        moment.report(f"again after {self.seconds:g} s")
+        context.report(f"again after {self.seconds:g} s")
         if self.seconds:
-            moment.put_later(self.seconds, reply)
+            context.put_later(self.seconds, reply)
             return reply
         return (*reply[:-1], Piece(reply[-1].pause, reply[-1].data + joined(reply)))
 
@@ -181,7 +181,7 @@ class Echo(Fault):
 
     seconds: float = ruled(SECONDS, 0.0)
 
-    def change_reply(self, reply: Reply, moment: Moment) -> Reply:
+    def change_reply(self, reply: Reply, context: Context) -> Reply:
         """Send the request, then the reply."""
-        moment.report(f"{len(moment.request.data)} bytes of the host come back")
-        return followed_by((Piece(0.0, moment.request.data),), self.seconds, reply)
+        context.report(f"{len(context.request.data)} bytes of the host come back")
+        return followed_by((Piece(0.0, context.request.data),), self.seconds, reply)

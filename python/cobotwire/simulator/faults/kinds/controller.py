@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from cobotwire.simulator.faults.exchange import Piece, Reply, joined
-from cobotwire.simulator.faults.fault import Fault, Moment
+from cobotwire.simulator.faults.fault import Context, Fault
 from cobotwire.simulator.faults.noise import BOOT, PANIC, REBOOT_NULS, at_other_rate
 from cobotwire.simulator.faults.registry import kind
 from cobotwire.simulator.faults.rules import SECONDS, integer, number, ruled
@@ -32,14 +32,14 @@ class Panic(Fault):
     rate_ratio: float = ruled(number(2, 64), 4.0)
     deaf_seconds: float = ruled(SECONDS, 0.5)
 
-    def change_reply(self, reply: Reply, moment: Moment) -> Reply:
+    def change_reply(self, reply: Reply, context: Context) -> Reply:
         """Send the beginning of the reply, and then what a restarting controller sends."""
         begun = joined(reply)[: self.after_bytes]
         boot = at_other_rate(BOOT, self.rate_ratio)
-        moment.report(f"panic, {self.nuls} NULs, deaf for {self.deaf_seconds:g} s, state lost")
-        moment.drop_unsent()
-        moment.connection.deafen(self.deaf_seconds)
-        moment.connection.restart()
+        context.report(f"panic, {self.nuls} NULs, deaf for {self.deaf_seconds:g} s, state lost")
+        context.drop_unsent()
+        context.connection.deafen(self.deaf_seconds)
+        context.connection.restart()
         half = self.deaf_seconds / 2
         pieces = (Piece(0.0, begun + PANIC), Piece(half, bytes(self.nuls)), Piece(half, boot))
         return tuple(piece for piece in pieces if piece.data)

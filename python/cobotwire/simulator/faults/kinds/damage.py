@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from cobotwire.simulator.faults.fault import Damage, Moment
+from cobotwire.simulator.faults.fault import Context, Damage
 from cobotwire.simulator.faults.registry import kind
 from cobotwire.simulator.faults.rules import integer, optional, pairs_of_hex, ruled
 
@@ -22,19 +22,19 @@ class Corrupted(Damage):
     bits: int = ruled(integer(1, 64), 1)
     byte: int | None = ruled(optional(integer(-4096, 4095)), None)
 
-    def spoil(self, data: bytes, moment: Moment) -> bytes:
+    def spoil(self, data: bytes, context: Context) -> bytes:
         """Flip the bits; without that byte, change nothing."""
         places = range(8 * len(data))
         if self.byte is not None:
             places = range(8 * (self.byte % len(data)), 8 * (self.byte % len(data)) + 8)
             if not -len(data) <= self.byte < len(data):
                 return data
-        chosen = sorted(moment.random.sample(places, min(self.bits, len(places))))
+        chosen = sorted(context.random.sample(places, min(self.bits, len(places))))
         spoilt = bytearray(data)
         for place in chosen:
             spoilt[place // 8] ^= 1 << place % 8
         flipped = ", ".join(f"bit {place % 8} of byte {place // 8}" for place in chosen)
-        moment.report(f"{flipped} of the {self.of} flipped")
+        context.report(f"{flipped} of the {self.of} flipped")
         return bytes(spoilt)
 
 
@@ -49,14 +49,14 @@ class WrongLength(Damage):
 
     by: int = ruled(integer(-255, 255), 1)
 
-    def spoil(self, data: bytes, moment: Moment) -> bytes:
+    def spoil(self, data: bytes, context: Context) -> bytes:
         """Change LEN of the first frame."""
-        frame = moment.frame
+        frame = context.frame
         if not data.startswith(frame.header) or len(data) < frame.head_size:
             return data
         right = frame.read_length(data)
         spoilt = frame.with_length(data, right + self.by)
-        moment.report(f"LEN {frame.read_length(spoilt)} in place of {right}")
+        context.report(f"LEN {frame.read_length(spoilt)} in place of {right}")
         return spoilt
 
 
@@ -71,17 +71,17 @@ class WrongId(Damage):
 
     id: int | None = ruled(optional(integer(0, 0xFFFF)), None)
 
-    def spoil(self, data: bytes, moment: Moment) -> bytes:
+    def spoil(self, data: bytes, context: Context) -> bytes:
         """Change the id of the first frame; replies of some formats carry none."""
-        frame = moment.frame
+        frame = context.frame
         if not data.startswith(frame.header) or len(data) < frame.head_size:
             return data
         if not frame.has_id(self.of):
             return data
         right = frame.read_id(data)
-        other = right + moment.random.randrange(1, 256**frame.id_number.width)
+        other = right + context.random.randrange(1, 256**frame.id_number.width)
         spoilt = frame.with_id(data, other if self.id is None else self.id)
-        moment.report(f"id 0x{frame.read_id(spoilt):02X} in place of 0x{right:02X}")
+        context.report(f"id 0x{frame.read_id(spoilt):02X} in place of 0x{right:02X}")
         return spoilt
 
 
@@ -96,7 +96,7 @@ class Replaced(Damage):
 
     by: bytes = ruled(pairs_of_hex, b"\xfe\xfe\x03\x12\x01\xfa")
 
-    def spoil(self, data: bytes, moment: Moment) -> bytes:
+    def spoil(self, data: bytes, context: Context) -> bytes:
         """Return the other bytes."""
-        moment.report(f"{self.by.hex(' ').upper()} in place of the {self.of}")
+        context.report(f"{self.by.hex(' ').upper()} in place of the {self.of}")
         return self.by

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from cobotwire.simulator.faults.exchange import Reply, joined
-from cobotwire.simulator.faults.fault import Damage, Fault, Moment
+from cobotwire.simulator.faults.fault import Context, Damage, Fault
 from cobotwire.simulator.faults.registry import kind
 from cobotwire.simulator.faults.rules import SECONDS, integer, optional, ruled
 
@@ -15,9 +15,9 @@ from cobotwire.simulator.faults.rules import SECONDS, integer, optional, ruled
 class Lost(Damage):
     """The reply is lost; or the request is, and the arm does nothing."""
 
-    def spoil(self, data: bytes, moment: Moment) -> bytes:
+    def spoil(self, data: bytes, context: Context) -> bytes:
         """Return no bytes."""
-        moment.report(f"{len(data)} bytes of the {self.of} lost")
+        context.report(f"{len(data)} bytes of the {self.of} lost")
         return b""
 
 
@@ -32,11 +32,11 @@ class Truncated(Damage):
 
     after_bytes: int | None = ruled(optional(integer(1, 4096)), None)
 
-    def spoil(self, data: bytes, moment: Moment) -> bytes:
+    def spoil(self, data: bytes, context: Context) -> bytes:
         """Return the beginning."""
-        left = self.after_bytes or moment.random.randrange(len(data))
+        left = self.after_bytes or context.random.randrange(len(data))
         if left < len(data):
-            moment.report(f"{left} of {len(data)} bytes of the {self.of} left")
+            context.report(f"{left} of {len(data)} bytes of the {self.of} left")
         return data[:left]
 
 
@@ -53,12 +53,12 @@ class Dropped(Damage):
     byte: int | None = ruled(optional(integer(0, 4095)), None)
     count: int = ruled(integer(1, 4096), 1)
 
-    def spoil(self, data: bytes, moment: Moment) -> bytes:
+    def spoil(self, data: bytes, context: Context) -> bytes:
         """Return the other bytes."""
-        place = moment.random.randrange(len(data)) if self.byte is None else self.byte
+        place = context.random.randrange(len(data)) if self.byte is None else self.byte
         lost = data[place : place + self.count]
         if lost:
-            moment.report(f"{lost.hex(' ').upper()} missing at byte {place} of the {self.of}")
+            context.report(f"{lost.hex(' ').upper()} missing at byte {place} of the {self.of}")
         return data[:place] + data[place + self.count :]
 
 
@@ -75,18 +75,18 @@ class Silent(Fault):
 
     seconds: float = ruled(SECONDS, 1.0)
 
-    def change_request(self, data: bytes, moment: Moment) -> bytes:
+    def change_request(self, data: bytes, context: Context) -> bytes:
         """Lose the request, and the replies to earlier ones that are not sent yet."""
-        unsent = moment.drop_unsent()
-        moment.connection.deafen(self.seconds)
+        unsent = context.drop_unsent()
+        context.connection.deafen(self.seconds)
         also = f", {unsent} bytes unsent" if unsent else ""
-        moment.report(f"for {self.seconds:g} s{also}")
+        context.report(f"for {self.seconds:g} s{also}")
         return b""
 
-    def change_reply(self, reply: Reply, moment: Moment) -> Reply:
+    def change_reply(self, reply: Reply, context: Context) -> Reply:
         """Return no reply: the arm has not received the request; drop what other faults added."""
         if added := len(joined(reply)):
-            moment.report(f"{added} bytes of other faults not sent")
+            context.report(f"{added} bytes of other faults not sent")
         return ()
 
 
@@ -97,8 +97,8 @@ class Frozen(Fault):
 
     wants_reply = False
 
-    def change_request(self, data: bytes, moment: Moment) -> bytes:
+    def change_request(self, data: bytes, context: Context) -> bytes:
         """Lose the request, and everything after it."""
-        moment.report("hangs until a power cycle")
-        moment.connection.deafen()
+        context.report("hangs until a power cycle")
+        context.connection.deafen()
         return b""

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from cobotwire.protocol.table import Command, Table
 from cobotwire.simulator.faults.exchange import Piece, Reply, followed_by, joined
-from cobotwire.simulator.faults.fault import Fault, Moment
+from cobotwire.simulator.faults.fault import Context, Fault
 from cobotwire.simulator.faults.registry import kind
 from cobotwire.simulator.faults.rules import SECONDS, ruled
 
@@ -22,15 +22,15 @@ class UnrequestedEvent(Fault):
 
     seconds: float = ruled(SECONDS, 0.0)
 
-    def change_reply(self, reply: Reply, moment: Moment) -> Reply:
+    def change_reply(self, reply: Reply, context: Context) -> Reply:
         """Send one of the edition's events, then the reply."""
-        events = events_of(moment.table)
+        events = events_of(context.table)
         if not events:
             return reply
-        event = moment.random.choice(events)
-        address = moment.frame.address(joined(reply)) if moment.frame.addresses else None
-        moment.report(f"{event.name} before the reply")
-        first = Piece(0.0, event_frame(moment.table, event, address))
+        event = context.random.choice(events)
+        address = context.frame.address(joined(reply)) if context.frame.addresses else None
+        context.report(f"{event.name} before the reply")
+        first = Piece(0.0, event_frame(context.table, event, address))
         return followed_by((first,), self.seconds, reply)
 
 
@@ -45,16 +45,16 @@ class OtherAddress(Fault):
 
     seconds: float = ruled(SECONDS, 0.0)
 
-    def change_reply(self, reply: Reply, moment: Moment) -> Reply:
+    def change_reply(self, reply: Reply, context: Context) -> Reply:
         """Send the reply of another device, then the reply."""
-        frame, data = moment.frame, joined(reply)
+        frame, data = context.frame, joined(reply)
         own = frame.address(data) if frame.addresses else None
         others = [address for address in frame.addresses if address != own]
-        if not others or moment.request.id is None:
+        if not others or context.request.id is None:
             return reply
-        other = moment.random.choice(others)
-        moment.report(f"the reply of address {other} before the reply")
-        sent = frame.enclose(moment.request.id, frame.data(data, "reply"), other, "reply")
+        other = context.random.choice(others)
+        context.report(f"the reply of address {other} before the reply")
+        sent = frame.enclose(context.request.id, frame.data(data, "reply"), other, "reply")
         return followed_by((Piece(0.0, sent),), self.seconds, reply)
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from cobotwire.simulator.faults.exchange import Piece, Reply, joined, spread
-from cobotwire.simulator.faults.fault import Fault, Moment
+from cobotwire.simulator.faults.fault import Context, Fault
 from cobotwire.simulator.faults.registry import kind
 from cobotwire.simulator.faults.rules import SECONDS, integer, number, optional, ruled
 
@@ -23,11 +23,11 @@ class Late(Fault):
     seconds: float = ruled(SECONDS, 0.1)
     jitter_seconds: float = ruled(SECONDS, 0.0)
 
-    def change_reply(self, reply: Reply, moment: Moment) -> Reply:
+    def change_reply(self, reply: Reply, context: Context) -> Reply:
         """Delay the reply; its bytes stay the same."""
-        seconds = self.seconds + moment.random.uniform(0, self.jitter_seconds)
-        moment.report(f"{seconds:.3f} s late")
-        moment.delay += seconds
+        seconds = self.seconds + context.random.uniform(0, self.jitter_seconds)
+        context.report(f"{seconds:.3f} s late")
+        context.delay += seconds
         return reply
 
 
@@ -44,10 +44,10 @@ class Stalled(Fault):
 
     seconds: float = ruled(SECONDS, 0.727)
 
-    def change_reply(self, reply: Reply, moment: Moment) -> Reply:
+    def change_reply(self, reply: Reply, context: Context) -> Reply:
         """Hold back all replies from now on."""
-        moment.report(f"nothing is sent for {self.seconds:g} s")
-        moment.connection.stall(self.seconds)
+        context.report(f"nothing is sent for {self.seconds:g} s")
+        context.connection.stall(self.seconds)
         return reply
 
 
@@ -64,14 +64,14 @@ class Split(Fault):
     after_bytes: int | None = ruled(optional(integer(1, 4096)), None)
     seconds: float = ruled(SECONDS, 0.1)
 
-    def change_reply(self, reply: Reply, moment: Moment) -> Reply:
+    def change_reply(self, reply: Reply, context: Context) -> Reply:
         """Cut the reply in two."""
         size = len(joined(reply))
         if size < 2 or (self.after_bytes or 0) >= size:
             return reply
-        cut = self.after_bytes or moment.random.randrange(1, size)
+        cut = self.after_bytes or context.random.randrange(1, size)
         first, rest = f"the first {cut} bytes", f"the other {size - cut}"
-        moment.report(f"{self.seconds:g} s between {first} and {rest}")
+        context.report(f"{self.seconds:g} s between {first} and {rest}")
         return spread(reply, (cut,), self.seconds)
 
 
@@ -86,10 +86,10 @@ class Slow(Fault):
 
     bits_per_second: float = ruled(number(1, 1e7), 9600)
 
-    def change_reply(self, reply: Reply, moment: Moment) -> Reply:
+    def change_reply(self, reply: Reply, context: Context) -> Reply:
         """Put a pause before every byte, the first one included."""
         pause = 10 / self.bits_per_second
-        moment.report(f"a byte every {pause * 1e3:.3g} ms")
+        context.report(f"a byte every {pause * 1e3:.3g} ms")
         cut = spread(reply, range(1, len(joined(reply))), pause)
         return (Piece(cut[0].pause + pause, cut[0].data), *cut[1:])
 
@@ -105,9 +105,9 @@ class Merged(Fault):
 
     at_most_seconds: float = ruled(SECONDS, 1.0)
 
-    def change_reply(self, reply: Reply, moment: Moment) -> Reply:
+    def change_reply(self, reply: Reply, context: Context) -> Reply:
         """Hold the reply back, unless another one is held: that one goes with this one."""
-        if not moment.hold(self.at_most_seconds, reply):
+        if not context.hold(self.at_most_seconds, reply):
             return reply
-        moment.report("held back for the next reply")
+        context.report("held back for the next reply")
         return ()

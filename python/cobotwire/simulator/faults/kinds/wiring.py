@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from cobotwire.simulator.faults.exchange import Reply
-from cobotwire.simulator.faults.fault import Damage, Fault, Moment
+from cobotwire.simulator.faults.fault import Context, Damage, Fault
 from cobotwire.simulator.faults.noise import at_other_rate
 from cobotwire.simulator.faults.registry import kind
 from cobotwire.simulator.faults.rules import SECONDS, number, ruled
@@ -25,10 +25,10 @@ class WrongBaud(Damage):
 
     rate_ratio: float = ruled(number(2, 64), 4.0)
 
-    def spoil(self, data: bytes, moment: Moment) -> bytes:
+    def spoil(self, data: bytes, context: Context) -> bytes:
         """Return what the receiver reads."""
         garbage = at_other_rate(data, self.rate_ratio)
-        moment.report(f"{len(data)} bytes read as {garbage.hex(' ').upper()}")
+        context.report(f"{len(data)} bytes read as {garbage.hex(' ').upper()}")
         return garbage
 
 
@@ -44,16 +44,16 @@ class FlowControl(Damage):
 
     seconds: float = ruled(SECONDS, 1.0)
 
-    def spoil(self, data: bytes, moment: Moment) -> bytes:
+    def spoil(self, data: bytes, context: Context) -> bytes:
         """Swallow both bytes."""
         left = data.replace(XON, b"").replace(XOFF, b"")
         if left == data:
             return data
         stops = data.rfind(XOFF) > data.rfind(XON) and self.of == "reply"
         if stops:
-            moment.connection.stop(self.seconds)
+            context.connection.stop(self.seconds)
         what = f"{len(data) - len(left)} bytes of the {self.of} swallowed"
-        moment.report(what + (f", the host is stopped for {self.seconds:g} s" if stops else ""))
+        context.report(what + (f", the host is stopped for {self.seconds:g} s" if stops else ""))
         return left
 
 
@@ -70,10 +70,10 @@ class Unplugged(Fault):
 
     seconds: float = ruled(SECONDS, 0.0)
 
-    def change_reply(self, reply: Reply, moment: Moment) -> Reply:
+    def change_reply(self, reply: Reply, context: Context) -> Reply:
         """Disconnect, at once or later."""
-        moment.report("the port is gone" + (f" in {self.seconds:g} s" if self.seconds else ""))
+        context.report("the port is gone" + (f" in {self.seconds:g} s" if self.seconds else ""))
         if not self.seconds:
             raise PeerDisconnected
-        moment.connection.disconnect(self.seconds)
+        context.connection.disconnect(self.seconds)
         return reply

@@ -1,4 +1,4 @@
-"""A survey returns what the diagnoser, the framer and Python's JSON return frame by frame."""
+"""A summary returns what the diagnoser, the framer and Python's JSON return frame by frame."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from cobotwire.codec.interface import Codec, Frame, Listening
 from cobotwire.diagnose import Diagnoser
 from cobotwire.diagnose.counts import StreamCounts
 from cobotwire.diagnose.explain import DIRECTIONS, FrameReader
-from cobotwire.diagnose.survey import Lines, StreamSurvey
+from cobotwire.diagnose.stream_summary import Lines, StreamSummary
 from cobotwire.protocol.table import Number, Table, Variant
 from cobotwire.simulator.faults.noise import BOOT, PANIC, servo_packet
 
@@ -33,7 +33,7 @@ NATIVE = {
     name: codecs.load(editions.load(name).TABLE, "native")
     for name in ("mycobot280", "mercury_b1", "mybuddy")
 }
-FORMATS = [codec for codec in diagnosed_formats.CODECS if StreamSurvey.reads(codec)]
+FORMATS = [codec for codec in diagnosed_formats.CODECS if StreamSummary.reads(codec)]
 READABLE = "\t\n\r\x1b" + "".join(map(chr, range(0x20, 0x7F)))
 Result = tuple[list[str], dict[str, Any], list[list[Any]], bool]
 
@@ -63,7 +63,7 @@ def diagnosed(codec: Codec, listening: Listening, accept_unknown: bool, data: by
     return _result(counts, [json.dumps(as_object(reader, item)) + "\n" for item in items])
 
 
-def surveyed(
+def summarized(
     codec: Codec,
     listening: Listening,
     accept_unknown: bool,
@@ -72,18 +72,18 @@ def surveyed(
     *,
     lines: bool = True,
 ) -> Result:
-    """Decode with the native survey."""
+    """Decode with the native summary."""
     texts = line_texts(codec.table, file) if lines else None
-    survey = StreamSurvey(codec, listening, accept_unknown=accept_unknown, texts=texts)
+    summary = StreamSummary(codec, listening, accept_unknown=accept_unknown, texts=texts)
     reader, counts, found = _reader(codec, listening), StreamCounts(), []
-    for items in [*map(survey.feed, chunks), survey.flush()]:
+    for items in [*map(summary.feed, chunks), summary.flush()]:
         counts.add_findings(items)
         for item in items:
             if isinstance(item, Lines):
                 found.append(item.text)
             elif lines or not isinstance(item, Frame):
                 found.append(json.dumps(as_object(reader, item)) + "\n")
-    counts.add_survey(survey)
+    counts.add_summary(summary)
     return _result(counts, "".join(found).splitlines(keepends=True))
 
 
@@ -99,9 +99,9 @@ def check(
     twice = stream + frame * (1 + 130 // len(frame)) + stream
     cut = data.draw(strategies.chunked(twice))
     expected = diagnosed(codec, listening, accept, twice)
-    assert surveyed(codec, listening, accept, cut) == expected
+    assert summarized(codec, listening, accept, cut) == expected
     # Counts alone take another path: frames never leave the native code.
-    assert surveyed(codec, listening, accept, cut, lines=False)[1:] == expected[1:]
+    assert summarized(codec, listening, accept, cut, lines=False)[1:] == expected[1:]
 
 
 @pytest.mark.parametrize("edition", NATIVE)
@@ -130,7 +130,7 @@ def test_survey_equals_diagnosis_for_any_table(
     table: Table, listening: Listening, data: st.DataObject
 ) -> None:
     codec = codecs.load(table, "native")
-    if StreamSurvey.reads(codec):
+    if StreamSummary.reads(codec):
         frame = data.draw(random_tables.frames(table))
         check(codec, listening, data.draw(random_tables.streams(table)), frame, data)
 
@@ -158,7 +158,7 @@ def test_survey_ends_damaged_frame_at_same_of_several_footers(footers: tuple[int
     codec = NATIVE["mycobot280"]
     apart = codec.encode("get_angles", "request", []) * 20
     data = (bytes(frame) + apart) * 2
-    assert surveyed(codec, "both", False, [data]) == diagnosed(codec, "both", False, data)
+    assert summarized(codec, "both", False, [data]) == diagnosed(codec, "both", False, data)
 
 
 def _read_of(servo: int, register: int, count: int) -> bytes:
@@ -185,7 +185,7 @@ def test_survey_names_same_registers_if_python_diagnoses_noise_in_between(
     pieces = data.draw(st.lists(st.tuples(packets, noise, packets, apart), min_size=2, max_size=6))
     stream = b"".join(map(b"".join, pieces))
     cut = data.draw(strategies.chunked(stream))
-    assert surveyed(codec, "both", False, cut) == diagnosed(codec, "both", False, stream)
+    assert summarized(codec, "both", False, cut) == diagnosed(codec, "both", False, stream)
 
 
 @given(st.lists(st.text(READABLE, max_size=70), min_size=1, max_size=8))
@@ -194,7 +194,7 @@ def test_lines_hold_texts_as_python_writes_them(texts: list[str]) -> None:
     codec = NATIVE["mycobot280"]
     apart = codec.encode("stop", "request", []) * 20
     data = b"".join(b"text: " + text.encode() + b"\r\n" + apart for text in ["", *texts])
-    assert surveyed(codec, "both", False, [data]) == diagnosed(codec, "both", False, data)
+    assert summarized(codec, "both", False, [data]) == diagnosed(codec, "both", False, data)
 
 
 def test_survey_reads_servo_packets_in_noise_that_is_too_long_to_wait_for() -> None:
@@ -205,7 +205,7 @@ def test_survey_reads_servo_packets_in_noise_that_is_too_long_to_wait_for() -> N
     data = packets + apart + packets + apart + _status_of(2, 2) + bytes(2**20 + 9)
     data += _read_of(1, 0x38, 2) + apart + _status_of(1, 2)
     chunks = [data[start : start + 65536] for start in range(0, len(data), 65536)]
-    assert surveyed(codec, "both", False, chunks) == diagnosed(codec, "both", False, data)
+    assert summarized(codec, "both", False, chunks) == diagnosed(codec, "both", False, data)
 
 
 @given(st.lists(st.floats(width=64), min_size=1, max_size=200))
@@ -217,5 +217,5 @@ def test_lines_hold_floats_as_python_writes_them(values: list[float]) -> None:
     # Most values of arms are whole numbers of hundredths.
     values += [round(value, 2) for value in values if abs(value) < 1e15]
     data = b"".join(codec.encode("get", "reply", [value]) for value in values)
-    lines = surveyed(codec, "reply", False, [data])[0]
+    lines = summarized(codec, "reply", False, [data])[0]
     assert lines == diagnosed(codec, "reply", False, data)[0]

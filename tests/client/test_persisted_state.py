@@ -16,8 +16,8 @@ from hypothesis import strategies as st
 
 from both_ways import InLoop
 from cobotwire import LinkError, MyCobot, ReplyTimeout
-from cobotwire.client import port_memory, port_notes
-from cobotwire.client.port_memory import PortMemory
+from cobotwire.client import persisted_state, port_notes
+from cobotwire.client.persisted_state import PortMemory
 from cobotwire.client.port_notes import LONGEST
 from cobotwire.editions.mycobot import AsyncMyCobot
 from cobotwire.editions.mycobot280 import MyCobot280
@@ -78,7 +78,7 @@ def test_half_a_request_of_a_closed_client_is_ended_by_the_next_one(
             except LinkError as error:
                 written = error.written
     # As in another process: only the file is left.
-    monkeypatch.setattr(port_memory, "_here", {})
+    monkeypatch.setattr(persisted_state, "_here", {})
     received = pty.drain()
     with MyCobot280(pty.url) as arm:
         arm.stop()
@@ -116,7 +116,7 @@ def _memory(peer: ScriptedPeer) -> PortMemory:
 
 @pytest.fixture
 def memory(monkeypatch: pytest.MonkeyPatch) -> Iterator[PortMemory]:
-    monkeypatch.setattr(port_memory, "_here", {})
+    monkeypatch.setattr(persisted_state, "_here", {})
     with ScriptedPeer() as peer:
         yield _memory(peer)
 
@@ -125,7 +125,7 @@ def test_note_is_read_once(memory: PortMemory, folder: Path) -> None:
     until = time.monotonic() + 5
     note = PersistedState((LateFrame(GET_ENCODER, until),), (Part(MOTION, 8),))
     memory.leave(note)
-    port_memory._here.clear()
+    persisted_state._here.clear()
     assert memory.recall() == note
     assert memory.recall().empty
     assert not list(folder.iterdir())
@@ -134,7 +134,7 @@ def test_note_is_read_once(memory: PortMemory, folder: Path) -> None:
 @pytest.mark.parametrize("until", [-1.0, 1e9, float("nan"), float("inf")])
 def test_note_of_another_time_expects_no_reply(memory: PortMemory, until: float) -> None:
     memory.leave(PersistedState((LateFrame(GET_ENCODER, time.monotonic() + until),)))
-    port_memory._here.clear()
+    persisted_state._here.clear()
     assert memory.recall().empty
 
 
@@ -173,7 +173,7 @@ def _damage(memory: PortMemory, folder: Path, **values: object) -> None:
     """Leave a note with these values in the place of its own."""
     until = time.monotonic() + 10
     memory.leave(PersistedState((LateFrame(GET_ENCODER, until),), (Part(MOTION, 8),)))
-    port_memory._here.clear()
+    persisted_state._here.clear()
     [path] = folder.iterdir()
     path.write_text(json.dumps(json.loads(path.read_text()) | values))
 
@@ -220,7 +220,7 @@ def test_whatever_a_note_holds_a_port_is_opened_and_holds_no_request_for_longer_
     memory.leave(
         PersistedState((LateFrame(GET_ENCODER, time.monotonic() + 5),), (Part(MOTION, 8),))
     )
-    port_memory._here.clear()
+    persisted_state._here.clear()
     [path] = folder.iterdir()
     if isinstance(content, bytes):
         path.write_bytes(content)
@@ -242,7 +242,7 @@ def test_note_of_a_session_that_lost_its_port_is_read(memory: PortMemory, folder
     exchange.fail(LinkError("/dev/arm", "it is gone"), 0.0)
     left = exchange.persist(0.0)
     memory.leave(left)
-    port_memory._here.clear()
+    persisted_state._here.clear()
     assert set(memory.recall().parts) == set(left.parts) != set()
 
 
@@ -255,7 +255,7 @@ def test_what_is_in_the_place_of_a_note_is_not_read(
     kind: str,
 ) -> None:
     memory.leave(PersistedState((), (Part(MOTION, 8),)))
-    port_memory._here.clear()
+    persisted_state._here.clear()
     [path] = folder.iterdir()
     note = path.rename(folder.parent / "note")
     if kind == "fifo":

@@ -1,10 +1,10 @@
-"""Divide a stream into stretches that can be decoded on their own, and decode one of them.
+"""Divide a stream into segments that can be decoded on their own, and decode one of them.
 
 A scan has no memory: what it finds from a position on depends only on the bytes from there on. So
 two scans that ever stand at the same position agree from there on. A frame that begins before a
 position reaches at most the longest frame beyond it, so the scan of the whole stream enters the
 bytes after any cut at one of a few positions. Where the scans from all of these have met, the scan
-of the whole stream stands too. A stretch goes from the meeting point of one cut to that of the next
+of the whole stream stands too. A segment goes from the meeting point of one cut to that of the next
 one. Each is found from the bytes after its cut alone.
 """
 
@@ -21,7 +21,7 @@ from cobotwire.protocol.frame_index import longest_frame
 from cobotwire.protocol.table import Direction
 
 # Scans that have not met within this many bytes probably never do: the bytes were made so. Then the
-# cut does not count, and the stretch before it goes on.
+# cut does not count, and the segment before it goes on.
 PATIENCE = 1 << 16
 # Bytes that are read and decoded at once.
 CHUNK = 1 << 23
@@ -40,7 +40,7 @@ class Stream(Protocol):
         ...
 
 
-class Stretch(NamedTuple):
+class Segment(NamedTuple):
     """The bytes from ``start`` to before ``end``, which the scan of the stream visits both."""
 
     start: int
@@ -69,19 +69,19 @@ class Divider:
         self._patience = patience
         self._reach = _reach(codec, listening)
 
-    def stretch(self, piece: int) -> Stretch:
-        """Return the stretch that belongs to a piece, counted from 0; it may be empty.
+    def segment(self, piece: int) -> Segment:
+        """Return the segment that belongs to a piece, counted from 0; it may be empty.
 
-        The stretches of all pieces, one after another, are the stream. If the scans after a cut do
-        not meet within the patience, the piece after it has an empty stretch.
+        The segments of all pieces, one after another, are the stream. If the scans after a cut do
+        not meet within the patience, the piece after it has an empty segment.
         """
         cuts = self._cuts
         start = self.meeting_point(cuts[piece - 1]) if piece else 0
         if start is None:
-            return Stretch(0, 0)
+            return Segment(0, 0)
         later = (self.meeting_point(cut) for cut in cuts[piece:])
         end = next((point for point in later if point is not None), self._stream.size)
-        return Stretch(start, end)
+        return Segment(start, end)
 
     def meeting_point(self, cut: int) -> int | None:
         """Return the first position from ``cut`` on at which all scans from before it stand.
@@ -110,20 +110,20 @@ class Divider:
         return len(first.data) if isinstance(first, Frame) else 1
 
 
-def decode_stretch(
+def decode_segment(
     codec: Codec,
     listening: Listening,
     stream: Stream,
-    stretch: Stretch,
+    segment: Segment,
     *,
     raw: bool = False,
     chunk: int = CHUNK,
 ) -> Iterator[Columns]:
-    """Yield the columns of a stretch, chunk by chunk, with the offsets that the stream has.
+    """Yield the columns of a segment, chunk by chunk, with the offsets that the stream has.
 
-    The counters of the last columns are those of the stretch.
+    The counters of the last columns are those of the segment.
     """
-    start, end = stretch
+    start, end = segment
     reader = codec.column_reader(listening, raw=raw, offset=start)
     counters = Counters(0, {}, {}, 0)
     for at in range(start, end, chunk):
@@ -134,7 +134,7 @@ def decode_stretch(
     last = reader.flush()
     if waiting and end < stream.size:
         # The scan of the stream stands at the end, so no frame crosses it, and the flush was right
-        # to refute what waited. But the reasons lie in the bytes that follow.
+        # to reject what waited. But the reasons lie in the bytes that follow.
         ahead = stream.read(end - waiting, waiting + _reach(codec, listening))
         noise = _with_reasons(counters, _noise_of(codec, listening, ahead, waiting))
         last.counters = last.counters._replace(noise=noise)

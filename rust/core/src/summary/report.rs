@@ -3,8 +3,8 @@
 use super::clusters::{Clusters, Span};
 use super::lines::{Described, Noise, Writer};
 use super::{Bytes, Extent, Sink};
-use crate::judge::{Rules, Verdict};
 use crate::noise::{Cluster, Diagnosis, Expected, Finding, Kind, reason};
+use crate::rules::{Rules, Verdict};
 
 /// Counts and writes what is certain.
 pub(super) struct Report {
@@ -199,7 +199,7 @@ impl Report {
         };
         let rest = self.frames.get(self.written..).unwrap_or_default();
         for at in rest.iter().take_while(|at| **at < until) {
-            if let Verdict::Frame(frame) = self.rules.judge(bytes.from(*at)) {
+            if let Verdict::Frame(frame) = self.rules.validate(bytes.from(*at)) {
                 writer.frame(&mut self.lines, *at, frame, sink);
             }
             self.written += 1;

@@ -1,4 +1,4 @@
-"""Send the requests of a stream at the moments of its slots, in the consumer's thread."""
+"""Send the requests of a stream when its periods begin, in the consumer's thread."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ from cobotwire.session.sampling import Poll
 CHECK_SECONDS = 0.05
 
 
-class Slots:
-    """Sends the requests of one stream, one after another, the first one at its moment."""
+class Poller:
+    """Sends the requests of one stream, one after another, the first one when its period begins."""
 
     def __init__(
         self,
@@ -30,7 +30,7 @@ class Slots:
         self._closed = closed
 
     def readings(self, polls: Sequence[Poll], at: float) -> list[Reading[Any]] | None:
-        """Send each request in turn, the first one at a moment.
+        """Send each request in turn, the first one at a given time.
 
         Returns:
             No readings if a request had no legal reply; None if the stream was closed by then.

@@ -18,8 +18,8 @@ class Heading(NamedTuple):
     length: int
 
 
-class Judge:
-    """Judges candidates by the messages of some directions; earlier directions take precedence.
+class Validator:
+    """Validates candidates by the messages of some directions; earlier directions take precedence.
 
     With ``accept_unknown`` an id that the edition lacks may have any LEN up to the maximum.
     """
@@ -37,7 +37,7 @@ class Judge:
         self._addresses = frozenset(frame.addresses)
         self._longest = frame.overhead + max(self._lengths, default=0)
 
-    def judge(self, data: bytes, start: int = 0) -> int | NoiseReason:
+    def validate(self, data: bytes, start: int = 0) -> int | NoiseReason:
         """Return the size of the frame at ``start``, or the reason why no frame is there.
 
         ``truncated`` means that more bytes could complete a frame.
@@ -47,7 +47,7 @@ class Judge:
         heading = self.heading(rest)
         if isinstance(heading, str):
             return heading
-        reason = self.refute(heading)
+        reason = self.reject(heading)
         if reason is not None:
             return reason
         size = frame.overhead + heading.length
@@ -57,9 +57,9 @@ class Judge:
         return size if rest[end:size] == frame.end(rest[:end]) else "bad-check"
 
     def heading(self, rest: bytes) -> Heading | NoiseReason:
-        """Return the heading of a candidate at the start of ``rest``, or why it is refuted.
+        """Return the heading of a candidate at the start of ``rest``, or why it is rejected.
 
-        The parts are judged in their order on the wire, each when its last byte has come.
+        The parts are validated in their order on the wire, each when its last byte has come.
         """
         frame = self.frame
         if not frame.header.startswith(rest[: len(frame.header)]):
@@ -82,7 +82,7 @@ class Judge:
             return "bad-length" if come and frame.read_length(rest) not in self._lengths else None
         if self.accept_unknown or frame.id_at + frame.id_number.width > size:
             return None
-        # After LEN, the two are judged together.
+        # After LEN, the two are validated together.
         alone = frame.id_at < frame.length_at
         known = not alone or any(index.has(frame.read_id(rest)) for index in self.indexes)
         return None if known else "unknown-id"
@@ -103,7 +103,7 @@ class Judge:
         has_id = any(self.frame.has_id(index.direction) for index in self.indexes)
         return "bad-length" if heading.id == of.id or not has_id else "unknown-id"
 
-    def refute(self, heading: Heading) -> NoiseReason | None:
+    def reject(self, heading: Heading) -> NoiseReason | None:
         """Return why no legal frame has that heading; None if a frame can have it."""
         if self.messages(heading):
             return None

@@ -1,4 +1,4 @@
-"""Judge the frames that a reader found, by the truth about the line and by the table."""
+"""Score the frames that a reader found, by the truth about the line and by the table."""
 
 from __future__ import annotations
 
@@ -76,7 +76,7 @@ def is_legal(table: Table, legal: Legal, frame: bytes) -> bool:
     )
 
 
-def judge(table: Table, listening: Listening, line: Line, read: Sequence[Accepted]) -> Verdict:
+def score(table: Table, listening: Listening, line: Line, read: Sequence[Accepted]) -> Verdict:
     """Compare what was read with what was sent."""
     whole = np.flatnonzero(line.whole)
     starts, ends = line.starts[whole].tolist(), line.ends[whole].tolist()

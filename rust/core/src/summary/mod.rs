@@ -1,4 +1,4 @@
-//! Surveys a whole stream: counts its messages and its noise, and writes lines of JSON if wanted.
+//! Summarizes a whole stream: counts its messages and its noise, and writes lines of JSON if wanted.
 //!
 //! Frames and the frequent classes of noise never reach Python. The rest is handed over: noise of
 //! other classes, and the first noise of each class. Python also writes the texts of errors and of
@@ -19,19 +19,19 @@ use std::sync::Arc;
 pub use lines::{Described, Texts};
 pub use readings::Names;
 
-use crate::bulk::{Census, Counted, Plans, Stream};
+use crate::bulk::{Counted, Counts, Plans, Stream};
 use crate::decode::DecodeError;
 use crate::direction::{Direction, Listening};
-use crate::judge::Rules;
 use crate::noise::{Diagnosis, Expected, ServoBus};
 use crate::reason::Reason;
+use crate::rules::Rules;
 use crate::table::Table;
 use crate::tally::Tally;
 use clusters::{Clusters, Span};
 use lines::Writer;
 use report::Report;
 
-/// Receives what a survey does not only count, in the order of the stream.
+/// Receives what a summary does not only count, in the order of the stream.
 pub trait Sink {
     /// Receive the lines of `size` bytes of the stream, from `offset` on. They hold no noise that
     /// was handed over.
@@ -60,10 +60,10 @@ pub struct Extent {
     pub bytes: u64,
 }
 
-/// Surveys one stream.
-pub struct Survey {
+/// Summarizes one stream.
+pub struct Summary {
     stream: Stream,
-    census: Census,
+    counts: Counts,
     /// The bytes of the stream that are not reported yet.
     buffer: Vec<u8>,
     /// Where they start.
@@ -91,8 +91,8 @@ impl<'a> Bytes<'a> {
     }
 }
 
-impl Survey {
-    /// Return a survey of a new stream. With `texts` it writes lines.
+impl Summary {
+    /// Return a summary of a new stream. With `texts` it writes lines.
     #[must_use]
     pub fn new(
         table: Arc<Table>,
@@ -104,7 +104,7 @@ impl Survey {
     ) -> Self {
         Self {
             stream: Stream::new(rules.clone()),
-            census: Census::new(Arc::clone(&table), plans, texts.is_some()),
+            counts: Counts::new(Arc::clone(&table), plans, texts.is_some()),
             buffer: Vec::new(),
             base: 0,
             clusters: Clusters::default(),
@@ -125,7 +125,7 @@ impl Survey {
     /// Return the counts of the messages, in the order of their first frames.
     #[must_use]
     pub fn counted(&self) -> Vec<Counted> {
-        self.census.counted()
+        self.counts.counted()
     }
 
     /// Return how much noise was not handed over, by class, in the order of [`Kind::ALL`].
@@ -137,13 +137,13 @@ impl Survey {
     /// Feed bytes.
     pub fn feed(&mut self, chunk: &[u8], sink: &mut impl Sink) {
         self.buffer.extend_from_slice(chunk);
-        self.stream.feed(chunk, &mut self.census);
+        self.stream.feed(chunk, &mut self.counts);
         self.settle(false, sink);
     }
 
     /// Report everything: no more bytes follow.
     pub fn flush(&mut self, sink: &mut impl Sink) {
-        self.stream.flush(&mut self.census);
+        self.stream.flush(&mut self.counts);
         self.settle(true, sink);
     }
 
@@ -154,7 +154,7 @@ impl Survey {
             base: self.base,
         };
         let (clusters, report) = (&mut self.clusters, &mut self.report);
-        report.add_frames(self.census.frames.as_mut());
+        report.add_frames(self.counts.frames.as_mut());
         let noise = self.stream.take_noise();
         for (from, size) in noise.offsets.into_iter().zip(noise.sizes) {
             if clusters.is_apart(from) {

@@ -14,7 +14,7 @@ use std::thread::{self, Builder, available_parallelism};
 
 use super::block::BLOCK;
 use super::search::{Collect, Search};
-use crate::judge::{Rules, Verdict};
+use crate::rules::{Rules, Verdict};
 use cobotwire_simd::SEEN;
 
 /// The number of bytes that a guess may examine.
@@ -101,7 +101,7 @@ struct Cuts<'a> {
 }
 
 impl<'a> Cuts<'a> {
-    /// Cut `data`. After the last piece there are enough bytes to judge each position in it.
+    /// Cut `data`. After the last piece there are enough bytes to validate each position in it.
     fn new(workers: Workers, rules: &Rules, offset: u64, data: &'a [u8]) -> Self {
         let rest = GUESSING + rules.longest().max(SEEN);
         let stride = workers.stride.unwrap_or(STRIDE);
@@ -119,7 +119,7 @@ impl<'a> Cuts<'a> {
         let cut = piece * self.stride;
         let framed = |at: &usize| {
             let rest = self.data.get(*at..).unwrap_or_default();
-            matches!(rules.judge(rest), Verdict::Frame(_))
+            matches!(rules.validate(rest), Verdict::Frame(_))
         };
         let end = cut + GUESSING;
         match piece {

@@ -1,4 +1,4 @@
-"""Send the requests of a stream at the moments of its slots, on an event loop."""
+"""Send the requests of a stream when its periods begin, on an event loop."""
 
 from __future__ import annotations
 
@@ -19,8 +19,8 @@ from cobotwire.session.sampling import Poll
 CHECK_SECONDS = 0.05
 
 
-class AsyncSlots:
-    """Sends the requests of one stream, one after another, each at its moment.
+class AsyncPoller:
+    """Sends the requests of one stream, one after another, each when its period begins.
 
     A timer sends the request, so the consumer's task wakes up only once: when the reply is there.
     """
@@ -33,7 +33,7 @@ class AsyncSlots:
         self._pending: PendingRequest | None = None
 
     async def readings(self, polls: Sequence[Poll], at: float) -> list[Reading[Any]] | None:
-        """Send each request in turn, the first one at a moment.
+        """Send each request in turn, the first one at a given time.
 
         Returns:
             No readings if a request had no legal reply; None if the stream was closed by then.
@@ -67,7 +67,7 @@ class AsyncSlots:
         return readings
 
     async def _answered(self, poll: Poll, at: float) -> PendingRequest | None:
-        """Have a request sent at a moment, or at once if it has passed; wait until it is done.
+        """Have a request sent at a given time, or at once if that has passed; wait for its end.
 
         Returns:
             None if the stream was closed by then.

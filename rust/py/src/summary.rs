@@ -1,10 +1,10 @@
-//! `NativeSurvey`: counts the messages and the noise of a stream, and writes lines of JSON.
+//! `NativeSummary`: counts the messages and the noise of a stream, and writes lines of JSON.
 
 use std::sync::Arc;
 
 use cobotwire_core::{
     DecodeError, Described, Direction, Expected, Instruction, Kind, Names as LineNames, Operand,
-    Reason, ServoBus, Sink, Survey, Texts,
+    Reason, ServoBus, Sink, Summary, Texts,
 };
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyList, PyString};
@@ -16,11 +16,11 @@ use crate::exclusive::Exclusive;
 use crate::framer::counters;
 use crate::names::Names;
 
-/// Surveys one stream.
+/// Summarizes one stream.
 #[pyclass(frozen, module = "cobotwire._native")]
-pub struct NativeSurvey {
+pub struct NativeSummary {
     edition: Arc<Edition>,
-    core: Exclusive<Survey>,
+    core: Exclusive<Summary>,
 }
 
 /// The texts of lines: what starts each, the names of commands, and the names of the fields of
@@ -51,7 +51,7 @@ struct GivenInstruction {
 }
 
 #[pymethods]
-impl NativeSurvey {
+impl NativeSummary {
     #[new]
     #[pyo3(signature = (codec, listening, accept_unknown, bus, texts))]
     fn new(
@@ -71,7 +71,7 @@ impl NativeSurvey {
                 fields: [requests, replies],
             },
         });
-        let survey = Survey::new(
+        let summary = Summary::new(
             Arc::clone(&edition.core),
             Arc::clone(edition.plans(listening)),
             rules,
@@ -81,7 +81,7 @@ impl NativeSurvey {
         );
         Ok(Self {
             edition,
-            core: Exclusive::new("survey", survey),
+            core: Exclusive::new("summary", summary),
         })
     }
 
@@ -169,7 +169,7 @@ fn instruction(given: GivenInstruction) -> Instruction {
 struct Parts<'a, 'py> {
     names: &'static Names,
     edition: &'a Edition,
-    /// What does the rest in Python: `cobotwire.diagnose.survey.Rest`.
+    /// What does the rest in Python: `cobotwire.diagnose.stream_summary.Rest`.
     rest: &'a Bound<'py, PyAny>,
     list: Bound<'py, PyList>,
     failed: Option<PyErr>,

@@ -1,4 +1,4 @@
-//! Judges whether a frame starts some bytes: the one legality check of framer and decoder.
+//! Validates whether a frame starts some bytes: the one legality check of framer and decoder.
 
 use crate::direction::Direction;
 use crate::frame::{Frame, FrameFormat, Layout};
@@ -12,7 +12,7 @@ pub enum Verdict<'a> {
     /// A frame starts there.
     Frame(Frame<'a>),
     /// No frame starts there, whatever bytes follow.
-    Refuted(Reason),
+    Rejected(Reason),
     /// More bytes could still make it a frame.
     Waits,
 }
@@ -33,7 +33,7 @@ pub struct Rules {
     plain: bool,
     /// The header of a plain format.
     first_two: [u8; 2],
-    nameless: bool,
+    lacks_ids: bool,
 }
 
 impl Rules {
@@ -43,7 +43,7 @@ impl Rules {
             frame: frame.clone(),
             legal: Legal::new(frame, commands, all),
             plain: frame.plain(),
-            nameless: !all.iter().any(|direction| frame.has_id(*direction)),
+            lacks_ids: !all.iter().any(|direction| frame.has_id(*direction)),
             first_two: frame.header.first_chunk().copied().unwrap_or_default(),
         }
     }
@@ -56,7 +56,7 @@ impl Rules {
         let least = self.frame.length(0, Direction::Request);
         let legal = self
             .legal
-            .believing(u16::try_from(least).unwrap_or(u16::MAX), most);
+            .permissive(u16::try_from(least).unwrap_or(u16::MAX), most);
         Self { legal, ..self }
     }
 
@@ -73,8 +73,8 @@ impl Rules {
     }
 
     /// Return whether no frame carries a command id.
-    pub(crate) fn nameless(&self) -> bool {
-        self.nameless
+    pub(crate) fn lacks_ids(&self) -> bool {
+        self.lacks_ids
     }
 
     pub(crate) fn legal(&self) -> &Legal {
@@ -104,11 +104,11 @@ impl Rules {
         length.end().max(id.end()).max(overhead + usize::from(most))
     }
 
-    /// Judge whether a frame starts `rest`. This takes no longer than reading the longest frame
+    /// Validate whether a frame starts `rest`. This takes no longer than reading the longest frame
     /// once, whatever the bytes.
     #[inline]
     #[must_use]
-    pub fn judge<'a>(&self, rest: &'a [u8]) -> Verdict<'a> {
+    pub fn validate<'a>(&self, rest: &'a [u8]) -> Verdict<'a> {
         // The fast path for most positions: the same as `judge_stepwise`, with four bytes at once.
         if let Some(&[first, second, length, id]) = rest.first_chunk()
             && self.plain
@@ -116,7 +116,7 @@ impl Rules {
             return if [first, second] == self.first_two {
                 self.judge_body(rest, length, id)
             } else {
-                Verdict::Refuted(Reason::NoHeader)
+                Verdict::Rejected(Reason::NoHeader)
             };
         }
         self.judge_stepwise(rest)
@@ -125,19 +125,19 @@ impl Rules {
     #[inline(never)]
     fn judge_stepwise<'a>(&self, rest: &'a [u8]) -> Verdict<'a> {
         let claim = match self.claim(rest) {
-            Err(reason) => return Verdict::Refuted(reason),
+            Err(reason) => return Verdict::Rejected(reason),
             Ok(None) => return Verdict::Waits,
             Ok(Some(claim)) => claim,
         };
         let Claim { length, id } = claim;
         match self.legal.wide_heading(length, id) {
-            Heading::Refuted(reason) => Verdict::Refuted(reason),
+            Heading::Rejected(reason) => Verdict::Rejected(reason),
             _ => self.judge_rest(rest, self.frame.layout.overhead, claim),
         }
     }
 
     /// Return the LEN and the id of a candidate; `None` if they have not come yet. The parts are
-    /// judged in their order on the wire, each when its last byte has come.
+    /// validated in their order on the wire, each when its last byte has come.
     pub(crate) fn claim(&self, rest: &[u8]) -> Result<Option<Claim>, Reason> {
         let header = self.frame.header.iter().zip(rest);
         if header.into_iter().any(|(byte, given)| byte != given) {
@@ -157,7 +157,7 @@ impl Rules {
         let bad_length = length_read
             .filter(|read| !self.legal.is_length(*read))
             .map(|_| (length.at, Reason::BadLength));
-        // After LEN, the two are judged together.
+        // After LEN, the two are validated together.
         let bad_id = id_read
             .filter(|read| id.at < length.at && !self.legal.is_id(*read))
             .map(|_| (id.at, Reason::UnknownId));
@@ -173,11 +173,11 @@ impl Rules {
             .map(|(length, id)| Claim { length, id }))
     }
 
-    /// Judge a candidate of a plain format; `h h LEN` precede the id.
+    /// Validate a candidate of a plain format; `h h LEN` precede the id.
     #[inline]
     fn judge_body<'a>(&self, rest: &'a [u8], length: u8, id: u8) -> Verdict<'a> {
-        if let Heading::Refuted(reason) = self.legal.heading(length, id) {
-            return Verdict::Refuted(reason);
+        if let Heading::Rejected(reason) = self.legal.heading(length, id) {
+            return Verdict::Rejected(reason);
         }
         let (length, id) = (u16::from(length), u16::from(id));
         self.judge_rest(rest, 3, Claim { length, id })
@@ -191,7 +191,7 @@ impl Rules {
             Some(bytes) if self.frame.check.holds(bytes) => {
                 Verdict::Frame(Frame::new(bytes, length, id))
             }
-            Some(_) => Verdict::Refuted(Reason::BadCheck),
+            Some(_) => Verdict::Rejected(Reason::BadCheck),
         }
     }
 }

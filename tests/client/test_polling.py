@@ -1,4 +1,4 @@
-"""Slots of asyncio streams that are closed, cancelled, or share the arm."""
+"""Periods of asyncio streams that are closed, cancelled, or share the arm."""
 
 from __future__ import annotations
 
@@ -62,7 +62,7 @@ def test_call_of_another_task_waits_for_the_reply_that_is_under_way() -> None:
 
 
 def test_stream_and_calls_on_one_arm_share_it() -> None:
-    # Calls and slots take turns; each gets the reply to its own request.
+    # Calls and periods take turns; each gets the reply to its own request.
     async def drive(arm: AsyncMyCobot) -> Any:
         stream, other = arm.stream(GetAngles(), rate=100), arm.stream(IsPowerOn(), rate=100)
         values: list[Any] = []
@@ -89,7 +89,7 @@ def test_second_stream_waits_for_the_reply_that_is_under_way() -> None:
     assert run(peer, drive, timeout=20) == ((1.4, (True,)), REQUEST + ASK_POWER)
 
 
-def test_late_reply_to_a_cancelled_slot_is_not_taken_by_the_next_call() -> None:
+def test_late_reply_to_a_cancelled_period_is_not_taken_by_the_next_call() -> None:
     peer = ScriptedPeer([SLOW, ANGLES], [OTHERS])
 
     async def drive(arm: AsyncMyCobot) -> Any:
@@ -103,7 +103,7 @@ def test_late_reply_to_a_cancelled_slot_is_not_taken_by_the_next_call() -> None:
     assert run(peer, drive, timeout=20, retry=retry) == (3.96, REQUEST * 2)
 
 
-def test_silence_after_a_cancelled_slot_holds_the_next_call_for_the_grace_time_only() -> None:
+def test_silence_after_a_cancelled_period_holds_the_next_call_for_the_grace_time_only() -> None:
     peer = ScriptedPeer([], [ANGLES])
 
     async def drive(arm: AsyncMyCobot) -> Any:
@@ -117,7 +117,7 @@ def test_silence_after_a_cancelled_slot_holds_the_next_call_for_the_grace_time_o
     assert run(peer, drive, timeout=2 * LONGEST, retry=retry) == (1.4, REQUEST * 2)
 
 
-def test_slot_that_is_cancelled_before_its_moment_sends_nothing() -> None:
+def test_period_that_is_cancelled_before_its_period_sends_nothing() -> None:
     async def drive(arm: AsyncMyCobot) -> Any:
         stream = arm.stream(GetAngles(), rate=25)
         await anext(stream)
@@ -145,7 +145,7 @@ def test_request_that_is_under_way_is_left_to_the_next_session() -> None:
     assert run(peer, drive, timeout=20, retry=LONG) == ([REQUEST], REQUEST)
 
 
-def test_silent_arm_costs_each_slot_its_deadline_and_no_more() -> None:
+def test_silent_arm_costs_each_period_its_deadline_and_no_more() -> None:
     async def drive(arm: AsyncMyCobot) -> Any:
         stream = arm.stream(GetAngles(), rate=20)
         samples = [await anext(stream) for _ in range(3)]
@@ -156,7 +156,7 @@ def test_silent_arm_costs_each_slot_its_deadline_and_no_more() -> None:
     assert result == (([0, 1, 2], 3), REQUEST * 6)
 
 
-def test_unplugged_port_ends_the_slot_that_waits() -> None:
+def test_unplugged_port_ends_the_period_that_waits() -> None:
     async def drive(arm: AsyncMyCobot) -> None:
         with pytest.raises(LinkError):
             await anext(arm.stream(GetAngles(), rate=20))
@@ -182,9 +182,9 @@ def test_forked_child_neither_reads_nor_writes_the_line_of_a_stream() -> None:
     assert run(peer, drive, timeout=20) == ((0, 1.4), REQUEST)
 
 
-# At 25 Hz, the wait for the next slot is so short that only the timer checks.
+# At 25 Hz, the wait for the next period is so short that only the timer checks.
 @pytest.mark.parametrize(("rate", "closed_after"), [(2, 0.1), (25, 0.0)])
-def test_stream_that_is_closed_before_its_slot_sends_nothing(
+def test_stream_that_is_closed_before_its_period_sends_nothing(
     rate: float, closed_after: float
 ) -> None:
     async def drive(arm: AsyncMyCobot) -> int:

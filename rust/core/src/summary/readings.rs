@@ -8,9 +8,9 @@ use super::{Sink, repr};
 use crate::decode::{self, DecodeError, Decoded};
 use crate::direction::{Direction, Listening};
 use crate::frame::Frame;
-use crate::judge::Claim;
 use crate::message::VariantId;
 use crate::reason::Reason;
+use crate::rules::Claim;
 use crate::table::Table;
 
 /// The names that readings hold, in JSON.

@@ -1,4 +1,4 @@
-"""Survey a whole stream: only rare noise becomes Python objects.
+"""Summarize a whole stream: only rare noise becomes Python objects.
 
 :class:`~cobotwire.diagnose.diagnoser.Diagnoser` diagnoses any stream. This module does the same for
 captures, hundreds of times as fast: the native codec counts the messages and the frequent classes
@@ -20,9 +20,9 @@ from cobotwire.diagnose.frames import Frames
 from cobotwire.diagnose.servo import Expected, ServoBus, servo_bus
 
 if TYPE_CHECKING:
-    from cobotwire.codec.native import NativeSurvey
+    from cobotwire.codec.native import NativeSummary
 
-# The native survey returns noise to diagnose, and lines as (offset, size, text).
+# The native summary returns noise to diagnose, and lines as (offset, size, text).
 Part = Noise | tuple[int, int, str]
 
 
@@ -55,8 +55,8 @@ class Lines(Frame):
         self.text = text
 
 
-class StreamSurvey:
-    """Surveys a stream: counts everything, and returns what Python has to look at.
+class StreamSummary:
+    """Summarizes a stream: counts everything, and returns what Python has to look at.
 
     Attributes:
         native: the counts.
@@ -75,7 +75,7 @@ class StreamSurvey:
 
     @staticmethod
     def reads(codec: Codec) -> bool:
-        """Return whether streams of a codec can be surveyed."""
+        """Return whether streams of a codec can be summarized."""
         return codec.name == "native" and codec.table.frame.reply_has_id
 
     def feed(self, data: bytes) -> list[Item]:
@@ -88,7 +88,7 @@ class StreamSurvey:
 
 
 class Rest:
-    """Does what the native survey leaves to Python; the native survey calls it.
+    """Does what the native summary leaves to Python; the native summary calls it.
 
     It diagnoses noise of rare classes, and describes noise that has few different descriptions.
     """
@@ -124,8 +124,8 @@ class Rest:
         self._items += self._diagnoser.feed(events)
 
     def describe(self, kind: str, reason: NoiseReason, data: bytes, id: int | None) -> str:
-        """Return text and facts of noise that the native survey has found."""
-        assert self._texts is not None, "a survey without lines describes nothing"
+        """Return text and facts of noise that the native summary has found."""
+        assert self._texts is not None, "a summary without lines describes nothing"
         return self._texts.describe(self._finding(kind, reason, data, id))
 
     def _finding(self, kind: str, reason: NoiseReason, data: bytes, id: int | None) -> Finding:
@@ -147,9 +147,9 @@ class Rest:
 
 def _native(
     codec: Codec, listening: Listening, accept_unknown: bool, texts: LineTexts | None
-) -> NativeSurvey:
-    from cobotwire.codec.native import NativeCodec, NativeSurvey
+) -> NativeSummary:
+    from cobotwire.codec.native import NativeCodec, NativeSummary
 
-    assert isinstance(codec, NativeCodec), "reads() tells whether a codec has a survey"
+    assert isinstance(codec, NativeCodec), "reads() tells whether a codec has a summary"
     names = None if texts is None else texts[:4]
-    return NativeSurvey(codec, listening, accept_unknown, servo_bus().vocabulary, names)
+    return NativeSummary(codec, listening, accept_unknown, servo_bus().vocabulary, names)

@@ -1,4 +1,4 @@
-"""Stretches of a stream, decoded on their own, hold exactly what one scan finds."""
+"""Segments of a stream, decoded on their own, hold exactly what one scan finds."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ import strategies
 from cobotwire import codec as codecs
 from cobotwire.codec.columns import Columns
 from cobotwire.codec.interface import Codec, Listening
-from cobotwire.codec.stretches import PATIENCE, Divider, decode_stretch, even_cuts
+from cobotwire.codec.segments import PATIENCE, Divider, decode_segment, even_cuts
 from cobotwire.protocol.errors import UsageError
 from cobotwire.protocol.table import Table
 from codec.results import joined_columns
@@ -43,7 +43,7 @@ class Bytes(NamedTuple):
 
 
 def found(parts: Sequence[Columns], ends: Sequence[Columns]) -> Any:
-    """Join columns in their order; ``ends`` have the counters of the stretches."""
+    """Join columns in their order; ``ends`` have the counters of the segments."""
     counts: Counter[Any] = Counter()
     for end in ends:
         counts.update(end.counters.frames)
@@ -72,8 +72,8 @@ def divided(
     ends: list[Columns] = []
     for piece in range(len(cuts) + 1):
         # Each worker has a divider of its own.
-        stretch = Divider(codec, listening, stream, cuts, patience).stretch(piece)
-        decoded = list(decode_stretch(codec, listening, stream, stretch, raw=raw, chunk=chunk))
+        segment = Divider(codec, listening, stream, cuts, patience).segment(piece)
+        decoded = list(decode_segment(codec, listening, stream, segment, raw=raw, chunk=chunk))
         parts += decoded
         ends.append(decoded[-1])
     return found(parts, ends)
@@ -96,7 +96,7 @@ def adversarial(draw: st.DrawFn) -> bytes:
 
 @st.composite
 def streams(draw: st.DrawFn, table: Table) -> bytes:
-    """Draw the bytes of a bad line, with stretches that were made to mislead among them."""
+    """Draw the bytes of a bad line, with segments that were made to mislead among them."""
     parts = [draw(random_tables.any_streams(table))]
     if table in TABLES.values() and draw(st.booleans()):
         parts += [adversarial(draw), draw(strategies.streams(table))]
@@ -131,7 +131,7 @@ def test_chain_of_frames_within_frames_is_read_from_its_start(name: codecs.Codec
     codec = codec_of("mycobot", name)
     places = list(even_cuts(len(stream), 1000))
     divider = Divider(codec, "reply", Bytes(stream), places, patience=200)
-    assert [bool(divider.stretch(piece)) for piece in range(7)] == [True] + [False] * 6
+    assert [bool(divider.segment(piece)) for piece in range(7)] == [True] + [False] * 6
     assert divided(codec, "reply", stream, places, patience=200) == whole(codec, "reply", stream)
 
 
@@ -147,15 +147,15 @@ def test_scans_of_a_clean_line_meet_within_two_frames(name: codecs.CodecName) ->
         assert cut <= point < cut + 17 + 29
 
 
-def test_stretches_follow_one_another_without_a_gap() -> None:
+def test_segments_follow_one_another_without_a_gap() -> None:
     codec = codec_of("mycobot280", "native")
     stream = Bytes((FLAG + b"\0\xfe" + OUTER) * 300)
     places = [100, 100, 101, 3000, 7000]
     divider = Divider(codec, "both", stream, places)
-    stretches = [divider.stretch(piece) for piece in range(6)]
-    assert stretches[0].start == 0
-    assert stretches[-1].end == stream.size
-    assert all(left.end == right.start for left, right in pairwise(stretches))
+    segments = [divider.segment(piece) for piece in range(6)]
+    assert segments[0].start == 0
+    assert segments[-1].end == stream.size
+    assert all(left.end == right.start for left, right in pairwise(segments))
 
 
 @EACH_CODEC

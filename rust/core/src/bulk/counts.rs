@@ -25,7 +25,7 @@ pub struct Counted {
 }
 
 /// Counts the messages of a stream, and keeps the positions of their frames if that is wanted.
-pub(crate) struct Census {
+pub(crate) struct Counts {
     table: Arc<Table>,
     plans: Arc<Plans>,
     buckets: Buckets,
@@ -35,7 +35,7 @@ pub(crate) struct Census {
     pub(crate) frames: Option<Vec<u64>>,
 }
 
-impl Census {
+impl Counts {
     pub(crate) fn new(table: Arc<Table>, plans: Arc<Plans>, keep: bool) -> Self {
         Self {
             buckets: Buckets::default(),
@@ -55,7 +55,7 @@ impl Census {
     }
 }
 
-impl Collect for Census {
+impl Collect for Counts {
     fn take(&mut self, offset: u64, block: &Block, found: [&[Found]; LANES]) {
         if let Some(frames) = &mut self.frames {
             let all = found.into_iter().flatten();

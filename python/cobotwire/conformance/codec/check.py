@@ -25,7 +25,7 @@ ABILITIES: dict[TestCase, str] = {
 }
 
 
-def judge(
+def check(
     table: Table, question: Question, answer: Json, can: Collection[str]
 ) -> Iterator[Observation]:
     """Yield an observation for each test case that the question tests."""
