@@ -1,7 +1,7 @@
 """Decode what Wireshark captured between a program and an arm on TCP: decode_wireshark.py FILE.
 
-A second argument is the TCP port of the arm (9000). Each line shows the time, who sent it, and what
-it means; bytes that are no frame are noise. tshark, which comes with Wireshark, puts the segments
+A second argument is the TCP port of the arm (9000). Each line shows the time, the sender, and
+the message; bytes outside frames are noise. tshark, which comes with Wireshark, puts the segments
 of each connection in order. In Wireshark itself, the dissector shows the same: docs/wireshark.md.
 """
 

@@ -10,7 +10,7 @@ SPEED = 60  # percent
 # The gripper points down: x, y, z in millimetres, rx, ry, rz in degrees.
 PICK = Coords(218, -65, 90, -180, 0, -90)
 PLACE = Coords(174, 168, 90, -180, 0, -30)
-CLEARANCE = 60  # millimetres above the part, so that the way between the places is free
+CLEARANCE = 60  # millimetres above the part, so that nothing is hit between the places
 OPEN, CLOSED = 100, 30  # percent of the gripper's opening
 # A bent arm; from here both places are in reach without turning the wrist over.
 READY = [0, -30, -60, 0, 0, 0]
@@ -39,7 +39,7 @@ def visit(arm: MyCobot280, place: Coords, opening: int) -> None:
 
 
 def grip(arm: MyCobot280, opening: int) -> None:
-    """Set the gripper, and wait until it stands; it stands early if it holds a part."""
+    """Set the gripper, and wait until it stops; it stops early if it holds a part."""
     arm.set_gripper_value(opening, SPEED)
     while arm.is_gripper_moving():
         time.sleep(0.05)

@@ -61,7 +61,7 @@ def floats(draw: st.DrawFn, width: int) -> Number:
 
 @st.composite
 def fields(draw: st.DrawFn, name: str, selector: int = -1) -> Field:
-    """Draw a field of one number or a row of them, under a selector if it is given."""
+    """Draw a field of one number or of an array, under a selector if it is given."""
     if draw(st.integers(0, 3)) == 0:
         return draw(shaped_fields(name))
     many = draw(st.booleans())

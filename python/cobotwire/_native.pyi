@@ -345,7 +345,7 @@ class Memory(Buffer):
     """Numbers in memory, for memoryviews, NumPy and Arrow; read-only."""
 
 def read_within(descriptor: int, timeout: float, alarm: int, /) -> bytes | None:
-    """Read what has come on a descriptor that never blocks, as soon as there is something.
+    """Read received bytes from a non-blocking descriptor, as soon as there are any.
 
     Returns:
         The bytes, empty at the end of the data; None if nothing came within ``timeout`` seconds, or

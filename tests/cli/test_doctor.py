@@ -50,7 +50,7 @@ def examined(scripts: list[list[Step]], *words: str) -> tuple[int, dict[str, Any
 
 
 def kinds(report: dict[str, Any]) -> list[str]:
-    """Return the kinds of the problems, except that a busy machine is slow."""
+    """Return the kinds of the problems, without ``slow``, which a busy machine causes."""
     found = [problem["kind"] for problem in report["problems"]]
     times = report["round_trip"]
     slow = times is not None and times["median"] > SLOW_SECONDS

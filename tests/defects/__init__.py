@@ -1,1 +1,1 @@
-"""Independent subjects with planted defects: are they found, and does a message name the cause?"""
+"""Measure how many planted defects are found, and how many messages name the cause."""

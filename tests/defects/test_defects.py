@@ -15,7 +15,7 @@ from defects.key import HERE, SUBJECTS, Defect, defects
 from defects.listing import figures, line
 
 KEY = {(defect.subject, defect.switch): defect for defect in defects()}
-# One for each rule that finds what no other rule finds, and for each way to name a cause.
+# One defect for each rule that alone finds a defect, and one for each way to name a cause.
 ARM = (
     *("wrong-header", "little-endian", "hundredths-of-millimetres", "reply-of-the-request-before"),
     *("two-joints-swapped", "double-reply", "echo", "replies-in-reverse", "settings-coupled"),

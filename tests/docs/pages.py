@@ -19,7 +19,7 @@ BLOCK = re.compile(
     r"(?:^<!-- (?P<how>file|append): (?P<name>\S+) -->\n)?^```(?P<kind>\w+)\n(?P<text>.*?)^```$",
     re.DOTALL | re.MULTILINE,
 )
-# Only a command that hangs takes as long, also on a busy machine.
+# Even on a busy machine, only a command that hangs takes this long.
 SECONDS = 900
 PORT = "/dev/ttyACM0"
 # `cobotwire doctor` reports this on a busy machine, whatever the page is about.
@@ -35,7 +35,7 @@ class CommandRun(NamedTuple):
 
     @property
     def matches(self) -> bool:
-        """Return whether the command printed what the page shows, and at most that it is slow."""
+        """Return whether the output is as on the page; reports of a slow line are ignored."""
         printed = SLOW.sub("", self.printed)
         return re.fullmatch(output_pattern(self.expected), printed) is not None
 

@@ -174,7 +174,7 @@ def conversation(robot: Robot, theirs: Called, mine: Called) -> str:
         late = [each for each in (theirs, mine) if each.result is REJECTED and each.written]
         return "rejected after it wrote" if late else ""
     if mine.result is FAILED and theirs.result in (None, -1):
-        # Both have no reply; how often a request is repeated is a matter of the client.
+        # Neither side got a reply; how often a client repeats a request is not compared.
         return ""
     shows = [_frames(robot, theirs.written, mine.written)]
     if (mine.result, type(mine.result)) != (theirs.result, type(theirs.result)):

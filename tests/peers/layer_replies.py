@@ -1,6 +1,6 @@
 """Compare what the maker's class and ours return for the same reply: type, shape and value.
 
-Replies are those of the edition, the values that the library documents, one that names the
+The replies are legal ones of the edition, values that the library documents, legal ones after the
 request's first argument, and data of every size that the library's parser distinguishes.
 """
 
@@ -41,23 +41,23 @@ from robots.comparison import calls_of
 from robots.robot import Call, Robot
 from strategies import legal_values
 
-# Of variants of many sizes, the smallest ones.
+# The variants of a reply that are compared: at most this many, the smallest first.
 MOST_VARIANTS = 3
-# Of a method, so many calls are tried until the library accepts one.
+# The calls of a method that are tried, until the library accepts one.
 MOST_CALLS = 3
 # Larger data are not drawn: the library reads LEN as a signed byte, and no more than 30.
 LARGEST = 64
-# Each byte of data of any size; the sizes that are compared for orders, too.
+# The fillings of data of any size; sizes that the edition lacks use only the last.
 FILLINGS = (0x01, 0x82)
 DONE = b"\x01"
 SMALLEST = frozenset({0, 1, 2, 3})
-# In which a documented number comes: in bytes, or in words with their scale.
+# The scales of the words that carry a documented number; single bytes carry it unscaled.
 SCALES = (1, 10, 100)
 _NUMBER = re.compile(r"-?\b\d+\b")
 
 
 class Reply(NamedTuple):
-    """A reply as an arm sends it, and what it shows: a kind of replies, for the ruling."""
+    """A reply: its kind, which rulings refer to; its data; and the number if it is documented."""
 
     kind: str
     data: bytes
@@ -65,14 +65,14 @@ class Reply(NamedTuple):
 
 
 def _tool_replies(request: bytes) -> list[bytes]:
-    """Return what a gripper of a Pro 450 replies: it accepts, refuses, or reports a number."""
+    """Return replies of a Pro 450's gripper: it accepts, refuses, or reports a number."""
     if request[:2] == SENSOR:
         return [bytes([*request[:2], 24, *pack(">6f", *range(6)), 0, 0])]
     at = 3 if request[:2] == HEAD else 0
     return [request[: at + 4] + word.to_bytes(2, "big") + b"\0\0" for word in (1, 0, 300)]
 
 
-# Messages of other protocols, by the command that passes them on.
+# Replies in other protocols, by the command that relays them.
 SENSOR, HEAD = b"\x01\x04", b"\xfe\xfe"
 DATA: dict[str, Any] = {
     "tool_serial_write_data": _tool_replies,
@@ -105,7 +105,7 @@ def compare_reply(robot: Robot, codec: Codec, call: Call, reply: Reply) -> str:
 
 
 def _accepted(robot: Robot, codec: Codec, calls: list[Call]) -> Call | None:
-    """Return a call that both sides send when they get a reply of the edition."""
+    """Return the first call that both sides accept, given a reply of the edition."""
     return next((call for call in calls[:MOST_CALLS] if _is_accepted(robot, codec, call)), None)
 
 
@@ -128,18 +128,18 @@ def _shown(
     both_fail = ours.result is FAILED and theirs.result in (None, -1, MISTAKE, ENDLESS)
     if both_fail or _same(theirs.result, ours.result):
         return ""
-    # No source says what another number than 1 in an acknowledgement means: ours returns 1.
+    # No source says what an acknowledgement other than 1 means; ours returns 1.
     acknowledges = _command(codec, call).ack and reply.data != DONE
     if acknowledges and (numbers_of(ours.result) == [1] or ours.result is FAILED):
         return ""
     if reply.kind == ANY and ours.result is FAILED and not _is_legal(codec, call, frame):
-        # What no source describes is an error in ours. The library returns what it happens to read.
+        # Ours rejects a reply that no source describes; the library returns whatever it parses.
         return ""
     if reply.kind == DOCUMENTED and set(numbers_of(theirs.result)) != {reply.number}:
-        # The library reads another number than the one that is documented.
+        # The library does not return the documented number.
         return ""
     shows = relation(theirs.result, ours.result)
-    # How many numbers a reply of any size has is no matter of the two sides.
+    # For data of any size, ignore how many numbers each side returns.
     return re.sub(r"\d+ ", "", shows) if reply.kind == ANY else shows
 
 
@@ -150,7 +150,7 @@ def _same(theirs: Any, ours: Any) -> bool:
 
 
 def _is_legal(codec: Codec, call: Call, frame: bytes) -> bool:
-    """Return whether the edition has a reply."""
+    """Return whether a frame is a legal reply of the edition."""
     try:
         codec.decode("reply", frame, of=call.command)
     except ProtocolError:
@@ -169,7 +169,7 @@ def _frame(robot: Robot, call: Call, data: bytes) -> bytes:
 
 
 def _is_accepted(robot: Robot, codec: Codec, call: Call) -> bool:
-    """Return whether both sides send a call when they get a reply of the edition."""
+    """Return whether both sides accept a call, given a reply of the edition."""
     reply = next(_legal(codec, call), None)
     if reply is None:
         return False
@@ -182,13 +182,13 @@ def _by_method(robot: Robot) -> dict[str, list[Call]]:
     """Return the calls with a reply that our class offers."""
     offered = set(dir(class_of(robot)))
     found: dict[str, list[Call]] = {}
-    # A robot that reports the end of motions answers an order when it ends, minutes later.
+    # A robot that reports the end of a motion sends the reply then, perhaps minutes later.
     waits = robot.table.find_role("motion ended") is not None
     replied = {
         c.name for c in robot.table.commands if c.reply and not (c.event or (c.ack and waits))
     }
     for call in calls_of(robot):
-        # The methods that wait for the end of a motion ask something else.
+        # The methods that wait for the end of a motion also send other requests.
         if call.method in offered and call.command in replied and "sync_" not in call.method:
             found.setdefault(call.method, []).append(call)
     return found
@@ -198,7 +198,7 @@ EDITION, DOCUMENTED, NAMED, ANY = "of the edition", "documented", "with its numb
 
 
 def _replies(robot: Robot, codec: Codec, call: Call) -> Iterator[Reply]:
-    """Return replies; data that one kind has are not in a later one."""
+    """Yield replies with distinct data, each under the first kind that has these data."""
     seen: set[bytes] = set()
     for reply in _all_replies(robot, codec, call):
         if reply.data not in seen and len(reply.data) <= LARGEST:
@@ -227,7 +227,7 @@ def _all_replies(robot: Robot, codec: Codec, call: Call) -> Iterator[Reply]:
     # What our class does with data of any size depends on the robot only.
     further = _distinguished() if not command.ack and robot.peer in ROBOTS else SMALLEST
     if command.name in DATA:
-        # It passes on bytes of any number.
+        # The command relays data of any size.
         return
     for size in sorted(near | further):
         fillings = FILLINGS if size in sizes else FILLINGS[-1:]
@@ -236,7 +236,7 @@ def _all_replies(robot: Robot, codec: Codec, call: Call) -> Iterator[Reply]:
 
 @cache
 def _documented(kind: Any, method: str) -> tuple[int, ...]:
-    """Return the numbers in what a docstring of the library says about the result."""
+    """Return the numbers in the part of a library docstring that describes the result."""
     text = inspect.getdoc(getattr(kind, method)) or ""
     after = re.split(r"(?i)returns?:", text)[1:]
     return tuple(sorted({int(each) for part in after for each in _NUMBER.findall(part)}))

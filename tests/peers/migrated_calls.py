@@ -64,7 +64,7 @@ def lines_of(name: str, robot: Robot, stride: int) -> Iterator[str]:
 
 
 def methods_of(name: str) -> set[str]:
-    """Return the methods of a class, but for those that it shares with another class."""
+    """Return the methods of a class, except those that it shares with another class."""
     kind = library()[name]
     found = set(filter(kind.is_method, dir(kind.layer))) - NO_CALLS
     bases = {base.__name__ for base in kind.layer.__mro__[1:]}

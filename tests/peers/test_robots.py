@@ -15,7 +15,7 @@ from robots.comparison import OPEN, REJECTED, compare, difference
 from robots.drawing import drawn_call
 from robots.robot import SERVO_BUS, Ruling
 
-# Every method is compared by `make robots`; here one of so many.
+# `make robots` compares every method; these tests compare every STRIDE-th.
 STRIDE = 6
 
 # There are many classes.

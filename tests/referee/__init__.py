@@ -1,1 +1,1 @@
-"""Sessions of client libraries with the referee."""
+"""Run client libraries against the referee."""

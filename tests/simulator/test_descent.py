@@ -1,4 +1,4 @@
-"""Least squares find angles for a pose from angles near them, also for arms with coupled joints."""
+"""Least squares find the angles of a pose from a guess near them, also for coupled joints."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def test_pose_is_found_from_angles_near_it(name: str) -> None:
 
 
 def _by_scipy(geometry: Geometry, target: Pose, guess: Sequence[float]) -> tuple[float, ...]:
-    """Return what another implementation of bounded least squares finds, without slopes."""
+    """Return the angles that scipy's bounded least squares finds, without analytic derivatives."""
     weight = REFINING_RADIAN / math.sqrt(2)
 
     def off(angles: Sequence[float]) -> list[float]:

@@ -1,4 +1,4 @@
-"""Vectors made with the reference codec, for targets that tests compare on any protocol."""
+"""Make vectors with the reference codec, so that tests can compare targets on any protocol."""
 
 from __future__ import annotations
 
@@ -30,15 +30,15 @@ _UTF8 = """
 
 
 def codec_of_edition(edition: Edition, name: codecs.CodecName = "reference") -> Codec:
-    """Return a codec of an edition of the generator."""
+    """Return a codec for an edition in the generator's model."""
     return codecs.load(table_of(json.loads(edition_json(edition))), name)
 
 
 class Document:
-    """Vectors of one edition in the format of ``docs/vectors.md``, as our codec decides them.
+    """Vectors of one edition in the format of ``docs/vectors.md``, with the results of our codec.
 
-    ``encoded`` is a part that shared vectors lack: physical values, with the frame or the rejected
-    field.
+    The section ``encoded`` exists only here: physical values, with their frame or with the field
+    that is rejected.
     """
 
     def __init__(self, edition: Edition, codec: Codec | None = None) -> None:
@@ -47,14 +47,14 @@ class Document:
         self.clear()
 
     def clear(self) -> None:
-        """Begin again without vectors."""
+        """Remove all vectors."""
         parts = ("messages", "rejected", "malformed", "streams", "encoded")
         self.record: Record = {"edition": self.edition, **{part: [] for part in parts}}
 
     def add(self, direction: Direction, data: bytes, of: CommandVariant | None = None) -> None:
         """Add bytes that should be a frame: a message or malformed bytes.
 
-        ``of`` says as which message the bytes must be decoded.
+        ``of`` is the command that the bytes are decoded as.
         """
         record: Record = {"name": data.hex(" "), "direction": direction, "bytes": data.hex(" ")}
         if of is not None:
@@ -67,7 +67,7 @@ class Document:
             return
         variants = found.command.variants(direction)
         number = next(i for i, each in enumerate(variants) if each is found.variant)
-        # Damage may have changed bits that no field has: they are 0 in the frame that is built.
+        # Damage may have set bits that belong to no field; encoding clears them.
         name, address = found.command.name, self.codec.table.frame.address(data)
         built = self.codec.encode(name, direction, found.values, variant=number, address=address)
         self.record["messages"].append(
@@ -82,7 +82,7 @@ class Document:
         )
 
     def add_odd_texts(self) -> None:
-        """Add replies of the made-up sensor that end with bytes that are, or are not, UTF-8."""
+        """Add replies of the made-up sensor with texts in valid and in invalid UTF-8."""
         for text in _UTF8.split(","):
             data = bytes(12) + bytes.fromhex(text)
             self.add("reply", self.codec.table.frame.enclose(0x26, data))
@@ -128,7 +128,7 @@ class Document:
         for _ in range(data.draw(st.integers(1, 3))):
             damaged[data.draw(st.integers(0, len(frame) - 1))] = data.draw(st.integers(0, 255))
         self.add(direction, bytes(damaged))
-        # With a right check, most changes are changes of values; otherwise the frame is rejected.
+        # With a corrected check, most damage only changes values. A wrong check rejects the frame.
         format = self.codec.table.frame
         body = bytes(damaged[: len(frame) - format.check_size])
         self.add(direction, body + format.end(body))
@@ -151,7 +151,7 @@ class Document:
 
 
 def _number(variant: Variant, number: int) -> int:
-    """Return a variant's number in the spec, where the sizes of a list are the same variant."""
+    """Return a variant's number in the spec, which counts all sizes of a list as one variant."""
     return 0 if any(field.sizes for field in variant.fields) else number
 
 
@@ -163,7 +163,7 @@ def _numbers(variant: Variant, field: Field, rows: list[tuple[int, ...]]) -> lis
 
 
 def _written(value: float) -> float | str:
-    """Return a number as JSON and JavaScript can write it."""
+    """Return a number, or the name that JavaScript has for it if JSON cannot write it."""
     if isfinite(value):
         return value
     return "NaN" if value != value else f"{'-' if value < 0 else ''}Infinity"
@@ -180,7 +180,7 @@ def _rejected(error: ProtocolError) -> str:
 
 
 def _argument(argument: str, variant: Variant) -> tuple[str, int]:
-    """Return the field and the element that the name of an argument means."""
+    """Return the field and the index of its element that an argument's name refers to."""
     for field in variant.fields:
         # Each case has its own names for its elements.
         for element, number in chain.from_iterable(enumerate(c.numbers) for c in field.cases):

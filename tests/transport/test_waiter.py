@@ -1,4 +1,4 @@
-"""A wait ends when its descriptor is ready, after its time, or by ``wake``; on each platform."""
+"""On each platform, a wait ends if its descriptor is ready, its time is over, or on ``wake``."""
 
 from __future__ import annotations
 

@@ -136,7 +136,7 @@ def client(
 
 
 class _Ending:
-    """Ends the run when its time is over or the client has disconnected."""
+    """Ends the run on a time limit, after silence, or when the client has gone."""
 
     def __init__(
         self,
@@ -148,7 +148,7 @@ class _Ending:
     ) -> None:
         self._server, self._referee, self._idle = server, referee, idle
         self._ended = ended
-        # Why the run ends before its end; empty: it does not.
+        # Why the run ends early; empty if it does not.
         self.why = ""
         self._end = None if seconds is None else time.monotonic() + seconds
         self._over = False
@@ -214,13 +214,13 @@ def read_script(table: Table, text: str, name: str) -> Iterator[ScriptLine]:
         try:
             if words := shlex.split(line, comments=True):
                 yield _script_line(table, words, place)
-        # shlex raises a ValueError, and so does a wrong call: UsageError is one.
+        # shlex raises ValueError. A wrong call raises UsageError, a subclass of ValueError.
         except ValueError as error:
             raise UsageError("expect", line, message=f"{place}: {error}") from None
 
 
 def _script_line(table: Table, words: list[str], place: str) -> ScriptLine:
-    """Parse a call; the text that follows some requests is not compared."""
+    """Parse a call of the script, without the text that follows some requests."""
     address = None
     if words[1:][-2:-1] == ["--address"]:
         *words, _, to = words

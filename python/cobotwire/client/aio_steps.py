@@ -1,4 +1,4 @@
-"""The exchange on an event loop: take what has come, let time pass, write the next request."""
+"""The exchange on an event loop: take the received bytes, let time pass, write the next request."""
 
 from __future__ import annotations
 
@@ -64,7 +64,7 @@ class AsyncSteps:
             raise LinkError(self.lost.url, self.lost.detail)
 
     def start(self, pending: PendingRequest) -> None:
-        """Queue a request; send it at once if nothing else is under way, after what has come."""
+        """Queue a request. If nothing is under way, take received bytes and send it at once."""
         self.exchange.enqueue(pending)
         self.turn()
 
@@ -75,7 +75,7 @@ class AsyncSteps:
             self.turn()
 
     def turn(self) -> None:
-        """Take what has come, let time pass, send the request that is next, and set the timer."""
+        """Take the received bytes, let time pass, send the next request, and set the timer."""
         exchange, data, now, full = self.exchange, self._read(), time.monotonic(), False
         events = exchange.advance(data, now)
         if self.lost is not None:

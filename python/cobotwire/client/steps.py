@@ -69,7 +69,7 @@ class Steps:
         self.leading = Leading(self.state)
 
     def start(self, pending: PendingRequest) -> None:
-        """Queue a request; send it at once if nothing else is under way, after what has come."""
+        """Queue a request. If nothing is under way, take received bytes and send it at once."""
         with self.state:
             self.exchange.enqueue(pending)
         if self.leading.take_lead():
@@ -109,7 +109,7 @@ class Steps:
             self._advance(self._read(longest), ends_by)
 
     def drain(self, until: float) -> None:
-        """Read what has come, so that no buffer overflows while only one-way requests are sent."""
+        """Read received bytes, so that no buffer overflows while only one-way requests are sent."""
         with self.reading:
             while data := self._transport.read(0):
                 now = self.now()

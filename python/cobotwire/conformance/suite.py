@@ -28,8 +28,8 @@ class TestCase:
     """One requirement of the protocol, on which a run gives a verdict for each command.
 
     ``id`` is stable, because reports are compared by it. ``purpose`` states the requirement in one
-    sentence. ``source`` says where it comes from; a line of the spec, where there is one, replaces
-    it in reports. ``applies`` selects the commands on which it can be checked.
+    sentence. ``source`` says where it comes from; if a line of the spec states it, reports show
+    that line instead. ``applies`` selects the commands on which it can be checked.
     """
 
     # pytest would take the class for a class of tests.
@@ -46,10 +46,10 @@ class Group(Generic[Body]):
     """Test cases that one body exercises or checks together.
 
     ``selects`` picks the commands that the body runs for; without it the body runs once, for the
-    line as a whole. ``permission`` is needed in addition to the permission for the command's
-    safety class. The catalogue shows ``sends``, what the tester sends, and ``subject``, what
-    ``selects`` picks, in words. With ``declared`` the body checks the statement of the subject: it
-    runs only if there is one, and for the commands that it declares absent.
+    connection as a whole. ``permission`` is needed in addition to the permission for the command's
+    safety class. ``sends`` and ``subject`` are texts for the catalogue: what the tester sends, and
+    which commands ``selects`` picks. With ``declared`` the body checks the subject's conformance
+    statement: it runs only if there is one, for the commands that the statement declares absent.
     """
 
     name: str

@@ -66,8 +66,8 @@ def _reversed(value: int, width: int) -> int:
 class Check(NamedTuple):
     """A number of ``width`` bytes that is computed from the frame.
 
-    It covers all bytes from the part ``covers_from`` to the end of the data. A Fletcher checksum is
-    the number whose high half is the second sum.
+    It covers all bytes from the part ``covers_from`` to the end of the data. In a
+    Fletcher checksum, the second sum is the high half.
     """
 
     algorithm: Algorithm

@@ -183,7 +183,7 @@ class Exchange:
     def advance(self, data: bytes, now: float) -> list[SessionEvent]:
         """Take received bytes, then let time pass: :meth:`receive` and :meth:`wake`.
 
-        What has come is received before time passes, or it would count as late.
+        Received bytes are taken before time passes, or their frames would count as late.
         """
         return self.receive(data, now) + self.wake(now) if data else self.wake(now)
 
@@ -193,7 +193,7 @@ class Exchange:
         return self._sort(self._framer.feed(data), now, chunk_at)
 
     def wake(self, now: float) -> list[SessionEvent]:
-        """Let time pass; return what ends by it. Receive first what has come by now."""
+        """Let time pass; return what this ends. Pass received bytes to :meth:`receive` first."""
         waiting = self._waiting()
         if waiting is not None and waiting.ends_at <= now:
             return self._end_wait(waiting, now) + self.end_overdue(now)

@@ -65,7 +65,7 @@ class Events:
         self._planned.clear()
 
     def wait(self, received: int) -> float | None:
-        """Return the seconds until a client that has ``received`` so many may get one more.
+        """Return the seconds until a client that has ``received`` events may get one more.
 
         None: the edition has no events.
         """

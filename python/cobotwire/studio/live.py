@@ -45,7 +45,7 @@ class LiveSession:
             await asyncio.sleep(PUMP_SECONDS)
 
     def pass_on(self) -> None:
-        """Pass on what has come since the last call."""
+        """Pass on the bytes received since the last call."""
         new = [entry for traffic in self.line.take() for entry in self._entries.take(traffic)]
         new += self._entries.idle(time.monotonic())
         while self._remarks:

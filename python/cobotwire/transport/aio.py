@@ -57,7 +57,7 @@ class PolledTransport:
         forks.watch(self)
 
     def read(self) -> bytes:
-        """Return what has come by now."""
+        """Return the bytes received by now."""
         return self._transport.read(0)
 
     def write(self, data: bytes, done: Done) -> bool:
@@ -161,7 +161,7 @@ class ThreadedTransport:
             threading.Thread(target=work, name=f"cobotwire {transport.url}", daemon=True).start()
 
     def read(self) -> bytes:
-        """Return what has come by now."""
+        """Return the bytes received by now."""
         data = b""
         with suppress(queue.Empty):
             while self._lost is None:

@@ -53,7 +53,7 @@ class DescriptorTransport(ABC):
         return f"<{type(self).__name__} {self.url}{', closed' if self._closed else ''}>"
 
     def read(self, timeout: float) -> bytes:
-        """Return what has come, as soon as there is something."""
+        """Return the received bytes, as soon as there are any."""
         with self._reading:
             if self._closed:
                 self._must_be_open("cannot be read")
@@ -77,7 +77,7 @@ class DescriptorTransport(ABC):
             return b""
 
     def _read_within(self, timeout: float) -> bytes | None:
-        """Return what has come; None: nothing has. Empty bytes are the end of the data."""
+        """Return the received bytes; None if there are none, empty at the end of the data."""
         deadline = time.monotonic() + timeout
         while self._waiter.wait(self._descriptor, timeout) and not self._closed:
             try:

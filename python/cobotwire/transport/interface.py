@@ -26,7 +26,7 @@ class Transport(Protocol):
         ...
 
     def read(self, timeout: float) -> bytes:
-        """Return what has come, as soon as there is something; empty after ``timeout`` seconds.
+        """Return the received bytes, as soon as there are any; empty after ``timeout`` seconds.
 
         Raises:
             LinkError: the transport is gone.
@@ -95,7 +95,7 @@ class AsyncTransport(Protocol):
     """A transport on an event loop. Every method is called in the loop's thread; none waits."""
 
     def read(self) -> bytes:
-        """Return what has come by now, perhaps nothing.
+        """Return the bytes received by now, perhaps none.
 
         Raises:
             LinkError: the transport is gone.

@@ -45,7 +45,7 @@ class Tapped:
         self._show("sent", data)
 
     def read(self, timeout: float) -> bytes:
-        """Return what has come."""
+        """Return the received bytes."""
         data = self._inner.read(timeout)
         self._show("received", data)
         return data

@@ -70,7 +70,7 @@ impl Framer {
         &self.tally
     }
 
-    /// Feed bytes that are exactly one frame, while nothing waits; return the frame and its position.
+    /// Feed bytes that are exactly one frame while none are pending; return it and its position.
     /// `None`: nothing was fed, and [`Framer::feed`] must take the bytes.
     #[inline]
     pub fn feed_frame<'a>(&mut self, chunk: &'a [u8]) -> Option<(u64, Frame<'a>)> {
@@ -92,7 +92,7 @@ impl Framer {
         self.cut(chunk, false, sink);
     }
 
-    /// Reject the candidate that waits; pass the events of all remaining bytes to `sink`.
+    /// Reject the pending candidate; pass the events of all remaining bytes to `sink`.
     pub fn flush(&mut self, sink: impl FnMut(Event<'_>)) {
         self.cut(&[], true, sink);
     }

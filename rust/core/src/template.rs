@@ -1,8 +1,8 @@
-//! Messages of plain numbers and rows of them, prepared for short calls.
+//! The fast path for messages that consist of plain numbers and arrays of plain numbers.
 //!
-//! Nearly all messages are such: without selectors, texts, lists of rows, bits or floats. A template
-//! handles only values that are allowed. For everything else it returns `None`, and the general
-//! encoder and decoder do the work, and name the mistake.
+//! Nearly all messages qualify: they have no selectors, texts, lists of arrays, bits or floats. A
+//! template handles only values that are allowed. For everything else it returns `None`; then the
+//! general encoder and decoder do the work, and report what is wrong.
 
 use crate::direction::Direction;
 use crate::field::{Field, Shape};
@@ -14,7 +14,7 @@ use crate::step::Step;
 /// The size of the longest frame that a template builds.
 pub const LONGEST_PLAIN: usize = 64;
 
-/// A number of the caller that needed no conversion.
+/// A number that the caller passed as an integer or a float, without conversion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Exact {
     /// An integer.
@@ -23,14 +23,14 @@ pub enum Exact {
     Real(f64),
 }
 
-/// Which number of the values a template needs next. Rows are read in order.
+/// Which number of the values a template needs next. Arrays are read in order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Place {
     /// The value of the field with that index.
     Alone(usize),
-    /// The first number of the row of a field, which must have that many.
+    /// The first number of a field's array: the index of the field, and the length of the array.
     First(usize, usize),
-    /// The number with that index of the same row.
+    /// The number with that index in the same array.
     Next(usize),
 }
 
@@ -55,7 +55,7 @@ pub(crate) struct Template {
 /// The numbers of one field.
 #[derive(Clone, Copy, Debug)]
 struct Part {
-    /// Whether the field's value is a row of them, rather than the one number.
+    /// Whether the field's value is an array of numbers, rather than one number.
     many: bool,
     numbers: usize,
 }
@@ -80,7 +80,7 @@ impl Templates {
         )
     }
 
-    /// Return the template of a variant; `None`: it needs the general encoder and decoder.
+    /// Return the template of a variant; `None` if only the general encoder and decoder handle it.
     #[inline]
     pub(crate) fn get(&self, variant: usize) -> Option<&Template> {
         self.0.get(variant)?.as_ref()
@@ -88,7 +88,7 @@ impl Templates {
 }
 
 impl Template {
-    /// Return the template of a variant; `None` if it has more than plain numbers, or many.
+    /// Return the template of a variant; `None` if it has other fields, or its frame is too long.
     fn new(
         format: &FrameFormat,
         command: &Command,
@@ -135,7 +135,7 @@ impl Template {
         })
     }
 
-    /// Write the frame, but for its check.
+    /// Write the frame, except its check.
     #[inline]
     pub(crate) fn write<'a>(
         &self,
@@ -152,7 +152,7 @@ impl Template {
         Some(frame)
     }
 
-    /// Return the numbers of the data, to be read.
+    /// Return a reader of the numbers in the data of a message.
     #[inline]
     pub(crate) fn read<'a>(&'a self, data: &'a [u8]) -> PlainNumbers<'a> {
         PlainNumbers {
@@ -170,8 +170,8 @@ pub struct PlainNumbers<'a> {
 }
 
 impl<'a> PlainNumbers<'a> {
-    /// Return the fields in order: whether the value is a row, and the number or its elements. `None`
-    /// stands for a number that is not allowed.
+    /// Return the fields in order: whether the value is an array, and its numbers. `None` stands
+    /// for a number that is not allowed.
     #[inline]
     pub fn fields(
         self,
@@ -214,7 +214,7 @@ impl Slot {
     #[inline]
     fn raw(&self, given: Exact) -> Option<i64> {
         let raw = match (given, self.number.scaled()) {
-            // Bounds contain no number that is not finite.
+            // NaN and infinities are outside the bounds of every number.
             (Exact::Real(real), true) => self.number.raw(real)?,
             // The conversion rounds to even, as Python's does.
             (Exact::Integer(integer), true) => self.number.raw(integer as f64)?,
@@ -225,7 +225,7 @@ impl Slot {
     }
 }
 
-/// Return the numbers of a field, if they are all that it is.
+/// Return the numbers of a field that consists of plain numbers only; `None` for other fields.
 fn plain_numbers(field: &Field) -> Option<&[Number]> {
     let numbers = field.numbers(0);
     let plain = field.selector.is_none()

@@ -13,7 +13,7 @@ impl<'a> Bytes<'a> {
         usize::from(self.byte()) << 8 | usize::from(self.byte())
     }
 
-    /// Return a number below `count`, which fits two bytes; zero if `count` is zero.
+    /// Return a number below `count`, zero if `count` is zero; read one byte, or two if necessary.
     pub fn pick(&mut self, count: usize) -> usize {
         let picked = if count <= 256 {
             usize::from(self.byte())

@@ -46,7 +46,7 @@ fn write_now(py: Python<'_>, descriptor: RawFd, data: &[u8]) -> PyResult<usize> 
     }
 }
 
-/// Read what has come, as soon as there is something; `b""` is the end of the data. Return None if
+/// Read the received bytes, as soon as there are any; `b""` is the end of the data. Return None if
 /// nothing came within `timeout` seconds, or before `alarm` became readable.
 #[pyfunction]
 #[pyo3(signature = (descriptor, timeout, alarm, /))]
@@ -60,7 +60,7 @@ fn read_within<'py>(
     Ok(receive(py, borrow(descriptor)?, wait.as_ref())?)
 }
 
-/// Return what has come, as soon as there is something.
+/// Return the received bytes, as soon as there are any.
 fn receive<'py>(
     py: Python<'py>,
     descriptor: BorrowedFd<'_>,

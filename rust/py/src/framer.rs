@@ -13,7 +13,7 @@ use crate::names::Names;
 /// Cuts frames out of a byte stream.
 ///
 /// Any thread may read its counts at any time, also while another thread feeds it. So `core` is
-/// never locked while code of Python's may run: what needs such code is done before or after.
+/// never locked while Python code may run: calls into Python happen before or after.
 #[pyclass(frozen, module = "cobotwire._native")]
 pub struct NativeFramer {
     core: Mutex<Framer>,
@@ -33,7 +33,7 @@ impl NativeFramer {
         self.core.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Feed bytes that are exactly one frame, while nothing waits; return this frame.
+    /// Feed bytes that are exactly one frame while no bytes are pending; return the frame.
     fn feed_frame(&self, data: &Bound<'_, PyBytes>) -> Option<NativeFrame> {
         let origin = Arc::clone(&self.origin);
         let mut core = self.core();
@@ -65,7 +65,7 @@ impl NativeFramer {
         events.into_list(py, &self.origin)
     }
 
-    /// Reject the candidate that waits; return the events of all remaining bytes.
+    /// Reject the pending candidate; return the events of all remaining bytes.
     fn flush<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyList>> {
         let mut events = Events::default();
         self.core().flush(|event| events.add(event));
@@ -116,7 +116,7 @@ pub fn counters<'py>(py: Python<'py>, tally: &Tally) -> PyResult<Bound<'py, PyAn
     names.make(&names.counters, items.into_pyobject(py)?)
 }
 
-/// Return the bytes of any object that the reference accepts as a buffer.
+/// Return the bytes of any object that the reference codec accepts as a buffer.
 pub fn copied(data: &Bound<'_, PyAny>) -> PyResult<Vec<u8>> {
     let all = PyByteArray::new(data.py(), &[]).call_method1("__iadd__", (data,))?;
     Ok(all.cast_into::<PyByteArray>()?.to_vec())

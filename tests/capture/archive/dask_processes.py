@@ -65,7 +65,7 @@ class DaskProcesses:
         next(worker for worker in self._workers if worker.pid == pid).wait(60)
 
     def forgive(self, failures: int) -> None:
-        """Let the scheduler run a task again after so many of its workers have died."""
+        """Let the scheduler run a task again after up to ``failures`` of its workers have died."""
 
         def change(dask_scheduler: Any) -> None:
             dask_scheduler.allowed_failures = failures

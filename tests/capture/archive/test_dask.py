@@ -1,4 +1,4 @@
-"""Archives on a Dask cluster: processes over TCP, one of which is killed.
+"""Archives on a Dask cluster of processes over TCP; one test kills a process.
 
 ``make archives`` also runs the tests of ``on_a_cluster.py``, which take longer.
 """

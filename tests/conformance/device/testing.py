@@ -26,7 +26,7 @@ def permissions(*classes: str, joints: int = 6, max_speed: int = 60) -> Permissi
 def on_peer(
     peer: Peer, clock: SteppedClock, table: Table, tester: type[Tester] = Tester, **options: Any
 ) -> Tester:
-    """Return a tester of a peer that uses the clock; by default with all permissions."""
+    """Return a tester of a peer; both use ``clock``. By default it has all permissions."""
     options.setdefault("permissions", permissions(*ALL_PERMISSIONS, joints=table.joints))
     line = DeviceConnection(MemoryTransport(peer, clock), clock)
     return tester(line, table, **options)
@@ -35,13 +35,13 @@ def on_peer(
 def prepared(
     table: Table, wrap: Wrap = lambda arm: arm, *, device: Table | None = None, **options: Any
 ) -> Tester:
-    """Return a tester for an edition; the arm has the edition of ``device``, and is wrapped."""
+    """Return a tester for an edition, on a wrapped arm of that edition or of ``device``."""
     clock = SteppedClock()
     return on_peer(wrap(SimulatedArm(device or table, clock=clock)), clock, table, **options)
 
 
 def results_of(tester: Tester, *commands: str) -> list[Result]:
-    """Run only the steps of some commands, and those of the line as a whole if one is empty."""
+    """Run only the steps of some commands; an empty name selects the steps without a command."""
     return [
         result
         for step in tester.steps()
@@ -51,7 +51,7 @@ def results_of(tester: Tester, *commands: str) -> list[Result]:
 
 
 class Altered:
-    """A peer with replies changed by a function of request, reply, number of the request."""
+    """A peer that replies what ``alter`` returns for request, reply and number of the request."""
 
     def __init__(self, peer: Peer, alter: Callable[[bytes, bytes, int], bytes]) -> None:
         self._peer = peer
@@ -72,8 +72,8 @@ class Altered:
 
 # An interrupted run does not restore the power, since an arm without power would fall.
 HELD = ("powered",)
-# Not settings: where the arm is, what has happened to it, and what it is; and the colour of the
-# light, which no query reports.
+# State that is not a setting (the arm's position, history and build), and the colour of the light,
+# which no query reports.
 NOT_SET = (
     *("angles", "gripper", "enabled", "connected", "error", "remarks", "geometry", "record_at"),
     "colour",
@@ -83,7 +83,7 @@ NOT_SET = (
 def settings_of(arm: SimulatedArm, *, but: tuple[str, ...] = ()) -> dict[str, object]:
     """Return a copy of everything that can be set, except ``but``, by name."""
     state = vars(arm.state).copy()
-    # A pin that is low is as a pin that was never set.
+    # A low pin is equivalent to a pin that was never set.
     for name in ("pins", "basic_pins"):
         state[name] = sorted(pin for pin, high in state[name].items() if high)
     return deepcopy({name: state[name] for name in state if name not in (*NOT_SET, *but)})

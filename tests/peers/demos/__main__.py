@@ -75,7 +75,7 @@ def git(*words: str) -> None:
 
 
 def row(demo: Demo, folders: Folders) -> tuple[str, bool]:
-    """Return a line of the table, and whether the demo runs with the library alone."""
+    """Return a line of the table, and whether the demo runs with the library but not with ours."""
     decisions = rewrite(folders.rewritten / demo.path)
     ways = [
         (folders.library, WITH_LIBRARY),
@@ -128,7 +128,7 @@ def not_run(repository: Path) -> Iterator[str]:
 
 
 def replaced(text: str, table: list[str]) -> str:
-    """Return a page with a table instead of the one that has the same heading."""
+    """Return a page in which a table replaces the one with the same heading."""
     before, found, after = text.partition(table[0])
     if not found:
         raise SystemExit(f"{PAGE} has no table with the heading {table[0].splitlines()[0]}")

@@ -21,7 +21,7 @@ from cobotwire.simulator import PtyServer, RunningClock, SimulatedArm, TcpServer
 from demos.scripts import Demo
 
 SHIM = Path(__file__).parent / "shim"
-# Demos that loop for ever are ended after so many seconds; the robot is as much faster.
+# A demo that loops for ever is ended after LONGEST seconds; the robot is RATE times as fast.
 LONGEST, RATE = 14.0, 20.0
 # Tests never loop for ever.
 TESTING = 60.0

@@ -1,7 +1,7 @@
-"""Explore every order of events of a topic, breadth first, so that the first find is the shortest.
+"""Explore every order of a topic's events, breadth first, so that the first find is the shortest.
 
 A state that was seen is not explored again. A state is everything that a later decision can depend
-on: each attribute of the exchange, with times relative to now, and what the world knows.
+on: each attribute of the exchange, with times relative to now, and the state of the World.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from session.exploring.promises import Broken
 from session.exploring.topics import POLICY, Event, Topic
 from session.exploring.world import LATEST, World
 
-# Nothing depends on these, except for the text of an error; or they never change.
+# Attributes that are not part of a state: they never change, or only an error's text shows them.
 IGNORED = {
     *(
         "_codec",
@@ -49,7 +49,7 @@ class Path(NamedTuple):
 
 
 class Search:
-    """The sequences of up to ``depth`` events; ``found`` is the shortest that breaks a promise."""
+    """Explores sequences of events; ``found`` is the shortest one that breaks a promise."""
 
     def __init__(self, topic: Topic) -> None:
         self._topic = topic
@@ -62,7 +62,7 @@ class Search:
     def deepen(self, most: float = inf, report: Callable[[], None] = lambda: None) -> None:
         """Explore sequences that are longer by one event, until ``most`` states were seen."""
         paths, self.frontier = self.frontier, []
-        # The text of an error takes longer to write than everything else together.
+        # Formatting the texts of errors would take longer than everything else together.
         with patch.object(ReceivedMeanwhile, "lines", lambda *_: ()):
             for path in paths:
                 report()
@@ -103,7 +103,7 @@ class Search:
 
 
 def run_out(world: World) -> None:
-    """Let time pass until every call has ended; check that the line can then be used."""
+    """Let time pass until every call has ended; check that the next request is then sent."""
     world.next_write = "whole"
     last = world.waiting[-1].kind if world.waiting else "plain"
     for _ in range(12):

@@ -20,7 +20,7 @@ def some_command(edition: Edition) -> Iterator[Problem]:
 
 
 def ids_fit(edition: Edition) -> Iterator[Problem]:
-    """Report ids that are larger than CMD."""
+    """Report ids that do not fit into the bytes of CMD."""
     most = 256**edition.frame.command_number.width - 1
     for command in edition.commands:
         if not 0 <= command.id <= most:
@@ -29,7 +29,7 @@ def ids_fit(edition: Edition) -> Iterator[Problem]:
 
 
 def replies_cover_command(edition: Edition) -> Iterator[Problem]:
-    """Report replies that have no data in the place of CMD, in a format without it."""
+    """Report replies too short to have data where CMD would be, if replies carry no CMD."""
     frame = edition.frame
     for command in edition.commands if not frame.replies_have_command else ():
         for variant in command.replies:
@@ -86,7 +86,7 @@ def shared_ids_exist(edition: Edition) -> Iterator[Problem]:
 
 
 def aliases_match(edition: Edition) -> Iterator[Problem]:
-    """Report aliases whose message differs from the other command's."""
+    """Report aliases with another message than the command that they name."""
     commands = {command.name: command for command in edition.commands}
     for command in edition.commands:
         if not command.alias:
@@ -122,7 +122,7 @@ def cases_alike(edition: Edition) -> Iterator[Problem]:
 
 
 def echoes_match(edition: Edition) -> Iterator[Problem]:
-    """Report echoes that are not in every variant of the request with the same type."""
+    """Report echoes that some variant of the request lacks, or has with another type."""
     for command in edition.commands:
         requests = [{field.name: field.type for field in variant} for variant in command.requests]
         for field in command.fields:

@@ -1,4 +1,4 @@
-"""Compares the models of editions, not their text.
+"""Compare the models of editions, not their text.
 
 Every difference is a finding of one rule. Each rule has a level, and the levels determine the
 version bump.

@@ -1,4 +1,4 @@
-"""The kinds of names, and the only check of them. Names become names of the generated code."""
+"""Check the names in a spec, by kind; they become identifiers in the generated code."""
 
 from __future__ import annotations
 

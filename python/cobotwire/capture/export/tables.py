@@ -15,8 +15,8 @@ from cobotwire.codec.arrow import times
 from cobotwire.codec.interface import Columns, Counters, Rows
 from cobotwire.protocol.table import Table
 
-# The columns before the fields: which robot, which input, where in the stream, when. Editions whose
-# frames have an address have all of them; others lack the address.
+# The columns before the fields: robot, input, offset in the stream, address, time. Editions without
+# addresses in their frames lack the column `address`.
 OWN = ("robot", "source", "offset", "address", "time")
 TIME = pa.timestamp("ns", tz="UTC")
 
@@ -42,7 +42,7 @@ class MessageTables:
         self._table, self._wide = table, wide
 
     def schema(self, message: Message) -> Any:
-        """Return the schema of a message, whichever of its variants occur."""
+        """Return the schema of a message; it does not depend on which variants occur."""
         nothing = memoryview(b"").cast("Q")
         counters = Counters(0, {}, {}, 0)
         columns = Columns(self._table, [], nothing, (nothing, nothing), counters)
@@ -83,7 +83,7 @@ def messages_of(table: Table) -> list[Message]:
 
 
 def _leading(rows: Rows, columns: Columns, origin: Origin) -> Mapping[str, Any]:
-    """Return our columns for some rows, except the address, which every table of them has."""
+    """Return the columns OWN for some rows; ``to_arrow`` adds the address itself."""
     size = len(rows)
     time = pa.nulls(size, TIME)
     if origin.stream is not None:

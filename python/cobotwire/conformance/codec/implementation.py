@@ -52,11 +52,11 @@ class Implementation(Protocol):
 class Program:
     """A command that speaks the line protocol on its standard input and output.
 
-    The first question starts it, and so does the next question after it has crashed or hung.
+    The first question starts it. If it crashes or hangs, the next question starts it again.
     """
 
     def __init__(self, command: Sequence[str], *, timeout: float = 10.0) -> None:
-        """Name the command; ``timeout`` is in seconds for each answer, longer for the greeting."""
+        """Set the command, and the seconds that it has for each answer; the greeting has more."""
         self._command = list(command)
         self._timeout = timeout
         self._process: subprocess.Popen[bytes] | None = None
@@ -193,7 +193,7 @@ class Program:
 
 
 def _is_deeper(value: Any, levels: int) -> bool:
-    """Return whether lists and objects are nested more deeply; later steps walk through them."""
+    """Return whether a value has more ``levels``, so that recursion over it stays bounded."""
     inner = [value] if isinstance(value, dict | list) else []
     for _ in range(levels):
         parts = [part.values() if isinstance(part, dict) else part for part in inner]

@@ -22,8 +22,8 @@ from cobotwire.session.request import EncodedRequest
 
 Restore = Callable[[], object]
 
-# After so many queries in a row without any reply, another query shows whether the device is there;
-# it is sent so often.
+# After SILENT queries in a row without any reply, another query shows whether the device is there;
+# it is sent up to PINGS times.
 SILENT, PINGS = 3, 2
 # How often a text is requested at most, until two replies are the same.
 TEXT_ATTEMPTS = 5
@@ -79,7 +79,7 @@ class Device:
         # as is known; and the kinds of malformed requests that were sent with pauses.
         self.resyncs = True
         self.tried_with_pauses: set[str] = set()
-        # The poses from which the arm has moved when it was sent a little way, by their index.
+        # The indices of the poses from which the arm has made a short motion.
         self.preferred_poses: list[int] = []
         # How often each command that may be acknowledged was sent and checked.
         self.changes: Counter[str] = Counter()

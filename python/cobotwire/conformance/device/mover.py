@@ -60,7 +60,7 @@ class Mover:
 
     @property
     def poses(self) -> list[int]:
-        """The poses by their index: those first from which the arm has moved, the last at first."""
+        """The indices of the poses; first those from which the arm has moved, latest first."""
         return list(dict.fromkeys([*self.device.preferred_poses, *range(len(POSES))]))
 
     def prefer(self, which: int) -> None:

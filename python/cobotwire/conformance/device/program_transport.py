@@ -1,4 +1,4 @@
-"""Transports to a program that the run has started: a dead program is noticed at once."""
+"""Transports to a program that the run has started; they report at once that it has ended."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ CLOSING = 0.5
 
 
 class DescriptorEnd:
-    """A transport over a descriptor that is open already: our end of a pair or pseudo-terminal."""
+    """A transport over an open descriptor: our end of a socket pair or pseudo-terminal."""
 
     def __init__(self, descriptor: int, url: str) -> None:
         self.url = url
@@ -29,7 +29,7 @@ class DescriptorEnd:
         os.set_blocking(descriptor, False)
 
     def read(self, timeout: float) -> bytes:
-        """Return what has come, as soon as there is something; empty after ``timeout`` seconds.
+        """Return the received bytes, as soon as there are any; empty after ``timeout`` seconds.
 
         Raises:
             LinkError: the other end is closed.
@@ -64,7 +64,7 @@ class DescriptorEnd:
                 raise LinkError(self.url, f"takes no bytes for {WRITING:g} s")
 
     def close(self) -> None:
-        """Close it."""
+        """Close the descriptor."""
         descriptor, self._descriptor = self._descriptor, -1
         if descriptor >= 0:
             os.close(descriptor)
@@ -74,20 +74,20 @@ class WatchedTransport:
     """A transport to a program; when the program has ended, the errors say how."""
 
     def __init__(self, inner: Transport, url: str, ended: Callable[[], str]) -> None:
-        """``ended`` returns how the program ended; empty while it runs."""
+        """Wrap a transport; ``ended`` returns how the program ended; empty while it runs."""
         self.url = url
         self._inner = inner
         self._ended = ended
 
     def read(self, timeout: float) -> bytes:
-        """Return what has come, as soon as there is something; empty after ``timeout`` seconds.
+        """Return the received bytes, as soon as there are any; empty after ``timeout`` seconds.
 
         Raises:
             LinkError: the program has ended, and all that it sent was read.
         """
         until = time.monotonic() + timeout
         while True:
-            # Checked first: what it sent before it ended is there by now.
+            # Checked before the read, so that the read returns all that the program sent.
             ended = self._ended()
             left = until - time.monotonic()
             try:
@@ -117,7 +117,7 @@ class WatchedTransport:
         self._inner.close()
 
     def _explain(self, error: LinkError) -> NoReturn:
-        """Raise an error that says how the program ended, if it has; else the error."""
+        """Raise an error that says how the program ended; ``error`` if it still runs."""
         until = time.monotonic() + CLOSING
         while not (ended := self._ended()) and time.monotonic() < until:
             time.sleep(CHECKS / 5)

@@ -1,4 +1,4 @@
-"""A device that is a program: the run starts it, connects to it, and stops it in the end."""
+"""Run a program as the device under test: start it, connect to it, and stop it."""
 
 from __future__ import annotations
 
@@ -22,13 +22,13 @@ from cobotwire.transport import Transport, open_transport
 
 Attach = Literal["stdio", "pty", "port"]
 ATTACH: tuple[Attach, ...] = ("stdio", "pty", "port")
-# The word of a command that stands for the path of the pseudo-terminal.
+# The placeholder in a command for the path of the pseudo-terminal.
 PORT_WORD = "{port}"
-# What a program prints that other programs can open.
+# A URL or device name that a program prints, and that can be opened as a port.
 PRINTED_PORT = re.compile(rb"(?:socket|rfc2217)://\S+|/dev/\S+|\bCOM\d+\b")
-# How long the program may take to print its port, and to end after it was asked to, in seconds.
+# The limits, in seconds, for the program to print its port and to end after SIGTERM.
 STARTING, ENDING = 10.0, 2.0
-# How often the output is searched for a port, in seconds, and how much of it.
+# The output is searched for a port every POLL seconds, in its first READ_SIZE bytes.
 POLL = 0.02
 READ_SIZE = 4096
 
@@ -36,11 +36,11 @@ READ_SIZE = 4096
 def parse_command(text: str, attach: str | None) -> tuple[list[str], Attach]:
     """Return the words of a command, and how to connect to it.
 
-    By default that is a pseudo-terminal if the command has the word ``{port}``, else standard input
-    and output.
+    The default is a pseudo-terminal if the command contains ``{port}``, else the standard input and
+    output.
 
     Raises:
-        UsageError: the text is not a command, or does not fit.
+        UsageError: the text is not a command, or does not fit ``attach``.
     """
     try:
         command = shlex.split(text)
@@ -59,20 +59,20 @@ def parse_command(text: str, attach: str | None) -> tuple[list[str], Attach]:
 
 
 class StartedDevice:
-    """A program that is a device while its ``with`` block runs; ``transport`` leads to it."""
+    """A program that runs as a device in a ``with`` block; ``transport`` connects to it."""
 
     def __init__(self, command: Sequence[str], attach: Attach, baudrate: int) -> None:
         """Start the program, in a session of its own.
 
         Args:
             command: the program and its arguments.
-            attach: ``stdio``: its standard input and output are the line; ``pty``: a
-                pseudo-terminal is, whose path replaces ``{port}`` in the command (without it, it is
-                the standard input and output); ``port``: the program prints what is to be opened.
-            baudrate: bits a second, for a port that it prints.
+            attach: how to connect. ``stdio``: to its standard input and output. ``pty``: by a
+                pseudo-terminal; its path replaces ``{port}`` in the command, and without ``{port}``
+                it is the standard input and output. ``port``: to the port that it prints.
+            baudrate: bits per second of a printed serial port.
 
         Raises:
-            LinkError: it cannot be started, or prints no port.
+            LinkError: the program cannot be started, or prints no port.
         """
         self.name = f"command {shlex.join(command)}"
         # Diagnostics go to a file, because a pipe that nobody reads would block when it is full.
@@ -106,7 +106,7 @@ class StartedDevice:
         return self._how
 
     def stop(self) -> None:
-        """Close the line and end the program, with the programs that it has started."""
+        """Close the transport, and end the program and the programs that it has started."""
         self.transport.close()
         _end(self._process)
         self.ended()
@@ -134,7 +134,7 @@ class StartedDevice:
             inner.close()
             raise
         if not named:
-            # Only the program holds its end: when it is gone, nothing can come any more.
+            # Only the program keeps its end open: once it has ended, reads report that.
             os.close(self._ends.pop())
         return process, inner
 

@@ -80,7 +80,7 @@ class Tester:
         self._optional = optional | self._statement.optional
         self._lacking: Mapping[str, str] = {} if lacking is None else lacking
         self._sources = sources
-        # Why the run ends before its end; empty: it does not.
+        # Why the run ends early; empty if it does not.
         self._ended = ""
         self.device = Device(
             connection,

@@ -1,4 +1,4 @@
-"""What the parts of the page have in common: signs, classes and anchors."""
+"""Define what several parts of the page use: signs, classes and anchors."""
 
 from __future__ import annotations
 
@@ -7,9 +7,9 @@ from xml.etree.ElementTree import Element
 from cobotwire.conformance.report import Cause, Verdict
 from cobotwire.conformance.reports.element import element
 
-# The characters of a text that is also elsewhere.
+# The length, in characters, that long texts are shortened to.
 LONGEST = 200
-# In the order in which outcomes are listed.
+# The sign of each outcome, in the order in which outcomes are listed.
 SIGNS = {
     (Verdict.FAIL, Cause.NONE): "✗",
     (Verdict.FAIL, Cause.UNSTABLE): "≈",
@@ -22,18 +22,18 @@ SIGNS = {
 
 
 def sign_of(verdict: Verdict, cause: Cause) -> str:
-    """Return the sign of an outcome; a report of another program may have any."""
+    """Return the sign of an outcome; ``?`` for an unknown one of another program's report."""
     return SIGNS.get((verdict, cause)) or SIGNS.get((verdict, Cause.NONE), "?")
 
 
 def order_of(outcome: tuple[Verdict, Cause]) -> int:
-    """Return the place of an outcome in lists."""
+    """Return the sort key of an outcome; unknown ones come last."""
     known = list(SIGNS)
     return known.index(outcome) if outcome in known else len(known)
 
 
 def class_of(verdict: Verdict, cause: Cause) -> str:
-    """Return the class of an outcome, which has its colour."""
+    """Return the CSS class that gives an outcome its colour."""
     if verdict is Verdict.FAIL:
         return "unstable" if cause is Cause.UNSTABLE else "fail"
     return {Verdict.PASS: "pass", Verdict.INCONCLUSIVE: "open"}.get(verdict, "skip")
@@ -46,17 +46,17 @@ def words_of(count: int, outcome: tuple[Verdict, Cause]) -> str:
 
 
 def shortened(text: str) -> str:
-    """Return the start of a long text; all of it is elsewhere."""
+    """Return the start of a long text; the page shows it in full elsewhere."""
     return text if len(text) <= LONGEST else f"{text[:LONGEST]}..."
 
 
 def heading(id: str, title: str, more: str = "") -> Element:
-    """Return a title that the navigation leads to."""
+    """Return a heading that the navigation links to."""
     return element("h2", f"{title}: {more}" if more else title, id=id)
 
 
 def title_of(command: str) -> str:
-    """Return a command's name; the line has none."""
+    """Return a command's name; an empty one means the line as a whole."""
     return command or "the line"
 
 

@@ -1,4 +1,4 @@
-"""Says what a program does with the results of calls, and whether ours can be used alike."""
+"""Find how a program uses the results of calls, and whether our results work there as well."""
 
 from __future__ import annotations
 
@@ -13,21 +13,21 @@ from cobotwire.pymycobot.migrate.calls import library
 from cobotwire.pymycobot.migrate.names import Names
 from cobotwire.pymycobot.migrate.values import Result
 
-# Functions that give the same for a tuple as for a list with its items.
+# Functions that return the same for a tuple as for a list of the same items.
 _OF_ROWS = {"all", "any", "enumerate", "len", "list", "map", "max", "min", "reversed", "set"}
 _OF_ROWS |= {"sorted", "sum", "tuple", "zip"}
 # Operators for which False and True are 0 and 1.
 _OF_NUMBERS = cst.Add | cst.Subtract | cst.Multiply | cst.Divide | cst.FloorDivide
 _KINDS = {"isinstance", "type"}
-# What the library returns if a call fails; some methods return an empty row.
+# What the library returns if a call fails; some methods return an empty list.
 _FAILURES = {"-1", "None", "[]", "()", "''", '""'}
-# Methods of arms that much else has, too.
+# Methods of arms that many other classes have, too.
 _COMMON = {"close", "is_open", "open", "pause", "resume", "stop", "wait"}
 
 
 @lru_cache
 def _methods() -> frozenset[str]:
-    """Return the methods of all classes of the library, but for those that much else has."""
+    """Return the methods of all classes of the library, except those in ``_COMMON``."""
     return frozenset(name for kind in library().values() for name in kind.methods) - _COMMON
 
 
@@ -35,20 +35,20 @@ _LENGTH = matchers.Name("len")
 
 
 class Use(NamedTuple):
-    """A place where a value is used: the expression that stands for it, and what contains it."""
+    """A use of a value: the expression that has the value, and the node that contains it."""
 
     node: cst.CSTNode
     inside: cst.CSTNode
 
 
 class Uses:
-    """Where the results of a program's calls go."""
+    """Finds where a program uses the results of its calls."""
 
     def __init__(self, names: Names) -> None:
         self.names = names
         self._parents = names.keys.parents
         self._stored = names.keys.stored
-        # Names of arms, and of what methods of arms are called of.
+        # Names of arms, and of other objects on which methods of arms are called.
         self._arm_names = names.arm_names(_methods())
 
     def of(self, node: cst.CSTNode) -> list[Use]:
@@ -56,9 +56,9 @@ class Uses:
         return list(self._follow(node, set()))
 
     def is_proven(self, use: Use, form: str) -> bool:
-        """Return whether a use gives the same for our result as for the library's.
+        """Return whether a use has the same effect with our result as with the library's.
 
-        Ours is a named tuple if the form is ``list``, and a flag or an enum if it is ``int``.
+        Our result is a named tuple if ``form`` is ``list``, and a flag or an enum if it is ``int``.
         """
         return self._is_safe_row(use) if form == "list" else self._is_safe_number(use)
 
@@ -76,7 +76,7 @@ class Uses:
         return "list" in self._forms(node) and self._is_condition(Use(node, self._parents[node]))
 
     def may_be_arm(self, node: cst.BaseExpression, method: str) -> bool:
-        """Return whether a value that is not known here may be an arm, by what is called of it."""
+        """Return whether an unknown value may be an arm, judged by the method called on it."""
         name = node.attr if isinstance(node, cst.Attribute) else node
         like_arm = isinstance(name, cst.Name) and name.value in self._arm_names
         if self.names.kinds(node) or self._is_result(node):
@@ -84,12 +84,12 @@ class Uses:
         return method in _methods() or (like_arm and method in _COMMON)
 
     def _is_result(self, node: cst.BaseExpression) -> bool:
-        """Return whether a value comes from a method of an arm; what is called then is listed."""
+        """Return whether a value is the result of an arm's method; its uses are listed anyway."""
         func = node.func if isinstance(node, cst.Call) else None
         return isinstance(func, cst.Attribute) and bool(self.names.arms(func.value))
 
     def is_hidden(self, name: str) -> bool:
-        """Return whether the program uses the name of a function of Python for something else."""
+        """Return whether the program uses the name of a built-in function for something else."""
         return name in self._stored
 
     def _follow(self, node: cst.CSTNode, seen: set[cst.CSTNode]) -> Iterator[Use]:
@@ -109,7 +109,7 @@ class Uses:
                 yield from self._follow(load, seen)
 
     def _forms(self, node: cst.CSTNode) -> set[str]:
-        """Return the forms of the results that an expression may be."""
+        """Return the forms of the results that an expression may evaluate to."""
         found = (each.form for each in self.names.values(node) if isinstance(each, Result))
         return {form for form in found if form != "nothing"}
 
@@ -132,7 +132,7 @@ class Uses:
         return self._is_condition(use)
 
     def _is_known(self, call: cst.CSTNode) -> bool:
-        """Return whether a call is that of a function or an arm that takes rows of any kind."""
+        """Return whether a function or a method of an arm is called that takes any sequence."""
         if not isinstance(call, cst.Call):
             return False
         if isinstance(call.func, cst.Name):
@@ -168,14 +168,14 @@ def _is_name(node: cst.CSTNode) -> bool:
 
 
 def _may_be_failure(node: cst.CSTNode) -> bool:
-    """Return whether an expression is what the library returns if a call fails, or contains it."""
+    """Return whether an expression is, or contains, a value that the library returns on failure."""
     if isinstance(node, cst.Tuple | cst.List | cst.Set) and node.elements:
         return any(_may_be_failure(each.value) for each in node.elements)
     return cst.Module([]).code_for_node(node) in _FAILURES
 
 
 def _asks_sign(node: cst.Comparison) -> bool:
-    """Return whether a comparison tells numbers below 0 from others."""
+    """Return whether a comparison distinguishes negative numbers from others."""
     for each in node.comparisons:
         is_zero = isinstance(each.comparator, cst.Integer) and each.comparator.value == "0"
         if is_zero and isinstance(each.operator, cst.LessThan | cst.GreaterThanEqual):

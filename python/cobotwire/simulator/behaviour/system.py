@@ -7,7 +7,7 @@ from cobotwire.editions.mycobot280 import messages as m
 from cobotwire.simulator.behaviour.registry import behaviour, query, reported, stored
 from cobotwire.simulator.state import ArmState
 
-# The tool's point, the world's origin; base or world, flange or tool.
+# The tool and world references; the frame (base or world) and the end (flange or tool) in use.
 stored("tool", m.SetToolReference, m.GetToolReference)
 stored("world", m.SetWorldReference, m.GetWorldReference)
 stored("reference_frame", m.SetReferenceFrame, m.GetReferenceFrame)
@@ -21,13 +21,13 @@ stored("speed", SetSpeed, GetSpeed)
 stored("gripper_current", m.SetGripperProtectCurrent, m.GetGripperProtectCurrent)
 # A motion is acknowledged when it is received, not when it ends.
 query(m.CheckAsyncOrSync, lambda arm, now, request: False)
-# The controller starts once at first, and after each panic.
+# The controller starts when it is switched on, and again after each panic.
 query(m.GetRebootCount, lambda arm, now, request: arm.starts)
 
 
 @behaviour(m.ClearErrorInformation)
 def clear_error_information(arm: ArmState, now: float, request: m.ClearErrorInformation) -> None:
-    """Forget the last error."""
+    """Clear the last error."""
     arm.error = 0
 
 
@@ -60,7 +60,7 @@ def get_ssid_pwd(arm: ArmState, now: float, request: m.GetSsidPwd) -> m.GetSsidP
 
 @behaviour(m.SetSsidPwd)
 def set_ssid_pwd(arm: ArmState, now: float, request: m.SetSsidPwd) -> None:
-    """Set the Wi-Fi account, which comes as a text after the frame."""
+    """Set the Wi-Fi account, which follows the frame as text."""
     arm.ssid, arm.password = request.account, request.password
 
 

@@ -1,4 +1,4 @@
-"""Send replies when they are due. A line carries one byte at a time, so replies never mix."""
+"""Send replies when they are due, one after another: bytes of two replies never interleave."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from cobotwire.simulator.faults.exchange import Piece, Reply, joined
 class _Planned(NamedTuple):
     """A reply and its time. ``order`` sorts replies of the same time.
 
-    ``numbers`` are those of the requests that are complete once the reply has been sent.
+    ``numbers`` are the numbers of the requests that this reply completes.
     """
 
     at: float
@@ -36,16 +36,16 @@ class Outlet:
 
     @property
     def next(self) -> float | None:
-        """When :meth:`take` has something to return; None: nothing is planned."""
+        """The time when :meth:`take` next returns bytes; None if nothing is planned."""
         times = [planned.at for planned in (*self._due[:1], self._held) if planned is not None]
         if self._sending:
             return self._sent_at + self._sending[0].pause
         return max(self._sent_at, min(times)) if times else None
 
     def put(self, at: float, reply: Reply, number: int | None = None) -> None:
-        """Plan a reply for a time; a held reply is sent directly before it, in one piece with it.
+        """Plan a reply for a time; a held reply is put before it, and both are sent as one piece.
 
-        ``number`` is that of the request which this reply completes; None: it completes none.
+        ``number`` is that of the request that this reply completes; None if it completes none.
         """
         if not reply:
             return
@@ -57,7 +57,7 @@ class Outlet:
         self._push(at, reply, numbers)
 
     def hold(self, until: float, reply: Reply, number: int | None = None) -> None:
-        """Hold a reply back until the next one; if none comes in time, send it alone."""
+        """Hold a reply back until the next one; send it by itself if none comes by ``until``."""
         self._held = _Planned(until, 0, reply, () if number is None else (number,))
 
     @property
@@ -93,7 +93,7 @@ class Outlet:
         heapq.heappush(self._due, _Planned(at, self._count, reply, numbers))
 
     def _begin(self, now: float) -> bool:
-        """Return whether a reply is being sent, perhaps from now on."""
+        """Start the next reply if it is due; return whether a reply is being sent."""
         if not self._sending and self._due and self._due[0].at <= now:
             planned = heapq.heappop(self._due)
             self._sending.extend(planned.reply)

@@ -18,7 +18,7 @@ from cobotwire.simulator.kinematics.pose import Pose, Vector, cross
 # How many steps are taken at most: of one descent, and of all descents for one request. A step
 # takes about 0.1 ms, and a reply must not wait for a search.
 STEPS, STEPS_OF_A_REQUEST = 60, 80
-# The descent ends if it has come no nearer by this share within so many steps.
+# The descent ends after PATIENCE steps in a row that do not cut the distance by share PROGRESS.
 PROGRESS, PATIENCE = 0.02, 8
 # The damping of a step: at first, and the least, in square millimetres.
 DAMPING, LEAST_DAMPING = 10.0, 1e-8

@@ -81,7 +81,7 @@ class UrlTransport:
         return len(data)
 
     def read(self, timeout: float) -> bytes:
-        """Return what has come, as soon as there is something."""
+        """Return the received bytes, as soon as there are any."""
         with self._faults("cannot be read"):
             if self._descriptor is None:
                 return self._read_in_slices(time.monotonic() + timeout)

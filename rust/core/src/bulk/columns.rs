@@ -138,7 +138,7 @@ impl ColumnReader {
         self.stream.feed_with(self.workers, chunk, &mut self.sorter);
     }
 
-    /// Reject the candidate that waits.
+    /// Reject the pending candidate.
     pub fn flush(&mut self) {
         self.stream.flush(&mut self.sorter);
     }

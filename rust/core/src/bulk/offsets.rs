@@ -69,7 +69,7 @@ impl OffsetReader {
             .feed_with(self.workers, chunk, &mut self.collected);
     }
 
-    /// Reject the candidate that waits.
+    /// Reject the pending candidate.
     pub fn flush(&mut self) {
         self.stream.flush(&mut self.collected);
     }

@@ -1,4 +1,4 @@
-//! Noise with at most a few frames in between, and with nothing near it.
+//! A run of noise, interrupted by at most a few frames, with no other noise near it.
 
 use crate::reason::Reason;
 use crate::rules::{Rules, Verdict};
@@ -7,24 +7,24 @@ use crate::rules::{Rules, Verdict};
 pub(crate) struct Cluster<'a> {
     /// The bytes.
     pub(crate) data: &'a [u8],
-    /// The places in `data` before which a frame came, and the end of `data`.
+    /// The offsets in `data` that directly follow a frame, and the end of `data`.
     pub(crate) marks: &'a [usize],
     /// The spans of the stream that `data` consists of: start and end.
     pub(crate) spans: &'a [(u64, u64)],
     /// The stream from `base` on.
     pub(crate) stream: &'a [u8],
-    /// The position of its first byte.
+    /// The position of the first byte of `stream`.
     pub(crate) base: u64,
 }
 
 impl Cluster<'_> {
-    /// Return where the bytes at `at` end before the next frame.
+    /// Return the end of the bytes from `at` up to the next frame.
     pub(crate) fn segment_end(&self, at: usize) -> usize {
         let later = self.marks.iter().find(|mark| **mark > at);
         later.copied().unwrap_or(self.data.len())
     }
 
-    /// Return whether a frame came before the byte at `at`.
+    /// Return whether the byte at `at` directly follows a frame.
     pub(crate) fn is_mark(&self, at: usize) -> bool {
         self.marks.contains(&at)
     }
@@ -34,7 +34,7 @@ impl Cluster<'_> {
         self.data.get(at..self.segment_end(at)).unwrap_or_default()
     }
 
-    /// Return the place after the line end at `at`; `at` itself if there is no line end.
+    /// Return the offset after the line end at `at`; `at` itself if there is no line end.
     pub(crate) fn line_end(&self, at: usize) -> usize {
         match self.rest(at) {
             [b'\r', b'\n', ..] => at + 2,

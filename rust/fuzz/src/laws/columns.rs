@@ -18,7 +18,7 @@ use crate::subjects::LISTENING;
 /// More bytes than several blocks of bulk reading, so that every path of its code runs.
 const SEVERAL_BLOCKS: usize = 150_000;
 
-/// Long chunks are read by several threads, which cut each of them in about so many pieces.
+/// Several threads read a long chunk, cut into about this many pieces.
 const PIECES: usize = 5;
 
 /// A batch has rows for every variant of the table, so many batches would be slow.

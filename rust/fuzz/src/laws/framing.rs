@@ -7,8 +7,8 @@ use crate::common::{Owned, owned};
 use crate::input::{Chunk, Cutting, Input};
 use crate::oracle::{Oracle, number};
 
-/// Check after each chunk that the framer has the oracle's events and offsets, and keeps the same
-/// bytes.
+/// Check after each chunk that the framer and the oracle report the same events and offsets, and
+/// that the same bytes are pending.
 pub fn events_are_the_oracles(data: &[u8]) {
     let input = Input::read(data);
     hold(input.oracle(), input.rules(), &input.chunks());

@@ -1,7 +1,7 @@
-"""Explains every problem code; ``cobotwire-gen explain CODE`` prints these explanations.
+"""Explain every problem code; ``cobotwire-gen explain CODE`` prints these explanations.
 
 A test fails if the sources emit a code that is not explained here, or if an explained code is never
-emitted. It also fails if the wrong lines of an example do not cause the code, or the right ones do.
+emitted. It also fails if an example's wrong lines do not cause the code, or its right lines do.
 """
 
 from __future__ import annotations

@@ -20,7 +20,7 @@ DISTANCES = {"degree": 4.0, "millimetre": 8.0}
 STRAYS = {"degree": 0.6, "millimetre": 2.5}
 # Slow enough to be stopped near the start, in percent of the fastest.
 SLOW = 20
-# A jog is stopped when it has moved something by so many times what is allowed to stray.
+# A jog is stopped when it has moved something by this multiple of its value in STRAYS.
 SHOWS = 3.0
 
 

@@ -10,10 +10,10 @@ from cobotwire.protocol.table import Command, Table
 
 FASTER = TestCase("faster", "A higher speed moves the arm faster.")
 
-# The slow speed is this share of the fast one, and must take at least so many times as long. On a
-# short way, an arm that speeds up gradually does not reach its full speed.
+# The fast speed is SHARE times the slow one; the slow motion must take at least LONGER times as
+# long, not SHARE times: on a short distance, an accelerating arm does not reach its full speed.
 SHARE, LONGER = 10, 1.25
-# The way that is timed, as a share of the way between two poses; and the longest time, in seconds.
+# The share of the distance between two poses that is timed; and the time limit, in seconds.
 WAY, LONGEST = 0.5, 20.0
 POLL = 0.005
 
@@ -25,7 +25,7 @@ def _has_speed(table: Table, command: Command) -> bool:
 
 
 def _speeds(probe: Probe) -> None:
-    """Time a part of the same way at two speeds."""
+    """Time the first half of the same motion at two speeds."""
     mover = Mover(probe)
     slow = max(1, mover.speed // SHARE)
     if slow == mover.speed:
@@ -44,7 +44,7 @@ def _speeds(probe: Probe) -> None:
 
 
 def _seconds(mover: Mover, start: Pose, target: Pose, speed: int) -> float:
-    """Return how long the joint with the longest way takes for half of it."""
+    """Return the seconds that the joint with the largest angle to cover takes for half of it."""
     ways = [abs(b - a) for a, b in zip(start, target)]
     joint = ways.index(max(ways))
     device = mover.device
