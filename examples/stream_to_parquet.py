@@ -1,7 +1,7 @@
 """Write joint angles and a servo's temperature to a Parquet file: stream_to_parquet.py PORT FILE.
 
-Start it with a third argument to choose for how many seconds (10). Each row has the time at which
-its last reply was read. The file is readable in pandas, polars and DuckDB:
+An optional third argument sets the duration in seconds (default: 10). Each row has the time at
+which its last reply was read. The file is readable in pandas, polars and DuckDB:
 duckdb -c "select * from 'angles.parquet'". Needs: pip install 'cobotwire[arrow]'.
 """
 
@@ -26,7 +26,7 @@ def main(port: str, file: str, seconds: float = 10.0) -> int:
     rows = 0
     block: list[dict[str, float]] = []
     with MyCobot280(port) as arm, pq.ParquetWriter(file, SCHEMA) as writer:
-        # The first time is 0; time.monotonic() counts from an unknown moment.
+        # Times are relative to the first row; time.monotonic() has an arbitrary start.
         start: float | None = None
         with arm.stream(GetAngles(), GetServoTemps(), rate=RATE) as stream:
             for sample in stream:

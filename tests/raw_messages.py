@@ -39,7 +39,7 @@ class RawMessage(NamedTuple):
 @st.composite
 def raw_messages(draw: st.DrawFn, table: Table) -> RawMessage:
     """Draw a legal message of any variant, with any address."""
-    # By index: Hypothesis hashes what it samples, and these records are large.
+    # Draw an index: Hypothesis hashes the values it samples from, and these records are large.
     found = variants_of(table)
     variant = found[draw(st.integers(0, len(found) - 1))]
     rows = draw(raw_rows(variant.variant))

@@ -13,7 +13,7 @@ import pytest
 from machine_stalls import ProcessorMeter, PtyMeter, machine_stalls
 
 PERIOD, SECONDS = 0.02, 0.5
-# Runs on one processor before everything else there, as long as the host would stop it.
+# Occupies one processor with the highest priority, for as long as a host would stall it.
 OCCUPY = """
 import os, sys, time
 os.sched_setaffinity(0, {int(sys.argv[1])})

@@ -53,7 +53,7 @@ PASSAGES = [
     """''',
     ),
     (
-        '''"""Note what to open; :meth:`open` opens it. The blocking client takes the same arguments.
+        '''"""Store the arguments, which are those of the blocking client; :meth:`open` opens the port.
 
         Raises:
             UsageError: an argument is not allowed.
@@ -107,10 +107,10 @@ PASSAGES = [
     ),
     (
         """It runs on the event loop: it must be quick. An exception that it raises goes to
-        ``sys.excepthook``, and to the result's ``failures`` and ``error``; no call fails by it.""",
+        ``sys.excepthook``, and to the result's ``failures`` and ``error``; no call raises it.""",
         """It runs in the thread that reads the line: that of any call, or of a loop over ``events``,
         or of :meth:`listen`. It must be quick, and may call the arm. An exception that it raises
-        goes to ``sys.excepthook``, and to the result's ``failures`` and ``error``; no call fails by
+        goes to ``sys.excepthook``, and to the result's ``failures`` and ``error``; no call raises
         it.""",
     ),
     ("from any task.", "from any thread."),
@@ -131,7 +131,7 @@ PASSAGES = [
     closes both ports.""",
     ),
     (
-        '''"""Note what to open; :meth:`open` opens both ports.''',
+        '''"""Store the arguments; :meth:`open` opens both ports.''',
         '''"""Open both ports. If the second cannot be opened, the first is closed again.''',
     ),
     # The blocking clients are open once they are created.

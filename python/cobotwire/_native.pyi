@@ -129,10 +129,10 @@ class NativeCodec:
     def column_reader(
         self, listening: Listening = "both", *, raw: bool = False, offset: int = 0
     ) -> NativeColumnReader:
-        """Return a reader for a stream that comes in pieces, or is larger than memory.
+        """Return a reader for a stream that arrives in chunks, or is larger than memory.
 
         Raises:
-            UsageError: ``offset``, the place of the first byte in the stream, is negative or beyond
+            UsageError: ``offset``, the position of the first fed byte, is negative or beyond
                 63 bits.
         """
 
@@ -155,7 +155,7 @@ class NativeFramer:
 
     @property
     def fed(self) -> int:
-        """How many bytes were fed since the framer was made."""
+        """The number of bytes fed since the framer was created."""
 
     @property
     def counters(self) -> Counters:

@@ -27,7 +27,7 @@ def run_fresh(setting: Setting, settle: Callable[[], None]) -> str:
     ``settle`` waits for what was written.
 
     Returns:
-        What became of a process that failed; empty if it did not.
+        A description of the failure of the process; empty if it succeeded.
     """
     work = base64.b64encode(pickle.dumps((setting.plan, setting.url))).decode()
     longest = START_SECONDS + setting.plan.seconds + setting.longest

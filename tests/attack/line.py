@@ -1,4 +1,4 @@
-"""The line of a run: it serves a hostile peer, breaks, stalls and comes back."""
+"""Serve a hostile peer on a pty or over TCP, and break, stall and restore the connection."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ from attack.arm import HostilePeer
 from attack.ends import End
 from cobotwire.codec.interface import Codec, Frame
 
-# Also if nothing is due, the loop takes this long at most for one turn.
+# The longest wait in one turn of the loop, if nothing is due earlier.
 SLICE_SECONDS = 0.005
-# A turn that takes longer was kept from running.
+# If a turn takes longer than this, the system did not schedule the thread.
 STALL_SECONDS = 0.02
-# TCP goes on after a stall only when it has probed the peer.
+# After a stall, TCP resumes only once it has probed the peer.
 SETTLE_SECONDS = 5.0
 
 
@@ -25,8 +25,8 @@ class Delivered(NamedTuple):
 
     Attributes:
         at: when.
-        start: their place in all bytes that the arm sent.
-        end: the place after them.
+        start: the offset of the first of them among all bytes that the arm sent.
+        end: the offset after the last of them.
     """
 
     at: float
@@ -37,13 +37,13 @@ class Delivered(NamedTuple):
 class HostileLine:
     """Serves a hostile peer while its ``with`` block runs; ``url`` is what clients open.
 
-    The arm stays the same when the line breaks: a late reply goes to whoever is connected then, and
-    its parser keeps half a frame; unless the break takes its power, too (``resets``).
+    The arm keeps its state when the connection breaks: its parser keeps half a frame, and a late
+    reply goes to the client that is connected then. A break with ``resets`` power-cycles the arm.
 
     Attributes:
         frames: the legal requests that arrived before any fault, with their times.
         stalled: whether nothing is read.
-        stalls: when the line itself did not run, and for how many seconds.
+        stalls: when the thread of the line was not scheduled, and for how many seconds.
         delivered: which of the sent bytes were given to the transport, and when.
     """
 
@@ -97,12 +97,12 @@ class HostileLine:
             self._there = True
 
     def fill(self, room: int) -> None:
-        """Fill a stalled line with NULs, but for about ``room`` bytes, if it is a pty."""
+        """Fill a stalled pty with NULs until about ``room`` bytes are free. TCP is not filled."""
         with self._lock:
             self._filled += self._end.fill(room, self._receive)
 
     def settle(self, written: int) -> None:
-        """Wait until all bytes have arrived that clients wrote, or until they come no more."""
+        """Wait until all bytes that clients wrote have arrived, for at most ``SETTLE_SECONDS``."""
         self.stalled = False
         until = time.monotonic() + SETTLE_SECONDS
         while self._received < written + self._filled and time.monotonic() < until:
@@ -163,7 +163,7 @@ class HostileLine:
             self._unwritten = b""
         if not self._unwritten:
             return
-        # Before the client can have them.
+        # Taken before the write, so the time is not later than the client's receipt.
         now = time.monotonic()
         try:
             written = self._end.write(self._unwritten)

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import asdict, dataclass, field
 from typing import Any
 
-# What must never happen.
+# The outcomes that must never occur.
 FORBIDDEN = ("wrong", "exceptions", "duplicates", "lost", "late", "merged")
 # The counts, in the order of the table, by their headings; docs/attack.md explains them.
 COLUMNS = {
@@ -28,12 +28,12 @@ COLUMNS = {
 
 @dataclass
 class Tally:
-    """What became of the calls of a profile.
+    """The outcomes of the calls of a profile.
 
     Attributes:
         profile: the name of the row.
-        counts: how often each happened, by the names in ``COLUMNS``.
-        limits: how often which limit of the protocol explains a wrong value.
+        counts: the number of calls with each outcome, by the names in ``COLUMNS``.
+        limits: the number of wrong values that each limit of the protocol explains.
         failures: the first failures of each run, in words.
     """
 
@@ -44,7 +44,7 @@ class Tally:
 
     @property
     def forbidden(self) -> int:
-        """How often happened what must never happen."""
+        """The number of forbidden outcomes."""
         return sum(self.counts[name] for name in FORBIDDEN)
 
     def add(self, other: Tally) -> None:
@@ -54,7 +54,7 @@ class Tally:
         self.failures += other.failures
 
     def as_json(self) -> dict[str, Any]:
-        """Return the counts for machines."""
+        """Return the counts as JSON values."""
         return asdict(self)
 
 

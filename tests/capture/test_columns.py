@@ -23,7 +23,7 @@ Place = tuple[int, str, int, int]
 
 
 def framed(data: bytes) -> tuple[dict[str, list[Place]], list[Place]]:
-    """Return the places of frames by command, and of rejected frames, from the Python reader."""
+    """Return the offsets of frames by command, and of rejected frames, from the Python reader."""
     capture = reader(data)
     found: dict[str, list[Place]] = {}
     rejected: list[Place] = []
@@ -42,7 +42,7 @@ def framed(data: bytes) -> tuple[dict[str, list[Place]], list[Place]]:
 
 
 def placed(batches: Sequence[CapturedColumns]) -> tuple[dict[str, list[Place]], list[Place]]:
-    """Return the places of rows by command, and of rejected frames, from columns."""
+    """Return the offsets of rows by command, and of rejected frames, from columns."""
     found: dict[str, list[Place]] = {}
     rejected: list[Place] = []
     for stream in (stream for batch in batches for stream in batch.streams):

@@ -1,4 +1,4 @@
-"""The arm stays usable after Ctrl-C or a cancelled task at any time."""
+"""The client stays usable after Ctrl-C or a cancelled task at any time."""
 
 from __future__ import annotations
 

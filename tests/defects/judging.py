@@ -22,7 +22,7 @@ class Message(NamedTuple):
 
 
 class Judgement(NamedTuple):
-    """What a run found of a defect. ``named`` is the message that names it; None: there is none."""
+    """What a run found of a defect. ``named`` is the message that names it, or None."""
 
     defect: Defect
     messages: tuple[Message, ...]

@@ -153,7 +153,7 @@ def test_stuck_write_is_a_link_error_with_the_number_of_bytes_written(
 ) -> None:
     data = bytes(range(251)) * (400 if line.end.kind == "serial" else 60_000)
     if line.end.kind == "socket":
-        # The sockets' buffers must fill up like a bridge's; they hold megabytes.
+        # Only megabytes fill the socket buffers. A high baud rate keeps the time limit short.
         line.transport._baudrate = 2**31 - 1  # type: ignore[attr-defined]
     started = time.monotonic()
     with pytest.raises(LinkError, match=r"only \d+ of \d+ bytes were taken in") as caught:
@@ -180,7 +180,7 @@ def test_closing_ends_a_waiting_write_at_once(line: Line) -> None:
 
 def test_ctrl_c_during_a_write_is_raised_after_the_whole_frame(line: Line) -> None:
     data = bytes(range(251)) * (400 if line.end.kind == "serial" else 40_000)
-    line.transport._baudrate = 100_000  # type: ignore[attr-defined]  # so that the write takes long enough
+    line.transport._baudrate = 100_000  # type: ignore[attr-defined]  # allows a long write
     received: list[bytes] = []
 
     def interrupt_and_receive() -> None:

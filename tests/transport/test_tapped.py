@@ -1,4 +1,4 @@
-"""Tap a transport, so that its traffic is passed on."""
+"""Tap a transport: a function receives a copy of its traffic."""
 
 from __future__ import annotations
 

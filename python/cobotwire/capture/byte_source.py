@@ -31,8 +31,8 @@ _TEXT = frozenset(b"\t\n\v\f\r" + bytes(range(0x20, 0x7F)))
 class ByteSource(NamedTuple):
     """Blocks of bytes, each with the number of input bytes that were read for it.
 
-    ``size`` is the length of the input in bytes, if it is known. ``from_arguments`` tells whether
-    the arguments themselves are the bytes.
+    ``size`` is the length of the input in bytes, if it is known. ``from_arguments`` is whether the
+    arguments themselves are the bytes.
     """
 
     blocks: Iterator[tuple[bytes, int]]

@@ -20,7 +20,7 @@ DIRECTIONS: tuple[Direction, ...] = ("unknown", "received", "sent")
 
 
 class Part(NamedTuple):
-    """Some adjacent rows that come from one stream, and their number."""
+    """A run of ``number`` adjacent rows that come from one stream."""
 
     interface: int
     direction: Direction
@@ -28,7 +28,7 @@ class Part(NamedTuple):
 
 
 class CapturedRows:
-    """All messages of one variant in a capture: a column for each field, and where and when.
+    """All messages of one variant in a capture: a column for each field, time and origin.
 
     Attributes:
         command: the command of the messages.
@@ -62,7 +62,7 @@ class CapturedRows:
 
     @property
     def offset(self) -> memoryview:
-        """The start of each message among the bytes of its interface and direction."""
+        """The offset of each message in the byte stream of its interface and direction."""
         return self._rows.offset
 
     @property
@@ -100,7 +100,7 @@ class CapturedRows:
         return f"<CapturedRows {command} {direction} {self.variant_index}: {len(self)}>"
 
     def to_numpy(self) -> Arrays:
-        """Return the columns as arrays by name: when, where, and the fields.
+        """Return the columns as arrays by name.
 
         They are ``time``, ``direction``, ``interface``, ``offset``, ``address`` if frames have an
         address byte, and the fields. ``time`` is ``datetime64[ns]``; ``direction`` holds texts.
@@ -141,7 +141,7 @@ class CapturedRows:
 
 
 def join(found: Sequence[CapturedRows]) -> CapturedRows:
-    """Return a copy of rows of one variant, stream after stream."""
+    """Join rows of one variant from several streams into a copy, in the order of ``found``."""
     times = b"".join([cast("bytes", rows.time) for rows in found])
     rows = join_rows([rows._rows for rows in found])
     parts = [part for rows in found for part in rows.parts]

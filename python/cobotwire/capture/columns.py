@@ -41,7 +41,7 @@ class ColumnsReader(Protocol):
     def feed(self, data: Data) -> CapturedColumns:
         """Take the next bytes of the file; return what became certain since the last call.
 
-        Damage is not raised: the ``error`` of this batch and all later ones tells it, and later
+        Damage raises nothing: this batch and all later ones have it as their ``error``, and later
         bytes are ignored.
         """
         ...
@@ -58,7 +58,7 @@ class ColumnsReader(Protocol):
 def capture_reader(
     codec: Codecs, listening: Listening = "both", *, raw: bool = False, name: str = "capture"
 ) -> ColumnsReader:
-    """Return a reader for a capture that comes in pieces.
+    """Return a reader for a capture that arrives in chunks.
 
     Args:
         codec: decodes the frames: one for all interfaces, or a function that is called with each

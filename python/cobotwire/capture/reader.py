@@ -1,4 +1,4 @@
-"""Read the packets of a pcapng file, ours or another program's."""
+"""Read the packets of a pcapng file, from cobotwire or from another program."""
 
 from __future__ import annotations
 
@@ -30,7 +30,8 @@ def read(path: str | os.PathLike[str]) -> CaptureReader:
 
     Raises:
         UsageError: the file does not exist, or it cannot be read, or zstd is not installed.
-        CaptureError: while iterating: the file is not a capture, or it is damaged at ``offset``.
+        CaptureError: the file is not a capture, or it is damaged at ``offset`` (raised while
+            iterating).
     """
     return CaptureReader(open_capture(path), str(path))
 

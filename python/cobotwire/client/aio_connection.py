@@ -36,7 +36,9 @@ class AsyncConnection:
         trace: TrafficListener | None,
         deadline: float,
     ) -> None:
-        """Note what to open; :meth:`open` opens it. Calls may take ``deadline`` seconds, or inf.
+        """Store the arguments; :meth:`open` opens the port.
+
+        Calls may take ``deadline`` seconds; ``inf``: any time.
 
         Raises:
             UsageError: the port is not allowed, or is a transport with a clock of its own; or the
@@ -83,7 +85,7 @@ class AsyncConnection:
     ) -> None:
         """Send a one-way request at once; wait ``ack_within`` seconds for its acknowledgement.
 
-        ``deadline`` is another one than that of the other calls.
+        ``deadline`` replaces the deadline of other calls.
         """
         steps, called_at = self._opened(), self.now()
         ends_by = called_at + (self._deadline if deadline is None else deadline)
@@ -146,7 +148,7 @@ class AsyncConnection:
         """Close the transport; calls that wait get a LinkError. Closing twice is harmless.
 
         Raises:
-            CaptureError: the recording is incomplete; everything is closed all the same.
+            CaptureError: the recording is incomplete; everything is closed nevertheless.
         """
         if self._steps is not None and self._port is not None:
             try:

@@ -94,7 +94,7 @@ class LoopTimers:
 
 
 def _clock_of(loop: asyncio.AbstractEventLoop, call: Callable[[], None]) -> AlarmClock | None:
-    """Return a clock at which the loop calls ``call``; None: there is none that it can watch."""
+    """Return a clock that makes the loop call ``call``; None if the loop can watch no clock."""
     clock = new_alarm_clock()
     if clock is not None:
         with suppress(NotImplementedError):

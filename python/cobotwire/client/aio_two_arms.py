@@ -34,7 +34,7 @@ class AsyncTwoArms(Generic[ArmT]):
         right: str | Transport,
         **options: Unpack[SharedOptions],
     ) -> None:
-        """Note what to open; :meth:`open` opens both ports.
+        """Store the arguments; :meth:`open` opens both ports.
 
         Args:
             client: the class of both clients.

@@ -111,10 +111,10 @@ class Client:
         self._connection = Connection(opener, exchange, trace, longest)
 
     def close(self) -> None:
-        """Close the transport. The arm is sent nothing. Closing twice is harmless.
+        """Close the transport. Nothing is sent to the arm. Closing twice is harmless.
 
         Raises:
-            CaptureError: the recording is incomplete; everything is closed all the same.
+            CaptureError: the recording is incomplete; everything is closed nevertheless.
         """
         self._connection.close()
 
@@ -130,7 +130,7 @@ class Client:
         try:
             self._leave(error)
         except BaseException:
-            # Ctrl-C came again. What was done already is not repeated.
+            # A second Ctrl-C interrupted this. Finish it; completed steps are not repeated.
             self._leave(error)
             raise
 
@@ -168,7 +168,7 @@ class Client:
         return found
 
     def add_traffic_listener(self, listener: TrafficListener) -> Callable[[], None]:
-        """Call ``listener`` with everything that passes the connection from now on, as it passes.
+        """Call ``listener`` with all traffic of the connection from now on, as it occurs.
 
         It runs in the thread that reads or writes: it must be quick, and must not raise. Bytes
         that come while no thread waits are read and reported with the next call, or by
@@ -180,7 +180,7 @@ class Client:
         return self._connection.listeners.add(listener)
 
     def listen(self, seconds: float) -> None:
-        """Read for some seconds what comes without a request; traffic listeners get it.
+        """Read for some seconds, without sending; traffic listeners receive what arrives.
 
         Raises:
             LinkError: the transport is gone.
@@ -193,10 +193,11 @@ class Client:
             for sample in arm.stream(GetAngles(), GetEncoder(2), rate=20):
                 angles, encoder = sample[GetAngles()], sample[GetEncoder(2)]
 
-        Requests are sent only when the loop wants a sample, so a slow loop misses samples and piles
-        up none. The stream's ``report`` counts what is missed; nothing is made up for. Each request
-        is sent once, since it is sent again in the next period anyway. After a request without a
-        reply the next one like it may have to wait: see ``RetryPolicy.grace``.
+        Requests are sent only when the loop requests a sample. A slow loop therefore misses
+        samples; they are not queued or sent later, and the stream's ``report`` counts them. A
+        request is not retried within its period, because the next period sends it again. After a
+        request without a reply, the next identical one may have to wait: see
+        ``RetryPolicy.grace``.
 
         Args:
             requests: messages of commands of safety class query.
@@ -220,10 +221,10 @@ class Client:
             for event in arm.events(MotionEnded, timeout=5):
                 print(event.status)
 
-        Events are queued from now on, whoever reads the line, until the stream is closed.
+        Events are queued from now on until the stream is closed, whichever call reads them.
 
         Args:
-            types: classes of events; none: all events of the edition.
+            types: classes of events; default: all events of the edition.
             timeout: the loop ends if no event comes for that many seconds; default: never.
             capacity: how many events wait for the loop. If more come, the oldest is dropped, and
                 counted in the stream's ``lost``.
@@ -243,7 +244,7 @@ class Client:
 
         It runs in the thread that reads the line: that of any call, or of a loop over ``events``,
         or of :meth:`listen`. It must be quick, and may call the arm. An exception that it raises
-        goes to ``sys.excepthook``, and to the result's ``failures`` and ``error``; no call fails by
+        goes to ``sys.excepthook``, and to the result's ``failures`` and ``error``; no call raises
         it.
 
         Returns:
@@ -257,12 +258,12 @@ class Client:
         return made
 
     def _close_for(self, error: BaseException | None) -> None:
-        """Close the transport; an error that ended the block remains the one that is raised."""
+        """Close the transport; do not replace the error that ended the block by one of closing."""
         try:
             self.close()
         except BaseException as failed:
             with suppress(Exception):
-                # What is closed already stays so.
+                # Close the rest; parts that are closed already stay closed.
                 self._connection.close()
             if error is None or not isinstance(failed, Exception):
                 raise
@@ -284,8 +285,8 @@ class Client:
     def _stop_for(self, error: BaseException) -> bool:
         """Send ``stop`` once for an error, unless the user chose to leave the arm alone.
 
-        If something unexpected ends that, Ctrl-C among it, ``stop`` is sent again: two stop the arm
-        as one does.
+        If an unexpected exception, such as Ctrl-C, interrupts this, ``stop`` is sent again. A
+        second ``stop`` is harmless.
 
         Returns:
             Whether it was sent.
@@ -295,10 +296,10 @@ class Client:
             return False
         sent = True
         try:
-            # That it is sent matters more than when.
+            # A late stop is better than none, so the deadline of the client does not apply.
             self._send(stop.request_type(), deadline=inf)
         except CobotwireError:
-            # The first error is what is reported; this one would hide it.
+            # Do not raise this error: it would hide the one that ended the block.
             sent = False
         except BaseException as unexpected:
             sent = self._stop_again(stop.request_type())
@@ -309,7 +310,7 @@ class Client:
         return sent
 
     def _stop_again(self, stop: Request[None]) -> bool:
-        """Send ``stop`` after the first one raised something unexpected; return whether it was."""
+        """Send ``stop`` after the first attempt was interrupted; return whether it was sent."""
         try:
             self._send(stop)
         except Exception:
@@ -334,9 +335,9 @@ class Client:
         ack_within: float | None = None,
         deadline: float | None = None,
     ) -> None:
-        """Send a one-way request at once; wait for its acknowledgement if ``ack_within`` says.
+        """Send a one-way request at once; wait ``ack_within`` seconds for its acknowledgement.
 
-        ``deadline`` is another one than that of the client.
+        If ``ack_within`` is None, it does not wait. ``deadline`` replaces that of the client.
         """
         if ack_within is not None:
             check_seconds("ack_within", ack_within)

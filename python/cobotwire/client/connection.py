@@ -53,7 +53,7 @@ class Connection:
     ) -> None:
         """Send a one-way request at once; wait ``ack_within`` seconds for its acknowledgement.
 
-        ``deadline`` is another one than that of the other calls.
+        ``deadline`` replaces the deadline of other calls.
         """
         steps, called_at = self._steps, self.now()
         ends_by = called_at + (self._deadline if deadline is None else deadline)
@@ -123,10 +123,10 @@ class Connection:
                 time.sleep(min(left, CHECK_SECONDS))
 
     def close(self) -> None:
-        """Close the transport. The arm is sent nothing. Closing twice is harmless.
+        """Close the transport. Nothing is sent to the arm. Closing twice is harmless.
 
         Raises:
-            CaptureError: the recording is incomplete; everything is closed all the same.
+            CaptureError: the recording is incomplete; everything is closed nevertheless.
         """
         try:
             self._transport.close()

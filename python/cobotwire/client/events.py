@@ -1,4 +1,4 @@
-"""Which events a client wants, the queue of those that wait, and handlers that are called."""
+"""Select, queue and handle the events that a client receives."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ from cobotwire.session import EventReceived, Traffic
 
 EventT = TypeVar("EventT", bound=Event)
 
-# How many events wait for a loop that is busy, unless the caller says otherwise.
+# The default number of events that are queued while the consumer is busy.
 CAPACITY = 1000
 
 
-# The flag of code that makes a coroutine; ``inspect`` takes a fifth as long to load as a client.
+# ``inspect.CO_COROUTINE``; importing ``inspect`` would add a fifth to the import time of a client.
 _COROUTINE = 0x80
 
 
@@ -30,7 +30,7 @@ class Wanted:
     def __init__(
         self, table: Table, types: tuple[type[Event], ...], address: Address | None
     ) -> None:
-        """Take the types, none for all; and the address of the client.
+        """Select events by class, all if ``types`` is empty, and by the address of the client.
 
         Raises:
             UsageError: a type is not an event of the edition, or the edition has no events.
@@ -43,11 +43,11 @@ class Wanted:
             if getattr(type, "command", None) not in known:
                 raise UsageError("events", type, f"events of the edition: {', '.join(known)}")
         self._names = frozenset(type.command for type in types) or frozenset(known)
-        # An address of several devices has the events of all.
+        # An address that stands for several devices receives the events of all of them.
         self._address = address.value if address and address.replies == "own" else None
 
     def event_of(self, traffic: Traffic) -> Event | None:
-        """Return the event in what was received; None if it is none, or another one."""
+        """Return the received event; None if it is not a wanted event."""
         found = traffic.event
         if not isinstance(found, EventReceived) or found.command.name not in self._names:
             return None
@@ -78,7 +78,7 @@ class EventQueue:
         self.lost = 0
 
     def take(self, traffic: Traffic) -> None:
-        """Queue what was received, if it is an event that is wanted."""
+        """Queue the received event if it is a wanted one."""
         event = self._wanted.event_of(traffic)
         if event is None:
             return
@@ -88,7 +88,7 @@ class EventQueue:
         self._waiting.append(event)
 
     def next(self) -> Any:
-        """Return the oldest event; None if none waits."""
+        """Return the oldest event; None if the queue is empty."""
         try:
             return self._waiting.popleft()
         except IndexError:
@@ -140,11 +140,11 @@ class EventHandler(Generic[EventT]):
         self.error: Exception | None = None
 
     def start(self, add: Callable[[Callable[[Traffic], None]], Callable[[], None]]) -> None:
-        """Have the function called from now on, by a traffic listener."""
+        """Start calling the function, from a traffic listener."""
         self._remove = add(self._take)
 
     def remove(self) -> None:
-        """Have the function called no longer. Removing twice is harmless."""
+        """Stop calling the function. Removing twice is harmless."""
         if self._remove is not None:
             self._remove()
             self._remove = None
@@ -156,7 +156,7 @@ class EventHandler(Generic[EventT]):
         try:
             self._handler(event)
         except Exception as error:
-            # The call that happened to read the event is not to blame.
+            # The call that read the event did not cause the error, so it must not raise it.
             self.failures += 1
             self.error = error
             sys.excepthook(type(error), error, error.__traceback__)

@@ -146,7 +146,7 @@ class OpenPort(NamedTuple):
         """Close both. Closing twice is harmless.
 
         Raises:
-            CaptureError: the recording is incomplete; the transport is closed all the same.
+            CaptureError: the recording is incomplete; the transport is closed nevertheless.
         """
         self.transport.close()
         self.close_recording()

@@ -25,7 +25,7 @@ class Poller:
         request: Callable[[EncodedRequest, RetryPolicy, float | None], PendingRequest],
         closed: Callable[[], bool],
     ) -> None:
-        """Take methods of a connection, and what tells whether the stream is closed."""
+        """Take methods of a connection; ``closed`` returns whether the stream is closed."""
         self._now, self._sleep, self._request = now, sleep, request
         self._closed = closed
 

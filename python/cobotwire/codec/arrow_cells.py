@@ -1,4 +1,4 @@
-"""Make Arrow arrays of columns, on the same memory where the types allow it."""
+"""Make Arrow arrays that share the memory of columns where the types allow it."""
 
 from __future__ import annotations
 
@@ -65,7 +65,7 @@ def numbers_in(field: Field, part: int | None) -> tuple[Number, ...]:
 
 
 def choices_in(field: Field, part: int | None) -> dict[str, int]:
-    """Return the raw values of an enum by their names; empty if it is none."""
+    """Return the raw values of an enum by their names; empty if the numbers are not an enum."""
     if field.kind == "enum" and len(field.cases) == 1:
         return dict(zip(field.labels, field.choices))
     numbers = numbers_in(field, part)

@@ -124,7 +124,7 @@ class Rows:
         return f"<Rows {self.command.name} {self.direction} {self.variant_index}: {len(self)}>"
 
     def to_numpy(self) -> Arrays:
-        """Return the columns as arrays on the same memory, by name: offset, address, the fields.
+        """Return the columns by name as arrays that share memory: offset, address, the fields.
 
         ``address`` exists only if frames have an address byte. An array has a dimension more for a
         field of several numbers, and two more for a list of groups or texts, also if there are no
@@ -147,7 +147,7 @@ class Rows:
         return arrays
 
     def to_arrow(self, *, wide: bool = False, leading: Mapping[str, Any] | None = None) -> Any:
-        """Return the rows as a ``pyarrow.Table``, on the same memory where the types allow it.
+        """Return the rows as a ``pyarrow.Table`` that shares memory where the types allow it.
 
         The columns are ``offset`` and one for each field: floats are ``float64``, integers
         ``int64``, flags ``bool``, enums dictionaries of their names, bytes ``binary``, texts
@@ -202,7 +202,7 @@ class Rows:
 class Columns(Sequence[Rows]):
     """The messages of a stream: the rows of each variant that occurred, in the order of the table.
 
-    ``table`` is the edition's, and ``raw`` tells whether the columns hold raw values. ``counters``
+    ``table`` is the edition's, and ``raw`` is whether the columns hold raw values. ``counters``
     accounts for every byte since the start of the stream. ``noise`` holds the spans of bytes that
     belong to no frame. ``rejected`` holds the offsets of legal frames with a value that the edition
     does not allow. These frames are in no rows; decoding one raises the error.

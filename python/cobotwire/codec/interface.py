@@ -54,7 +54,7 @@ class Framer(Protocol):
 
     @property
     def fed(self) -> int:
-        """How many bytes were fed since the framer was made."""
+        """The number of bytes fed since the framer was created."""
         ...
 
     @property
@@ -111,12 +111,13 @@ class Codec(Protocol):
     ) -> bytes:
         """Build one frame.
 
-        The first variant with that number of fields that allows the values is used, unless
-        ``variant`` picks one by its index. ``address`` is only for formats with an address byte.
+        ``values`` are encoded with the first variant that has as many fields and allows the values,
+        unless ``variant`` picks one by its index. ``address`` is only for formats with an address
+        byte.
 
         Raises:
             UsageError: there is no such command or variant, or a field does not allow its value.
-                If several variants have that number of fields, the error is that of the first one.
+                If several variants have as many fields, the error is that of the first one.
         """
         ...
 
@@ -147,9 +148,9 @@ class Codec(Protocol):
         out: Scan | None = None,
         workers: int = 1,
     ) -> Scan:
-        """Return the places of the frames and the noise in a stream.
+        """Return the offsets of the frames and the noise in a stream.
 
-        The result may reuse the memory of ``out``, an earlier result, which is then empty.
+        ``out`` is an earlier result; the new result may reuse its memory, which empties ``out``.
         ``workers`` is the number of threads that may read a large stream together; the result does
         not depend on it.
 
@@ -171,9 +172,9 @@ class Codec(Protocol):
         """Return the values of a stream as columns: physical values, or raw ones with ``raw``.
 
         A frame that can be a request or a reply counts as a request, unless ``listening`` is
-        ``"reply"``. The result may reuse the memory of ``out``, an earlier result, which is then
-        empty. ``workers`` is the number of threads that may read a large stream together; the
-        result does not depend on it.
+        ``"reply"``. ``out`` is an earlier result; the new result may reuse its memory, which
+        empties ``out``. ``workers`` is the number of threads that may read a large stream together;
+        the result does not depend on it.
 
         Raises:
             BufferError: a memoryview or an array still uses ``out``.
@@ -184,10 +185,10 @@ class Codec(Protocol):
     def column_reader(
         self, listening: Listening = "both", *, raw: bool = False, offset: int = 0
     ) -> ColumnReader:
-        """Return a reader for a stream that comes in pieces, or is larger than memory.
+        """Return a reader for a stream that arrives in chunks, or is larger than memory.
 
-        ``offset`` is the place of the first byte in the stream: the offsets of rows, rejected
-        frames and noise count from there. The counters count only what is fed.
+        ``offset`` is the position of the first fed byte in the stream; it is added to the offsets
+        of rows, rejected frames and noise. The counters count only the bytes that are fed.
 
         Raises:
             UsageError: ``offset`` is negative or beyond 63 bits.

@@ -56,7 +56,7 @@ class DamagedFrames(FrameStarts):
         super().__init__(codec, listening)
         # Every LEN that is legal with an id, in any direction; with None that of any message.
         self._lengths: dict[int | None, set[int]] = {}
-        # Nothing tells which one of the commands that share an id it was.
+        # The frame does not show which of the commands that share an id it belongs to.
         self._all_names: dict[int, str] = {}
         for command in codec.table.commands:
             legal = {

@@ -69,7 +69,8 @@ def other_edition(
 
     Returns:
         What the edition's own query shows, and the evidence that the arm speaks another edition;
-        None: there is none. Other queries are only sent if the own one gets no legal reply.
+        None if there is no such evidence. Other queries are only sent if the edition's own query
+        gets no legal reply.
 
     Raises:
         LinkError: the transport is gone.

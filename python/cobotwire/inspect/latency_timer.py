@@ -9,9 +9,9 @@ SYSTEM = Path("/sys")
 
 
 def latency_timer(url: str, system: Path = SYSTEM) -> tuple[int, Path] | None:
-    """Return the latency timer of a port in milliseconds, and its file; None if there is none.
+    """Return a port's latency timer in milliseconds, and the file that sets it.
 
-    Linux has a latency timer for FTDI adapters.
+    The result is None if the port has no latency timer. Linux has one for FTDI adapters.
     """
     if "://" in url:
         return None

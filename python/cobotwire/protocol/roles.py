@@ -1,8 +1,8 @@
-"""Find the arguments of commands by their roles, however many joints an edition has.
+"""Find the arguments of commands by their roles, for any number of joints.
 
-An edition may order the arguments as it likes: a row of targets is the argument with several
-numbers; a single target is selected by another argument, or has a unit or scale; a speed is in
-percent.
+Editions order arguments differently, so the type of an argument identifies it. The targets of all
+joints are the argument with several numbers. The target of one joint or coordinate has a selector,
+a unit or a scale. A speed is in percent.
 """
 
 from __future__ import annotations
@@ -15,28 +15,28 @@ from cobotwire.protocol.fields import Field, Variant
 from cobotwire.protocol.messages import Request
 from cobotwire.protocol.table import Command, Role, Table
 
-# Kinds of target, as the edition's query for a reached target names them.
+# The kinds of target, named like the enum labels in an edition's ``reached`` query.
 ANGLES, COORDS = "ANGLES", "COORDS"
 KINDS = {ANGLES: 0, COORDS: 1}
 
 
 class Picked(NamedTuple):
-    """Where the arguments of a command that moves one part are: which part, and its target."""
+    """The positions of two fields: the one that picks a joint or coordinate, and its target."""
 
     picker: int
     target: int
 
 
 def row_index(variant: Variant) -> int:
-    """Return the index of the field that holds a row of numbers; -1 if there is none."""
+    """Return the index of the first field with several numbers; -1 if no field has several."""
     return next((index for index, field in enumerate(variant.fields) if field.many), -1)
 
 
 def picked(variant: Variant) -> Picked:
-    """Return the places of the arguments of a command that moves one part.
+    """Return the field positions in a command that moves one joint or coordinate.
 
     Raises:
-        ValueError: it has no such arguments; the generator checks that.
+        ValueError: the command has no such fields; the generator checks that.
     """
     fields = variant.fields
     for index, field in enumerate(fields):
@@ -58,10 +58,12 @@ def _is_picker(field: Field) -> bool:
 
 
 def targets_request(command: Command, target: Sequence[float], *others: Any) -> Request[Any]:
-    """Return the request that moves to a row of targets; ``others`` follow in the method's order.
+    """Return the request that moves all joints or coordinates to ``target``.
+
+    ``others`` are the remaining arguments, in the order of the method.
 
     Raises:
-        UsageError: the command needs another argument, or has fewer.
+        UsageError: a required argument is missing, or ``others`` has too many.
     """
     names: tuple[str, ...] = command.request_type.__match_args__
     row = command.request[0].fields[row_index(command.request[0])].name
@@ -82,8 +84,8 @@ class ReachedQuery(NamedTuple):
     Attributes:
         command: the query.
         row: the argument that holds the target.
-        kind: the argument that holds the kind of target; empty if it takes only one kind.
-        kinds: the raw value of each kind that it takes.
+        kind: the argument that holds the kind of target; empty if the query takes only one kind.
+        kinds: the raw value of each kind that the query takes.
     """
 
     command: Command
@@ -92,7 +94,7 @@ class ReachedQuery(NamedTuple):
     kinds: dict[str, int]
 
     def request(self, target: Sequence[float], label: str) -> Request[Any]:
-        """Return the request for a target of a kind that it takes."""
+        """Return the request for a target; ``label`` is one of ``kinds``."""
         kind = {self.kind: self.kinds[label]} if self.kind else {}
         return self.command.request_type(**{self.row: target}, **kind)
 
@@ -104,7 +106,7 @@ def reached_query(table: Table) -> ReachedQuery | None:
 
 
 def as_reached_query(command: Command) -> ReachedQuery:
-    """Return a command in the role ``reached`` with its arguments."""
+    """Return the description of a command that has the role ``reached``."""
     variant = command.request[0]
     row = variant.fields[row_index(variant)].name
     for field in variant.fields:
@@ -118,7 +120,7 @@ def as_reached_query(command: Command) -> ReachedQuery:
 
 
 def kinds_of(table: Table) -> dict[str, int]:
-    """Return the number of each kind of target: the edition's own, or else KINDS."""
+    """Return the raw value of each kind of target: from the edition, otherwise from KINDS."""
     query = reached_query(table)
     return KINDS | ({} if query is None else query.kinds)
 
@@ -137,14 +139,14 @@ def gripper_request(table: Table, label: str, speed: int) -> Request[Any]:
 
 
 def place_role(label: str) -> Role:
-    """Return the role of the query that reports where the arm is, in targets of a kind."""
+    """Return the role of the query that reports the present angles or coordinates."""
     return "joints" if label == ANGLES else "coordinates"
 
 
 def starts_motion(table: Table, command: Command) -> bool:
     """Return whether a command of the class motion may set the arm or its gripper in motion.
 
-    A stop, a pause and what discards targets never do; to resume continues only what was paused.
+    Commands that stop, pause or discard targets never do. Resuming only continues a paused motion.
     """
     if command.safety != "motion" or command.role in ("stop", "halt"):
         return False
@@ -153,7 +155,7 @@ def starts_motion(table: Table, command: Command) -> bool:
 
 
 def is_of_gripper(table: Table, command: Command) -> bool:
-    """Return whether a command concerns a gripper, which has a servo of its own."""
+    """Return whether a command is for the gripper, which has its own servo."""
     gripper = table.find_role("gripper")
     fields = {field.name for variant in command.request for field in variant.fields}
     return (gripper is not None and command.family == gripper.family) or "gripper_id" in fields

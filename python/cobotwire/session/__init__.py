@@ -1,4 +1,4 @@
-"""The exchange of messages without a port, clock or thread: bytes and times in, events out."""
+"""Match requests and replies without I/O, clock or threads: bytes and times in, events out."""
 
 from cobotwire.session.acks import PendingAck
 from cobotwire.session.device import (

@@ -62,7 +62,7 @@ class UnexpectedFrame(NamedTuple):
 class EchoReceived(NamedTuple):
     """The request's own bytes: an echo, or a reply that looks the same.
 
-    Only what follows tells which; see :mod:`cobotwire.session.echo`.
+    The bytes that follow decide which it is; see :mod:`cobotwire.session.echo`.
     """
 
     frame: Frame

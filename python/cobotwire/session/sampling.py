@@ -2,12 +2,12 @@
 
 A stream is cut into periods. Period k begins at ``started + k / rate`` and has at most one sample.
 Its requests are sent when it begins, or up to half a period later; after that the period is missed,
-and the stream waits for the next one. So nothing is made up for in bursts: two samples are
-requested at least half a period apart. A sample that was held up (by another thread's request, or
-by an outstanding reply) counts for the period that begins nearest to its sending.
+and the stream waits for the next one. Missed samples are therefore not sent later in bursts: two
+samples are requested at least half a period apart. If another thread's request or an outstanding
+reply delays a sample, it belongs to the period that begins nearest to its sending.
 
-Nothing is requested that nobody wants: while the consumer is busy, periods pass unread. So there is
-no queue that could grow, and no sample is older than the call that waits for it.
+A sample is requested only when the consumer waits for one; while the consumer is busy, periods are
+missed. So there is no queue that could grow, and no sample is older than the call that returns it.
 """
 
 from __future__ import annotations

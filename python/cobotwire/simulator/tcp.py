@@ -155,7 +155,7 @@ def _listen(host: str, port: int) -> socket.socket:
     family = socket.AF_INET6 if ":" in host else socket.AF_INET
     try:
         listening = socket.create_server((host, port), family=family)
-    # A host that cannot be encoded as a name is a UnicodeError.
+    # A host name that cannot be encoded raises UnicodeError.
     except (OSError, UnicodeError) as error:
         reason = getattr(error, "strerror", None) or str(error)
         raise LinkError(f"{host}:{port}", f"cannot listen: {reason}") from error

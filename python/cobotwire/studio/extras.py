@@ -8,7 +8,7 @@ from pathlib import Path
 from cobotwire.protocol.errors import UsageError
 
 PAGE = Path(__file__).parent / "page"
-# The curves are drawn by uPlot, which wheels ship and builds fetch: tools/build_backend.py.
+# uPlot draws the curves. tools/build_backend.py downloads it for a build, and wheels contain it.
 CURVES = PAGE / "vendor" / "uPlot.esm.js"
 
 

@@ -16,17 +16,17 @@ class AlarmClock(Protocol):
         ...
 
     def set(self, due: float | None, /) -> None:
-        """Make it readable from a given time on, and not before; None: never."""
+        """Make the descriptor readable from ``due`` on; None: never."""
         ...
 
 
 def new_alarm_clock() -> AlarmClock | None:
-    """Return a clock that is not set; None: the system has none, or no descriptor for it."""
+    """Return a clock that is not set; None if the system has no timer with a descriptor."""
     if native_calls() is None:
         return None
     from cobotwire import _native
 
-    # Only Linux has it.
+    # Only Linux has timer descriptors.
     with suppress(AttributeError, OSError):
         return _native.AlarmClock()
     return None

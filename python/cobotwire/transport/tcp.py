@@ -1,4 +1,4 @@
-"""``socket://host:port``: a serial line over TCP, as ser2net and the arm's own server offer it."""
+"""``socket://host:port``: a serial port over TCP, as served by ser2net and by some arms."""
 
 from __future__ import annotations
 
@@ -8,16 +8,16 @@ from contextlib import suppress
 from cobotwire.protocol.errors import LinkError
 from cobotwire.transport.descriptor import DescriptorTransport, reason_of
 
-# For each address of the host. A handshake takes one round trip; this is enough for three losses.
+# The limit for each address of the host. It allows for three lost packets in the handshake.
 CONNECT_SECONDS = 5.0
-# A peer that vanished silently (with its Wi-Fi, say) is given up after about this long: by probes
-# while nothing is sent, by missing acknowledgements while something is.
+# These limits detect a peer that vanished silently, for instance because its Wi-Fi failed: on an
+# idle connection by keepalive probes, and while data is sent by missing TCP acknowledgements.
 IDLE_SECONDS, PROBE_SECONDS, PROBES = 5, 2, 3
 UNACKNOWLEDGED_MS = 10_000
 
 
 class TcpTransport(DescriptorTransport):
-    """An :class:`OpenedTransport` over TCP, which merges and splits frames at will."""
+    """An :class:`OpenedTransport` over TCP, which may split frames and join adjacent ones."""
 
     kind = "socket"
     low_latency = True
@@ -35,7 +35,7 @@ class TcpTransport(DescriptorTransport):
     def _connect(self) -> int:
         try:
             opened = socket.create_connection(self._address, CONNECT_SECONDS)
-        # A host that cannot be encoded as a name is a UnicodeError.
+        # A host name that cannot be encoded raises UnicodeError.
         except (OSError, UnicodeError) as error:
             raise LinkError(self.url, f"cannot be opened: {reason_of(error)}") from error
         opened.setblocking(False)
@@ -48,7 +48,7 @@ class TcpTransport(DescriptorTransport):
             ("TCP_KEEPCNT", PROBES),
             ("TCP_USER_TIMEOUT", UNACKNOWLEDGED_MS),
         ):
-            # Some platforms lack some of these; there only silence shows that the peer is gone.
+            # Where a platform lacks an option, only missing replies reveal a vanished peer.
             with suppress(AttributeError, OSError):
                 opened.setsockopt(socket.IPPROTO_TCP, getattr(socket, name), value)
         self._socket = opened

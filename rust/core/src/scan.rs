@@ -4,23 +4,23 @@ use crate::frame::Frame;
 use crate::reason::Reason;
 use crate::rules::{Rules, Verdict};
 
-/// Receives the finds of a scan in stream order; positions count from the start of its data.
+/// Receives the results of a scan in stream order; positions count from the start of its data.
 pub(crate) trait Sink<'a> {
     /// Receive the frame at `at`.
     fn frame(&mut self, at: usize, frame: Frame<'a>);
 
-    /// Receive noise: the bytes from `from` to before `to`, each for this reason.
+    /// Receive noise: the bytes from `from` up to, not including, `to`; `reason` applies to each.
     fn noise(&mut self, from: usize, to: usize, reason: Reason);
 }
 
 /// After this many bytes of noise without a header, the next bytes probably have no header either.
 const LONG_RUN: usize = 8;
-/// The number of bytes that are then examined together.
+/// After a long run of noise, this number of bytes is examined together.
 const STEP: usize = 16;
 
-/// Validate the positions from `at` to `stop`. Return the first position that waits for more bytes,
-/// else the end of the last frame, which may be after `stop`. At the end of the stream no position
-/// waits.
+/// Validate the positions from `at` to `stop`. Return the first position that cannot be decided
+/// without more bytes. If there is none, return the end of the scan; a frame may extend it beyond
+/// `stop`. At the end of the stream (`at_end`) every position can be decided.
 #[inline]
 pub(crate) fn scan<'a>(
     rules: &Rules,

@@ -1,6 +1,6 @@
 //! `Memory`: a column that Python reads through the buffer protocol.
 
-#![allow(unsafe_code)] // the buffer protocol, `madvise` and the collector are C's
+#![allow(unsafe_code)] // the buffer protocol, `madvise` and the garbage collector are C interfaces
 
 use std::ffi::c_int;
 use std::ptr;
@@ -85,13 +85,13 @@ impl Memory {
 
     fn put_back(&self, column: Column) {
         let mut held = self.held();
-        // A view of an empty column refers to no bytes, so the column may be replaced meanwhile.
+        // Views of an empty column refer to no bytes, so they do not prevent its replacement.
         if held.column.is_empty() {
             held.column = column;
         }
     }
 
-    /// Take all columns out, or none.
+    /// Take all columns out; if one of them is in use, put the others back.
     pub fn take_all(memories: &[&Self]) -> PyResult<Vec<Column>> {
         let mut columns = Vec::with_capacity(memories.len());
         for memory in memories {
@@ -120,7 +120,7 @@ impl Memory {
         if view.is_null() {
             return refused("a column needs a view to fill");
         }
-        // SAFETY: the caller passes a view to fill. A view that is rejected has no owner.
+        // SAFETY: the caller passes a view to fill. If the request is rejected, `obj` must be null.
         unsafe { (*view).obj = ptr::null_mut() };
         let wanted = |flag: c_int| flags & flag == flag;
         if wanted(ffi::PyBUF_WRITABLE) {
@@ -183,12 +183,12 @@ impl Memory {
 
     unsafe fn __releasebuffer__(&self, view: *mut ffi::Py_buffer) {
         self.held().views -= 1;
-        // SAFETY: `__getbuffer__` stored it, and a view is released once.
+        // SAFETY: `__getbuffer__` stored this pointer, and a view is released once.
         drop(unsafe { Box::from_raw((*view).internal.cast::<Shape>()) });
     }
 }
 
-/// Large pages do not speed up smaller memory.
+/// The smallest buffer, in bytes, that large pages speed up.
 const LARGE: usize = 4 << 20;
 
 /// Request large pages for memory that is about to be filled: the first access to a small page

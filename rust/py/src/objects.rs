@@ -14,13 +14,13 @@ use crate::words::word;
 pub struct Commands {
     all: Vec<Command>,
     by_name: HashMap<String, usize>,
-    /// The same by the address of the name's interned string, which literals in programs are.
+    /// The same, by the address of the interned name: string literals in programs are interned.
     by_address: HashMap<usize, usize, BuildHasherDefault<AddressHasher>>,
-    /// Keeps these strings alive, so that no other object has such an address.
+    /// Keeps the interned names alive, so that no other object gets one of their addresses.
     _names: Vec<Py<PyString>>,
 }
 
-/// Hashes an address: multiplies it by an odd number without a pattern.
+/// Hashes an address by multiplying it by an odd constant with irregular bits.
 #[derive(Default)]
 struct AddressHasher(u64);
 
@@ -48,7 +48,7 @@ pub struct Command {
 }
 
 impl Commands {
-    /// Return the objects of a table; `names` are those of its commands.
+    /// Return the objects of a table; `names` are the names of its commands.
     pub fn new(table: &Bound<'_, PyAny>, names: Vec<String>) -> PyResult<Self> {
         let (mut by_name, mut by_address) = (HashMap::new(), HashMap::default());
         let mut interned = Vec::with_capacity(names.len());
@@ -84,7 +84,7 @@ impl Commands {
         place.ok_or_else(|| PyKeyError::new_err((name.clone().unbind(),)))
     }
 
-    /// The index of the command with that name, if there is one.
+    /// Return the index of the command with that name; `None` if the table has no such command.
     pub fn known(&self, name: &Bound<'_, PyAny>) -> Option<usize> {
         let known = self.by_address.get(&(name.as_ptr() as usize));
         let known = known.or_else(|| self.by_name.get(word(name)?));

@@ -60,6 +60,6 @@ def processes(bucket: str, tmp_path_factory: pytest.TempPathFactory) -> Iterator
 
 @pytest.fixture
 def cluster(processes: DaskProcesses) -> DaskProcesses:
-    """Start the workers, or those that an earlier test has killed."""
+    """Return the cluster with all workers running; restart those that an earlier test killed."""
     processes.replace_killed_workers()
     return processes

@@ -1,4 +1,4 @@
-"""Queries over an archive without Dask: Arrow tables that threads make."""
+"""Query an archive without Dask: threads make the Arrow tables."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def test_tables_hold_the_rows_of_an_export_in_their_order(inputs: Inputs, tmp_pa
         assert table.column(name).to_pylist() == exported.column(name).to_pylist()
     assert set(table.column("robot").to_pylist()) == {"arm1", "arm2", "arm4", "arm5"}
     scanned = counts(scan.report())
-    # A scan chooses one message; all others are counted.
+    # A scan selects one message; the others are counted as ``not_chosen``.
     assert scanned.pop("not_chosen") == report.rows.total() - report.rows["get_angles.reply"]
     assert scanned["noise"] == counts(report)["noise"]
     assert (scanned["bytes"], scanned["rejected"]) == (report.bytes, report.rejected)

@@ -1,4 +1,4 @@
-"""What an export wrote and any reader reads equals the typed messages."""
+"""Exported files equal the typed messages, whichever library reads them."""
 
 from __future__ import annotations
 

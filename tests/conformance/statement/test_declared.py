@@ -14,7 +14,7 @@ from conformance.device.testing import permissions, prepared
 
 TABLE = editions.load("mycobot280").TABLE
 HEAD = "statement: 1\nedition: mycobot280\n"
-# The document's edition lacks these queries of today's firmware.
+# The edition of the manufacturer's document (mycobot) lacks these queries.
 LACKING = ("get_tof_distance", "get_reboot_count")
 
 
@@ -33,7 +33,7 @@ def run(text: str, *allow: str, device: str = "mycobot280", acks: bool = True) -
         TABLE, wrap, device=table, permissions=permissions(*allow), statement=declared(text)
     )
     names = [*LACKING, "get_angles", *(["get_gripper_value"] if device == "mycobot280" else [])]
-    # Other steps would take seconds on the arm of another edition.
+    # The other steps would take seconds if the device implements another edition.
     steps = [
         step
         for step in tester.steps()

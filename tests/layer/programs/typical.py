@@ -1,4 +1,4 @@
-"""A program for the maker's library, as people write them."""
+"""Use the maker's library as a typical program does."""
 
 import sys
 import time

@@ -30,7 +30,7 @@ for place, setup, text in json.load(open(sys.argv[1])):
 
 
 class Result(NamedTuple):
-    """What became of a command or a program: whether it did what the page says."""
+    """The result of a command or a program: whether it did what the page says."""
 
     what: str
     problem: str = ""

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
-# A measured word rarely changes by more than this between two frames.
+# A measured 16-bit number rarely changes by more than this between two frames.
 _SMOOTH = 2500
 _FEW = 8
 
@@ -49,7 +49,7 @@ def _text(payloads: Sequence[bytes], first: int, length: int) -> Guess | None:
 
 
 def _word(payloads: Sequence[bytes], first: int, length: int) -> Guess | None:
-    # If the second byte starts a word, it is a high byte, and these two are not a word.
+    # If a word starts at the second byte, that byte is a high byte, so no word starts at the first.
     if not _smooth(payloads, first, length) or _smooth(payloads, first + 1, length):
         return None
     words = [_signed(payload, first) for payload in payloads]
@@ -58,7 +58,7 @@ def _word(payloads: Sequence[bytes], first: int, length: int) -> Guess | None:
 
 
 def _smooth(payloads: Sequence[bytes], first: int, length: int) -> bool:
-    """Return whether two bytes change as one number; only a carry between them shows that."""
+    """Return whether two bytes change like one number, with carries into the high byte."""
     if first + 2 > length:
         return False
     high = {payload[first] for payload in payloads}

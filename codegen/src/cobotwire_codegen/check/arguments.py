@@ -1,4 +1,4 @@
-"""Rules for the arguments of methods: each call means one variant, and the order is complete."""
+"""Check method arguments: each call selects one variant, and the order lists every argument."""
 
 from __future__ import annotations
 
@@ -10,13 +10,13 @@ from cobotwire_codegen.model import Command, Edition, Variant, named_fields
 
 
 def calls_decide(edition: Edition) -> Iterator[Problem]:
-    """Report variants of a message that the same arguments would choose."""
+    """Report pairs of variants that the same arguments would select."""
     for command in edition.commands:
         for one, other in combinations(command.requests, 2):
             if _some_call_fits_both(one, other):
                 yield _same(command, "request", one, other)
         for one, other in combinations(command.replies, 2):
-            # Lengths and values tell the variants of a reply apart, but constants are not values.
+            # The caller sees lengths and values in the result, but not the constants.
             if _names(one) == _names(other) and _constants(one) != _constants(other):
                 yield _same(command, "reply", one, other)
 
@@ -47,7 +47,7 @@ def _constants(variant: Variant) -> list[tuple[str, int]]:
 
 
 def order_complete(edition: Edition) -> Iterator[Problem]:
-    """Report orders that lack an argument, name an unknown one, or begin with an optional one."""
+    """Report argument orders that are incomplete, or have unknown or misplaced arguments."""
     for command in edition.commands:
         if command.arguments:
             yield from _order(command)

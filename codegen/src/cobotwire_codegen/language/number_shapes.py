@@ -1,4 +1,4 @@
-"""The numbers that a key of the spec can have: whole ones, exact ones, ranges and lists."""
+"""Read numbers from the spec: whole numbers, exact fractions, ranges and lists."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ _EXACT = r"^\s*-?[0-9]+(\.[0-9]*)?(/[0-9]+)?\s*$"
 
 
 class Whole(Shape[int]):
-    """A whole number, within bounds where they are given."""
+    """A whole number, optionally with a lowest or highest value."""
 
     def __init__(
         self, lowest: int | None = None, highest: int | None = None, code: str = "bad-number"

@@ -15,7 +15,7 @@ from cobotwire_codegen.render.markdown import text_vector
 from cobotwire_codegen.render.parameters import Parameter, parameters, results, returns
 from cobotwire_codegen.render.words import decimal
 
-# Texts with other characters are shortened: they would need escapes that the reader has to undo.
+# Texts with other characters need escapes, which are hard to read, so ``...`` replaces them.
 _PLAIN = re.compile(r"[\w .,:/-]*\Z", re.ASCII)
 _ANY_TEXT = '"..."'
 
@@ -101,7 +101,7 @@ def _number(type: Type, value: object) -> str:
 def _result(parameter: Parameter, value: object) -> str:
     type = _fitting(parameter, value)
     if isinstance(value, tuple) and isinstance(type, Value) and len(parameter.types) > 1:
-        # Rows of different types have no class in common.
+        # No class fits all types of the parameter, so the call returns a plain tuple.
         return f"({', '.join(_real(part, each) for (_, part), each in zip(_parts(type), value))})"
     if isinstance(type, Listed) and isinstance(value, tuple):
         items = [_returned(type.of, item) for item in value]
@@ -129,7 +129,7 @@ def _real(type: Type, value: object) -> str:
 
 
 def _fitting(parameter: Parameter, value: object) -> Type:
-    """Return the type that a value has, of those that the parameter may have."""
+    """Return the type of the parameter that matches a value; the first type if none does."""
     size = len(value) if isinstance(value, tuple) else None
     for type in parameter.types:
         parts = len(list(_parts(type))) or None

@@ -25,7 +25,7 @@ from cobotwire.protocol.errors import UsageError
 
 # The bytes to decode at a time. The rows of a piece take some three times as much memory.
 PIECE = 8 << 20
-# These many bytes tell whether an input is a pcapng file.
+# The number of bytes that show whether an input is a pcapng file.
 MAGIC = 12
 
 

@@ -78,7 +78,7 @@ class ReferenceCodec:
         out: Scan | None = None,
         workers: int = 1,
     ) -> Scan:
-        """Return the places of frames and noise, without reuse of ``out``, and in this thread."""
+        """Return the offsets of frames and noise, without reuse of ``out``, and in this thread."""
         _check_workers(workers)
         framer = self.framer(listening, accept_unknown=accept_unknown)
         return scan([*framer.feed(data), *framer.flush()], framer)
@@ -100,7 +100,7 @@ class ReferenceCodec:
     def column_reader(
         self, listening: Listening = "both", *, raw: bool = False, offset: int = 0
     ) -> ReferenceColumnReader:
-        """Return a reader for a stream that comes in pieces."""
+        """Return a reader for a stream that arrives in chunks."""
         framer = self.framer(listening)
         framer.start_at(offset)
         return ReferenceColumnReader(self.table, framer, raw)

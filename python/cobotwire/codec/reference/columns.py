@@ -151,7 +151,7 @@ class Noises:
 
 
 def scan(events: Iterable[Event], framer: ReferenceFramer) -> Scan:
-    """Return the places of the frames and the noise."""
+    """Return the offsets of the frames and the noise."""
     offset, noise = array("Q"), Noises()
     for event in events:
         noise.take(event)

@@ -1,4 +1,4 @@
-"""The catalogue of the test suite: every test case, with a version that changes with them."""
+"""The catalogue of the test suite: all test cases, and a version that changes when they do."""
 
 from cobotwire.conformance.catalogue.history import HISTORY, VERSION, CatalogueVersion
 from cobotwire.conformance.catalogue.sources import code_digest

@@ -77,7 +77,7 @@ class CompatibleClient:
         policy.opened(self.arm)
 
     def close(self) -> None:
-        """Close the port. The arm is sent nothing."""
+        """Close the port. Nothing is sent to the arm."""
         self._is_open = False
         self.arm.close()
 

@@ -61,7 +61,7 @@ class WaitingWithMode(Waiting):
 
 
 class WaitingForResult(WaitingWithMode):
-    """Waits for the end of a motion, and tells whether it ended in time."""
+    """Waits for the end of a motion, and returns whether it ended in time."""
 
     LATE = 0
 

@@ -16,7 +16,7 @@ OWN_HEAD = bytes([0xFE, 0xFE, 8])
 
 
 def check_of(data: bytes) -> int:
-    """Return the check of Modbus over some bytes."""
+    """Return the Modbus CRC of ``data``."""
     rest = 0xFFFF
     for each in data:
         rest ^= each

@@ -1,4 +1,4 @@
-"""List the serial ports of this machine, and say which of them may lead to an arm."""
+"""List the serial ports of this machine, and guess which of them connect to an arm."""
 
 from __future__ import annotations
 
@@ -18,8 +18,8 @@ BRIDGES: dict[tuple[int, int], str] = {
     (0x0403, 0x6015): "FT231X, the bridge of some carrier boards",
     (0x303A, 0x1001): "the USB port of an ESP32-S3 or -C3 itself, as on AtomS3",
 }
-# The built-in ports to which arms with a computer in their base wire their controller. pyserial
-# does not list that of the Jetson.
+# Arms with a computer in their base connect its built-in port to the controller. pyserial does not
+# list the built-in port of the Jetson.
 WIRED = {
     "/dev/ttyAMA": "the built-in port of a Raspberry Pi, to which Pi versions wire their arm",
     "/dev/ttyTHS": "the built-in port of a Jetson, to which its versions wire their arm",
@@ -31,12 +31,12 @@ class Port(NamedTuple):
 
     Attributes:
         device: what to open.
-        likely: whether it may well lead to an arm.
-        why: the reason for that, or for the contrary.
-        accessible: whether this user may open it; another program may have it open all the same.
-        description: the system's name for it.
+        likely: whether the port probably connects to an arm.
+        why: the reason for ``likely``.
+        accessible: whether this user has permission to open it, even if another program uses it.
+        description: the system's name for the port.
         usb: vendor and product, ``10C4:EA60``; empty for other devices.
-        serial_number: that of the USB device; empty if it has none.
+        serial_number: the serial number of the USB device; empty if it has none.
     """
 
     device: str
@@ -63,7 +63,7 @@ def ports() -> list[Port]:
 
 
 def judge(device: str, vendor: int | None, product: int | None) -> tuple[bool, str]:
-    """Return whether a port may lead to an arm, and why."""
+    """Return whether a port probably connects to an arm, and the reason."""
     if vendor is not None and product is not None:
         bridge = BRIDGES.get((vendor, product))
         return (True, bridge) if bridge else (False, "a USB device that no such arm has")
@@ -81,7 +81,7 @@ def _port(
         device,
         likely,
         why,
-        # On Windows only opening it tells.
+        # Windows reports a missing permission only when the port is opened.
         os.access(device, os.R_OK | os.W_OK) or os.name != "posix",
         description if description != "n/a" else "",
         "" if vendor is None or product is None else f"{vendor:04X}:{product:04X}",

@@ -1,6 +1,6 @@
 //! Reads pcapng recordings of serial traffic into columns, with the time of each message.
 //!
-//! The file comes in pieces. `blocks` cuts it, `section` and `packet` interpret the blocks, and
+//! The file arrives in chunks. `blocks` cuts it, `section` and `packet` interpret the blocks, and
 //! `stream` joins the packets of each direction of each interface, decodes them in bulk, and maps
 //! the positions of what it finds to times. The Python reader in `python/cobotwire/capture` is the
 //! specification.

@@ -1,4 +1,4 @@
-//! Reads a recording that comes in pieces.
+//! Reads a recording that arrives in chunks.
 
 use std::sync::Arc;
 

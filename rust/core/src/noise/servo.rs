@@ -1,15 +1,15 @@
-//! Packets of the servo bus that leak onto the line: where they are, and what they say.
+//! Finds and interprets packets of the servo bus that leak into the traffic of the arm.
 
 use std::collections::BTreeMap;
 
 use crate::frame::FrameFormat;
 
-/// The servo bus: its legal packets, and the words for what they say.
+/// The servo bus: its legal packets, and the names of their contents.
 #[derive(Clone, Debug)]
 pub struct ServoBus {
     /// The format of a packet.
     pub frame: FrameFormat,
-    /// The legal LENs; what else a packet holds does not matter.
+    /// The legal LENs. Whether a packet is legal does not depend on its parameters.
     pub lengths: Vec<u16>,
     /// The id that stands for all servos.
     pub every: u8,
@@ -30,34 +30,34 @@ pub struct Instruction {
     pub name: String,
     /// The legal LENs of its packets.
     pub lengths: Vec<u16>,
-    /// What its parameters are, in their order.
+    /// The meanings of its parameters, in their order.
     pub operands: Vec<Operand>,
 }
 
-/// What parameters of an instruction are.
+/// The meaning of one or more parameters of an instruction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Operand {
     /// The first register.
     Register,
     /// The number of bytes for each servo.
     Count,
-    /// What is written, to the end.
+    /// The bytes to write: all remaining parameters.
     Data,
-    /// The servos, to the end; the largest legal id.
+    /// The ids of servos: all remaining parameters. The value is the largest legal id.
     Servos(u8),
 }
 
-/// The register and the number of bytes that the next status packet of a servo holds.
+/// The register and the number of bytes that each servo sends in its next status packet.
 pub type Expected = BTreeMap<u8, (u8, usize)>;
 
-/// What a packet says.
+/// The contents of a packet.
 pub(crate) struct Packet<'a> {
     /// The servo, or the id that stands for all.
     pub(crate) servo: u8,
-    /// The byte that is an instruction or error bits.
+    /// The code of the instruction, or the error bits of a status packet.
     pub(crate) code: u8,
     pub(crate) is_status: bool,
-    /// Whether it could also have the other role.
+    /// Whether the packet is legal both as an instruction and as a status packet.
     pub(crate) ambiguous: bool,
     /// The instruction, if the parameters are legal for it.
     pub(crate) instruction: Option<&'a Instruction>,
@@ -74,7 +74,8 @@ impl ServoBus {
         self.frame.header.first().copied().unwrap_or_default()
     }
 
-    /// Return the end of the packet at `at`, if there is one. A frame may interrupt it.
+    /// Return the end of the packet at `at`; `None` if no packet starts there. A frame of the arm
+    /// may interrupt the packet.
     pub(super) fn end(&self, data: &[u8], at: usize) -> Option<usize> {
         let rest = data.get(at..)?;
         let layout = self.frame.layout;
@@ -90,7 +91,7 @@ impl ServoBus {
         self.frame.check.holds(packet).then_some(at + packet.len())
     }
 
-    /// Read a packet, and remember what it requests.
+    /// Interpret a packet; store in `expected` which status packets it requests.
     pub(crate) fn read<'a>(
         &'a self,
         data: &'a [u8],
@@ -131,7 +132,7 @@ impl ServoBus {
         Some(packet)
     }
 
-    /// Return the instruction with that byte.
+    /// Return the instruction with this code.
     pub(crate) fn instruction(&self, code: u8) -> Option<&Instruction> {
         self.instructions.iter().find(|known| known.code == code)
     }
@@ -163,7 +164,8 @@ impl Packet<'_> {
         }
     }
 
-    /// Without a count all data is for one servo; with one, each servo has its id and its bytes.
+    /// Without a count, all data is for one servo. With a count, the data holds the id of each
+    /// servo, followed by that number of bytes.
     fn take_data(&mut self, data: &[u8]) {
         let count = *self.count.get_or_insert(data.len());
         if count != data.len() {
@@ -171,7 +173,7 @@ impl Packet<'_> {
         }
     }
 
-    /// Set the registers of the next status packets.
+    /// Replace `expected` with the status packets that this instruction requests.
     fn request(&self, expected: &mut Expected) {
         expected.clear();
         let operands = self.instruction.map_or(&[][..], |known| &known.operands);

@@ -1,4 +1,4 @@
-"""Lead a demo to the simulated robot, whatever port it names, and shorten its sleeps."""
+"""Redirect a demo to the simulated robot, whatever port it names, and shorten its sleeps."""
 
 import os
 import signal
@@ -25,11 +25,11 @@ def connect(self: socket.socket, address: Any) -> None:
 
 
 def sleep(seconds: float) -> None:
-    """Sleep as much less as the robot is faster."""
+    """Sleep for less time, by the factor by which the simulated robot is faster."""
     _sleep(seconds / RATE)
 
 
-# Ctrl-C ends a demo even if what started it is in the background, where it is ignored.
+# Ctrl-C ends a demo even if a background process started it; such processes ignore SIGINT.
 signal.signal(signal.SIGINT, signal.default_int_handler)
 for owner, name, function in (
     (os, "open", open_port),

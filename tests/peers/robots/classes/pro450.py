@@ -19,7 +19,7 @@ _REGISTERS = {
 
 
 def _check(data: bytes) -> bytes:
-    """Return the check of Modbus over some bytes, low byte first."""
+    """Return the Modbus CRC of ``data``, low byte first."""
     rest = 0xFFFF
     for each in data:
         rest ^= each
@@ -103,5 +103,5 @@ ROBOT = Robot(
         **dict.fromkeys(("jog_increment_angle", "jog_increment_coord"), _JOG),
     },
     opened=opened_on_socket,
-    # Motions return the status of their end; the type of the robot is a text of digits.
+    # Motions return their final status; the robot type is returned as a string of digits.
 )

@@ -37,7 +37,7 @@ def document(edition: Edition) -> str:
             _rejected(case)
             for each in ordinary
             for case in beyond(edition, each)
-            # A text has no illegal numbers, and encoders count elements by themselves.
+            # Texts have no numeric range to exceed, and encoders compute element counts themselves.
             if not case.letter and not case.field.counts
         ],
         "malformed": [
