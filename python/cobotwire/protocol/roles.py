@@ -35,8 +35,7 @@ def row_index(variant: Variant) -> int:
 def picked(variant: Variant) -> Picked:
     """Return the field positions in a command that moves one joint or coordinate.
 
-    Raises:
-        ValueError: the command has no such fields; the generator checks that.
+    The generator checks that the command of that role has such fields.
     """
     fields = variant.fields
     for index, field in enumerate(fields):
