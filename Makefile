@@ -6,8 +6,8 @@ RUST_SOURCES := $(shell find rust/core rust/py rust/simd -name '*.rs' -o -name C
 # lets the others go first (nice), because they also have tests that wait for a reply until a
 # deadline. The last lane has all tests that no other lane names.
 COMPUTING := $(addprefix tests/,codec protocol spec)
-SIMULATING := $(addprefix tests/,conformance defects docs inspect simulator)
-CALLING := $(addprefix tests/,cli codegen newcomer peers)
+SIMULATING := $(addprefix tests/,conformance defects inspect simulator)
+CALLING := $(addprefix tests/,cli codegen docs newcomer peers)
 WAITING := $(addprefix tests/,attack client session transport diagnose mutation)
 NAMED := $(COMPUTING) $(SIMULATING) $(CALLING) $(WAITING)
 LANES := computing-tests simulating-tests calling-tests waiting-tests other-tests

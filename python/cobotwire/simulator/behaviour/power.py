@@ -32,6 +32,8 @@ def release_all_servos(arm: ArmState, now: float, request: m.ReleaseAllServos) -
     arm.release(now)
 
 
+# Also in an edition that states no role for it, because the arm may lack it.
+query(m.IsPowerOn, lambda arm, now, request: arm.powered)
 # The Atom is connected, except between power_off and power_on.
 query(m.IsControllerConnected, lambda arm, now, request: arm.connected)
 
