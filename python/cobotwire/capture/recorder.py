@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import logging
 import threading
 import time
 from collections import deque
@@ -15,12 +14,13 @@ from cobotwire.codec.interface import Codec, Event, Framer, Noise
 from cobotwire.protocol.errors import CaptureError
 from cobotwire.protocol.printable import printable
 from cobotwire.transport import forks
+from cobotwire.transport.log import Log
 
 # An incomplete frame is written after this pause. The longest pause seen within a reply is 0.1 s;
 # a cut that is too early splits a frame into two packets, but loses no byte.
 IDLE_NS = 500_000_000
 
-_log = logging.getLogger("cobotwire.capture")
+_log = Log("cobotwire.capture")
 
 
 class TrafficItem(Protocol):
@@ -196,4 +196,4 @@ class Recorder:
             # A closed file raises ValueError.
             except (OSError, ValueError) as error:
                 self._failure = error
-                _log.error("recording to %s stopped: %s", printable(self._name), error)
+                _log.load().error("recording to %s stopped: %s", printable(self._name), error)

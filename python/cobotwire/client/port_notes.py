@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import binascii
 import json
-import logging
 import os
 import stat
 import threading
@@ -20,6 +19,7 @@ from typing import Any
 
 from cobotwire.session.alignment import Part
 from cobotwire.session.outstanding import LateFrame, PersistedState
+from cobotwire.transport.log import Log
 
 # No reply is expected for longer: every grace is shorter (``RetryPolicy``).
 LONGEST = 3600
@@ -33,7 +33,7 @@ READING = os.O_RDONLY | sum(
     getattr(os, name, 0)
     for name in ("O_NONBLOCK", "O_NOFOLLOW", "O_NOCTTY", "O_CLOEXEC", "O_BINARY")
 )
-_log = logging.getLogger("cobotwire.client")
+_log = Log("cobotwire.client")
 
 
 def write_note(key: str, state: PersistedState) -> None:
@@ -76,7 +76,7 @@ def take_note(key: str) -> PersistedState:
 
 def _unusable(error: Exception) -> PersistedState:
     message = "%s; a late reply to an earlier session on this port may not be recognized"
-    _log.warning(message, error)
+    _log.load().warning(message, error)
     return PersistedState()
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Sequence
-from logging import DEBUG, INFO, getLogger
+from typing import TYPE_CHECKING
 
 from cobotwire.codec.interface import Noise
 from cobotwire.protocol.errors import LinkError
@@ -21,8 +21,10 @@ from cobotwire.session import (
     UnexpectedFrame,
 )
 from cobotwire.session.events import as_traffic
+from cobotwire.transport.log import DEBUG, INFO, Log
 
-_log = getLogger("cobotwire.traffic")
+if TYPE_CHECKING:
+    from logging import Logger
 
 TrafficListener = Callable[[Traffic], None]
 
@@ -51,6 +53,9 @@ class TrafficListeners:
     def __init__(
         self, first: TrafficListener | None, url: str, now: Callable[[], float] = time.monotonic
     ) -> None:
+        self._log = Log("cobotwire.traffic")
+        # None as long as the program does not import ``logging``.
+        self._logger = self._log.find()
         self.listeners: tuple[TrafficListener, ...] = () if first is None else (first,)
         self._url = url
         self._now = now
@@ -74,16 +79,18 @@ class TrafficListeners:
         self._sent(request)
 
     def _sent(self, data: bytes) -> None:
-        if _log.isEnabledFor(DEBUG):
-            _log.debug("%s > %s", self._url, _hex(data))
+        logger = self._logger or self._found()
+        if logger is not None and logger.isEnabledFor(DEBUG):
+            logger.debug("%s > %s", self._url, _hex(data))
         if self.listeners:
             self._report(Traffic(self._now(), "sent", data))
 
     def received(self, events: Sequence[SessionEvent], now: float) -> None:
         """Report what the session made of the bytes that were read at ``now``."""
-        if _log.isEnabledFor(INFO):
+        logger = self._logger or self._found()
+        if logger is not None and logger.isEnabledFor(INFO):
             for event in events:
-                self._log_event(event)
+                self._log_event(logger, event)
         if self.listeners:
             for event in events:
                 traffic = as_traffic(event, now)
@@ -92,25 +99,29 @@ class TrafficListeners:
 
     def lost(self, error: LinkError) -> None:
         """Report that the transport is gone."""
-        _log.warning("%s", error)
+        self._log.load().warning("%s", error)
 
     def _report(self, traffic: Traffic) -> None:
         for listener in self.listeners:
             listener(traffic)
 
-    def _log_event(self, event: SessionEvent) -> None:
+    def _found(self) -> Logger | None:
+        self._logger = self._log.find()
+        return self._logger
+
+    def _log_event(self, log: Logger, event: SessionEvent) -> None:
         url = self._url
         if isinstance(event, Noise):
-            _log.info("%s < noise (%s) %s", url, event.reason, _hex(event.data))
+            log.info("%s < noise (%s) %s", url, event.reason, _hex(event.data))
         elif isinstance(event, RequestExpired):
-            _log.info("%s: no reply to %s, attempts: %d", url, event.command.name, event.attempts)
+            log.info("%s: no reply to %s, attempts: %d", url, event.command.name, event.attempts)
         elif isinstance(event, LateReply):
             name = event.command.name
-            _log.info("%s < late reply to %s: %s", url, name, _hex(event.frame.data))
+            log.info("%s < late reply to %s: %s", url, name, _hex(event.frame.data))
         elif isinstance(event, ReplyRejected):
-            _log.info("%s < illegal reply to %s: %s", url, event.command.name, event.error)
-        elif event.frame is not None and _log.isEnabledFor(DEBUG):
-            _log.debug("%s < %s (%s)", url, _hex(event.frame.data), KINDS[type(event)])
+            log.info("%s < illegal reply to %s: %s", url, event.command.name, event.error)
+        elif event.frame is not None and log.isEnabledFor(DEBUG):
+            log.debug("%s < %s (%s)", url, _hex(event.frame.data), KINDS[type(event)])
 
 
 def _hex(data: bytes) -> str:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import errno
-import logging
 import os
 import threading
 import time
@@ -12,6 +11,7 @@ from typing import NoReturn
 
 from cobotwire.protocol.errors import LinkError
 from cobotwire.transport import forks
+from cobotwire.transport.log import Log
 from cobotwire.transport.waiting import Waiter, native_calls
 
 READ_SIZE = 4096
@@ -20,7 +20,7 @@ WRITE_SECONDS = 1.0
 # Start bit, eight data bits, stop bit.
 BITS_A_BYTE = 10
 
-_log = logging.getLogger("cobotwire.transport")
+_log = Log("cobotwire.transport")
 
 
 def write_limit(size: int, baudrate: int) -> float:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import logging
 from collections.abc import Callable
 from functools import partial
 from typing import TYPE_CHECKING, Any, ClassVar, Literal, TypeVar
@@ -64,6 +63,8 @@ class CompatibleClient:
         if errors not in (None, "raise", "return"):
             raise UsageError("errors", errors, "'raise' or 'return'")
         if debug:
+            import logging
+
             logging.basicConfig()
             logging.getLogger("cobotwire.traffic").setLevel(logging.DEBUG)
         self._raises = (errors or policy.errors) == "raise"

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import logging
 import os
 import time
 from collections.abc import Iterator
@@ -14,13 +13,14 @@ import serial
 from cobotwire.protocol.errors import LinkError
 from cobotwire.transport import forks
 from cobotwire.transport.descriptor import READ_SIZE, reason_of, write_limit
+from cobotwire.transport.log import Log
 from cobotwire.transport.serial.opening import configure, opening, request_low_latency
 from cobotwire.transport.waiting import Waiter
 
 # A backend without a descriptor is read in slices of this length.
 SLICE_SECONDS = 0.01
 
-_log = logging.getLogger("cobotwire.transport")
+_log = Log("cobotwire.transport")
 
 
 class UrlTransport:
