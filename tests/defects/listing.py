@@ -40,7 +40,7 @@ def _counts(judgements: Sequence[Judgement]) -> tuple[int, int, int]:
 
 def _passed(failures: Sequence[Message] | None) -> str:
     if failures is None:
-        return "there is none"
+        return "not tested"
     return f"{len(failures)} failures" if failures else "conforms"
 
 

@@ -56,7 +56,7 @@ class Suite:
             return Outcome(id, mutant.kind, "", "", f"{type(error).__name__}: {error}")
 
     def killer(self, mutant: Any) -> str:
-        """Return the first failure that the tester reports; empty if there is none."""
+        """Return the first failure that the tester reports; empty if it reports no failure."""
         raise NotImplementedError
 
     def reason(self, mutant: Any) -> str:

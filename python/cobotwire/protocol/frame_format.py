@@ -79,7 +79,7 @@ class FrameFormat(_FrameFields):
 
     @cached_property
     def address_at(self) -> int | None:
-        """The offset of the address byte; None if there is none."""
+        """The offset of the address byte; None in a format without addresses."""
         return self._offset("address") if self.addresses else None
 
     @cached_property

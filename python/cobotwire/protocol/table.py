@@ -140,7 +140,7 @@ class Command(_CommandFields):
     variant with these arguments; if it is empty, the run may send all legal values. ``agrees_with``
     names the queries that report the same quantity while the arm rests. ``arguments`` is the order
     of the method's arguments; if it is empty, they have the order of the wire.
-    ``package`` is the generated package that holds the message types; empty if there is none.
+    ``package`` is the generated package with the message types; empty for a table without one.
     """
 
     @property

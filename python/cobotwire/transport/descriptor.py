@@ -77,7 +77,7 @@ class DescriptorTransport(ABC):
             return b""
 
     def _read_within(self, timeout: float) -> bytes | None:
-        """Return the received bytes; None if there are none, empty at the end of the data."""
+        """Return the received bytes; None if nothing was received, empty at the end of the data."""
         deadline = time.monotonic() + timeout
         while self._waiter.wait(self._descriptor, timeout) and not self._closed:
             try:

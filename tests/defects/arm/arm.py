@@ -107,7 +107,7 @@ class Arm:
         return sent
 
     def frame(self, data: bytes) -> bytes | None:
-        """Return the frame at the start; empty: there is none; None: more bytes may complete it."""
+        """Return the frame at the start; empty if there cannot be one, None if it is cut off."""
         if data[:2] != b"\xfe\xfe"[: len(data)]:
             return b""
         if len(data) < 4:

@@ -39,7 +39,7 @@ class DeviceSuite(Suite):
         self._groundless: dict[tuple[str, str | None], set[tuple[str, str]]] = {}
 
     def killer(self, mutant: Mutant) -> str:
-        """Return the first failure; empty if there is none.
+        """Return the first failure; empty if every test case passes.
 
         The test cases of the broken command run first, on a separate device, because they kill
         most mutants; a whole run follows. A command may be that of one address.
