@@ -1,4 +1,4 @@
-"""Random frame formats: every header, layout, width, byte order, counting and check."""
+"""Random frame formats: header, layout, widths, byte order, check, and what LEN counts."""
 
 from __future__ import annotations
 

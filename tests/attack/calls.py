@@ -40,7 +40,7 @@ def _angles(number: int) -> list[float]:
 
 
 def _bit(number: int) -> bool:
-    # The low bit of a mixed number: neighbours differ irregularly.
+    # A bit of a hash: consecutive numbers must not simply alternate.
     return bool((number * 2654435761 >> 13) & 1)
 
 
@@ -98,7 +98,7 @@ ONE_WAY = (
 )
 
 
-# Short requests: the line may have taken half of a long one before.
+# Requests shorter than send_angles, of which a full line may have taken half.
 SHORT = ("stop", "set_color", "jog_increment")
 
 
@@ -135,7 +135,7 @@ def draw(random: Random, table: Table, number: int, one_way: float) -> Drawn:
 
 
 def draw_flood(random: Random, number: int, name: str) -> Drawn:
-    """Draw a one-way request that waits for nothing: of the command, or of any if it is empty."""
+    """Draw a one-way request that waits for no ack: command ``name``; empty: any command."""
     kinds = [kind for kind in ONE_WAY if name in (kind.name, "")]
     [kind] = random.choices(kinds, [kind.weight for kind in kinds])
     return Drawn(kind.name, kind.arguments(random, number), None)

@@ -186,7 +186,7 @@ def test_commands_lists_every_command() -> None:
         assert "0x2A  is_in_position" in result.stdout
 
 
-def test_edition_that_is_not_named_is_that_of_todays_arm() -> None:
+def test_default_edition_is_mycobot280() -> None:
     assert "[default: mycobot280]" in " ".join(run("--help").stdout.split())
     assert "get_system_version" in run("decode", "FE FE 02 02 FA").stdout
     assert (

@@ -11,11 +11,11 @@ from functools import partial
 from cobotwire.client.aio_timers import LoopTimers, Timed, timers_of
 
 
-def test_calls_are_made_in_the_order_of_their_moments() -> None:
+def test_calls_are_made_in_the_order_of_their_deadlines() -> None:
     async def run() -> list[str]:
         timers = timers_of(asyncio.get_running_loop())
         calls: list[str] = []
-        over = asyncio.Event()
+        done = asyncio.Event()
         now = time.monotonic()
         times = {"last": 0.03, "first": 0.01, "second": 0.02, "cancelled": 0.015, "passed": -1.0}
         timed = {name: Timed(partial(calls.append, name)) for name in times}
@@ -24,27 +24,27 @@ def test_calls_are_made_in_the_order_of_their_moments() -> None:
         timed["cancelled"].cancel()
         # Only its new time counts.
         timers.set(timed["first"], now + 0.04)
-        timers.set(Timed(over.set), now + 0.05)
-        await asyncio.wait_for(over.wait(), 10)
+        timers.set(Timed(done.set), now + 0.05)
+        await asyncio.wait_for(done.wait(), 10)
         return calls
 
     assert asyncio.run(run()) == ["passed", "second", "last", "first"]
 
 
-def test_call_that_raises_does_not_keep_the_others_from_being_made() -> None:
+def test_call_that_raises_does_not_stop_the_others() -> None:
     async def run() -> list[str]:
         loop = asyncio.get_running_loop()
         reported: list[str] = []
         loop.set_exception_handler(lambda _, context: reported.append(str(context["exception"])))
-        timers, over = timers_of(loop), asyncio.Event()
+        timers, done = timers_of(loop), asyncio.Event()
 
         def fail() -> None:
             raise ValueError("failed")
 
         now = time.monotonic()
-        for call in (fail, fail, over.set):
+        for call in (fail, fail, done.set):
             timers.set(Timed(call), now)
-        await asyncio.wait_for(over.wait(), 10)
+        await asyncio.wait_for(done.wait(), 10)
         return reported
 
     assert asyncio.run(run()) == ["failed", "failed"]
@@ -52,7 +52,7 @@ def test_call_that_raises_does_not_keep_the_others_from_being_made() -> None:
 
 def test_call_can_set_another_one() -> None:
     async def run() -> int:
-        timers, over = timers_of(asyncio.get_running_loop()), asyncio.Event()
+        timers, done = timers_of(asyncio.get_running_loop()), asyncio.Event()
         count = 0
 
         def call() -> None:
@@ -61,11 +61,11 @@ def test_call_can_set_another_one() -> None:
             if count < 5:
                 timers.set(timed, time.monotonic() + 0.001)
             else:
-                over.set()
+                done.set()
 
         timed = Timed(call)
         timers.set(timed, time.monotonic())
-        await asyncio.wait_for(over.wait(), 10)
+        await asyncio.wait_for(done.wait(), 10)
         return count
 
     assert asyncio.run(run()) == 5

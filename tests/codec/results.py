@@ -30,7 +30,7 @@ def everything(found: Scan | Columns) -> Any:
 def joined_columns(parts: Sequence[Columns]) -> Any:
     """Return rows, rejected frames and noise of consecutive columns as if they were one.
 
-    Values are text, because a float may be no number, which does not equal itself.
+    Values are text, because NaN does not equal itself.
     """
     rows: dict[Any, list[str]] = {}
     rejected: list[int] = []

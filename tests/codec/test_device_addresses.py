@@ -1,4 +1,4 @@
-"""Rows of devices that share a line say which device each of them belongs to."""
+"""Where devices share a line, each row has the address of its device."""
 
 from __future__ import annotations
 
@@ -40,11 +40,11 @@ STREAM = b"".join(
         angles(LEFT, 11, 0, 0, 0, 0, 0),
     ]
 )
-WHOSE = [LEFT, RIGHT, RIGHT, LEFT]
+ADDRESSES = [LEFT, RIGHT, RIGHT, LEFT]
 NAMES = ["LEFT", "RIGHT", "RIGHT", "LEFT"]
 
 
-def whose(columns: Columns) -> list[int]:
+def addresses_of(columns: Columns) -> list[int]:
     """Return the addresses of all rows with angles."""
     rows = columns.rows("get_angles")
     assert rows.address is not None
@@ -56,12 +56,12 @@ def whose(columns: Columns) -> list[int]:
 @BOTH
 def test_rows_have_the_address_of_their_frame(codec: Codec) -> None:
     columns = codec.decode_columns(STREAM, "reply")
-    assert whose(columns) == WHOSE
+    assert addresses_of(columns) == ADDRESSES
     arrays = columns.rows("get_angles").to_numpy()
     assert [*arrays] == ["offset", "address", "angles"]
     assert arrays["address"].dtype == np.uint8
     assert arrays["angles"][arrays["address"] == LEFT, 0].tolist() == [10, 11]
-    assert whose(codec.decode_columns(b"", "reply")) == []
+    assert addresses_of(codec.decode_columns(b"", "reply")) == []
 
 
 @BOTH
@@ -84,7 +84,6 @@ def test_table_names_the_devices_after_the_offset(codec: Codec) -> None:
 
 @BOTH
 def test_address_without_a_name_is_named_by_its_number(codec: Codec) -> None:
-
     unnamed = codecs.load(TABLE._replace(addresses=()), codec.name)
     table = unnamed.decode_columns(STREAM, "reply").to_arrow("get_angles")
     assert table["address"].to_pylist() == ["1", "2", "2", "1"]
@@ -103,7 +102,7 @@ def codec_280(request: pytest.FixtureRequest) -> Codec:
     return codecs.load(mycobot280.TABLE, request.param)
 
 
-def test_register_address_is_told_apart_from_that_of_a_device() -> None:
+def test_register_address_is_not_the_address_of_a_device() -> None:
     table = codecs.load(load("mycobot320").TABLE).decode_columns(b"").to_arrow("get_pro_gripper")
     assert table.column_names[:3] == ["offset", "gripper_id", "reply_address"]
 
@@ -117,7 +116,7 @@ def test_long_stream_in_pieces_keeps_the_addresses(size: int) -> None:
     stream = STREAM * times
     parts = [reader.feed(stream[at : at + size]) for at in range(0, len(stream), size)]
     parts.append(reader.flush())
-    assert [each for part in parts for each in whose(part)] == WHOSE * times
+    assert [each for part in parts for each in addresses_of(part)] == ADDRESSES * times
 
 
 @BOTH
@@ -131,7 +130,7 @@ def test_segments_keep_the_addresses(codec: Codec) -> None:
     half = STREAM.index(b"noise") + 2
     ends = [Segment(0, half), Segment(half, len(STREAM))]
     parts = [each for end in ends for each in decode_segment(codec, "reply", Bytes(), end)]
-    assert [address for part in parts for address in whose(part)] == WHOSE
+    assert [address for part in parts for address in addresses_of(part)] == ADDRESSES
 
 
 def test_rejected_value_takes_the_slow_path_with_the_address() -> None:
@@ -153,12 +152,12 @@ def test_memory_of_earlier_addresses_is_reused_unless_a_view_exists() -> None:
     view: Any = out.rows("get_angles").address
     with pytest.raises(BufferError, match="still used"):
         codec.decode_columns(STREAM, "reply", out=out)
-    assert whose(out) == WHOSE * 2, "the error leaves the columns intact"
+    assert addresses_of(out) == ADDRESSES * 2, "the error leaves the columns intact"
     view.release()
     again = codec.decode_columns(STREAM, "reply", out=out)
-    assert whose(again) == WHOSE
+    assert addresses_of(again) == ADDRESSES
     other = codecs.load(mycobot280.TABLE, "native")
     request = other.encode("get_angles", "request", ())
     without = other.decode_columns(request, "both", out=again)
     assert without.rows("get_angles", "request").address is None
-    assert whose(codec.decode_columns(STREAM, "reply", out=without)) == WHOSE
+    assert addresses_of(codec.decode_columns(STREAM, "reply", out=without)) == ADDRESSES

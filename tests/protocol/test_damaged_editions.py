@@ -69,6 +69,7 @@ def _error(folder: Path, data: bytes) -> str:
             editions.load(str(folder))
     finally:
         file.write_bytes(intact)
+    assert raised.value.argument == "edition"
     text = str(raised.value)
     assert text.startswith(f"{file}: "), text
     assert "\n" not in text

@@ -4,7 +4,7 @@
   const PARTS = { address: "the address", length: "LEN", command: "CMD" };
   const BIT_COUNTS = { 4: 32, 8: 64 };
 
-  // Return how many elements a field can have, and how often each has the numbers of its case.
+  // Return how many elements a field can have, and how often each repeats the numbers of its case.
   function elements({ least = 1, most = 1, repeat = 1 }) {
     return { least, most, repeat };
   }
@@ -61,7 +61,7 @@
     return found;
   }
 
-  // Return a raw value. That of a float is a BigInt: the bits, inverted after the sign if it is set.
+  // Return a raw value. A float has a BigInt: its bits, all but the sign inverted if it is negative.
   function rawAt(number, bytes, offset) {
     if (number.encoding === "float") {
       const bits = BIT_COUNTS[number.width];
@@ -126,7 +126,7 @@
     return Array.from(data, (byte) => String.fromCharCode(byte)).join("");
   }
 
-  // Return the index of the first byte that begins no character of UTF-8, or the number of bytes.
+  // Return the index of the first byte that is not UTF-8; the number of bytes if all are.
   function badTextAt(data) {
     let at = 0;
     while (at < data.length) {
@@ -140,7 +140,7 @@
   function characterSize([first, second = 0, ...more]) {
     if (first < 0x80) return 1;
     const size = first < 0xc2 || first > 0xf4 ? 0 : first < 0xe0 ? 2 : first < 0xf0 ? 3 : 4;
-    // No surplus bytes, no surrogates, nothing above U+10FFFF.
+    // No overlong encodings, no surrogates, nothing above U+10FFFF.
     const [low, high] = { 0xe0: [0xa0, 0xbf], 0xed: [0x80, 0x9f], 0xf0: [0x90, 0xbf], 0xf4: [0x80, 0x8f] }[first] || [0x80, 0xbf];
     const rest = more.slice(0, Math.max(size - 2, 0));
     const legal = second >= low && second <= high && rest.length === size - 2 && rest.every((byte) => byte >> 6 === 2);

@@ -9,8 +9,8 @@ from typing import Any
 def as_json_value(value: Any) -> Any:
     """Return a result as JSON values.
 
-    Named tuples become objects, also inside of others, enum members their names, and bytes pairs
-    of hex digits.
+    Named tuples, nested ones too, become objects; enum members become their names; bytes become
+    pairs of hex digits.
     """
     if hasattr(value, "_asdict"):
         return {name: as_json_value(part) for name, part in value._asdict().items()}

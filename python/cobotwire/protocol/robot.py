@@ -31,7 +31,7 @@ class Dynamics(NamedTuple):
     Attributes:
         speed: degrees a second for each percent of speed.
         fastest: the highest speed of a joint, in degrees a second.
-        acceleration: the highest acceleration, in degrees a square second.
+        acceleration: the highest acceleration, in degrees per second squared.
         near_degrees: how near to its target a joint counts as there.
         near_millimetres: how near to its target the end counts as there.
     """

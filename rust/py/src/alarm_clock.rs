@@ -1,4 +1,6 @@
-//! A descriptor that becomes readable at a given time, for event loops: they wait for whole milliseconds.
+//! A descriptor that becomes readable at a given time.
+//!
+//! Event loops need it because they wait for whole milliseconds.
 
 use std::os::fd::{AsRawFd, OwnedFd, RawFd};
 use std::time::Duration;

@@ -87,8 +87,8 @@ def row(demo: Demo, folders: Folders) -> tuple[str, bool]:
     for each in (theirs, ours, rewritten):
         if each.detail:
             print(f"{demo.path}: {each.detail}", file=sys.stderr, flush=True)
-    said = f"{ours.word}: it {demo.refused}" if demo.refused else ours.word
-    words = " | ".join((theirs.word, said, rewritten.word))
+    layer = f"{ours.word}: it {demo.refused}" if demo.refused else ours.word
+    words = " | ".join((theirs.word, layer, rewritten.word))
     return f"| `{demo.path}` | {words} | {decisions} |", is_better(demo, theirs.word, ours.word)
 
 

@@ -150,7 +150,7 @@ def _disputes(edition: Edition, command: Command) -> Iterator[str]:
 
 def _history(edition: Edition, command: Command) -> Iterator[str]:
     for change in command.changes:
-        yield f"\nAgainst {edition.base}: {change.what} {change.why}"
+        yield f"\nDiffers from {edition.base}: {change.what} {change.why}"
         yield from _evidence(change.evidence)
     for erratum in markdown.errata(edition, command):
         where = words.lines(erratum.lines)

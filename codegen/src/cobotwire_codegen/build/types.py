@@ -148,7 +148,7 @@ class Types:
         return quantity
 
     def _check_float(self, quantity: Quantity, reader: Reader) -> None:
-        """Report what only a float, or only an integer, can have."""
+        """Report keys of a float that only an integer may have, and the reverse."""
         name, is_float = quantity.name, quantity.wire.is_float
         if is_float and (quantity.scale != 1 or quantity.choices):
             message = f"the quantity {name} is a float; remove its scale and its choices"
@@ -205,7 +205,7 @@ class Types:
             low, high = inner.get(language.BitPart.bits)
             mask = (1 << high + 1) - (1 << low)
             if high >= 8 * wire.width or mask & used:
-                message = f"{part} of {name} has bits outside of its wire type, or of another part"
+                message = f"{part} of {name} exceeds its wire type, or overlaps another part"
                 reader.problem("bad-size", message, where)
                 continue
             used |= mask

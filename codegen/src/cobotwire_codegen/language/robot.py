@@ -1,4 +1,4 @@
-"""The robot behind an edition: what a simulated one needs to know, apart from its messages."""
+"""The robot of an edition: what a simulated arm needs besides the messages."""
 
 from __future__ import annotations
 
@@ -19,8 +19,8 @@ class Link(Record):
     turned_by = optional(
         Named(Real(), NUMBER),
         "The joints that turn the link, counted from 1, and the degrees that it turns for each "
-        "degree of them: `{2: -1, 3: -1}` for an end that stays level, `{}` for a fixed link. Left "
-        "out: the first joint after those of the links before it turns the link.",
+        "degree of them: `{2: -1, 3: -1}` for an end that stays level, `{}` for a fixed link. By "
+        "default the first joint that turns no earlier link turns it.",
     )
     EXAMPLE = "{offset: -90, alpha: 0, a: -110.4, d: 0}"
 
@@ -43,10 +43,12 @@ class Motion(Record):
 
     speed = required(Real(), "Degrees a second for each percent of speed.")
     fastest = required(Real(), "The highest speed of a joint, in degrees a second.")
-    acceleration = required(Real(), "The highest acceleration, in degrees a square second.")
-    near_degrees = optional(Exact(), "How near to its target a joint counts as there, in degrees.")
+    acceleration = required(Real(), "The highest acceleration, in degrees per second squared.")
+    near_degrees = optional(
+        Exact(), "A joint this close to its target, in degrees, has reached it."
+    )
     near_millimetres = optional(
-        Exact(), "How near to its target the end counts as there, in millimetres."
+        Exact(), "An end this close to its target, in millimetres, has reached it."
     )
     doc = required(Text(), "Where the numbers are taken from.")
     EXAMPLE = """\
@@ -58,7 +60,7 @@ doc: Measured on an arm.
 
 
 class Encoders(Record):
-    """How the encoders of the joints count; the joints of a simulated arm rest on their ticks."""
+    """How the encoders of the joints count; a joint of a simulated arm always stops on a tick."""
 
     ticks = required(Whole(1), "The ticks of a whole turn.")
     zero = required(Whole(0), "The reading of a joint at 0 degrees.")
@@ -75,7 +77,7 @@ class Encoders(Record):
 class Gripper(Record):
     """The gripper of a simulated arm."""
 
-    speed = required(Exact(), "Percent of its way a second, for each percent of speed.")
+    speed = required(Exact(), "Percent of its full stroke a second, for each percent of speed.")
     closed = required(Whole(0), "The reading of its encoder when it is closed.")
     open_ = required(Whole(0), "The reading of its encoder when it is open.")
     doc = required(Text(), "Where the numbers are taken from.")

@@ -13,7 +13,7 @@ _MOST = 8192
 
 
 class _Same(Generic[T]):
-    """Equals another if both hold the same object: to hash a command takes long."""
+    """Equals another if both hold the same object. Hashing the object itself would be slow."""
 
     __slots__ = ("held",)
 

@@ -1,4 +1,4 @@
-"""Decode bytes that have no times and one direction, and print them."""
+"""Decode bytes of one direction, without timestamps, and print them."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ LONG_FILE = 4 << 20
 
 
 def decode_bytes(source: ByteSource, options: DecodeOptions, counts: StreamCounts) -> None:
-    """Decode bytes that have no times and one direction."""
+    """Decode bytes of one direction, without timestamps."""
     codec = _codec(options.edition, codecs.chosen())
     summary = None if source.from_arguments else _summary_of(codec, options)
     if summary is None:
@@ -36,7 +36,7 @@ def decode_bytes(source: ByteSource, options: DecodeOptions, counts: StreamCount
 
 @lru_cache
 def _codec(edition: str, name: codecs.CodecName) -> Codec:
-    """Return the codec that all files share: its tables take longer to make than a file to read."""
+    """Return the codec that all files share: making its tables takes longer than reading a file."""
     return codecs.load(editions.load(edition).TABLE, name)
 
 

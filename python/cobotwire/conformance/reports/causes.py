@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from cobotwire.conformance.report import Result
 
-# The characters of a reason that are compared: a device may cause very long ones.
+# How many characters of a reason are compared: a device may cause very long ones.
 MOST = 600
 # What may differ between two reasons with one cause: bytes, numbers, arguments.
 BYTES = re.compile(r"\b(?:[0-9A-F]{2} ?)+\b")
@@ -49,7 +49,7 @@ def pattern(result: Result) -> str:
     if result.command:
         text = text.replace(result.command, "COMMAND")
     text = ANSWER.sub(r"but the answer was \1", QUESTION.sub("", text))
-    # From the inside out: arguments may have rows, in parentheses of their own.
+    # Inner parentheses first: an argument may be a row, which has parentheses too.
     while text != (text := ARGUMENTS.sub("", text)):
         pass
     for values in (BYTES, NUMBER):

@@ -10,7 +10,7 @@ from cobotwire.conformance.statement.statement import Support, equipment, is_man
 from cobotwire.protocol.table import Command, Table
 
 HEAD = """\
-# Implementation conformance statement: what a device has and lacks of the edition {edition}.
+# Implementation conformance statement: which commands of {edition} a device has.
 # To test a device by it:
 #
 #   cobotwire --edition {edition} conform device URL --statement FILE
@@ -39,7 +39,7 @@ def statement_template(table: Table) -> str:
     text = HEAD.format(edition=table.edition, format=FORMAT, version=name)
     families = equipment(table)
     if families:
-        text += "# Equipment that is not there is not tested.\nfitted:\n"
+        text += "# Equipment set to false is not tested.\nfitted:\n"
         text += "".join(f"  {family}: true\n" for family in families)
     return text + COMMANDS + "".join(f"{line}\n" for line in _commands(table))
 

@@ -16,16 +16,17 @@ from cobotwire.pymycobot.layer.ranges import check_range
 from cobotwire.pymycobot.layer.results import plain
 from cobotwire.session.request import RequestEncoder
 
-# A trajectory is over if the arm stands still twice.
+# A trajectory has ended when this many queries in a row find the arm at rest.
 STILL_TIMES = 2
 TRAJECTORY_SECONDS = 0.01
-# What the force sensor is sent.
+# The Modbus request that reads the force sensor.
 FORCE_SENSOR = bytes([0x01, 0x04, 0x00, 0x00, 0x00, 0x0C, 0xF0, 0x0F])
 SENSOR_REPLY = 27
-# A gripper is searched at these speeds of the bus, with a short timeout, in milliseconds.
+# The speeds of the bus at which a gripper is searched for.
 SEARCHED_SPEEDS = (115200, 1000000)
+# The timeouts of the bus during the search and otherwise, in milliseconds.
 SEARCH_TIMEOUT, USUAL_TIMEOUT = 250, 10000
-# How often a gripper is asked after it was switched to Modbus.
+# How often a gripper is queried after it was switched to Modbus.
 SEARCH_TIMES = 3
 
 
@@ -102,19 +103,19 @@ class Gripper450(ModbusGripper):
         return self._read(28, gripper_id)
 
     def set_pro_gripper_io_open_angle(self, gripper_angle: int, gripper_id: int = GRIPPER) -> int:
-        """Set to which opening a pin opens the gripper."""
+        """Set the opening in percent to which the input pin opens the gripper."""
         return self._write(30, gripper_angle, percent("gripper_angle"), gripper_id)
 
     def get_pro_gripper_io_open_angle(self, gripper_id: int = GRIPPER) -> int:
-        """Read to which opening a pin opens the gripper."""
+        """Read the opening in percent to which the input pin opens the gripper."""
         return self._read(34, gripper_id)
 
     def set_pro_gripper_io_close_angle(self, gripper_angle: int, gripper_id: int = GRIPPER) -> int:
-        """Set to which opening a pin closes the gripper."""
+        """Set the opening in percent to which the input pin closes the gripper."""
         return self._write(31, gripper_angle, percent("gripper_angle"), gripper_id)
 
     def get_pro_gripper_io_close_angle(self, gripper_id: int = GRIPPER) -> int:
-        """Read to which opening a pin closes the gripper."""
+        """Read the opening in percent to which the input pin closes the gripper."""
         return self._read(35, gripper_id)
 
     def set_pro_gripper_speed(self, speed: int, gripper_id: int = GRIPPER) -> int:
@@ -142,7 +143,7 @@ class Gripper450(ModbusGripper):
     def set_pro_gripper_modbus(
         self, state: int, custom_mode: bool = False, gripper_id: int = GRIPPER
     ) -> int:
-        """Switch Modbus on or off; with ``custom_mode`` by a frame of the gripper's own kind."""
+        """Switch Modbus on or off; with ``custom_mode``, by a frame in the gripper's own format."""
         check_range("state", state, 0, 1)
         return self._write_in(OWN_HEAD if custom_mode else b"", 47, state, gripper_id)
 
@@ -151,7 +152,7 @@ class MethodsOfPro450(ClosedLoop, Gripper450):
     """Methods that send several requests, or none."""
 
     def set_limit_switch(self, limit_mode: int, state: int) -> None:
-        """Let motions wait for their end, or return when they are accepted; 1 has no effect."""
+        """Let motions wait for their end, or return at once; ``limit_mode`` 1 changes nothing."""
         check_range("limit_mode", limit_mode, 1, 2)
         check_range("state", state, 0, 1)
         if limit_mode == REPORTS_ENDS:
@@ -193,7 +194,7 @@ class MethodsOfPro450(ClosedLoop, Gripper450):
 
     @naming(data="can_data")
     def base_external_can_control(self, can_id: int, can_data: Sequence[int]) -> Any:
-        """Send a message on the CAN bus of the base; return its reply: 2, the number, the bytes."""
+        """Send a message on the CAN bus of the base; return its reply: 2, the id, the bytes."""
         check_range("can_id", can_id, 1, 65535)
         data = [*can_id.to_bytes(4, "big"), *can_data]
         return self._ask(_external, self.arm.base_external_control, data)
@@ -253,7 +254,7 @@ def _six_numbers(reply: bytes) -> list[float]:
 
 
 def _external(reply: bytes) -> list[int]:
-    """Return the bus and the bytes of a reply; those of the CAN bus begin with a number."""
+    """Return the bytes of a reply; in one from the CAN bus the id of the message is one number."""
     if reply[:1] == b"\x02":
         return [2, int.from_bytes(reply[1:5], "big"), *reply[5:]]
     return list(reply)

@@ -52,7 +52,7 @@ class SerialTransport(DescriptorTransport):
     The URL is a device, or ``hwgrep://TEXT`` for one whose name or USB ids contain the text.
 
     Reading and writing bypass pyserial, which calls select() once more for each chunk, and does not
-    tell how much of a write was taken.
+    return how many bytes of a write were taken.
     """
 
     kind = "serial"
@@ -104,7 +104,7 @@ def _device(url: str) -> str:
 
 
 def keep_others_out(descriptor: int) -> None:
-    """Let no other user but root open this terminal until its last user has closed it."""
+    """Have open() of this terminal fail, except for root, until every process has closed it."""
     # A device without such a lock has only that of pyserial.
     with suppress(OSError):
         fcntl.ioctl(descriptor, termios.TIOCEXCL)

@@ -148,7 +148,7 @@ def _row(parts: list[str]) -> str:
 
 
 def _choices(field: Field) -> tuple[int, ...]:
-    """Return the closed list; empty if the bounds allow the same values."""
+    """Return the choices of a field; empty if its bounds allow the same values."""
     choices = lower.field_choices(field)
     return choices if field.const is not None else _not_all(choices)
 
@@ -182,7 +182,7 @@ def _wide(number: dict[str, Any]) -> bool:
 
 
 def _utf8(field: Field) -> str:
-    """Return which bytes of a field are one text in UTF-8; empty if none are."""
+    """Return how a field holds UTF-8: one text, or one in each element; empty if it holds none."""
     listed = isinstance(field.type, Listed)
     type = field.type.of if isinstance(field.type, Listed) else field.type
     if not isinstance(type, Chars) or type.encoding != "utf-8":
