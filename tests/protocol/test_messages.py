@@ -181,6 +181,8 @@ def test_decoded_fields_become_the_types_that_the_class_declares() -> None:
     assert isinstance(reply.point, Point)
     assert reply.mode is Mode.SLOW
     assert AimReply.from_fields({"angle": 180.0}).angle == pytest.approx(math.pi)
+    turned: Any = TABLES["mycobot280"].reply_type("get_radians")
+    assert turned.from_fields({"radians": (180.0,) * 6}).radians.j6 == pytest.approx(math.pi)
     assert DoneReply.from_fields({"done": 1}).done is True
 
 

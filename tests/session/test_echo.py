@@ -84,6 +84,14 @@ def test_bytes_from_before_the_request_are_not_its_copy(session: OneCaller) -> N
     assert [type(event) for event in session.wake(0.5)] == [ReplyMatched]
 
 
+def test_parts_of_the_request_around_a_frame_are_not_its_copy(session: OneCaller) -> None:
+    sent = session.request("power_on", (), now=0.0)
+    session.receive(sent[:3] + DISABLED + sent[3:], 0.01)
+    session.request("is_servo_enable", (1,), now=1.0, timeout=0.2)
+    session.receive(ENABLED, 1.01)
+    assert [type(event) for event in session.wake(1.2)] == [ReplyMatched]
+
+
 def test_echo_that_is_noise_is_reported_as_noise(session: OneCaller) -> None:
     sent = session.request("get_angles", (), now=0.0)
     events = session.receive(sent, 0.01)
