@@ -11,14 +11,16 @@ from typing import Any
 import pytest
 
 from both_ways import InLoop
-from cobotwire import LinkError
+from cobotwire import LinkError, ReplyTimeout, RetryPolicy
 from cobotwire.editions.mycobot280 import AsyncMyCobot280, MyCobot280
 from cobotwire.transport.aio import WRITE_TIMEOUT
-from cut_motion import ANGLES, MOTION, STOP, frames
+from cut_motion import ANGLES, CODEC, MOTION, STOP, frames
+from recording_transport import RecordingTransport
 from transport.ends import PtyEnd
 
 # More than the buffer of a pseudo-terminal holds, which is 64 KiB.
 REQUESTS = 4000
+QUERY = CODEC.encode("is_in_position", "request", [ANGLES, 0])
 
 
 class StallingTransport:
@@ -60,6 +62,31 @@ def test_stop_after_a_cut_motion_arrives_and_nothing_else(
         arm.stop()
         arm.stop()
     assert frames(transport.received) == [STOP, STOP]
+
+
+class BusyTransport(RecordingTransport):
+    """A transport that takes only ``taken`` bytes of what is written without waiting."""
+
+    def __init__(self, taken: int) -> None:
+        super().__init__()
+        self._taken = taken
+
+    def fileno(self) -> None:
+        return None
+
+    def write_some(self, data: bytes) -> int:
+        self.write(data[: self._taken])
+        return min(self._taken, len(data))
+
+
+@pytest.mark.parametrize("taken", [5, len(QUERY) - len(STOP), len(QUERY)])
+def test_stop_after_a_cut_repeated_query_arrives_and_nothing_else(taken: int) -> None:
+    transport = BusyTransport(taken)
+    with MyCobot280(transport, timeout=0.4, retry=RetryPolicy(attempts=2)) as arm:
+        with pytest.raises(ReplyTimeout):
+            arm.is_in_position(ANGLES, 0)
+        arm.stop()
+    assert frames(transport.written) == [QUERY] * (2 if taken == len(QUERY) else 1) + [STOP]
 
 
 @pytest.mark.parametrize("who", [MyCobot280, lambda port: InLoop(AsyncMyCobot280, port)])
