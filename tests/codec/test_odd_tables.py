@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from typing import Any
 
@@ -11,6 +12,7 @@ import small_tables
 from cobotwire import codec as codecs
 from cobotwire.codec.interface import Codec, Frame, Listening
 from cobotwire.protocol.errors import ProtocolError, UsageError
+from cobotwire.protocol.numbers import raw_of_float
 from cobotwire.protocol.table import Table, Variant
 
 
@@ -19,6 +21,8 @@ def both(table: Table) -> tuple[Codec, Codec]:
 
 
 BOUNDED = small_tables.field("a", small_tables.number(1, 1, 1))
+# The highest finite float of four bytes.
+MOST = 2.0**128 - 2.0**104
 SCALES = [(-1, 10), (1, -10), (-1, 1), (-7, 100), (-3, -20), (1, 10)]
 
 
@@ -106,7 +110,7 @@ def test_counted_list_takes_the_variant_of_its_size_and_names_the_element_at_fau
                 codec.encode("set_joints", "request", (..., joints))
 
 
-def test_wrong_text_is_named_with_its_index_and_its_sizes() -> None:
+def test_text_may_fill_its_field_and_a_wrong_one_is_named_with_index_and_sizes() -> None:
     letters = [small_tables.number()] * 6
     texts = small_tables.field("names", *letters, many=True)._replace(
         kind="text",
@@ -130,3 +134,24 @@ def test_wrong_text_is_named_with_its_index_and_its_sizes() -> None:
         for codec in both(table):
             with pytest.raises(UsageError, match=message):
                 codec.encode("set", "request", (value,))
+    for codec in both(table):
+        assert codec.decode("request", codec.encode("set", "request", ("ab",))).values == ("ab",)
+
+
+@pytest.mark.parametrize(
+    ("ends", "value", "allowed"),
+    [
+        ((-MOST, MOST), math.inf, "a finite number of 4 bytes"),
+        ((-math.inf, math.nan), "much", "a number, also infinity and NaN"),
+        ((-0.5, 1.5), math.nan, "a number -0.5..1.5"),
+    ],
+)
+def test_wrong_float_is_named_with_what_is_allowed(
+    ends: tuple[float, float], value: Any, allowed: str
+) -> None:
+    low, high = (raw_of_float(end, 4) for end in ends)
+    number = small_tables.number(4, low, high)._replace(encoding="float")
+    field = small_tables.field("weight", number)
+    for codec in both(small_tables.table(small_tables.command(1, "set", (Variant((field,)),)))):
+        with pytest.raises(UsageError, match=f"^weight is {value!r}; allowed: {allowed}$"):
+            codec.encode("set", "request", (value,))

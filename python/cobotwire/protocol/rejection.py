@@ -16,9 +16,7 @@ from cobotwire.protocol.frame_format import FrameFormat, Unsigned
 from cobotwire.protocol.numbers import Number
 from cobotwire.protocol.table import Command, Direction, Table
 
-ValueFault = Literal[
-    "type", "not-finite", "range", "choice", "count", "element-type", "element-count", "text"
-]
+ValueFault = Literal["type", "range", "choice", "count", "element-type", "element-count", "text"]
 FrameFault = Literal[
     "no-header", "bad-address", "bad-length", "unknown-id", "bad-check", "truncated", "trailing"
 ]

@@ -7,7 +7,6 @@ codec encodes the same bytes.
 
 from __future__ import annotations
 
-import math
 import operator
 from collections.abc import Iterator, Sequence
 from typing import Any, SupportsFloat, SupportsIndex
@@ -178,8 +177,6 @@ def _real(number: Number, value: Any) -> int:
         raise _Rejected("range") from None
     except (TypeError, ValueError):
         raise _Rejected("type") from None
-    if not math.isfinite(real) and not number.takes_not_finite:
-        raise _Rejected("not-finite")
     if number.encoding == "float":
         return number.raw(real)
     steps = number.steps(real)
