@@ -43,10 +43,11 @@ def _with(**parts: Any) -> Table:
 
 def test_encoders_count_as_the_edition_states() -> None:
     signs = (1, -1, 1, 1, 1, 1)
-    bench = Bench(_with(encoders=Encoders(1000, 500, 900, signs)))
-    bench.send("send_angles", (36.0, 36.0, 150.0, 0.1, 0.0, 0.0), 100)
+    bench = Bench(_with(encoders=Encoders(1000, 400, 800, signs)))
+    bench.send("send_angles", (36.0, 36.0, 150.0, 0.1, -150.0, 0.0), 100)
     bench.clock.sleep(5)
-    assert bench.query("get_encoders")[:3] == (600, 400, 900), "the third is the highest reading"
+    # The third is the highest reading, the fifth the lowest.
+    assert bench.query("get_encoders")[:5] == (500, 300, 800, 400, 0)
     assert bench.query("get_angles")[3] == 0.0, "a tick is 0.36 degrees"
 
 
