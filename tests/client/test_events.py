@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import gc
 import threading
 from collections.abc import Iterator
 from typing import Any
@@ -225,12 +226,20 @@ def test_refused_status_is_an_error_with_its_word(staged: Any) -> None:
         accepted.power_on(ack_within=0.05)
 
 
+def _queues() -> int:
+    """Return how many queues of events exist."""
+    gc.collect()
+    return sum(type(each) is EventQueue for each in gc.get_objects())
+
+
 def test_waited_motion_ends_with_its_event(staged: Any) -> None:
     clock = SteppedClock()
     simulated = SimulatedArm(staged.TABLE, clock=clock, powered=True)
     traffic: list[Traffic] = []
     arm = staged.Trial(MemoryTransport(simulated, clock), trace=traffic.append)
+    before = _queues()
     arm.move_angles((60.0, 0.0, 0.0), 50)
+    assert _queues() == before, "the end of the wait removes its listener"
     assert arm.get_angles() == (60.0, 0.0, 0.0)
     queries = [one for one in traffic if one.direction == "sent" and one.data[3] == 0x20]
     # One at the start, one a second, one after the event, and that of this test.

@@ -18,6 +18,7 @@ import pytest
 from cobotwire import MyCobot
 from cobotwire.editions.mycobot import TABLE, AsyncMyCobot
 from cobotwire.simulator import PtyServer, SimulatedArm
+from recording_transport import RecordingTransport
 from scripted_peer import ScriptedPeer
 
 INTERRUPTED = """
@@ -87,6 +88,17 @@ def test_cancelled_call_leaves_the_client_usable() -> None:
     one, two = (bytes.fromhex("FE FE 04 3B 00") + bytes([n]) + b"\xfa" for n in (1, 2))
     with ScriptedPeer([0.2, one], [two]) as peer:
         asyncio.run(_cancelled(peer.url))
+
+
+def test_cancelled_opening_is_a_cancellation() -> None:
+    async def run() -> None:
+        opening = asyncio.create_task(AsyncMyCobot(RecordingTransport()).open())
+        await asyncio.sleep(0)
+        opening.cancel()
+        with pytest.raises(asyncio.CancelledError):
+            await opening
+
+    asyncio.run(run())
 
 
 async def _cancelled_at_any_time(url: str) -> None:

@@ -205,8 +205,9 @@ def test_frame_after_a_false_header_is_returned_by_flush(codec: Codec) -> None:
     assert Frame(4, POWERED, 0x12) in framer.flush()
 
 
-def test_unknown_id_is_accepted_on_request(codec: Codec) -> None:
+@pytest.mark.parametrize("size", [0, 2, TABLE.frame.maximum_length - 2])
+def test_unknown_id_is_accepted_on_request(codec: Codec, size: int) -> None:
     assert 0xE0 not in {command.id for command in TABLE.commands}
-    frame = bytes.fromhex("FE FE 04 E0 01 02 FA")
+    frame = TABLE.frame.enclose(0xE0, bytes(size), None, "reply")
     assert all(isinstance(event, Noise) for event in codec.framer("reply").feed(frame))
     assert codec.framer("reply", accept_unknown=True).feed(frame) == [Frame(0, frame, 0xE0)]

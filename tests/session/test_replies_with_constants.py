@@ -96,9 +96,10 @@ def test_illegal_value_after_the_own_constant_ends_the_request(loaded: Codec) ->
     assert kinds(session.receive(ILLEGAL_FORCE, 0.01)) == [ReplyRejected]
 
 
-def test_constant_of_no_command_ends_the_request(loaded: Codec) -> None:
-    rest = tuple(command for command in loaded.table.commands if command.name != "get_state")
-    session = OneCaller(codecs.load(loaded.table._replace(commands=rest), loaded.name))
+def test_constant_that_no_command_of_the_id_has_ends_the_request(loaded: Codec) -> None:
+    *others, state = loaded.table.commands
+    apart = loaded.table._replace(commands=(*others, state._replace(id=0xEA)))
+    session = OneCaller(codecs.load(apart, loaded.name))
     session.request("get_force", (14, 10), now=0.0)
     assert kinds(session.receive(STATE, 0.01)) == [ReplyRejected]
 
