@@ -110,7 +110,7 @@ def test_counted_list_takes_the_variant_of_its_size_and_names_the_element_at_fau
                 codec.encode("set_joints", "request", (..., joints))
 
 
-def test_text_may_fill_its_field_and_a_wrong_one_is_named_with_index_and_sizes() -> None:
+def test_text_may_be_empty_or_full_and_a_wrong_one_is_named_with_index_and_sizes() -> None:
     letters = [small_tables.number()] * 6
     texts = small_tables.field("names", *letters, many=True)._replace(
         kind="text",
@@ -134,8 +134,23 @@ def test_text_may_fill_its_field_and_a_wrong_one_is_named_with_index_and_sizes()
         for codec in both(table):
             with pytest.raises(UsageError, match=message):
                 codec.encode("set", "request", (value,))
+    legal: list[tuple[Any, Any]] = [(texts, ("", "b")), (sized._replace(sizes=None), "ab")]
+    for field, value in legal:
+        table = small_tables.table(small_tables.command(1, "set", (Variant((field,)),)))
+        for codec in both(table):
+            frame = codec.encode("set", "request", (value,))
+            assert codec.decode("request", frame).values == (value,)
+
+
+@pytest.mark.parametrize(("low", "raw"), [(-127, b"\x80"), (-32767, b"\x80\0")])
+def test_lowest_value_of_the_wire_is_rejected_in_columns_if_the_bounds_exclude_it(
+    low: int, raw: bytes
+) -> None:
+    field = small_tables.field("a", small_tables.number(len(raw), low))
+    table = small_tables.table(small_tables.command(1, "set", (Variant((field,)),)))
     for codec in both(table):
-        assert codec.decode("request", codec.encode("set", "request", ("ab",))).values == ("ab",)
+        columns = codec.decode_columns(table.frame.enclose(1, raw), "request")
+        assert columns.rejected.tolist() == [0]
 
 
 @pytest.mark.parametrize(

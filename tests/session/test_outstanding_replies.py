@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import pytest
 
+from cobotwire import codec as codecs
 from cobotwire.codec.interface import Codec
+from cobotwire.editions import mycobot280
 from cobotwire.session import (
     Exchange,
     LateReply,
@@ -44,6 +46,12 @@ def test_request_is_held_while_a_reply_that_looks_like_its_own_is_outstanding(
     assert session.free_at("get_angles", now=0.2) == 0.2
     assert session.request("set_encoder", (1, 5), now=0.2), "a one-way request is never held"
     assert session.request("get_encoder", (2,), now=GRACE_SECONDS)
+
+
+def test_request_is_held_while_a_reply_to_its_other_name_is_outstanding() -> None:
+    session = OneCaller(codecs.load(mycobot280.TABLE))
+    give_up(session, "get_angles")
+    assert session.free_at("get_radians", now=0.2) == GRACE_SECONDS
 
 
 def test_late_reply_does_not_end_the_hold_since_it_may_come_twice(session: OneCaller) -> None:
