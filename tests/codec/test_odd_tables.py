@@ -134,7 +134,11 @@ def test_text_may_be_empty_or_full_and_a_wrong_one_is_named_with_index_and_sizes
         for codec in both(table):
             with pytest.raises(UsageError, match=message):
                 codec.encode("set", "request", (value,))
-    legal: list[tuple[Any, Any]] = [(texts, ("", "b")), (sized._replace(sizes=None), "ab")]
+    legal: list[tuple[Any, Any]] = [
+        (texts, ("", "b")),
+        (texts._replace(encoding="utf-8"), ("ä", "€")),
+        (sized._replace(sizes=None), "ab"),
+    ]
     for field, value in legal:
         table = small_tables.table(small_tables.command(1, "set", (Variant((field,)),)))
         for codec in both(table):

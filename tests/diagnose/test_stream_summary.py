@@ -8,7 +8,7 @@ from itertools import combinations
 from typing import Any
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 import diagnosed_formats
@@ -189,6 +189,7 @@ def test_survey_names_same_registers_if_python_diagnoses_noise_in_between(
 
 
 @given(st.lists(st.text(READABLE, max_size=70), min_size=1, max_size=8))
+@example(["x" * size for size in range(1010, 1025)])  # a line is cut after 1024 bytes
 @settings(max_examples=30)
 def test_lines_hold_texts_as_python_writes_them(texts: list[str]) -> None:
     codec = NATIVE["mycobot280"]

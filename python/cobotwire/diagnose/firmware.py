@@ -136,6 +136,8 @@ def _line(residue: Residue, at: int, end: int, may_grow: bool) -> Verdict:
     marked = min((mark for mark in marks if mark >= 0), default=-1)
     if marked >= 0:
         return _text(residue, at, min(marked, at + LINE_LIMIT))
+    # A line that ends is complete, whatever follows it.
+    may_grow = may_grow and ends_text
     if end - at >= LINE_LIMIT + len(PANIC) or (end - at >= LINE_LIMIT and not may_grow):
         return _text(residue, at, at + LINE_LIMIT)
     if ends_text:
