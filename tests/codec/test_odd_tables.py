@@ -10,8 +10,9 @@ import pytest
 
 import small_tables
 from cobotwire import codec as codecs
-from cobotwire.codec.interface import Codec, Frame, Listening
+from cobotwire.codec.interface import Codec, Frame, Listening, Noise
 from cobotwire.protocol.errors import ProtocolError, UsageError
+from cobotwire.protocol.frame_format import Unsigned
 from cobotwire.protocol.numbers import raw_of_float
 from cobotwire.protocol.table import Table, Variant
 
@@ -144,6 +145,25 @@ def test_text_may_be_empty_or_full_and_a_wrong_one_is_named_with_index_and_sizes
         for codec in both(table):
             frame = codec.encode("set", "request", (value,))
             assert codec.decode("request", frame).values == (value,)
+
+
+@pytest.mark.parametrize(
+    ("id", "data", "reason"),
+    [
+        (0x1234, b"\1\1", "bad-length"),
+        (0x1299, b"\1\1", "bad-length"),
+        (0x1299, b"\1", "unknown-id"),
+    ],
+)
+def test_candidate_with_a_wide_id_is_noise_with_its_reason(
+    id: int, data: bytes, reason: str
+) -> None:
+    wide = small_tables.FOOTER._replace(id_number=Unsigned(2, "big"))
+    command = small_tables.command(0x1234, "set", (Variant((BOUNDED,)),))
+    for codec in both(small_tables.table(command, frame=wide)):
+        first = codec.framer("request").feed(wide.enclose(id, data))[0]
+        assert isinstance(first, Noise)
+        assert first.reason == reason
 
 
 @pytest.mark.parametrize(("low", "raw"), [(-127, b"\x80"), (-32767, b"\x80\0")])
