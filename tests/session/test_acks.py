@@ -10,7 +10,7 @@ from cobotwire import ProtocolError, ReplyTimeout
 from cobotwire import codec as codecs
 from cobotwire.codec.interface import Codec
 from cobotwire.editions.mycobot280 import TABLE
-from cobotwire.session import Exchange, PendingAck
+from cobotwire.session import AckReceived, Exchange, PendingAck
 from cobotwire.session.acks import MOTION_SECONDS
 from cobotwire.session.pending import GRACE_SECONDS
 from cobotwire.session.request import RequestEncoder
@@ -88,6 +88,14 @@ def test_acknowledgement_at_the_end_of_a_motion_is_not_that_of_the_next_one(load
     assert second is not None
     with pytest.raises(ReplyTimeout, match="acknowledgement of send_angle, perhaps of an earlier"):
         second.result()
+
+
+def test_acknowledgement_that_begins_before_its_deadline_counts(loaded: Codec) -> None:
+    exchange, ack = Exchange(loaded), loaded.encode(SETTING[0], "reply", (1,))
+    exchange.send_one_way(RequestEncoder(loaded).encode(*SETTING), 0.0, None)
+    exchange.receive(ack[:3], GRACE_SECONDS - 0.01)
+    [event] = exchange.receive(ack[3:], GRACE_SECONDS + 0.01)
+    assert isinstance(event, AckReceived)
 
 
 def test_acknowledgement_of_0_is_an_error(loaded: Codec) -> None:
