@@ -14,7 +14,7 @@ from cobotwire.codec.interface import Codec, Frame, Listening, Noise
 from cobotwire.protocol.errors import ProtocolError, UsageError
 from cobotwire.protocol.frame_format import Unsigned
 from cobotwire.protocol.numbers import raw_of_float
-from cobotwire.protocol.table import Table, Variant
+from cobotwire.protocol.table import Case, Table, Variant
 
 
 def both(table: Table) -> tuple[Codec, Codec]:
@@ -139,6 +139,7 @@ def test_text_may_be_empty_or_full_and_a_wrong_one_is_named_with_index_and_sizes
         (texts, ("", "b")),
         (texts._replace(encoding="utf-8"), ("ä", "€")),
         (sized._replace(sizes=None), "ab"),
+        (sized._replace(cases=(Case((), ()),), sizes=(0, 2)), ""),
     ]
     for field, value in legal:
         table = small_tables.table(small_tables.command(1, "set", (Variant((field,)),)))
@@ -161,6 +162,7 @@ def test_candidate_with_a_wide_id_is_noise_with_its_reason(
     wide = small_tables.FOOTER._replace(id_number=Unsigned(2, "big"))
     command = small_tables.command(0x1234, "set", (Variant((BOUNDED,)),))
     for codec in both(small_tables.table(command, frame=wide)):
+        assert codec.encode("set", "request", (1,)) == wide.enclose(0x1234, b"\1")
         first = codec.framer("request").feed(wide.enclose(id, data))[0]
         assert isinstance(first, Noise)
         assert first.reason == reason
