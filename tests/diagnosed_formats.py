@@ -10,7 +10,7 @@ from cobotwire.codec.interface import Codec
 from cobotwire.editions.mycobot import TABLE
 from cobotwire.editions.mycobot280 import TABLE as TABLE_280
 from cobotwire.protocol.table import Check, FrameFormat, Unsigned
-from frame_format_tables import CRC16_MODBUS, SUM_OF_DATA
+from json_tables import CRC16_MODBUS, SUM_OF_DATA
 
 # Feetech: replies without an id.
 NO_ID = FrameFormat(

@@ -8,11 +8,22 @@ from typing import Any
 
 from cobotwire import codec as codecs
 from cobotwire.codec.interface import Codec
-from cobotwire.protocol.table import Case, Command, Field, FrameFormat, Number, Table, Variant
-from frame_format_tables import CRC16_MODBUS, SUM_OF_DATA
+from cobotwire.protocol.table import (
+    Case,
+    Check,
+    Command,
+    Crc,
+    Field,
+    FrameFormat,
+    Number,
+    Table,
+    Variant,
+)
 from strategies import TABLES
 from vectors import ROOT
 
+CRC16_MODBUS = Check("crc", "header", 2, "big", Crc(16, 0x8005, 0xFFFF, True, True, 0))
+SUM_OF_DATA = Check("sum", "command")
 CHECKS = {"footer": None, "crc16-modbus": CRC16_MODBUS, "sum": SUM_OF_DATA}
 SAMPLES = ROOT / "rust" / "core" / "tests" / "samples"
 

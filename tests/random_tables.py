@@ -22,7 +22,7 @@ from cobotwire.protocol.table import (
     Table,
     Variant,
 )
-from frame_format_tables import ALIKE, CRC, SUM
+from json_tables import sample
 from random_formats import frame_formats
 
 SCALES = [(1, 1), (1, 10), (-1, 10), (1, -10), (-1, 1), (3, -20), (-7, 100), (-1, -1), (1, 3)]
@@ -186,8 +186,8 @@ def streams(table: Table) -> st.SearchStrategy[bytes]:
     return st.lists(pieces, max_size=8).map(b"".join)
 
 
-# The maker's other formats: an edition with addresses, and tables that no edition has.
-FORMATS = [MYBUDDY, CRC, SUM, ALIKE]
+# The maker's other formats: an edition with addresses, and samples that no edition has.
+FORMATS = [MYBUDDY, *map(sample, ("crc", "sum", "alike"))]
 
 
 def any_tables() -> st.SearchStrategy[Table]:

@@ -7,7 +7,7 @@ import pytest
 from cobotwire.cli.commands import byte_table
 from cobotwire.editions.mycobot import TABLE
 from cobotwire.protocol.table import Check, FrameFormat
-from frame_format_tables import CRC16_MODBUS, SUM_OF_DATA
+from json_tables import CRC16_MODBUS, SUM_OF_DATA
 
 
 def rows(frame: FrameFormat) -> list[tuple[object, ...]]:

@@ -6,17 +6,16 @@ from typing import Any
 
 import pytest
 
-from cobotwire import codec as codecs
 from cobotwire.codec.interface import Codec
 from cobotwire.protocol.errors import ProtocolError, UsageError
 from cobotwire.protocol.table import Direction
-from frame_format_tables import ALIKE
+from json_tables import codec_of
 
 
 @pytest.fixture(params=["reference", "native"])
 def alike(request: pytest.FixtureRequest) -> Codec:
-    """Return a codec of the table ALIKE; each test runs with both codecs."""
-    return codecs.load(ALIKE, request.param)
+    """Return a codec of the sample; each test runs with both codecs."""
+    return codec_of("alike", request.param)
 
 
 def _rejection(codec: Codec, direction: Direction, data: bytes, of: str | None = None) -> Any:
