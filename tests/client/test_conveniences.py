@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import asyncio
 import inspect
 from typing import Any
 
@@ -10,10 +9,10 @@ import pytest
 
 from cobotwire import Joint, MyCobot280
 from cobotwire.editions import load
-from cobotwire.editions.mycobot280 import TABLE, AsyncMyCobot280
+from cobotwire.editions.mycobot280 import AsyncMyCobot280
 from cobotwire.protocol.errors import MotionTimeout, UsageError
 from cobotwire.simulator import MemoryTransport, SimulatedArm
-from cobotwire.simulator.clock import RunningClock, SteppedClock
+from cobotwire.simulator.clock import SteppedClock
 
 
 class Driven:
@@ -79,33 +78,7 @@ def test_joints_have_names(codec: str) -> None:
         arm.send_angle(Joint.J7, 0, 50)
 
 
-def test_one_component_of_a_row_can_be_changed() -> None:
-    arm = Driven().arm
-    angles = arm.get_angles()
-    assert angles._replace(j2=10.0)[1] == 10.0
-    with pytest.raises(AttributeError):
-        angles.j2 = 10.0
-
-
 def test_speed_of_the_line_is_the_second_argument() -> None:
     for client in (MyCobot280, AsyncMyCobot280):
         second = list(inspect.signature(client).parameters.values())[1]
         assert (second.name, second.kind) == ("baudrate", second.POSITIONAL_OR_KEYWORD)
-
-
-def test_asyncio_client_has_the_same() -> None:
-    clock = RunningClock()
-    received: list[Any] = []
-    simulated = SimulatedArm(
-        TABLE, clock=clock, powered=True, on_event=lambda event, _: received.append(event)
-    )
-
-    async def use() -> None:
-        async with AsyncMyCobot280(MemoryTransport(simulated, clock)) as arm:
-            await arm.go_home(wait=False)
-            await arm.open_gripper()
-            await arm.close_gripper()
-
-    asyncio.run(use())
-    sent = [(each.message.command.name, each.message.values[0]) for each in received]
-    assert sent == [("send_angles", (0.0,) * 6), ("set_gripper_state", 0), ("set_gripper_state", 1)]

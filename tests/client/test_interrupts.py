@@ -4,60 +4,15 @@ from __future__ import annotations
 
 import _thread
 import asyncio
-import os
-import random
-import subprocess
-import sys
 import threading
 import time
-from contextlib import suppress
-from typing import Any
 
 import pytest
 
 from cobotwire import MyCobot
-from cobotwire.editions.mycobot import TABLE, AsyncMyCobot
-from cobotwire.simulator import PtyServer, SimulatedArm
+from cobotwire.editions.mycobot import AsyncMyCobot
 from recording_transport import RecordingTransport
 from scripted_peer import ScriptedPeer
-
-INTERRUPTED = """
-import random, signal, time
-from cobotwire import MyCobot, CobotwireError
-from cobotwire.editions.mycobot import TABLE
-from cobotwire.simulator import PtyServer, SimulatedArm
-random.seed(1)
-signal.signal(signal.SIGALRM, signal.default_int_handler)
-with PtyServer(SimulatedArm(TABLE)) as server, MyCobot(server.url) as arm:
-    interrupts = 0
-    until = time.monotonic() + 2
-    while time.monotonic() < until:
-        try:
-            # One interrupt in each round; it may come after the calls, during the sleep.
-            signal.setitimer(signal.ITIMER_REAL, random.uniform(0.00001, 0.0006))
-            for joint in range(1, 7):
-                arm.set_color(joint, 1, 2)
-                assert arm.get_joint_max_angle(joint) == 165.0
-                assert arm.get_joint_min_angle(joint) == -165.0
-            time.sleep(0.01)
-        except KeyboardInterrupt:
-            interrupts += 1
-    for joint in range(1, 7):
-        assert arm.get_joint_max_angle(joint) == 165.0
-    print(interrupts)
-"""
-
-
-def test_ctrl_c_anywhere_leaves_the_arm_usable() -> None:
-    result = subprocess.run(
-        [sys.executable, "-c", INTERRUPTED],
-        capture_output=True,
-        text=True,
-        timeout=60,
-        env={**os.environ, "PYTHONPATH": ""},
-    )
-    assert result.returncode == 0, result.stderr
-    assert int(result.stdout) > 10
 
 
 def test_ctrl_c_in_the_reading_thread_lets_another_thread_continue() -> None:
@@ -99,24 +54,3 @@ def test_cancelled_opening_is_a_cancellation() -> None:
             await opening
 
     asyncio.run(run())
-
-
-async def _cancelled_at_any_time(url: str) -> None:
-    chance = random.Random(5)
-    async with AsyncMyCobot(url) as arm:
-        for _ in range(150):
-            work = asyncio.gather(
-                *(arm.get_joint_max_angle(joint) for joint in range(1, 7)), arm.set_color(1, 2, 3)
-            )
-            await asyncio.sleep(chance.uniform(0, 0.001))
-            work.cancel()
-            with suppress(asyncio.CancelledError):
-                await work
-        assert [await arm.get_joint_max_angle(joint) for joint in range(1, 7)] == [165.0] * 6
-        exchange: Any = arm._connection._exchange
-        assert exchange.idle_seconds(0.0) is None, "nothing waits"
-
-
-def test_cancelling_tasks_at_any_time_leaves_the_client_usable() -> None:
-    with PtyServer(SimulatedArm(TABLE)) as server:
-        asyncio.run(_cancelled_at_any_time(server.url))

@@ -280,16 +280,6 @@ def _of_another_user(found: os.stat_result) -> os.stat_result:
     return os.stat_result((*found[:4], found.st_uid + 1, *found[5:]))
 
 
-def test_client_opens_a_port_whose_note_is_a_pipe(memory: PortMemory, folder: Path) -> None:
-    with ScriptedPeer([bytes.fromhex("FE FE 03 12 01 FA")]) as peer:
-        folder.mkdir()
-        os.mkfifo(port_notes._path(PortMemory(open_transport(peer.url, 115200))._keys[0]))
-        started = time.monotonic()
-        with MyCobot(peer.url) as arm:
-            assert arm.is_power_on()
-        assert time.monotonic() - started < 1
-
-
 def test_folder_that_others_can_write_is_not_used(memory: PortMemory, folder: Path) -> None:
     folder.mkdir()
     folder.chmod(0o777)

@@ -78,17 +78,6 @@ def test_stream_and_calls_on_one_arm_share_it() -> None:
     assert received == (REQUEST + ASK_POWER + ASK_POWER) * 10
 
 
-def test_second_stream_waits_for_the_reply_that_is_under_way() -> None:
-    peer = ScriptedPeer([SLOW, ANGLES], [POWER])
-
-    async def drive(arm: AsyncMyCobot) -> Any:
-        task = await begun(arm.stream(GetAngles(), rate=10), peer)
-        other = await anext(arm.stream(IsPowerOn(), rate=10))
-        return (await task).values[0][0], other.values
-
-    assert run(peer, drive, timeout=20) == ((1.4, (True,)), REQUEST + ASK_POWER)
-
-
 def test_late_reply_to_a_cancelled_period_is_not_taken_by_the_next_call() -> None:
     peer = ScriptedPeer([SLOW, ANGLES], [OTHERS])
 

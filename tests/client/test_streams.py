@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import _thread
-import asyncio
 import threading
 import time
 from itertools import islice, pairwise
@@ -12,7 +11,7 @@ from typing import Any
 import pytest
 
 from both_ways import Opener, openers
-from cobotwire import AsyncMyCobot, LinkError, MyCobot, RetryPolicy, UsageError
+from cobotwire import LinkError, MyCobot, RetryPolicy, UsageError
 from cobotwire.editions.mycobot import TABLE, Angles, Coords
 from cobotwire.editions.mycobot280 import TABLE as TABLE_280
 from cobotwire.editions.mycobot280 import AsyncMyCobot280, MyCobot280
@@ -193,17 +192,3 @@ def test_ctrl_c_leaves_arm_and_stream_usable() -> None:
             next(stream)
         assert type(arm.get_angles()) is Angles
         assert next(stream).number == 1
-
-
-def test_cancelled_task_leaves_arm_and_stream_usable() -> None:
-    async def drive(url: str) -> None:
-        async with AsyncMyCobot(url) as arm:
-            stream = arm.stream(GET_ANGLES, rate=50)
-            await anext(stream)
-            with pytest.raises(TimeoutError):
-                await asyncio.wait_for(anext(stream), 0.3)
-            assert type(await arm.get_angles()) is Angles
-            assert (await anext(stream)).number == 1
-
-    with ScriptedPeer([REPLY], [0.6, REPLY], *[[REPLY]] * 5) as peer:
-        asyncio.run(drive(peer.url))

@@ -1,4 +1,4 @@
-"""The native class of frames: its memory, its arguments and its attributes.
+"""The native classes of frames and framers: their memory, arguments and attributes.
 
 That its values are those of the reference is tested in test_agreement.
 """
@@ -14,7 +14,7 @@ from typing import Any
 import pytest
 
 from cobotwire import codec as codecs
-from cobotwire.codec.interface import Frame, Framer
+from cobotwire.codec.interface import Codec, Frame, Framer
 from cobotwire.editions.mycobot280 import TABLE
 
 CODEC = codecs.load(TABLE, "native")
@@ -127,3 +127,30 @@ def test_frames_equal_frames_only() -> None:
     assert one[0] != one[1]
     assert one[0] != ANGLES
     assert repr(one[0]) == f"<Frame {ANGLES.hex(' ').upper()} at 0>"
+
+
+def test_counts_of_a_framer_can_be_read_whenever_it_makes_an_object(codec: Codec) -> None:
+    # Making an object may start a collection of garbage, which runs callbacks and other threads.
+    framer = codec.framer("reply")
+    chunk = (bytes.fromhex("FF FF 01 04 02 38 02 BE") + POWER + b"cmd_len error\r\n") * 20
+    seen: list[object] = []
+
+    def read(phase: str, info: dict[str, int]) -> None:
+        try:
+            seen.append(framer.fed >= framer.pending >= 0 and framer.counters.bytes <= framer.fed)
+        except RuntimeError as error:
+            seen.append(error)
+
+    threshold = gc.get_threshold()
+    gc.callbacks.append(read)
+    gc.set_threshold(1, 1000, 1000)
+    try:
+        for data in (chunk, memoryview(chunk), b"\xfe\xfe"):
+            framer.feed(data)
+        framer.flush()
+    finally:
+        gc.set_threshold(*threshold)
+        gc.callbacks.remove(read)
+    assert len(seen) > 20
+    assert set(seen) == {True}
+    assert framer.fed == 2 * len(chunk) + 2

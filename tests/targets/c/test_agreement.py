@@ -52,7 +52,7 @@ class Sides:
 @pytest.fixture(scope="module", params=[*sorted(TABLES), *sorted(SPECS)])
 def sides(request: pytest.FixtureRequest) -> Iterator[Sides]:
     name = request.param
-    found = Sides(edition_of(SPECS[name]) if name in SPECS else vectors.edition(name))
+    found = Sides(edition_of(name) if name in SPECS else vectors.edition(name))
     yield found
     found.peer.close()
 

@@ -62,7 +62,7 @@ def test_c_code_of_every_spec_compiles_without_warnings(compiler: str) -> None:
 def _every_folder() -> list[Path]:
     """Return the folders with the C code of each shipped edition, and of the specs of tests."""
     shipped = sorted(path for path in built("c").iterdir() if path.is_dir())
-    return [*shipped, *(sources(edition_of(path)) for path in SPECS.values())]
+    return [*shipped, *(sources(edition_of(name)) for name in SPECS)]
 
 
 @_needs("g++")

@@ -38,7 +38,7 @@ def test_c_code_agrees_with_every_vector(name: str, compiler: str) -> None:
 @WITH_GCC
 @pytest.mark.parametrize("name", sorted(SPECS))
 def test_c_code_of_other_types_and_frames_agrees_with_vectors(name: str) -> None:
-    edition = edition_of(SPECS[name])
+    edition = edition_of(name)
     found = validated(json.loads(document(edition)), edition, "gcc")
     assert found.differences == []
     assert found.vectors > 50

@@ -44,10 +44,10 @@ def test_decoder_page_of_a_wrong_model_differs_from_the_vectors() -> None:
 
 
 def test_any_messages_and_streams_are_decoded_as_in_codec(tmp_path: Path) -> None:
-    found = [edition_of(path) for path in SPECS.values()]
+    found = [edition_of(name) for name in SPECS]
     found += [vectors.edition(name) for name in sorted(TABLES)]
     documents = [Document(edition) for edition in found]
-    documents[list(SPECS).index("sensor")].add_odd_texts()
+    documents[SPECS.index("sensor")].add_odd_texts()
     known = list(documents)
 
     @settings(COLLECT, max_examples=160)

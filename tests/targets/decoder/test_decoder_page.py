@@ -19,7 +19,7 @@ from cobotwire_codegen.project import edition_files
 from cobotwire_codegen.targets.decoder import edition_script, render_decoder
 from strategies import TABLES, codec_of
 from targets.decoder.browser import SHOWN, Tab, needs_chromium
-from targets.specs import SPECS, edition_of
+from targets.specs import edition_of
 from targets.vectors.comparison import Record, read
 from vectors import ROOT
 
@@ -139,7 +139,7 @@ def test_message_without_a_request_is_shown_as_an_event(tab: Tab, page: Path) ->
 
 
 def test_each_type_of_the_language_is_explained(tab: Tab, page: Path) -> None:
-    script = edition_script(edition_of(SPECS["sensor"]))
+    script = edition_script(edition_of("sensor"))
     own = page.with_name("sensor.html")
     own.write_text(page.read_text().replace("</body>", f"<script>{script}</script></body>"))
     _open(tab, own)

@@ -75,7 +75,7 @@ def agree(parts: list[tuple[Edition, list[Line]]], folder: Path) -> None:
 
 
 def test_other_protocols_are_dissected(tmp_path: Path) -> None:
-    editions = [edition_of(path) for path in SPECS.values()]
+    editions = [edition_of(name) for name in SPECS]
     agree([(edition, list(lines_of(edition))) for edition in editions], tmp_path)
 
 
