@@ -9,19 +9,17 @@ from hypothesis import assume
 from hypothesis import strategies as st
 
 import random_specs
-import vectors
 from cobotwire.protocol.checks import Check
 from cobotwire.protocol.frame_format import FrameFormat
-from cobotwire_codegen.build import build_edition
 from cobotwire_codegen.build.frame_rules import mistakes
 from cobotwire_codegen.catalogue import Crc
 from cobotwire_codegen.check import check
 from cobotwire_codegen.model import Address, Edition, Frame, FrameCheck, FrameNumber, Vector
 from cobotwire_codegen.wire import build_frame
 from random_formats import frame_formats
+from targets.specs import edition_of
 
-_FAMILIES = vectors.ROOT / "tests" / "codegen" / "families"
-SENSOR = build_edition(_FAMILIES / "sensor.yaml", _FAMILIES)
+SENSOR = edition_of("sensor")
 
 
 @st.composite

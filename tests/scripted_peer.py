@@ -1,4 +1,4 @@
-"""A scripted peer on a real pseudo-terminal, over real TCP, or in memory."""
+"""A scripted peer on a real pseudo-terminal, or over real TCP."""
 
 from __future__ import annotations
 
@@ -76,20 +76,3 @@ class ScriptedTcpPeer(_Peer):
 
 
 PEERS = {"pty": ScriptedPeer, "tcp": ScriptedTcpPeer}
-
-
-class MemoryPeer:
-    """Send fixed bytes after each request; for a ``MemoryTransport``."""
-
-    wait = None
-
-    def __init__(self, *replies: bytes) -> None:
-        self.received = b""
-        self._replies = list(replies)
-
-    def receive(self, data: bytes) -> bytes:
-        self.received += data
-        return self._replies.pop(0) if self._replies else b""
-
-    def flush(self) -> bytes:
-        return b""

@@ -2,22 +2,15 @@
 
 from __future__ import annotations
 
-import importlib
-import itertools
-import sys
-from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, nullcontext
 from pathlib import Path
 from typing import Any
 
 from cobotwire_codegen.build import build_edition
 from cobotwire_codegen.check import RULES
-from cobotwire_codegen.emit import Target, write
 from cobotwire_codegen.errors import Problem
 from cobotwire_codegen.model import Edition
-from cobotwire_codegen.render import render_python
-
-_numbers = itertools.count(1)
+from small_specs import package
 
 HEAD = """
 edition: trial
@@ -46,23 +39,13 @@ def edition_of(text: str, folder: Path) -> tuple[Edition, list[Problem]]:
     return edition, [problem for problem in problems if problem.code != "no-vector"]
 
 
-@contextmanager
-def package_of(text: str, folder: Path) -> Iterator[Any]:
-    """Yield the imported package of a spec, which has no problems."""
+def package_of(text: str, folder: Path) -> AbstractContextManager[Any]:
+    """Return the imported package of a spec, which has no problems."""
     edition, problems = edition_of(text, folder)
     assert problems == []
-    with imported(edition, folder) as package:
-        yield package
+    return imported(edition, folder)
 
 
-@contextmanager
-def imported(edition: Edition, folder: Path) -> Iterator[Any]:
-    """Yield the imported package of an edition, generated into a folder."""
-    name = f"trial_{next(_numbers)}"
-    write(Target(folder / name, render_python(edition)))
-    sys.path.insert(0, str(folder))
-    try:
-        importlib.invalidate_caches()
-        yield importlib.import_module(name)
-    finally:
-        sys.path.remove(str(folder))
+def imported(edition: Edition, folder: Path) -> AbstractContextManager[Any]:
+    """Return the imported package of an edition, generated into a folder."""
+    return nullcontext(package(folder, edition))

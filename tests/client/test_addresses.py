@@ -13,13 +13,13 @@ from hypothesis import strategies as st
 from both_ways import InLoop
 from cobotwire import ReplyTimeout, UsageError
 from cobotwire import codec as codecs
-from cobotwire.conformance.device import DeviceConnection, Tester
 from cobotwire.diagnose.explain import format_message, frame_parts
 from cobotwire.protocol.addresses import find_address
 from cobotwire.session import AckReceived, Exchange, LateReply, ReplyMatched, RetryPolicy
 from cobotwire.session.request import RequestEncoder
-from cobotwire.simulator import MemoryTransport, PtyServer, SimulatedArm, SteppedClock
-from scripted_peer import MemoryPeer
+from cobotwire.simulator import MemoryTransport, PtyServer, SimulatedArm
+from conformance.device.testing import Altered, permissions, prepared
+from memory_peer import MemoryPeer
 from session.one_caller import submit
 from trial_specs import HEAD, edition_of, package_of
 
@@ -219,32 +219,21 @@ def test_reply_belongs_to_a_request_only_if_its_address_does(duo: Any, talk: Any
 
 
 def test_device_under_test_has_an_address(duo: Any) -> None:
-    clock = SteppedClock()
-    transport = MemoryTransport(SimulatedArm(duo.TABLE, clock=clock), clock)
-    report = Tester(DeviceConnection(transport), duo.TABLE, address="RIGHT").run()
+    report = prepared(duo.TABLE, address="RIGHT", permissions=permissions()).run()
     assert report.conforms
     assert report.subject.endswith("at address RIGHT")
 
 
-class Misaddressed:
-    """An arm that replies with another address."""
-
-    wait = None
-
-    def __init__(self, table: Any, clock: SteppedClock) -> None:
-        self._arm = SimulatedArm(table, clock=clock)
-
-    def receive(self, data: bytes) -> bytes:
-        return self._arm.receive(data).replace(b"\xfe\xfe\x02", b"\xfe\xfe\x01")
-
-    def flush(self) -> bytes:
-        return self._arm.flush()
-
-
 def test_reply_with_another_address_fails_a_device(duo: Any) -> None:
-    clock = SteppedClock()
-    connection = DeviceConnection(MemoryTransport(Misaddressed(duo.TABLE, clock), clock))
-    report = Tester(connection, duo.TABLE, address="RIGHT").run()
+    def misaddressed(request: bytes, reply: bytes, number: int) -> bytes:
+        return reply.replace(b"\xfe\xfe\x02", b"\xfe\xfe\x01")
+
+    report = prepared(
+        duo.TABLE,
+        lambda arm: Altered(arm, misaddressed),
+        address="RIGHT",
+        permissions=permissions(),
+    ).run()
     assert not report.conforms
 
 

@@ -23,29 +23,19 @@ REQUESTS = 4000
 QUERY = CODEC.encode("is_in_position", "request", [ANGLES, 0])
 
 
-class StallingTransport:
+class StallingTransport(RecordingTransport):
     """A transport that takes ``taken`` bytes of the first request, then everything."""
 
-    url = "stalling"
-
-    def __init__(self, taken: int, written: int | None) -> None:
-        self.received = b""
+    def __init__(self, taken: int, reported: int | None) -> None:
+        super().__init__()
         self._taken: int | None = taken
-        self._written = written
+        self._reported = reported
 
     def write(self, data: bytes) -> None:
-        if self._taken is None:
-            self.received += data
-            return
-        self.received += data[: self._taken]
-        self._taken = None
-        raise LinkError(self.url, "it stalled", self._written)
-
-    def read(self, timeout: float) -> bytes:
-        return b""
-
-    def close(self) -> None:
-        pass
+        super().write(data[: self._taken])
+        if self._taken is not None:
+            self._taken = None
+            raise LinkError(self.url, "it stalled", self._reported)
 
 
 @pytest.mark.parametrize("who", [MyCobot280, lambda port: InLoop(AsyncMyCobot280, port)])
@@ -61,7 +51,7 @@ def test_stop_after_a_cut_motion_arrives_and_nothing_else(
         assert caught.value.written == (taken if known else None)
         arm.stop()
         arm.stop()
-    assert frames(transport.received) == [STOP, STOP]
+    assert frames(transport.written) == [STOP, STOP]
 
 
 class BusyTransport(RecordingTransport):

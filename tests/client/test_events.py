@@ -16,14 +16,14 @@ from cobotwire import MotionTimeout, ReplyTimeout, RequestRefused, UsageError
 from cobotwire import codec as codecs
 from cobotwire.client.events import EventQueue, Wanted
 from cobotwire.codec.interface import Frame
-from cobotwire.conformance.device import DeviceConnection, Tester
 from cobotwire.inspect.doctor import harmless_queries
 from cobotwire.inspect.evidence import bare_queries
 from cobotwire.protocol.messages import Event
 from cobotwire.session import EventReceived, Traffic
 from cobotwire.simulator import MemoryTransport, PtyServer, SimulatedArm, SteppedClock
 from cobotwire_codegen.errors import SpecError
-from scripted_peer import MemoryPeer
+from conformance.device.testing import Altered, permissions, prepared
+from memory_peer import MemoryPeer
 from trial_specs import HEAD, edition_of, package_of
 
 STAGED = f"""
@@ -286,31 +286,16 @@ def test_tools_send_nothing_for_an_event(staged: Any) -> None:
     assert [query.name for query in harmless_queries(staged.TABLE)] == ["get_angles"]
 
 
-class Chatty:
-    """An arm that sends an event before each reply."""
-
-    def __init__(self, arm: SimulatedArm, event: bytes) -> None:
-        self._arm, self._event = arm, event
-
-    @property
-    def wait(self) -> float | None:
-        return self._arm.wait
-
-    def receive(self, data: bytes) -> bytes:
-        return self._event + self._arm.receive(data)
-
-    def flush(self) -> bytes:
-        return self._arm.flush()
-
-
 @pytest.mark.parametrize("mark", [7, 8])
 def test_device_may_send_events_at_any_time(staged: Any, mark: int) -> None:
-    clock = SteppedClock()
     legal = frame(staged, "button_pressed", 3, 7)
     data = bytes.fromhex("FE FE 05 5C 03") + bytes([mark])
     sent = legal if mark == 7 else data + staged.TABLE.frame.end(data)
-    arm = Chatty(SimulatedArm(staged.TABLE, clock=clock), sent)
-    report = Tester(DeviceConnection(MemoryTransport(arm, clock), clock), staged.TABLE).run()
+
+    def before_each_reply(arm: SimulatedArm) -> Altered:
+        return Altered(arm, lambda request, reply, number: sent + reply)
+
+    report = prepared(staged.TABLE, before_each_reply, permissions=permissions()).run()
     assert report.conforms == (mark == 7)
 
 

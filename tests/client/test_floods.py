@@ -14,6 +14,7 @@ from contextlib import contextmanager
 import pytest
 
 from cobotwire import MyCobot, ReplyTimeout
+from recording_transport import RecordingTransport
 
 TIMEOUT = 0.4
 BABBLE = b"cmd_len error\r\n" * 256
@@ -99,23 +100,12 @@ def test_endless_traffic_does_not_delay_a_timeout(
             assert time.monotonic() - started < TIMEOUT, "one-way requests are sent all the same"
 
 
-class Torrent:
+class Torrent(RecordingTransport):
     """A transport that always has more bytes to read."""
-
-    url = "torrent"
-
-    def __init__(self) -> None:
-        self.written: list[bytes] = []
-
-    def write(self, data: bytes) -> None:
-        self.written.append(data)
 
     def read(self, timeout: float) -> bytes:
         time.sleep(0.001)
         return b"x" * 100
-
-    def close(self) -> None:
-        pass
 
 
 def test_held_request_is_not_sent_while_bytes_keep_arriving() -> None:
@@ -127,4 +117,4 @@ def test_held_request_is_not_sent_while_bytes_keep_arriving() -> None:
             arm.get_encoder(1)
         assert time.monotonic() - started < 1.5
     arm.stop()
-    assert transport.written == [bytes.fromhex("FEFE033B01FA"), bytes.fromhex("FEFE0229FA")]
+    assert transport.written == bytes.fromhex("FEFE033B01FA FEFE0229FA")

@@ -12,7 +12,7 @@ from cobotwire.editions import load, names
 from cobotwire.protocol.errors import ArmState
 from cobotwire.simulator import MemoryTransport, SimulatedArm
 from cobotwire.simulator.clock import SteppedClock
-from scripted_peer import MemoryPeer
+from memory_peer import MemoryPeer
 
 OFF, ON, EMERGENCY_STOP = range(3)
 TABLES = [load(name).TABLE for name in names()]

@@ -17,6 +17,7 @@ import pytest
 from cobotwire import LinkError, MyCobot, ReplyTimeout, UsageError
 from cobotwire import codec as codecs
 from cobotwire.client import Traffic
+from recording_transport import RecordingTransport
 from scripted_peer import ScriptedPeer
 
 
@@ -66,19 +67,11 @@ def test_wrong_argument_is_rejected_even_on_a_closed_port() -> None:
             arm.get_encoder(9)
 
 
-class Full:
+class Full(RecordingTransport):
     """A transport that accepts no more bytes."""
-
-    url = "full"
 
     def write(self, data: bytes) -> None:
         raise LinkError(self.url, "is full")
-
-    def read(self, timeout: float) -> bytes:
-        return b""
-
-    def close(self) -> None:
-        pass
 
 
 def test_failed_write_is_not_reported_to_the_traffic_listener() -> None:

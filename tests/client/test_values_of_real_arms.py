@@ -10,8 +10,8 @@ from cobotwire import ProtocolError, UsageError, editions
 from cobotwire import codec as codecs
 from cobotwire.editions.mycobot280 import MyCobot280
 from cobotwire.simulator import MemoryTransport, SimulatedArm
+from memory_peer import MemoryPeer
 from recording_transport import RecordingTransport
-from scripted_peer import MemoryPeer
 
 BOTH_EDITIONS = pytest.mark.parametrize("edition", ["mycobot", "mycobot280"])
 BOTH_CODECS = pytest.mark.parametrize("codec", ["reference", "native"])

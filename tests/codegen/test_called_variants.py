@@ -19,7 +19,7 @@ from cobotwire.inspect.call_arguments import parse, request_values, variant_of
 from cobotwire.protocol.errors import UsageError
 from cobotwire.simulator import MemoryTransport, RunningClock, SteppedClock
 from cobotwire_codegen.check import check
-from silent_peer import SilentPeer
+from memory_peer import MemoryPeer
 
 COMMANDS = """
 set_x:
@@ -119,11 +119,11 @@ def package(folder: Path) -> Any:
 def test_call_sends_the_variant_that_its_arguments_choose(
     package: Any, name: str, arguments: tuple[Any, ...], named: dict[str, Any], frame: str
 ) -> None:
-    peer, clock = SilentPeer(), SteppedClock()
+    peer, clock = MemoryPeer(), SteppedClock()
     with package.CLIENT(MemoryTransport(peer, clock), on_error="leave") as arm:
         getattr(arm, name)(*arguments, **named)
     assert peer.received == bytes.fromhex(frame)
-    peer = SilentPeer()
+    peer = MemoryPeer()
 
     async def call() -> None:
         async with package.ASYNC_CLIENT(MemoryTransport(peer, RunningClock())) as other:
@@ -137,7 +137,7 @@ def test_call_sends_the_variant_that_its_arguments_choose(
 def test_other_arguments_are_rejected_before_a_byte_is_sent(
     package: Any, name: str, named: dict[str, Any], words: str
 ) -> None:
-    peer = SilentPeer()
+    peer = MemoryPeer()
     with package.CLIENT(MemoryTransport(peer, SteppedClock()), on_error="leave") as arm:
         with pytest.raises(TypeError, match=words):
             getattr(arm, name)(**named)
@@ -147,7 +147,7 @@ def test_other_arguments_are_rejected_before_a_byte_is_sent(
 def test_variants_of_a_reply_without_a_common_field_give_one_result(package: Any) -> None:
     results = []
     for frame in ("FE FE 05 12 00 0F 01 FA", "FE FE 03 12 32 FA"):
-        peer = SilentPeer(bytes.fromhex(frame))
+        peer = MemoryPeer(then=bytes.fromhex(frame))
         with package.CLIENT(MemoryTransport(peer, SteppedClock())) as arm:
             results.append(arm.get_y())
     assert results == [(1.5, package.Mode.BLINK, None), (None, None, 50)]

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import importlib
 import itertools
 import subprocess
 import sys
@@ -25,24 +24,15 @@ from cobotwire_codegen.emit import Target, write
 from cobotwire_codegen.model import Command, Edition, Field, Value, Variant, Vector, named_fields
 from cobotwire_codegen.render import render_python
 from cobotwire_codegen.wire import build_frame, encode_variant
+from memory_peer import MemoryPeer
 from random_values import as_codec, counted, type_of
-from silent_peer import SilentPeer
+from small_specs import package
 
 NUMBERS = itertools.count()
 EXAMPLES = settings(
     max_examples=25,
     suppress_health_check=[HealthCheck.function_scoped_fixture, HealthCheck.too_slow],
 )
-
-
-def _package(edition: Edition, folder: Path, name: str) -> ModuleType:
-    write(Target(folder / name, render_python(edition)))
-    sys.path.insert(0, str(folder))
-    importlib.invalidate_caches()
-    try:
-        return importlib.import_module(name)
-    finally:
-        sys.path.remove(str(folder))
 
 
 def _variant(edition: Edition, vector: Vector) -> int:
@@ -66,7 +56,7 @@ def test_random_protocol_is_generated_and_agrees_in_all_codecs(
 ) -> None:
     _, edition = data.draw(random_specs.specs(tmp_path))
     check(edition)
-    table = _package(edition, tmp_path, f"rnd{next(NUMBERS)}").TABLE
+    table = package(tmp_path, edition).TABLE
     reference, native = codecs.load(table, "reference"), codecs.load(table, "native")
     stream = b""
     for vector in edition.vectors:
@@ -106,7 +96,7 @@ def test_simulated_arm_of_a_random_protocol_sends_legal_replies(
     tmp_path: Path, data: st.DataObject
 ) -> None:
     _, edition = data.draw(random_specs.specs(tmp_path))
-    table = _package(edition, tmp_path, f"rnd{next(NUMBERS)}").TABLE
+    table = package(tmp_path, edition).TABLE
     codec = codecs.load(table)
     arm = SimulatedArm(table)
     for vector in edition.vectors:
@@ -142,10 +132,10 @@ def _assert_remembered(
     assert arm.state.remembered.recall(query, asked)[name] == given_values[argument]
 
 
-def _sent(package: ModuleType, name: str, given_values: dict[str, Any]) -> bytes:
+def _sent(generated: ModuleType, name: str, given_values: dict[str, Any]) -> bytes:
     """Return what a call sends; nothing if it raises the error of a wrong call."""
-    peer, clock = SilentPeer(), SteppedClock()
-    with package.CLIENT(
+    peer, clock = MemoryPeer(), SteppedClock()
+    with generated.CLIENT(
         MemoryTransport(peer, clock), on_error="leave", retry=RetryPolicy(attempts=1)
     ) as arm:
         with suppress(TypeError, UsageError, ReplyTimeout):
@@ -184,8 +174,8 @@ def test_arguments_choose_a_variant_and_other_combinations_send_nothing(
 ) -> None:
     _, edition = data.draw(random_specs.specs(tmp_path))
     check(edition)
-    package = _package(edition, tmp_path, f"rnd{next(NUMBERS)}")
-    codec = codecs.load(package.TABLE)
+    generated = package(tmp_path, edition)
+    codec = codecs.load(generated.TABLE)
     for command in edition.commands:
         # A legal value of each argument, as the third encoder and as Python state it, by variant.
         legal: dict[int, dict[str, tuple[object, Any]]] = {}
@@ -196,12 +186,12 @@ def test_arguments_choose_a_variant_and_other_combinations_send_nothing(
                 legal[_variant(edition, vector)] = values
         any_variant = {name: pair for values in legal.values() for name, pair in values.items()}
         if command.event:
-            assert not hasattr(package.CLIENT, command.name)
+            assert not hasattr(generated.CLIENT, command.name)
             continue
         for names in _subsets([*named_fields(command.requests)]):
             fitting = _chosen(command, names)
             values = legal[command.requests.index(fitting[0])] if fitting else any_variant
-            sent = _sent(package, command.name, {name: values[name][1] for name in names})
+            sent = _sent(generated, command.name, {name: values[name][1] for name in names})
             if not fitting:
                 assert sent == b"", names
                 continue

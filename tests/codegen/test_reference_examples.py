@@ -17,7 +17,7 @@ from cobotwire.editions import load, names
 from cobotwire.protocol.errors import ReplyTimeout
 from cobotwire.simulator import MemoryTransport, SteppedClock
 from cobotwire_codegen.render import render_reference
-from silent_peer import SilentPeer
+from memory_peer import MemoryPeer
 
 SECTION = re.compile(r"^## (\w+)$(.*?)(?=^## |\Z)", re.DOTALL | re.MULTILINE)
 # The first thing of a section.
@@ -85,7 +85,7 @@ def run(edition: str, example: Example) -> str:
     frames = [*example.requests, *example.replies]
     addresses = [None] if at is None else dict.fromkeys(frame[at] for frame in frames)
     for address, reply in product(addresses, example.replies or [b""]):
-        device = SilentPeer(reply)
+        device = MemoryPeer(then=reply)
         with module.CLIENT(MemoryTransport(device, SteppedClock()), on_error="leave") as client:
             arm: Any = client if address is None else client.at(address)
             with suppress(ReplyTimeout):

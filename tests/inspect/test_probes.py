@@ -12,14 +12,14 @@ from cobotwire.inspect.frame_families import families
 from cobotwire.inspect.identification import identify_on, newest_first
 from cobotwire.protocol.errors import ProtocolError
 from cobotwire.simulator import MemoryTransport, SimulatedArm, SteppedClock
+from memory_peer import MemoryPeer
 from request_parsers import PARSERS, Parser
-from silent_peer import SilentPeer
 
 
 @pytest.fixture(scope="module")
 def probes() -> list[bytes]:
     """Return what an arm that never replies receives, write by write."""
-    peer = SilentPeer()
+    peer = MemoryPeer()
     found = identify_on(MemoryTransport(peer, SteppedClock()), timeout=0.3)
     assert (found.edition, found.candidates, found.replied) == ("", (), False)
     assert len(found.evidence) >= len(families(newest_first())) > 1

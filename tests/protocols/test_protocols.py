@@ -26,7 +26,7 @@ from cobotwire_codegen.targets.c import render_c
 from cobotwire_codegen.targets.vectors.law import Law, Reading
 from cobotwire_codegen.targets.wireshark import render_wireshark
 from conformance.device.testing import prepared
-from protocols.conftest import HERE, edition_of
+from targets.specs import FILES, edition_of
 
 NAMES = ["feetech", "dynamixel", "ublox"]
 CODECS: tuple[codecs.CodecName, ...] = ("reference", "native")
@@ -129,7 +129,7 @@ def test_every_target_can_express_the_protocols() -> None:
 
 
 def test_derived_vectors_keep_their_address(tmp_path: Path) -> None:
-    text = (HERE / "feetech.yaml").read_text()
+    text = FILES["feetech"].read_text()
     (tmp_path / "feetech.yaml").write_text(text)
     frame = text[text.index("frame:\n") : text.index("types:")].replace("inverted-sum", "sum")
     head = "edition: other\nclass: Other\ntitle: Other\ndoc: Other.\nbase: feetech.yaml\n"

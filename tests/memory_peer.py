@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 
-class SilentPeer:
-    """Reply to everything with the same bytes, or with nothing."""
+class MemoryPeer:
+    """Reply to each write with the next of the ``replies``, and then always with ``then``."""
 
     wait = None
 
-    def __init__(self, reply: bytes = b"") -> None:
+    def __init__(self, *replies: bytes, then: bytes = b"") -> None:
         self.writes: list[bytes] = []
-        self._reply = reply
+        self._replies, self._then = list(replies), then
 
     @property
     def received(self) -> bytes:
@@ -20,7 +20,7 @@ class SilentPeer:
     def receive(self, data: bytes) -> bytes:
         """Keep what is received; return the reply."""
         self.writes.append(data)
-        return self._reply
+        return self._replies.pop(0) if self._replies else self._then
 
     def flush(self) -> bytes:
         """Return nothing: no reply is late."""
