@@ -1,4 +1,4 @@
-"""Print the size of each room, what the rooms import, and the files that run during one call.
+"""Print the size of each room, and what the rooms import.
 
     python tests/house_figures.py          measure this checkout
     python tests/house_figures.py FOLDER   measure another one
@@ -11,13 +11,12 @@ from __future__ import annotations
 
 import ast
 import io
-import os
 import re
 import statistics
 import subprocess
 import sys
 import tokenize
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from pathlib import Path
 from typing import NamedTuple
 
@@ -41,26 +40,6 @@ NO_CODE = {
     tokenize.DEDENT,
     tokenize.ENDMARKER,
 }
-
-# One get_angles() of the blocking client on a port; prints the files of the package that run.
-CALL = """
-import os, sys, threading, tty
-from cobotwire.editions.mycobot280 import MyCobot280
-reply = bytes.fromhex("FE FE 0E 20 00 8C 00 3D FF E6 FF 3F 00 AF FF 51 FA")
-master, slave = os.openpty()
-tty.setraw(slave)
-def respond():
-    while os.read(master, 4096):
-        os.write(master, reply)
-threading.Thread(target=respond, daemon=True).start()
-passed = set()
-with MyCobot280(os.ttyname(slave)) as arm:
-    arm.get_angles()
-    sys.setprofile(lambda frame, event, _: passed.add(frame.f_code.co_filename))
-    arm.get_angles()
-    sys.setprofile(None)
-print(*sorted(path for path in passed if "/python/cobotwire/" in path), sep="\\n")
-"""
 
 
 class Size(NamedTuple):
@@ -89,10 +68,6 @@ def main() -> None:
         for cycle in found:
             print(f"    {' '.join(cycle)}")
     _print_arrows(root / "python" / "cobotwire")
-    passed = _passed(root)
-    print(f"files that run during get_angles(): {len(passed)}")
-    for path in passed:
-        print(f"    {path}")
 
 
 def _sizes(root: Path) -> dict[Source, Size]:
@@ -193,19 +168,6 @@ def _cycles(root: Path) -> Iterator[tuple[str, list[list[str]]]]:
         yield name, import_cycles(python_imports_of(folder, name))
     for crate in ("core", "py", "fuzz"):
         yield f"rust/{crate}", import_cycles(rust_imports_of(root / "rust" / crate / "src"))
-
-
-def _passed(root: Path) -> Sequence[str]:
-    """Return the files of the package that run during one ``get_angles()``."""
-    done = subprocess.run(
-        [sys.executable, "-c", CALL],
-        env={**os.environ, "PYTHONPATH": str(root / "python")},
-        capture_output=True,
-        text=True,
-        check=True,
-        timeout=30,
-    )
-    return [line.partition("/python/cobotwire/")[2] for line in done.stdout.splitlines()]
 
 
 if __name__ == "__main__":
