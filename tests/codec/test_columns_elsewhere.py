@@ -2,16 +2,10 @@
 
 from __future__ import annotations
 
-import mmap
 import sys
 import threading
-from pathlib import Path
-from typing import Any
 
-import duckdb
 import numpy as np
-import pandas as pd
-import polars as pl
 import pyarrow as pa
 import pytest
 
@@ -45,29 +39,11 @@ def test_arrow_shares_the_memory(rows: Rows) -> None:
     assert address == rows.to_numpy()["angles"].__array_interface__["data"][0]
 
 
-def test_polars_duckdb_and_pandas_read_rows_directly(rows: Rows) -> None:
-    frame = pl.DataFrame(rows)
-    assert frame["angles"].to_list() == [VALUES] * 3
-    assert frame["offset"].to_list() == [1, 18, 35]
-    messages = rows  # DuckDB finds the variable by its name
-    query: Any = duckdb.sql('select "offset", angles[6] from messages order by 1 desc')
-    assert messages is rows
-    assert query.fetchall() == [(35, 6.5), (18, 6.5), (1, 6.5)]
-    assert pd.DataFrame.from_arrow(rows)["offset"].tolist() == [1, 18, 35]
-
-
 def test_memory_outlives_columns_and_codec(codec: Codec) -> None:
     array = codec.decode_columns(ANGLES * 1000, "reply").rows("get_angles").to_numpy()["angles"]
     others = [codec.decode_columns(ANGLES * 1000, "reply") for _ in range(20)]
     assert array.tolist() == [VALUES] * 1000
     assert len(others) == 20
-
-
-def test_mapped_file_is_read_without_being_loaded(codec: Codec, tmp_path: Path) -> None:
-    path = tmp_path / "capture.bin"
-    path.write_bytes(ANGLES * 20_000)
-    with path.open("rb") as file, mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ) as mapped:
-        assert len(codec.decode_columns(mapped, "reply").rows("get_angles")) == 20_000
 
 
 def test_other_thread_may_write_to_the_buffer_during_the_read() -> None:

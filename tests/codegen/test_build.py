@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import ast
-import re
 from pathlib import Path
 
 import pytest
@@ -100,19 +98,3 @@ def test_model_reports_an_unwritable_file_in_one_line(folder: Path) -> None:
     result = run(folder, "model", "lamp.yaml", "--out", "nowhere/lamp.json")
     assert result.returncode == 2
     assert "cannot write nowhere/lamp.json: No such file" in result.stderr
-
-
-@pytest.mark.parametrize(
-    "text", ['three quotes """', '"""', 'four """" here', 'a quote "', r"\"", "\\", r'\"""', "*/ #"]
-)
-def test_text_of_a_spec_ends_no_docstring(folder: Path, text: str) -> None:
-    quoted = "'" + text.replace("'", "''") + "'"
-    spec = re.sub(r"((?:doc|title): )[^{},\n]+", lambda found: found[1] + quoted, LAMP)
-    (folder / "lamp.yaml").write_text(spec)
-    assert run(folder, "build", "lamp.yaml", "--out", "lamp").stderr == ""
-    found = 0
-    for path in (folder / "lamp").rglob("*.py"):
-        for node in ast.walk(ast.parse(path.read_text())):
-            if isinstance(node, ast.ClassDef | ast.FunctionDef | ast.AsyncFunctionDef):
-                found += text in (ast.get_docstring(node) or "")
-    assert found > 10

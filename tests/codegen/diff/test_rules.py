@@ -22,16 +22,13 @@ ALL = [(level, fixture) for level in LEVELS for fixture in FIXTURES[level]]
 FOLDERS = {"edition-added", "edition-removed"}
 
 
-def _swaps(fixture: dict[str, Any], side: str) -> list[tuple[str, str]]:
-    return [(swap["take"], swap["put"]) for swap in fixture.get(side, [])]
-
-
 @pytest.mark.parametrize(("level", "fixture"), ALL, ids=[f["rule"] for _, f in ALL])
 def test_fixture_of_a_rule_has_exactly_its_findings(
     level: str, fixture: dict[str, Any], build: Build
 ) -> None:
     old, new = (
-        build(_swaps(fixture, side), fixture.get("file", "base")) for side in ("before", "after")
+        build([*fixture.get(side, {}).items()], fixture.get("file", "base"))
+        for side in ("before", "after")
     )
     found = diff(old, new)
     assert [f"{one.rule}: {one.where}: {one.message}" for one in found] == fixture["says"]

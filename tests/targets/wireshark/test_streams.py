@@ -105,21 +105,6 @@ def test_found_streams_show_the_framers_events(edition: str) -> None:
     agrees([Cut(each.listening, each.chunks) for each in found], edition, over_tcp=False)
 
 
-@pytest.mark.parametrize("over_tcp", [False, True], ids=["serial", "tcp"])
-def test_bad_line_in_reads_of_any_size_shows_the_framers_events(over_tcp: bool) -> None:
-    table = TABLES["mycobot280"]
-    sent = stream_a(table, 800, seed=8)
-    lines = [damage.damage(table, sent, "mixed", 0.004), damage.noisy(table, sent, share=0.2)]
-    random = np.random.default_rng(9)
-    cut = []
-    for line in lines:
-        ends = np.cumsum(random.integers(1, 90, len(line.data) // 20))
-        pieces = zip([0, *ends], [*ends, len(line.data)])
-        cut.append(Cut("reply", [(line.data[a:b], False) for a, b in pieces]))
-    assert sum(len(line.data) for line in lines) > 20_000
-    agrees(cut, "mycobot280", over_tcp)
-
-
 def test_frame_over_several_packets_names_its_first_and_last(tmp_path: Path) -> None:
     path = tmp_path / "line.pcapng"
     pieces = [FRAME[:5], FRAME[5:9], FRAME[9:] + ON[:3]]
