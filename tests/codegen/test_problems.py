@@ -24,6 +24,14 @@ from codegen.author.test_explain import WITHOUT_LINES
 
 HERE = Path(__file__).parent
 LAMP = (HERE / "lamp.yaml").read_text()
+# The first lines of each delta over the lamp.
+DELTA = """\
+edition: lantern
+base: lamp.yaml
+class: Lantern
+title: A lantern
+doc: A lamp to carry.
+"""
 BAD: dict[str, list[dict[str, Any]]] = YAML(typ="safe").load(HERE / "bad_specs.yaml")
 
 
@@ -57,7 +65,7 @@ def test_bad_file_is_reported_with_exact_problems(tmp_path: Path, case: dict[str
 @pytest.mark.parametrize("case", BAD["delta"], ids=_name)
 def test_bad_delta_is_reported_with_exact_problems(tmp_path: Path, case: dict[str, Any]) -> None:
     (tmp_path / "lamp.yaml").write_text(LAMP)
-    (tmp_path / "lantern.yaml").write_text(case["text"])
+    (tmp_path / "lantern.yaml").write_text(DELTA + case["text"])
     assert bool(case["problems"]) == (not case["name"].startswith("good"))
     assert _problems(tmp_path / "lantern.yaml") == case["problems"]
 
