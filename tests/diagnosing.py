@@ -16,17 +16,19 @@ ANGLES = bytes.fromhex("FE FE 0E 20 00 01 02 03 04 05 06 07 08 09 0A 0B FA")
 
 
 def diagnose(
-    codec: Codec, data: bytes, listening: Listening = "reply", sent: bytes = b""
+    codec: Codec, *chunks: bytes, listening: Listening = "reply", sent: bytes = b""
 ) -> list[Item]:
+    """Return the items of a stream that arrives in these chunks and then falls silent."""
     framer, diagnoser = codec.framer(listening), Diagnoser(codec, listening)
     diagnoser.sent(sent)
-    items = diagnoser.feed([*framer.feed(data), *framer.flush()]) + diagnoser.flush()
-    assert sum(len(item.data) for item in items) == len(data)
+    items = [item for chunk in chunks for item in diagnoser.feed(framer.feed(chunk))]
+    items += diagnoser.feed(framer.flush()) + diagnoser.flush()
+    assert sum(len(item.data) for item in items) == sum(map(len, chunks))
     return items
 
 
 def only(codec: Codec, data: bytes, listening: Listening = "reply") -> Item:
-    (item,) = diagnose(codec, data, listening)
+    (item,) = diagnose(codec, data, listening=listening)
     return item
 
 

@@ -200,43 +200,30 @@ def any_streams(table: Table) -> st.SearchStrategy[bytes]:
     return streams(table) if table.edition == "random" else strategies.streams(table)
 
 
-def values(variant: Variant) -> st.SearchStrategy[tuple[Any, ...]]:
-    """Draw a value for each field, mostly near those that it allows."""
-    return st.tuples(*[_value(field) for field in variant.fields])
+@st.composite
+def values(draw: st.DrawFn, variant: Variant) -> tuple[Any, ...]:
+    """Draw a value for each field, most of them legal ones."""
+    found: list[Any] = []
+    for field, value in zip(variant.fields, draw(strategies.legal_values(variant))):
+        if draw(st.integers(0, 2)):
+            found.append(value)
+        elif field.kind == "bytes":
+            found.append(draw(st.sampled_from([bytearray, memoryview, list]))(value))
+        else:
+            found.append(_changed(draw, value, [_beyond(n) for n in field.cases[0].numbers]))
+    return tuple(found)
 
 
-def _value(field: Field) -> st.SearchStrategy[Any]:
-    case = field.cases[0]
-    if field.each or field.kind in ("bytes", "text"):
-        return _shaped_value(field) | strategies.odd_values()
-    parts = [_near(number) for number in case.numbers]
-    near: st.SearchStrategy[Any] = st.tuples(*parts) if field.many else parts[0]
-    return st.one_of(near, near, near, strategies.odd_values())
+def _changed(draw: st.DrawFn, value: Any, others: list[float]) -> Any:
+    """Return a value in which one part is replaced: by one of the others, or by an odd value."""
+    if isinstance(value, tuple) and value and draw(st.integers(0, 4)):
+        at = draw(st.integers(0, len(value) - 1))
+        return (*value[:at], _changed(draw, value[at], others), *value[at + 1 :])
+    return draw(st.sampled_from([*others, 0]) | strategies.odd_values())
 
 
-def _shaped_value(field: Field) -> st.SearchStrategy[Any]:
-    """Draw a value of bytes, text or a list, mostly of the right size."""
-    total = len(field.cases[0].numbers)
-    if field.kind == "bytes":
-        data = st.binary(min_size=total, max_size=total)
-        others: list[Any] = [bytearray, memoryview, list]
-        return st.one_of(data, *[data.map(other) for other in others])
-    letters = st.text(st.sampled_from("aé€ \0"), max_size=total)
-    if field.kind == "text":
-        count = total // field.each if field.each else 0
-        texts = st.lists(letters, min_size=count, max_size=count)
-        return texts if field.each else letters
-    group = st.tuples(*[_near(number) for number in field.cases[0].numbers[: field.each]])
-    groups = st.lists(group | strategies.odd_values(), max_size=total // field.each)
-    right = st.lists(group, min_size=total // field.each, max_size=total // field.each)
-    return right | right | groups
-
-
-def _near(number: Number) -> st.SearchStrategy[Any]:
-    ends = st.sampled_from([number.minimum, number.maximum, number.maximum + 1])
-    raw = st.integers(number.minimum, number.maximum) | ends
-    low, high = -(256**number.width) // 2, 256**number.width // 2 - 1
-    if number.encoding == "float":
-        raw = raw.map(lambda each: min(max(each, low), high))
-        return raw.map(number.physical) | st.floats()
-    return raw.map(number.physical)
+def _beyond(number: Number) -> float:
+    """Return the first value above those that a number allows."""
+    above = number.maximum + 1
+    highest = 256**number.width // 2 - 1
+    return number.physical(min(above, highest) if number.encoding == "float" else above)

@@ -14,11 +14,13 @@ from cobotwire import codec as codecs
 from cobotwire.codec.interface import Codec, Listening
 from cobotwire.editions.mycobot import TABLE
 from cobotwire.editions.mycobot280 import TABLE as TABLE_280
+from cobotwire.protocol.numbers import raw_of_float
 from cobotwire.protocol.table import Case, Command, Direction, Field, Number, Table, Variant
 
 TABLES = {table.edition: table for table in (TABLE, TABLE_280)}
 CODECS: tuple[codecs.CodecName, ...] = ("reference", "native")
 DIRECTIONS: tuple[Direction, ...] = ("request", "reply")
+TEXTS = st.sampled_from(["", "a", "é", "€uro", "𝄞", "abc def", "\0", "~"])
 
 
 class CommandVariant(NamedTuple):
@@ -66,33 +68,72 @@ def _with_values(
     return legal_values(variant.variant).map(lambda values: (variant, values))
 
 
+@st.composite
+def raw_rows(draw: st.DrawFn, variant: Variant) -> list[tuple[int, ...]]:
+    """Draw legal raw values for each field of a variant."""
+    rows: list[tuple[int, ...]] = [
+        draw(_row(field, field.cases[0])) if field.selector < 0 else () for field in variant.fields
+    ]
+    for index, field in enumerate(variant.fields):
+        if field.selector >= 0:
+            case = variant.raw_case(field, rows)
+            assert case is not None, "the selector is legal"
+            rows[index] = draw(_row(field, case))
+    return rows
+
+
+def _row(field: Field, case: Case) -> st.SearchStrategy[tuple[int, ...]]:
+    if field.kind == "text":
+        size = len(case.numbers)
+        each = field.each or size or 1
+        texts = st.lists(_characters(field, each), min_size=size // each, max_size=size // each)
+        return texts.map(lambda found: tuple(b"".join(found)))
+    if field.kind == "bytes":
+        size = len(case.numbers)
+        return st.binary(min_size=size, max_size=size).map(tuple)
+    return st.tuples(*[_raw(field, number) for number in case.numbers])
+
+
+def _characters(field: Field, size: int) -> st.SearchStrategy[bytes]:
+    """Draw whole characters that fill exactly ``size`` bytes."""
+
+    def fitted(text: str) -> bytes:
+        found = b""
+        for letter in text:
+            data = letter.encode(field.encoding, errors="ignore")
+            found += data if len(found) + len(data) <= size else b""
+        return found.ljust(size, bytes([field.padding]) if field.padding >= 0 else b"x")
+
+    return st.lists(TEXTS, max_size=size).map("".join).map(fitted)
+
+
 def _raw(field: Field, number: Number) -> st.SearchStrategy[int]:
-    if choices := field.choices or number.choices:
-        return st.sampled_from(choices)
+    if field.choices or number.choices:
+        return st.sampled_from(field.choices or number.choices)
+    if number.encoding == "float":
+        low, high = number.raw_range
+        ends = st.sampled_from([number.minimum, number.maximum, 0, -1])
+        finite = st.integers(max(number.minimum, low), min(number.maximum, high))
+        nan = raw_of_float(float("nan"), number.width)
+        usual = ends.filter(lambda raw: low <= raw <= high or not number.takes_not_finite)
+        beyond = st.sampled_from([nan, low - 1, high + 1]) if number.takes_not_finite else usual
+        return finite | usual | beyond
     return st.integers(number.minimum, number.maximum)
-
-
-def _value(field: Field, number: Number) -> st.SearchStrategy[Any]:
-    raw = _raw(field, number)
-    return raw.map(bool) if field.kind == "flag" else raw.map(number.physical)
-
-
-def _of_case(field: Field, case: Case) -> st.SearchStrategy[Any]:
-    elements = [_value(field, number) for number in case.numbers]
-    return st.tuples(*elements) if field.many else elements[0]
 
 
 @st.composite
 def legal_values(draw: st.DrawFn, variant: Variant) -> tuple[Any, ...]:
     """Draw values that the variant allows, each on a step of its scale."""
-    values: list[Any] = [
-        draw(_of_case(field, field.cases[0])) if field.selector < 0 else None
-        for field in variant.fields
-    ]
-    for index, field in enumerate(variant.fields):
-        if field.selector >= 0:
-            values[index] = draw(_of_case(field, variant.case(field, values)))
-    return tuple(values)
+    rows = draw(raw_rows(variant))
+    return tuple(_value(variant, field, rows) for field in variant.fields)
+
+
+def _value(variant: Variant, field: Field, rows: list[tuple[int, ...]]) -> Any:
+    case, row = variant.raw_case(field, rows), rows[variant.fields.index(field)]
+    assert case is not None, "the selector is legal"
+    if field.kind in ("flag", "text", "bytes"):
+        return field.present([bool(raw) for raw in row] if field.kind == "flag" else list(row))
+    return field.present([number.physical(raw) for number, raw in zip(case.numbers, row)])
 
 
 def messages(table: Table = TABLE) -> st.SearchStrategy[tuple[CommandVariant, tuple[Any, ...]]]:

@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 
 from both_ways import Opener
-from cobotwire import ProtocolError, ReplyTimeout
+from cobotwire import MyCobot280, ProtocolError, ReplyTimeout
 from cobotwire.editions.mycobot import Angles
 from scripted_peer import ScriptedPeer
 
@@ -63,6 +63,7 @@ def test_missing_reply_raises_a_timeout_and_the_next_call_succeeds(
         with pytest.raises(ReplyTimeout) as caught:
             arm.get_angles()
         assert caught.value.received, "it lists what was received instead"
+        assert isinstance(caught.value, TimeoutError)
         assert arm.is_power_on() is True
 
 
@@ -108,6 +109,13 @@ def test_value_that_the_edition_does_not_allow_is_an_error(open_arm: Opener) -> 
         with pytest.raises(ProtocolError, match="powered is 7; allowed: True or False") as caught:
             arm.is_power_on()
         assert caught.value.reason == "bad-value"
+
+
+def test_angle_that_no_servo_can_report_is_an_error_in_the_unit_of_the_caller() -> None:
+    reply = bytes.fromhex("FE FE 0E 20 80 84") + bytes(10) + b"\xfa"
+    with ScriptedPeer([reply]) as peer, MyCobot280(peer.url) as arm:
+        with pytest.raises(ProtocolError, match=r"radians is -326.36; .*-181\.\.181"):
+            arm.get_radians()
 
 
 def test_ambiguous_text_reply_is_an_error(open_arm: Opener) -> None:

@@ -78,6 +78,12 @@ def test_joints_have_names(codec: str) -> None:
         arm.send_angle(Joint.J7, 0, 50)
 
 
+def test_target_of_the_mode_that_other_clients_send_is_moved_to() -> None:
+    driven = Driven()
+    driven.arm.send_coords([150, -60, 250, 180, 0, -90], 80, 2)
+    assert driven.arm.is_moving()
+
+
 def test_speed_of_the_line_is_the_second_argument() -> None:
     for client in (MyCobot280, AsyncMyCobot280):
         second = list(inspect.signature(client).parameters.values())[1]

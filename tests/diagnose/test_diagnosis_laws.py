@@ -13,16 +13,11 @@ from cobotwire import codec as codecs
 from cobotwire.codec.interface import Codec, Event, Frame, Listening, Noise
 from cobotwire.diagnose import Diagnoser, Finding, Item, ServoPacket, Span, summarize
 from cobotwire.editions.mycobot import TABLE
+from diagnosing import diagnose
 
 CODECS = st.sampled_from([codecs.load(TABLE, "reference"), codecs.load(TABLE, "native")])
 LISTENING = st.sampled_from(["request", "reply", "both"])
 STREAMS = field.streams() | strategies.streams()
-
-
-def diagnose(codec: Codec, listening: Listening, chunks: list[bytes]) -> list[Item]:
-    framer, diagnoser = codec.framer(listening), Diagnoser(codec, listening)
-    items = [item for chunk in chunks for item in diagnoser.feed(framer.feed(chunk))]
-    return items + diagnoser.feed(framer.flush()) + diagnoser.flush()
 
 
 def _pieces(items: list[Item]) -> list[tuple[int, bytes, bool]]:
@@ -41,7 +36,7 @@ def test_every_byte_of_noise_is_in_one_finding_and_every_frame_passes_through(
     stream = data.draw(STREAMS)
     framer = codec.framer(listening)
     events = [*framer.feed(stream), *framer.flush()]
-    items = diagnose(codec, listening, [stream])
+    items = diagnose(codec, stream, listening=listening)
     pieces = _pieces(items)
     assert b"".join(piece[1] for piece in pieces) == stream
     assert all(a[0] + len(a[1]) == b[0] for a, b in pairwise(pieces))
@@ -55,23 +50,25 @@ def test_findings_do_not_depend_on_chunking(
     codec: Codec, listening: Listening, data: st.DataObject
 ) -> None:
     stream = data.draw(STREAMS)
-    whole = diagnose(codec, listening, [stream])
-    assert diagnose(codec, listening, data.draw(strategies.chunked(stream))) == whole
-    assert diagnose(codec, listening, [bytes([byte]) for byte in stream]) == whole
+    whole = diagnose(codec, stream, listening=listening)
+    assert diagnose(codec, *data.draw(strategies.chunked(stream)), listening=listening) == whole
+    assert diagnose(codec, *[bytes([byte]) for byte in stream], listening=listening) == whole
 
 
 @given(LISTENING, st.data())
 def test_findings_are_the_same_for_both_codecs(listening: Listening, data: st.DataObject) -> None:
     stream = data.draw(STREAMS)
     one, other = (codecs.load(TABLE, name) for name in ("reference", "native"))
-    assert diagnose(one, listening, [stream]) == diagnose(other, listening, [stream])
+    assert diagnose(one, stream, listening=listening) == diagnose(
+        other, stream, listening=listening
+    )
 
 
 @given(CODECS, st.data())
 def test_items_are_in_the_order_of_the_stream_and_have_descriptions(
     codec: Codec, data: st.DataObject
 ) -> None:
-    items = diagnose(codec, "both", [data.draw(STREAMS)])
+    items = diagnose(codec, data.draw(STREAMS), listening="both")
     assert all(a.offset < b.offset for a, b in pairwise(items))
     findings = [item for item in items if isinstance(item, Finding)]
     assert all(finding.describe() and "\n" not in finding.describe() for finding in findings)
@@ -84,7 +81,7 @@ def test_servo_packet_is_recognised_when_a_frame_interrupts_it(
 ) -> None:
     cut = data.draw(st.integers(0, len(packet)))
     before, after = packet[:cut], packet[cut:]
-    items = diagnose(codec, "both", [before + frame + after])
+    items = diagnose(codec, before + frame + after, listening="both")
     # By chance the bytes of the packet may be a frame, or form one with bytes of the frame.
     if not any(isinstance(i, Frame) and (i.offset, i.data) == (cut, frame) for i in items):
         return
@@ -101,7 +98,7 @@ def test_servo_packet_with_a_wrong_byte_is_not_recognised(
     at = data.draw(st.integers(2, len(packet) - 1))
     flip = data.draw(st.integers(1, 255))
     damaged = packet[:at] + bytes([packet[at] ^ flip]) + packet[at + 1 :]
-    found = [i for i in diagnose(codec, "both", [damaged]) if isinstance(i, ServoPacket)]
+    found = [i for i in diagnose(codec, damaged, listening="both") if isinstance(i, ServoPacket)]
     assert all(item.data != damaged for item in found)
 
 

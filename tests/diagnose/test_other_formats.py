@@ -11,21 +11,16 @@ from hypothesis import strategies as st
 import strategies
 from cobotwire import codec as codecs
 from cobotwire.codec.interface import Codec, Frame, Noise
-from cobotwire.diagnose import DamagedFrame, Diagnoser, Finding, Item
+from cobotwire.diagnose import DamagedFrame, Finding
 from cobotwire.editions.mycobot import TABLE
 from diagnosed_formats import CODECS, NO_ID, streams
-
-
-def _diagnose(codec: Codec, chunks: list[bytes]) -> list[Item]:
-    framer, diagnoser = codec.framer("reply"), Diagnoser(codec, "reply")
-    items = [item for chunk in chunks for item in diagnoser.feed(framer.feed(chunk))]
-    return items + diagnoser.feed(framer.flush()) + diagnoser.flush()
+from diagnosing import diagnose
 
 
 @given(st.sampled_from(CODECS), st.data())
 def test_laws_of_diagnosis_hold_for_any_frame_format(codec: Codec, data: st.DataObject) -> None:
     stream = data.draw(streams(codec))
-    items = _diagnose(codec, [stream])
+    items = diagnose(codec, stream)
     spans = sorted(
         span
         for item in items
@@ -33,14 +28,14 @@ def test_laws_of_diagnosis_hold_for_any_frame_format(codec: Codec, data: st.Data
     )
     assert b"".join(span[1] for span in spans) == stream
     assert all(a[0] + len(a[1]) == b[0] for a, b in pairwise(spans))
-    assert _diagnose(codec, data.draw(strategies.chunked(stream))) == items
-    assert _diagnose(codec, [bytes([byte]) for byte in stream]) == items
+    assert diagnose(codec, *data.draw(strategies.chunked(stream))) == items
+    assert diagnose(codec, *[bytes([byte]) for byte in stream]) == items
 
 
 @given(st.sampled_from(CODECS), st.integers(1, 6))
 def test_truncated_frame_has_the_name_of_its_command(codec: Codec, lost: int) -> None:
     frame = codec.encode("get_angles", "reply", [(1.0, 2.0, 3.0, 4.0, 5.0, 6.0)])
-    found = _diagnose(codec, [frame[:-lost]])
+    found = diagnose(codec, frame[:-lost])
     assert isinstance(found[0], DamagedFrame)
     if not codec.table.frame.reply_has_id:
         assert (found[0].command, found[0].id, found[0].offset) == (None, None, 0)
@@ -64,12 +59,11 @@ def test_frames_of_formats_without_ids_in_replies_are_described(name: codecs.Cod
         (unlisted, "damaged frame: its LEN is wrong"),
         (request, "a request, send_angle: an echo, or another host"),
     ):
-        found, frame = _diagnose(codec, [stream + whole])
+        found, frame = diagnose(codec, stream + whole)
         assert isinstance(found, Finding)
         assert (found.describe(), found.data) == (described, stream)
         assert isinstance(frame, Frame)
     # A host that listens to requests reads their ids.
-    framer, diagnoser = codec.framer("request"), Diagnoser(codec, "request")
-    [damaged] = diagnoser.feed([*framer.feed(request[:-1]), *framer.flush()]) + diagnoser.flush()
+    [damaged] = diagnose(codec, request[:-1], listening="request")
     assert isinstance(damaged, DamagedFrame)
     assert damaged.command == "send_angle"
