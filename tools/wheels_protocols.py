@@ -1,6 +1,6 @@
 """Build, simulate, decode and test protocols of other devices as a user does, in one environment.
 
-    python wheels_protocols.py FOLDER    # the folder of feetech.yaml, dynamixel.yaml and ublox.yaml
+    python wheels_protocols.py FOLDER    # the folder of feetech.yaml and ublox.yaml
 
 `make wheels-check` runs it in fresh environments, without Rust. It copies the specs, and runs the
 commands that the documentation names: the generator, a simulated device, the decoder, and the
@@ -46,15 +46,6 @@ PROTOCOLS = (
         (
             ("write_goal 2048 0 1000", "write_goal(2048, 0, 1000)", "overload=False"),
             ("read_all", "read_all()", "measured=Measured(position="),
-        ),
-    ),
-    Protocol(
-        "dynamixel",
-        "7",
-        False,
-        (
-            ("write_goal 512 100", "write_goal(512, 100)", "angle_limit=False"),
-            ("read_temperature", "read_temperature()", "temperature=0"),
         ),
     ),
     Protocol(

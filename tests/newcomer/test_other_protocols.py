@@ -16,11 +16,6 @@ CALLS = {
     device.every.sync_write_goals([p.ServoTarget(1, 2048, 0, 1000), p.ServoTarget(2, 1024, 0, 500)])
     print(device.read_all()[1].voltage)
 """,
-    "dynamixel": """
-    print(device.write_goal(512, 512).overload)
-    device.every.sync_write_goals([p.ServoGoal(0, 512, 512), p.ServoGoal(1, 0, 1023)])
-    print(device.ping() == p.ServoErrors(*[False] * 7))
-""",
     "ublox": """
     device.set_rate(200, 1, p.TimeReference.GPS)
     print(device.get_rate().period)
@@ -37,11 +32,10 @@ with server, p.CLIENT(server.url, timeout=10, record="a.pcapng") as device:
 {calls}
 print("cobotwire._native" in sys.modules)
 """
-PRINTED = {"feetech": ["True", "0.0"], "dynamixel": ["False", "True"], "ublox": ["200", "True"]}
+PRINTED = {"feetech": ["True", "0.0"], "ublox": ["200", "True"]}
 # The frames were recorded in both directions; these requests were sent.
 DECODED = {
     "feetech": "sync_write_goals(register=42, count=6, targets=(1; 2048 ticks;",
-    "dynamixel": "sync_write_goals(register=30, count=4, goals=(0, 512, 512, 1, 0, 1023))",
     "ublox": "set_rate(period=200 milliseconds",
 }
 

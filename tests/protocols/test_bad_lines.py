@@ -18,7 +18,6 @@ from cobotwire.simulator.memory import MemoryTransport
 
 CALLS: dict[str, list[tuple[str, tuple[Any, ...]]]] = {
     "feetech": [("ping", ()), ("read_position", ()), ("write_goal", (1, 2, 3)), ("read_all", ())],
-    "dynamixel": [("ping", ()), ("read_temperature", ()), ("write_goal", (1, 2))],
     "ublox": [("get_version", ()), ("get_position", ()), ("get_rate", ())],
 }
 
@@ -49,7 +48,7 @@ def test_faulty_line_gives_the_right_value_or_an_error(
     protocol = package(name)
     right = talk(protocol, name)
     assert not any(isinstance(value, Exception) for value in right)
-    # A servo packet is a legal frame of Feetech's and Dynamixel's own bus.
+    # A servo packet is a legal frame of Feetech's own bus.
     kinds = {word: kind for word, kind in KINDS.items() if name == "ublox" or word != "servo-leak"}
     for word, kind in kinds.items():
         found = talk(protocol, name, kind(every=2))

@@ -28,7 +28,7 @@ from cobotwire_codegen.targets.wireshark import render_wireshark
 from conformance.device.testing import prepared
 from targets.specs import FILES, edition_of
 
-NAMES = ["feetech", "dynamixel", "ublox"]
+NAMES = ["feetech", "ublox"]
 CODECS: tuple[codecs.CodecName, ...] = ("reference", "native")
 
 
@@ -107,16 +107,14 @@ def test_stream_of_status_packets_is_read_as_the_first_message_of_their_size(
 
 
 def test_sync_write_goes_to_every_servo(package: Any) -> None:
-    dynamixel = package("dynamixel")
-    arm, frames = SimulatedArm(dynamixel.TABLE), list[bytes]()
-    with PtyServer(arm) as server, dynamixel.CLIENT(server.url) as servo:
+    feetech = package("feetech")
+    arm, frames = SimulatedArm(feetech.TABLE), list[bytes]()
+    with PtyServer(arm) as server, feetech.CLIENT(server.url) as servo:
         servo.add_traffic_listener(lambda traffic: frames.append(traffic.data))
-        goals = [dynamixel.ServoGoal(0, 0x010, 0x150), dynamixel.ServoGoal(1, 0x220, 0x360)]
-        servo.every.sync_write_goals(goals)
-    # The first two goals of example 5; the RX-28 user's manual has four.
-    assert frames == [bytes.fromhex("FF FF FE 0E 83 1E 04 00 10 00 50 01 01 20 02 60 03 67")]
+        servo.every.sync_write_goals([feetech.ServoTarget(n, 2048, 0, 1000) for n in range(1, 5)])
+    assert frames == [v.frame for v in edition_of("feetech").vectors if v.name == "sync"]
     for codec in CODECS:
-        used = codecs.load(dynamixel.TABLE, codec)
+        used = codecs.load(feetech.TABLE, codec)
         with pytest.raises(UsageError, match=r"address is 255; allowed: 1, 254, 0, 2\.\.253"):
             used.encode("ping", "request", (), address=255)
 
