@@ -9,13 +9,9 @@ from collections.abc import Iterator
 from typing import Any
 
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
 
 from cobotwire import MotionTimeout, ReplyTimeout, RequestRefused, UsageError
 from cobotwire import codec as codecs
-from cobotwire.client.events import EventQueue, Wanted
-from cobotwire.codec.interface import Frame
 from cobotwire.inspect.doctor import harmless_queries
 from cobotwire.inspect.evidence import bare_queries
 from cobotwire.protocol.messages import Event
@@ -133,24 +129,6 @@ def test_full_queue_drops_the_oldest_and_counts_it(staged: Any) -> None:
     arm.listen(0.01)
     assert [event.button for event in events] == [3, 4]
     assert events.lost == 3
-
-
-@settings(max_examples=50, deadline=None)
-@given(st.lists(st.integers(0, 255)), st.integers(1, 5))
-def test_queue_keeps_the_newest_events_and_counts_the_others(
-    staged: Any, buttons: list[int], capacity: int
-) -> None:
-    queue = EventQueue(Wanted(staged.TABLE, (), None), capacity)
-    codec = codecs.load(staged.TABLE)
-    command = staged.TABLE.command("button_pressed")
-    for button in buttons:
-        data = frame(staged, "button_pressed", button, 7)
-        found = Frame(0, data, command.id)
-        event = EventReceived(command, codec.decode("reply", data), found)
-        queue.take(Traffic(0.0, "received", data, event))
-    kept = [event.button for event in iter(queue.next, None)]
-    assert kept == buttons[-capacity:]
-    assert queue.lost == len(buttons) - len(kept)
 
 
 def test_handler_is_called_and_its_errors_are_reported(

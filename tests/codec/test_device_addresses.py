@@ -1,4 +1,8 @@
-"""Where devices share a line, each row has the address of its device."""
+"""Rows of devices that share a line say which device each of them belongs to.
+
+``test_agreement.py``, ``test_segments.py`` and ``test_message_tables.py`` compare the addresses of
+all rows of such an edition.
+"""
 
 from __future__ import annotations
 
@@ -10,7 +14,6 @@ import pytest
 
 from cobotwire import codec as codecs
 from cobotwire.codec.interface import Codec, Columns
-from cobotwire.codec.segments import Segment, decode_segment
 from cobotwire.editions import load, mycobot280
 from cobotwire.editions.mybuddy import TABLE
 from cobotwire.protocol.errors import UsageError
@@ -54,17 +57,6 @@ def addresses_of(columns: Columns) -> list[int]:
 
 
 @BOTH
-def test_rows_have_the_address_of_their_frame(codec: Codec) -> None:
-    columns = codec.decode_columns(STREAM, "reply")
-    assert addresses_of(columns) == ADDRESSES
-    arrays = columns.rows("get_angles").to_numpy()
-    assert [*arrays] == ["offset", "address", "angles"]
-    assert arrays["address"].dtype == np.uint8
-    assert arrays["angles"][arrays["address"] == LEFT, 0].tolist() == [10, 11]
-    assert addresses_of(codec.decode_columns(b"", "reply")) == []
-
-
-@BOTH
 def test_table_names_the_devices_after_the_offset(codec: Codec) -> None:
     columns = codec.decode_columns(STREAM, "reply")
     for table in (columns.to_arrow("get_angles", wide=True), pa.table(columns.rows("get_angles"))):
@@ -75,6 +67,10 @@ def test_table_names_the_devices_after_the_offset(codec: Codec) -> None:
         assert field.metadata == {b"values": b"ALL=0, LEFT=1, RIGHT=2, WAIST=3"}
         table.validate(full=True)
     rows = columns.rows("get_angles")
+    arrays = rows.to_numpy()
+    assert [*arrays] == ["offset", "address", "angles"]
+    assert arrays["address"].dtype == np.uint8
+    assert arrays["angles"][arrays["address"] == LEFT, 0].tolist() == [10, 11]
     when = {"offset": rows.offset, "time": pa.array(range(4))}
     assert rows.to_arrow(leading=when).column_names == ["offset", "address", "time", "angles"]
     assert rows.to_arrow(leading={}).column_names == ["address", "angles"]
@@ -105,45 +101,6 @@ def codec_280(request: pytest.FixtureRequest) -> Codec:
 def test_register_address_is_not_the_address_of_a_device() -> None:
     table = codecs.load(load("mycobot320").TABLE).decode_columns(b"").to_arrow("get_pro_gripper")
     assert table.column_names[:3] == ["offset", "gripper_id", "reply_address"]
-
-
-@pytest.mark.parametrize("size", [1, 7, 1000, 1 << 20])
-def test_long_stream_in_pieces_keeps_the_addresses(size: int) -> None:
-    """Several blocks of bulk reading, where the rows of a message are read together."""
-    codec = codecs.load(TABLE, "native")
-    times = 3 if size == 1 else 3000
-    reader = codec.column_reader("reply")
-    stream = STREAM * times
-    parts = [reader.feed(stream[at : at + size]) for at in range(0, len(stream), size)]
-    parts.append(reader.flush())
-    assert [each for part in parts for each in addresses_of(part)] == ADDRESSES * times
-
-
-@BOTH
-def test_segments_keep_the_addresses(codec: Codec) -> None:
-    class Bytes:
-        size = len(STREAM)
-
-        def read(self, offset: int, size: int) -> bytes:
-            return STREAM[offset : offset + size]
-
-    half = STREAM.index(b"noise") + 2
-    ends = [Segment(0, half), Segment(half, len(STREAM))]
-    parts = [each for end in ends for each in decode_segment(codec, "reply", Bytes(), end)]
-    assert [address for part in parts for address in addresses_of(part)] == ADDRESSES
-
-
-def test_rejected_value_takes_the_slow_path_with_the_address() -> None:
-    """A group with a value that no variant allows is read frame by frame."""
-    field = TABLE.command("is_power_on").reply[0].fields[0]
-    codec = codec_of("mybuddy", "native")
-    good = [codec.encode("is_power_on", "reply", (1,), address=each) for each in (WAIST, LEFT)]
-    id = TABLE.command("is_power_on").id
-    bad = TABLE.frame.enclose(id, bytes([77]), RIGHT, "reply")
-    assert not field.cases[0].numbers[0].minimum <= 77 <= field.cases[0].numbers[0].maximum
-    columns = codec.decode_columns(good[0] + bad + good[1], "reply")
-    assert len(columns.rejected) == 1
-    assert list(columns.rows("is_power_on").address or ()) == [WAIST, LEFT]
 
 
 def test_memory_of_earlier_addresses_is_reused_unless_a_view_exists() -> None:

@@ -9,7 +9,6 @@ from typing import Any
 import duckdb
 import pandas as pd
 import polars as pl
-import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
 
@@ -81,19 +80,6 @@ def test_parquet_file_takes_batches_with_and_without_rows(
     assert read.to_pylist() == whole.to_pylist()
     query: Any = duckdb.sql(f"select count(*) from '{path}'")
     assert query.fetchall() == [(whole.num_rows,)]
-
-
-@EACH_SHAPE
-@pytest.mark.parametrize("command", COMMANDS)
-def test_batches_with_and_without_rows_are_concatenated(
-    mycobot280: Codec, command: str, wide: bool
-) -> None:
-    whole = mycobot280.decode_columns(STREAM, "reply").to_arrow(command, wide=wide)
-    found = [*batches(mycobot280, command, wide)]
-    assert pa.concat_tables(found).to_pylist() == whole.to_pylist()
-    frame = pl.concat([pl.DataFrame(batch) for batch in found])
-    assert frame.equals(pl.DataFrame(whole))
-    assert frame.schema == pl.DataFrame(whole).schema
 
 
 @EACH_SHAPE

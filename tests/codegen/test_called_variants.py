@@ -4,9 +4,6 @@ from __future__ import annotations
 
 import asyncio
 import inspect
-import json
-import subprocess
-import sys
 from pathlib import Path
 from typing import Any
 
@@ -20,6 +17,7 @@ from cobotwire.protocol.errors import UsageError
 from cobotwire.simulator import MemoryTransport, RunningClock, SteppedClock
 from cobotwire_codegen.check import check
 from memory_peer import MemoryPeer
+from type_checkers import CHECKERS
 
 COMMANDS = """
 set_x:
@@ -221,7 +219,7 @@ def _checked(folder: Path, package: Any, lines: str, is_async: bool) -> str:
     return f"import {name}\n\n\n{start} use(arm: {name}.{client}) -> None:\n{body}\n"
 
 
-@pytest.mark.parametrize("checker", ["mypy", "pyright"])
+@pytest.mark.parametrize("checker", CHECKERS)
 def test_type_checkers_reject_exactly_the_wrong_combinations(
     folder: Path, package: Any, checker: str, mypy_cache: str
 ) -> None:
@@ -232,28 +230,9 @@ def test_type_checkers_reject_exactly_the_wrong_combinations(
             path.write_text(_checked(folder, package, lines, is_async))
             if kind == "wrong":
                 expected |= {(path.name, 4 + line) for line in range(1, len(lines.splitlines()))}
-    assert _errors(folder, checker, mypy_cache) == {(name, line) for name, line in expected}
-
-
-def _errors(folder: Path, checker: str, mypy_cache: str) -> set[tuple[str, int]]:
-    names = sorted(path.name for path in folder.glob("[rw]*[01].py"))
-    if checker == "mypy":
-        options = ["--strict", "--output", "json", mypy_cache]
-        command = [sys.executable, "-m", "mypy", *options, *names]
-        done = subprocess.run(command, capture_output=True, text=True, check=False, cwd=folder)
-        found = map(json.loads, done.stdout.splitlines())
-        return {(each["file"], each["line"]) for each in found if each["severity"] == "error"}
-    program = Path(sys.executable).with_name("basedpyright")
-    if not program.exists():
-        pytest.skip("basedpyright is not installed; it is in the dependency group test")
-    settings = {"include": names, "typeCheckingMode": "standard", "pythonVersion": "3.11"}
-    settings["extraPaths"] = [str(small_specs.PYTHON)]
-    (folder / "pyrightconfig.json").write_text(json.dumps(settings))
-    done = subprocess.run(
-        [str(program), "--outputjson"], capture_output=True, text=True, check=False, cwd=folder
-    )
-    errors = (e for e in json.loads(done.stdout)["generalDiagnostics"] if e["severity"] == "error")
-    return {(Path(e["file"]).name, e["range"]["start"]["line"] + 1) for e in errors}
+    files = sorted(folder.glob("[rw]*[01].py"))
+    found = CHECKERS[checker](folder, files, mypy_cache)
+    assert {(name, line) for name, line, _ in found} == expected
 
 
 def test_conformance_samples_contain_the_defaults(package: Any) -> None:

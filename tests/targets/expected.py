@@ -19,7 +19,7 @@ from cobotwire_codegen.model import Edition
 from cobotwire_codegen.publish import edition_json
 from raw_messages import raw_messages
 from strategies import CommandVariant
-from targets.vectors.comparison import Record, joined
+from targets.vectors.comparison import Record, as_written
 
 LISTENING: st.SearchStrategy[Listening] = st.sampled_from(["request", "reply", "both"])
 # UTF-8 at its limits: surplus bytes, surrogates, beyond U+10FFFF, cut characters.
@@ -113,7 +113,7 @@ class Document:
     def stream(self, listening: Listening, data: bytes) -> None:
         """Add a stream and the events in it."""
         framer = self.codec.framer(listening)
-        events = joined([*framer.feed(data), *framer.flush()])
+        events = as_written([*framer.feed(data), *framer.flush()])
         name = data.hex(" ")
         self.record["streams"].append(
             {"name": name, "direction": listening, "bytes": name, "events": events}

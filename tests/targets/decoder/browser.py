@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import html
 import json
 import os
-import re
 import select
 import shutil
 import signal
@@ -58,23 +56,8 @@ needs_chromium = pytest.mark.skipif(
 )
 
 
-def dom(url: str, *options: str) -> str:
-    """Return the page's document after its scripts have run."""
-    return _run("--dump-dom", "--virtual-time-budget=20000", *options, url)
-
-
-def result(page: Path) -> Any:
-    """Return what a page's scripts wrote, as JSON, into its ``<pre id="result">``."""
-    found = re.search(r'<pre id="result">(.*?)</pre>', dom(page.as_uri()), re.DOTALL)
-    assert found is not None, "the page's scripts did not run to their end"
-    return json.loads(html.unescape(found.group(1)))
-
-
 def evaluate(url: str, *expressions: str) -> list[Any]:
-    """Return the values of JavaScript expressions, or of their promises, in a loaded page.
-
-    Time is real, and workers run, unlike in :func:`dom`.
-    """
+    """Return the values of JavaScript expressions, or of their promises, in a loaded page."""
     with Tab(url) as tab:
         return [tab.evaluate(expression) for expression in expressions]
 
@@ -162,11 +145,6 @@ class Tab:
 def picture(url: str, path: Path, width: int, height: int, *, dark: bool = False) -> None:
     """Write a screenshot of a page to a PNG file; 390 is the width of a phone."""
     shades = ["--blink-settings=preferredColorScheme=0"] if dark else []
-    size = f"--window-size={width},{height}"
-    _run(f"--screenshot={path}", size, "--hide-scrollbars", *shades, url)
-
-
-def _run(*arguments: str) -> str:
-    command = [chromium(), *OPTIONS, *arguments]
-    done = subprocess.run(command, capture_output=True, text=True, timeout=SECONDS, check=True)
-    return done.stdout
+    size = (f"--window-size={width},{height}", "--hide-scrollbars")
+    command = [chromium(), *OPTIONS, f"--screenshot={path}", *size, *shades, url]
+    subprocess.run(command, capture_output=True, timeout=SECONDS, check=True)

@@ -17,6 +17,7 @@ from vectors import ROOT
 
 SCRIPTS = ROOT / "docs" / "_static" / "decoder"
 HARNESS = Path(__file__).with_name("harness.js")
+RESULT = "document.getElementById('result').textContent"
 
 
 def compare(edition: str) -> Comparison:
@@ -39,7 +40,8 @@ def judged_all(documents: Sequence[tuple[Record, str]]) -> list[Comparison]:
     with tempfile.TemporaryDirectory() as folder:
         page = Path(folder) / "harness.html"
         page.write_text(_page(documents), encoding="utf-8")
-        made = browser.result(page)
+        [written] = browser.evaluate(page.as_uri(), RESULT)
+    made = json.loads(written)
     return [_compared(document, each) for (document, _), each in zip(documents, made, strict=True)]
 
 

@@ -12,6 +12,7 @@ from cobotwire.codec.interface import Codec, Event, Noise
 from cobotwire.protocol.errors import ProtocolError, UsageError
 from cobotwire.protocol.table import Field, Number, Variant
 from cobotwire.session import text
+from framed_events import joined
 from strategies import codec_of
 from targets.built import built
 from targets.comparison import Comparison
@@ -136,23 +137,18 @@ def _stream(record: Record, codec: Codec) -> Iterator[str]:
         framer = codec.framer(record["direction"])
         pieces = (data[at : at + size] for at in range(0, len(data), size))
         events = chain.from_iterable(map(framer.feed, pieces))
-        found = joined([*events, *framer.flush()])
+        found = as_written([*events, *framer.flush()])
         if found != record["events"]:
             yield f"in pieces of {size}: {found}, not {record['events']}"
 
 
-def joined(events: list[Event]) -> list[Record]:
+def as_written(events: list[Event]) -> list[Record]:
     """Return events as the document writes them: adjacent noise of one reason is one span."""
-    found: list[Record] = []
-    for event in events:
-        place = {"offset": event.offset, "size": len(event.data)}
-        if not isinstance(event, Noise):
-            found.append(place | {"frame": event.command})
-        elif found and found[-1].get("noise") == event.reason:
-            found[-1]["size"] += place["size"]
-        else:
-            found.append(place | {"noise": event.reason})
-    return found
+    return [
+        {"offset": event.offset, "size": len(event.data)}
+        | ({"noise": event.reason} if isinstance(event, Noise) else {"frame": event.command})
+        for event in joined(events)
+    ]
 
 
 def _text(record: Record, codec: Codec) -> Iterator[str]:

@@ -17,9 +17,8 @@ from targets.built import built
 from targets.comparison import Comparison, ToolMissing
 from targets.vectors.comparison import read
 from targets.wireshark.captures import Chunk, serial
-from targets.wireshark.dissecting import ABSENT, Item, dissected, joined
+from targets.wireshark.dissecting import ABSENT, Item, dissected, events_of, joined, summary
 from targets.wireshark.expected import expected_leaves
-from targets.wireshark.truth import events_of, summary
 
 # Streams are sent whole, and in pieces of seven bytes.
 PIECES = (10_000, 7)

@@ -6,12 +6,14 @@ import os
 import shutil
 import subprocess
 import xml.etree.ElementTree as ET
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 
 import pytest
 
+import framed_events
+from cobotwire.codec.interface import Codec, Event, Frame, Listening
 from cobotwire_codegen.targets.wireshark.fields import OWN
 from strategies import TABLES
 from targets.built import built
@@ -19,6 +21,8 @@ from targets.built import built
 # The name of an item that has a text but no field.
 TEXT = "_ws.lua.text"
 ABSENT = "tshark is not installed (Debian: apt install tshark)"
+# The events of the codec so far, and the number of bytes that wait.
+Truth = tuple[list[Event], int]
 needs_tshark = pytest.mark.skipif(shutil.which("tshark") is None, reason=ABSENT)
 
 
@@ -93,6 +97,25 @@ def joined(packets: list[list[Item]]) -> list[tuple[str, bytes]]:
             else:
                 found.append((item.kind, item.data))
     return found
+
+
+def events_of(codec: Codec, direction: Listening, chunks: Iterable[tuple[bytes, bool]]) -> Truth:
+    """Return the codec's events of chunks, each given with whether silence follows it."""
+    framer = codec.framer(direction)
+    events: list[Event] = []
+    for data, silent in chunks:
+        events += framer.feed(data) + (framer.flush() if silent else [])
+    return events, framer.pending
+
+
+def summary(truth: Truth, data: bytes) -> list[tuple[str, bytes]]:
+    """Return the codec's events as :func:`joined` represents those of the dissector."""
+    events, pending = truth
+    found = [
+        ("frame" if isinstance(event, Frame) else event.reason, event.data)
+        for event in framed_events.joined(events)
+    ]
+    return [*found, ("incomplete", data[-pending:])] if pending else found
 
 
 def _items(proto: ET.Element) -> Iterator[Item]:

@@ -22,8 +22,15 @@ from strategies import TABLES, chunked, codec_of, received, streams
 from streams import stream_a
 from targets.built import built
 from targets.wireshark.captures import STEP_NS, Chunk, pcap, segment, serial, tcp
-from targets.wireshark.dissecting import Item, dissected, joined, needs_tshark, tshark
-from targets.wireshark.truth import events_of, summary
+from targets.wireshark.dissecting import (
+    Item,
+    dissected,
+    events_of,
+    joined,
+    needs_tshark,
+    summary,
+    tshark,
+)
 
 pytestmark = needs_tshark
 EDITIONS = sorted(TABLES)
