@@ -13,9 +13,6 @@ from cobotwire_codegen.check.reserved import (
     RESERVED_ITEMS,
 )
 
-# Names that the clients will use.
-PLANNED: set[str] = set()
-
 
 def _public(*names: object) -> set[str]:
     return {str(name) for name in names if not str(name).startswith("_")}
@@ -30,7 +27,7 @@ def test_reserved_commands_are_the_attributes_of_the_clients() -> None:
     needed = classes | instance | waiting | {"table"}
     assert needed <= RESERVED_COMMANDS
     annotations = {"bool", "bytes", "float", "int", "str", "tuple"}
-    assert RESERVED_COMMANDS - needed - annotations - PLANNED == set()
+    assert RESERVED_COMMANDS - needed - annotations == set()
 
 
 def test_reserved_fields_are_the_attributes_of_the_messages() -> None:

@@ -11,25 +11,14 @@ from cobotwire_codegen.check import check
 from cobotwire_codegen.diff.editions import diff
 from cobotwire_codegen.errors import SpecError
 from cobotwire_codegen.model import Edition
+from codegen.test_inherited_vectors import HEAD, WHY, file
+from codegen.test_inherited_vectors import built as build_delta
 
-HEAD = """\
-edition: trial
-class: Trial
-title: A trial
-doc: A trial edition.
-base: cobotwire:mycobot280
-"""
-WHY = 'why: A trial.\n    evidence: [{source: a trial, says: "so"}]\n'
-
-
-@pytest.fixture
-def file(tmp_path: Path) -> Path:
-    return tmp_path / "trial.yaml"
+__all__ = ["file"]
 
 
 def built(file: Path, text: str = "") -> Edition:
-    file.write_text(HEAD + text)
-    edition = build_edition(file, file.parent)
+    edition = build_delta(file, text)
     check(edition)
     return edition
 

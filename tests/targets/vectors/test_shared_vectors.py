@@ -61,12 +61,13 @@ def test_vectors_of_floats_and_texts_have_their_ends() -> None:
 
 
 # Shrinking would take minutes.
-@settings(max_examples=6, phases=[Phase.generate], suppress_health_check=list(HealthCheck))
+@settings(max_examples=15, phases=[Phase.generate], suppress_health_check=list(HealthCheck))
 @given(data=st.data())
-def test_vectors_of_random_protocols_agree_with_codec(tmp_path: Path, data: st.DataObject) -> None:
+def test_vectors_of_random_protocols_agree_with_codecs(tmp_path: Path, data: st.DataObject) -> None:
     edition = data.draw(editions(tmp_path, "rnd"))
     found = json.loads(document(edition))
-    assert validated(found, codec_of_edition(edition)).differences == []
+    for codec in CODECS:
+        assert validated(found, codec_of_edition(edition, codec)).differences == []
 
 
 def _validator() -> jsonschema.Draft202012Validator:
