@@ -76,10 +76,13 @@ def raw_rows(draw: st.DrawFn, variant: Variant) -> list[tuple[int, ...]]:
     ]
     for index, field in enumerate(variant.fields):
         if field.selector >= 0:
-            case = variant.raw_case(field, rows)
-            assert case is not None, "the selector is legal"
-            rows[index] = draw(_row(field, case))
+            rows[index] = draw(_row(field, _case(variant, field, rows)))
     return rows
+
+
+def _case(variant: Variant, field: Field, rows: list[tuple[int, ...]]) -> Case:
+    """Return the case that a selector picks; the selector of a random table may pick none."""
+    return variant.raw_case(field, rows) or field.cases[0]
 
 
 def _row(field: Field, case: Case) -> st.SearchStrategy[tuple[int, ...]]:
@@ -129,8 +132,7 @@ def legal_values(draw: st.DrawFn, variant: Variant) -> tuple[Any, ...]:
 
 
 def _value(variant: Variant, field: Field, rows: list[tuple[int, ...]]) -> Any:
-    case, row = variant.raw_case(field, rows), rows[variant.fields.index(field)]
-    assert case is not None, "the selector is legal"
+    case, row = _case(variant, field, rows), rows[variant.fields.index(field)]
     if field.kind in ("flag", "text", "bytes"):
         return field.present([bool(raw) for raw in row] if field.kind == "flag" else list(row))
     return field.present([number.physical(raw) for number, raw in zip(case.numbers, row)])

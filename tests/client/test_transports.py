@@ -10,7 +10,6 @@ import threading
 import time
 import tty
 from contextlib import suppress
-from typing import Any
 
 import pytest
 
@@ -79,16 +78,6 @@ def test_failed_write_is_not_reported_to_the_traffic_listener() -> None:
     with pytest.raises(LinkError, match="full"):
         MyCobot(Full(), trace=traffic.append).power_on()
     assert traffic == []
-
-
-def test_waiting_does_not_configure_the_port_again(monkeypatch: pytest.MonkeyPatch) -> None:
-    with ScriptedPeer([0.02, bytes.fromhex("FE FE 03 12 01 FA")]) as peer:
-        with MyCobot(peer.url) as arm:
-            calls: list[str] = []
-            port: Any = arm._connection._transport._port  # type: ignore[attr-defined]
-            monkeypatch.setattr(port, "_reconfigure_port", lambda *a, **k: calls.append("again"))
-            assert arm.is_power_on() is True
-            assert calls == []
 
 
 def test_spy_url_opens_a_port() -> None:
