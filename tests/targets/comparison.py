@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from collections.abc import Callable, Iterable
+from typing import Any, NamedTuple
 
 
 class Comparison(NamedTuple):
@@ -15,6 +16,22 @@ class Comparison(NamedTuple):
     fields: int
     differences: list[str]
     refused: int = 0
+
+
+def compared(
+    document: dict[str, Any], judges: dict[str, Callable[[dict[str, Any]], Iterable[str]]]
+) -> Comparison:
+    """Compare the records of a document by its parts; a judge yields the differences of one."""
+    records = {part: document.get(part, []) for part in judges}
+    differences = [
+        f"{part}: {record.get('name', record.get('command'))}: {difference}"
+        for part, judge in judges.items()
+        for record in records[part]
+        for difference in judge(record)
+    ]
+    fields = sum(len(f["raw"]) for record in document["messages"] for f in record["fields"])
+    refused = sum(len(records.get(part, ())) for part in ("rejected", "malformed"))
+    return Comparison(sum(map(len, records.values())), fields, differences, refused)
 
 
 class ToolMissing(Exception):

@@ -44,59 +44,29 @@ FIELDS = [
 OTHER = {"big": "little", "little": "big", "request": "reply", "reply": "request"}
 OTHER |= {"integer": "float", "ascii": "utf-8"}
 OTHER |= {"": "required", "required": "optional", "optional": ""}
-WIRE = model.Wire(PLACE, "byte", 1, "big", 255, "", (), ())
-ARGUMENT = model.Field(
-    PLACE, "new", model.Flag(PLACE, "flag", WIRE, ""), "", "", False, None, "", ()
-)
-# New values for empty fields, by the name of the field.
+# New values for fields that are empty wherever the small specs have them.
 NEW: dict[str, Any] = {
     "text": model.Text(PLACE, "Said", ("a ",), (("b", "B."),), "", 5),
-    "request_text": model.Text(PLACE, "", ("a ",), (("b", "B."),), "", 0),
-    "geometry": model.Geometry((), "No link."),
-    "motion": model.Motion(Fraction(1), Fraction(2), Fraction(3), None, None, "So."),
-    "encoders": model.Encoders(360, 180, 360, (), "So."),
-    "gripper": model.Gripper(Fraction(1), 0, 1, "So."),
-    "servos": model.Servos((), None, None, "So."),
-    "error_codes": model.ErrorCodes((), 1, 2, 3, 4, "So."),
-    "joint_limits": ((Fraction(-1), Fraction(1)),),
-    "start_angles": (Fraction(1),),
-    "start_values": (model.StartValues(PLACE, "get_pin", (("level", 1),)),),
-    "range": (Fraction(1), Fraction(2)),
-    "requests": ((ARGUMENT,),),
-    "replies": ((ARGUMENT,),),
-    "changes": (model.Change(PLACE, "It changed.", "So.", ()),),
     "disputed": (model.Dispute(PLACE, "It does.", "So.", "low", ()),),
-    "errata": (model.Erratum(PLACE, (), "text", (), None, "a", "b", "c"),),
     "check": model.FrameCheck("sum", "command", 1, "big", None),
     "crc": CRCS["crc16-modbus"],
     "address_range": (3, 4),
-    "addresses": (model.Address(PLACE, "ALL", 0, "", "own"),),
     "refused": (("new", (1,)),),
     "rejected": ("bad-length", 2),
-    "derived": model.Derivation("small", b"\xfe", ()),
     "source": ((1, 2),),
-    "read_by": model.ReadBack(PLACE, "get_pose", ()),
-    "fields": (("new", 1),),
     "samples": ((("new", (1, 2)),),),
     "agrees_with": ("get_pose",),
-    "bases": ("new",),
     "lines": ((1, 2),),
-    "values": (("new", 1),),
-    "commands": ("get_pose",),
     "shares_id": ("get_pose",),
-    "notes": ("New.",),
-    "choices": (3,),
     "accepted": (3,),
     "meanings": ((1, 2, "New."),),
     "printed": b"\xfe",
-    "frame": b"\xfe",
-    "const": 1,
     "default": (1,),
     "arguments": ("new",),
     "example": 3,
     "line": 3,
-    "padding": 32,
 }
+EMPTY: tuple[Any, ...] = (None, (), ((),))
 
 
 @lru_cache
@@ -123,19 +93,33 @@ def _spots(value: Any, path: tuple[str | int, ...]) -> Iterator[Any]:
                 yield from _spots(part, (*path, field.name))
 
 
+@lru_cache
+def stated() -> dict[tuple[type, str], Any]:
+    """Return a value of each field of each record, if a small spec states one."""
+    found: dict[tuple[type, str], Any] = {}
+    for file in ("base", "delta"):
+        for record, field, path in spots(file):
+            value: Any = small(file)
+            for step in path:
+                value = value[step] if isinstance(step, int) else getattr(value, step)
+            if value not in EMPTY:
+                found.setdefault((record, field), value)
+    return found
+
+
 def changed(value: Any, path: tuple[str | int, ...]) -> Any:
     """Return the model with another value at a path."""
     step, rest = path[0], path[1:]
     if isinstance(step, int):
         return (*value[:step], changed(value[step], rest), *value[step + 1 :])
     part = getattr(value, step)
-    return replace(value, **{step: changed(part, rest) if rest else other(part, step)})
+    return replace(value, **{step: changed(part, rest) if rest else other(type(value), step, part)})
 
 
-def other(value: Any, field: str) -> Any:
-    """Return another value of the same kind."""
-    if value is None or value in ((), ((),)):
-        return NEW[field]
+def other(record: type, field: str, value: Any) -> Any:
+    """Return another value of the same kind for a field of a record."""
+    if value in EMPTY:
+        return stated()[record, field] if (record, field) in stated() else NEW[field]
     if isinstance(value, bool):
         return not value
     if isinstance(value, int | Fraction):
@@ -145,9 +129,9 @@ def other(value: Any, field: str) -> Any:
     if isinstance(value, bytes):
         return value + b"\x01"
     if isinstance(value, tuple):
-        return (other(value[0], field), *value[1:])
+        return (other(record, field, value[0]), *value[1:])
     first = next(part.name for part in fields(value) if part.name not in PLACES)
-    return replace(value, **{first: other(getattr(value, first), first)})
+    return replace(value, **{first: other(type(value), first, getattr(value, first))})
 
 
 def content(value: Any) -> Any:

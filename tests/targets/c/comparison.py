@@ -11,7 +11,7 @@ from cobotwire_codegen.targets.c.messages import messages
 from cobotwire_codegen.targets.c.tables import Tables
 from targets.c.compiled import COMPILERS, SANITIZERS, program
 from targets.c.peer import CPeer, Event, Outcome, Read, comparable
-from targets.comparison import Comparison, ToolMissing
+from targets.comparison import Comparison, ToolMissing, compared
 from targets.vectors.comparison import PIECES, Record, read
 from vectors import edition as edition_of
 
@@ -55,26 +55,15 @@ class Validator:
 
     def compare(self, document: Record) -> Comparison:
         """Compare every message, rejected value, malformed frame and stream."""
-        parts = {
-            "messages": (self._message, document["messages"]),
-            "rejected": (
-                self._rejected,
-                [r for r in document["rejected"] if self._fits_struct(r)],
-            ),
-            "malformed": (self._malformed, document["malformed"]),
-            "streams": (self._stream, document["streams"]),
-            "encoded": (self._encoded, document.get("encoded", [])),
+        rejected = [record for record in document["rejected"] if self._fits_struct(record)]
+        judges = {
+            "messages": self._message,
+            "rejected": self._rejected,
+            "malformed": self._malformed,
+            "streams": self._stream,
+            "encoded": self._encoded,
         }
-        differences = [
-            f"{part}: {record['name']}: {difference}"
-            for part, (validate, records) in parts.items()
-            for record in records
-            for difference in validate(record)
-        ]
-        fields = sum(len(f["raw"]) for r in document["messages"] for f in r["fields"])
-        count = sum(len(records) for _, records in parts.values())
-        refused = sum(len(parts[part][1]) for part in ("rejected", "malformed"))
-        return Comparison(count, fields, differences, refused)
+        return compared(document | {"rejected": rejected}, judges)
 
     def _place(self, record: Record) -> int:
         return self._index[record["command"], record["direction"], record["variant"]]

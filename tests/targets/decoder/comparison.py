@@ -10,7 +10,7 @@ from typing import Any
 
 import vectors
 from cobotwire_codegen.targets.decoder import edition_script
-from targets.comparison import Comparison
+from targets.comparison import Comparison, compared
 from targets.decoder import browser
 from targets.vectors.comparison import Record, read
 from vectors import ROOT
@@ -46,17 +46,12 @@ def judged_all(documents: Sequence[tuple[Record, str]]) -> list[Comparison]:
 
 
 def _compared(document: Record, found: Any) -> Comparison:
-    validates = {"messages": _message, "malformed": _malformed, "streams": _stream}
-    differences = [
-        f"{record['name']}: {text}"
-        for part, validate in validates.items()
-        for record, made in zip(document[part], found[part])
-        for text in validate(record, made)
-    ]
-    count = sum(len(found[part]) for part in validates)
-    assert count == sum(len(document[part]) for part in validates)
-    fields = sum(len(f["raw"]) for record in document["messages"] for f in record["fields"])
-    return Comparison(count, fields, differences, len(document["malformed"]))
+    judges = {"messages": _message, "malformed": _malformed, "streams": _stream}
+    made = {part: iter(found[part]) for part in judges}
+    return compared(
+        document,
+        {part: lambda r, part=part: judges[part](r, next(made[part])) for part in judges},
+    )
 
 
 def _page(documents: Sequence[tuple[Record, str]]) -> str:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterable, Iterator
+from functools import partial
 from itertools import chain
 from typing import Any
 
@@ -15,7 +16,7 @@ from cobotwire.session import text
 from framed_events import joined
 from strategies import codec_of
 from targets.built import built
-from targets.comparison import Comparison
+from targets.comparison import Comparison, compared
 
 Record = dict[str, Any]
 CODECS: tuple[codecs.CodecName, ...] = ("reference", "native")
@@ -50,16 +51,7 @@ def validated(document: Record, codec: Codec) -> Comparison:
         "streams": _stream,
         "texts": _text,
     }
-    differences = [
-        f"{part}: {record.get('name', record.get('command'))}: {difference}"
-        for part, validate in parts.items()
-        for record in document[part]
-        for difference in validate(record, codec)
-    ]
-    fields = sum(len(f["raw"]) for record in document["messages"] for f in record["fields"])
-    count = sum(len(document[part]) for part in parts)
-    refused = sum(len(document[part]) for part in ("rejected", "malformed"))
-    return Comparison(count, fields, differences, refused)
+    return compared(document, {part: partial(each, codec=codec) for part, each in parts.items()})
 
 
 def _message(record: Record, codec: Codec) -> Iterator[str]:

@@ -1,33 +1,14 @@
-"""The client stays usable after Ctrl-C or a cancelled task at any time."""
+"""The asyncio client stays usable after a cancelled call."""
 
 from __future__ import annotations
 
-import _thread
 import asyncio
-import threading
-import time
 
 import pytest
 
-from cobotwire import MyCobot
 from cobotwire.editions.mycobot import AsyncMyCobot
 from recording_transport import RecordingTransport
 from scripted_peer import ScriptedPeer
-
-
-def test_ctrl_c_in_the_reading_thread_lets_another_thread_continue() -> None:
-    reply = bytes.fromhex("FE FE 03 12 01 FA")
-    with ScriptedPeer([0.6, reply]) as peer, MyCobot(peer.url, timeout=3) as arm:
-        results: list[bool] = []
-        calling = threading.Thread(target=lambda: results.append(arm.is_power_on()))
-        threading.Timer(0.3, _thread.interrupt_main).start()
-        threading.Timer(0.1, calling.start).start()
-        with pytest.raises(KeyboardInterrupt):
-            arm.get_coords()
-        deadline = time.monotonic() + 5
-        while not results and time.monotonic() < deadline:
-            time.sleep(0.01)
-        assert results == [True]
 
 
 async def _cancelled(url: str) -> None:
