@@ -111,7 +111,7 @@ def events_of(codec: Codec, direction: Listening, chunks: Iterable[tuple[bytes, 
 def summary(truth: Truth, data: bytes) -> list[tuple[str, bytes]]:
     """Return the codec's events as :func:`joined` represents those of the dissector."""
     events, pending = truth
-    found = [
+    found: list[tuple[str, bytes]] = [
         ("frame" if isinstance(event, Frame) else event.reason, event.data)
         for event in framed_events.joined(events)
     ]
