@@ -67,7 +67,7 @@ def test_numpy_views_texts_and_groups_on_the_same_memory(sensor: Codec, edition:
 
 
 def test_pandas_and_polars_have_texts_bytes_and_lists(sensor: Codec, edition: Edition) -> None:
-    stream = b"".join(vector.frame or b"" for vector in edition.vectors)
+    stream = b"".join(vector.frame or b"" for vector in edition.vectors) * 2
     columns = sensor.decode_columns(stream, "reply")
     names = pd.DataFrame.from_arrow(columns.to_arrow("get_name"))
     assert names["label"].dtype == "str"
@@ -77,4 +77,11 @@ def test_pandas_and_polars_have_texts_bytes_and_lists(sensor: Codec, edition: Ed
         "binary[pyarrow]",
         "string[pyarrow]",
     ]
-    assert pl.DataFrame(columns.to_arrow("get_satellites"))["words"].to_list() == [["GPS", "é"]]
+    assert pl.DataFrame(columns.to_arrow("get_satellites"))["words"].to_list() == [["GPS", "é"]] * 2
+
+
+def test_each_row_has_its_own_text(sensor: Codec) -> None:
+    names = [("left", b"1234", "à côté"), ("right", b"5678", "au mur!!!")]
+    stream = b"".join(sensor.encode("get_name", "reply", each) for each in names)
+    table = sensor.decode_columns(stream, "reply").to_arrow("get_name").drop_columns("offset")
+    assert [tuple(row.values()) for row in table.to_pylist()] == names
