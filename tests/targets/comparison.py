@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from typing import Any, NamedTuple
 
 
@@ -19,7 +19,7 @@ class Comparison(NamedTuple):
 
 
 def compared(
-    document: dict[str, Any], judges: dict[str, Callable[[dict[str, Any]], Iterable[str]]]
+    document: dict[str, Any], judges: Mapping[str, Callable[[dict[str, Any]], Iterable[str]]]
 ) -> Comparison:
     """Compare the records of a document by its parts; a judge yields the differences of one."""
     records = {part: document.get(part, []) for part in judges}

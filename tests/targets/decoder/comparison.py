@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import tempfile
 from collections.abc import Iterator, Sequence
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -48,10 +49,11 @@ def judged_all(documents: Sequence[tuple[Record, str]]) -> list[Comparison]:
 def _compared(document: Record, found: Any) -> Comparison:
     judges = {"messages": _message, "malformed": _malformed, "streams": _stream}
     made = {part: iter(found[part]) for part in judges}
-    return compared(
-        document,
-        {part: lambda r, part=part: judges[part](r, next(made[part])) for part in judges},
-    )
+
+    def judge(part: str, record: Record) -> Iterator[str]:
+        return judges[part](record, next(made[part]))
+
+    return compared(document, {part: partial(judge, part) for part in judges})
 
 
 def _page(documents: Sequence[tuple[Record, str]]) -> str:
