@@ -1,4 +1,5 @@
 # Each target sets itself up once, in .venv. Needs Python 3.11+, Rust and make.
+# pip compiles nothing (--no-compile): Python compiles what is imported, a quarter of it.
 PYTHON ?= python3
 BIN := .venv/bin
 RUST_SOURCES := $(shell find rust/core rust/py rust/simd -name '*.rs' -o -name Cargo.toml) Cargo.toml
@@ -218,7 +219,7 @@ clean: ## remove the environment and all build products
 .venv/.base: pyproject.toml
 	$(PYTHON) -c 'import sys; sys.exit("cobotwire needs Python 3.11 or newer" if sys.version_info < (3, 11) else 0)'
 	$(PYTHON) -m venv .venv
-	$(BIN)/python -m pip install --quiet --upgrade pip 'maturin>=1.9,<2'
+	$(BIN)/python -m pip install --quiet --no-compile --upgrade pip 'maturin>=1.9,<2'
 	touch $@
 
 # Build the Rust codec in release mode; install it in place, with the extras of the command line.
@@ -232,7 +233,7 @@ clean: ## remove the environment and all build products
 	touch $@
 
 .venv/.tools: .venv/.base codegen/pyproject.toml Cargo.toml
-	$(BIN)/python -m pip install --quiet -e codegen --group test
+	$(BIN)/python -m pip install --quiet --no-compile -e codegen --group test
 	touch $@
 
 # For editors; `make gen` keeps it up to date.

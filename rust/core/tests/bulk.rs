@@ -215,7 +215,9 @@ fn rows_of_several_devices_have_their_addresses() {
     }
 }
 
-/// Every frame contains frames here, so a guess in the middle of a block can be wrong.
+/// Every frame contains frames here, so a guess in the middle of a block can be wrong. The second
+/// lane of the block and the third start at different bytes of a frame, one an even number after the
+/// shift, one an odd one, so even shifts suffice.
 #[test]
 fn frames_that_hold_frames_do_not_mislead_the_lanes() {
     let edition = Edition::generated("mycobot");
@@ -223,8 +225,8 @@ fn frames_that_hold_frames_do_not_mislead_the_lanes() {
     let outer = [&[0xFE, 0xFE, 0x0E, 0x20][..], &inner, &inner, &[0xFA]].concat();
     let table = Arc::new(edition.table);
     let mut dice = Dice(5);
-    for shift in 0..outer.len() {
-        let stream = [vec![0; shift], outer.repeat(12_000)].concat();
+    for shift in (0..outer.len()).step_by(2) {
+        let stream = [vec![0; shift], outer.repeat(8_000)].concat();
         check(&table, &stream, &mut dice);
     }
 }
