@@ -73,6 +73,16 @@ class MachineStalls:
         if tty is not None:
             self.meters.append(PtyMeter(period))
 
+    def restart(self) -> None:
+        """Forget the delays so far."""
+        for meter in self.meters:
+            meter.restart()
+
+    def include_current(self) -> None:
+        """Count the delays that have not ended yet."""
+        for meter in self.meters:
+            meter.include_current()
+
     @property
     def worst_second(self) -> float:
         """The most that the delays of one meter add up to within a second, in seconds."""

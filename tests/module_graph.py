@@ -5,17 +5,29 @@ from __future__ import annotations
 import ast
 import re
 from collections.abc import Iterator, Mapping
+from functools import cache
 from pathlib import Path
 
 Imports = dict[str, set[str]]
 
 
+@cache
+def _read(path: Path) -> tuple[list[ast.Import | ast.ImportFrom], list[str]]:
+    """Return the imports of a file and its texts; several tests ask for those of each file."""
+    nodes = list(ast.walk(ast.parse(path.read_text())))
+    texts = [node.value for node in nodes if isinstance(node, ast.Constant)]
+    return (
+        [node for node in nodes if isinstance(node, ast.Import | ast.ImportFrom)],
+        [text for text in texts if isinstance(text, str)],
+    )
+
+
 def python_imports(path: Path, package: str) -> Iterator[str]:
     """Yield every module that a file imports, anywhere in it, by its full name."""
-    for node in ast.walk(ast.parse(path.read_text())):
+    for node in _read(path)[0]:
         if isinstance(node, ast.Import):
             yield from (alias.name for alias in node.names)
-        elif isinstance(node, ast.ImportFrom):
+        else:
             base = node.module or ""
             if node.level:
                 parent = package.split(".")[: -node.level]
@@ -42,9 +54,8 @@ def python_imports_of(root: Path, name: str) -> Imports:
 
 def modules_in_texts(path: Path, package: str) -> Iterator[str]:
     """Yield the modules of a package that texts in a file name, as ``import_module`` takes them."""
-    for node in ast.walk(ast.parse(path.read_text())):
-        text = node.value if isinstance(node, ast.Constant) else None
-        if isinstance(text, str) and re.fullmatch(rf"{package}(\.\w+)+\.?", text):
+    for text in _read(path)[1]:
+        if re.fullmatch(rf"{package}(\.\w+)+\.?", text):
             yield text.rstrip(".")
 
 

@@ -10,18 +10,20 @@ with the stall, in seconds, that makes its failure say nothing: ``@pytest.mark.s
 
 from __future__ import annotations
 
+from contextlib import ExitStack
 from typing import Any
 
 import pytest
 from _pytest.runner import call_and_report
 
-from machine_stalls import machine_stalls
+from machine_stalls import MachineStalls, machine_stalls
 
 # Half of the deadline that a client gives a reply: stalls within a second that add up to more.
 STALL = 0.25
 RUNS = 3
 PERIOD = 0.02
 AGAIN = pytest.StashKey[list[str]]()
+STALLS = pytest.StashKey[MachineStalls]()
 
 
 @pytest.hookimpl(tryfirst=True)
@@ -47,12 +49,14 @@ def _run(
     function: Any = item
     if not getattr(function, "_request", True):
         function._initrequest()
-    with machine_stalls(PERIOD) as stalls:
-        reports = [call_and_report(item, "setup", log=False)]
-        failed = False
-        if reports[0].passed:
-            reports.append(call_and_report(item, "call", log=False))
-            failed = reports[-1].failed
+    stalls = _stalls(item.config)
+    stalls.restart()
+    reports = [call_and_report(item, "setup", log=False)]
+    failed = False
+    if reports[0].passed:
+        reports.append(call_and_report(item, "call", log=False))
+        failed = reports[-1].failed
+    stalls.include_current()
     marker = item.get_closest_marker("stall")
     limit = marker.args[0] if marker else STALL
     again = failed and not last and stalls.worst_second > limit
@@ -62,6 +66,15 @@ def _run(
     if hasattr(function, "_request"):
         function._request, function.funcargs = False, None
     return reports, stalls.worst_second if again else 0.0
+
+
+def _stalls(config: pytest.Config) -> MachineStalls:
+    """Return the meters of all tests: to start threads for each takes longer than many tests."""
+    if STALLS not in config.stash:
+        running = ExitStack()
+        config.add_cleanup(running.close)
+        config.stash[STALLS] = running.enter_context(machine_stalls(PERIOD))
+    return config.stash[STALLS]
 
 
 def pytest_terminal_summary(terminalreporter: Any, config: pytest.Config) -> None:

@@ -25,8 +25,8 @@ class StallMeter:
     def __init__(self, period: float = PERIOD, *, listed: bool = False) -> None:
         self._period = period
         self._listed = listed
-        self.longest = self.worst_second = 0.0
         self.late: list[tuple[float, float]] = []
+        self.restart()
         self._over = threading.Event()
         self._thread = threading.Thread(target=self._measure, daemon=True)
 
@@ -40,27 +40,35 @@ class StallMeter:
         self._over.set()
         self._thread.join()
 
+    def restart(self) -> None:
+        """Forget the delays so far."""
+        self.longest = self.worst_second = self._in_second = 0.0
+        self._before = time.monotonic()
+
+    def include_current(self) -> None:
+        """Count the delay that has not ended yet."""
+        self.longest = max(self.longest, time.monotonic() - self._before - self._period)
+        self.worst_second = max(self.worst_second, self.longest)
+
     def _visit(self) -> None:
         """Use what a subclass measures; the time that this takes adds to the delay."""
 
     def _measure(self) -> None:
-        before = second_from = time.monotonic()
-        in_second = 0.0
+        self._before = second_from = time.monotonic()
         while not self._over.wait(self._period):
             self._visit()
             now = time.monotonic()
-            too_late = now - before - self._period
+            too_late = now - self._before - self._period
             self.longest = max(self.longest, too_late)
             if too_late > self._period:
-                in_second += too_late
+                self._in_second += too_late
                 if self._listed:
                     self.late.append((now, too_late))
-            self.worst_second = max(self.worst_second, in_second)
+            self.worst_second = max(self.worst_second, self._in_second)
             if now - second_from > 1:
-                second_from, in_second = now, 0.0
-            before = now
-        self.longest = max(self.longest, time.monotonic() - before - self._period)
-        self.worst_second = max(self.worst_second, self.longest)
+                second_from, self._in_second = now, 0.0
+            self._before = now
+        self.include_current()
 
 
 def unstalled(

@@ -35,3 +35,16 @@ def test_cancelled_opening_is_a_cancellation() -> None:
             await opening
 
     asyncio.run(run())
+
+
+def test_cancelled_call_without_a_reply_delays_no_other_call() -> None:
+    async def call(url: str) -> None:
+        async with AsyncMyCobot(url, timeout=20) as arm:
+            with pytest.raises(TimeoutError):
+                async with asyncio.timeout(0.05):
+                    await arm.get_encoder(1)
+            async with asyncio.timeout(2):
+                assert await arm.is_power_on()
+
+    with ScriptedPeer([], [bytes.fromhex("FE FE 03 12 01 FA")]) as peer:
+        asyncio.run(call(peer.url))
