@@ -2,10 +2,14 @@
 
 Scales may be negative in their numerator or denominator, several commands share an id, fields lie
 under selectors, and the frames on the line hold any raw values, allowed or not.
+
+The strategies are constants, or cached: Hypothesis validates each object once, which would take a
+third of the time of a test if each draw made new ones.
 """
 
 from __future__ import annotations
 
+from functools import cache
 from typing import Any, Literal
 
 from hypothesis import strategies as st
@@ -25,30 +29,45 @@ from cobotwire.protocol.table import (
 from json_tables import sample
 from random_formats import frame_formats
 
-SCALES = [(1, 1), (1, 10), (-1, 10), (1, -10), (-1, 1), (3, -20), (-7, 100), (-1, -1), (1, 3)]
+SCALES = st.sampled_from(
+    [(1, 1), (1, 10), (-1, 10), (1, -10), (-1, 1), (3, -20), (-7, 100), (-1, -1), (1, 3)]
+)
+ORDERS: st.SearchStrategy[Literal["big", "little"]] = st.sampled_from(["big", "big", "little"])
+WIDTHS, FIELD_WIDTHS = st.sampled_from([1, 1, 2, 2, 3, 4]), st.sampled_from([1, 2, 4, 8])
+WORD_WIDTHS = st.sampled_from([1, 2, 4])
+SHAPES = st.sampled_from(["bits", "bytes", "text", "texts", "rows"])
+SIZES = st.sampled_from([None, (0, 5)])
+ENCODINGS, PADDINGS = st.sampled_from(["ascii", "utf-8", "latin-1"]), st.sampled_from([-1, 0, 32])
+BIT_KINDS = st.sampled_from(["number", "flag", "enum"])
 
 
+@cache
 @st.composite
 def numbers(draw: st.DrawFn, width: int | None = None) -> Number:
     """Draw a number with any sign rule, scale and bounds, or a float."""
     if width == 8 or (width == 4 and draw(st.booleans())):
         return draw(floats(width))
-    width = width or draw(st.sampled_from([1, 1, 2, 2, 3, 4]))
+    width = width or draw(WIDTHS)
     top = 256**width - 1
-    signed_at = draw(st.sampled_from([top, top // 2, 0]) | st.integers(0, top))
+    signed_at = draw(_signs(top))
     lowest = 0 if signed_at == top else signed_at - top
     low, high = lowest, signed_at
     if draw(st.booleans()):
         low, high = sorted([draw(st.integers(lowest, signed_at)) for _ in range(2)])
-    order: Literal["big", "little"] = draw(st.sampled_from(["big", "big", "little"]))
-    scale = draw(st.sampled_from(SCALES))
+    order, scale = draw(ORDERS), draw(SCALES)
     return Number("", width, order, signed_at, *scale, low, high, "")
 
 
+@cache
+def _signs(top: int) -> st.SearchStrategy[int]:
+    return st.sampled_from([top, top // 2, 0]) | st.integers(0, top)
+
+
+@cache
 @st.composite
 def floats(draw: st.DrawFn, width: int) -> Number:
     """Draw a float with any bounds, or one that may also be infinite or not a number."""
-    order: Literal["big", "little"] = draw(st.sampled_from(["big", "little"]))
+    order = draw(ORDERS)
     beyond = raw_of_float(float("inf"), width)
     low, high = -beyond, beyond - 1
     kind = draw(st.integers(0, 2))
@@ -59,15 +78,14 @@ def floats(draw: st.DrawFn, width: int) -> Number:
     return Number("", width, order, 0, 1, 1, low, high, "", "float")
 
 
+@cache
 @st.composite
 def fields(draw: st.DrawFn, name: str, selector: int = -1) -> Field:
     """Draw a field of one number or of an array, under a selector if it is given."""
     if draw(st.integers(0, 3)) == 0:
         return draw(shaped_fields(name))
     many = draw(st.booleans())
-    widths = [
-        draw(st.sampled_from([1, 2, 4, 8])) for _ in range(draw(st.integers(1, 4)) if many else 1)
-    ]
+    widths = [draw(FIELD_WIDTHS) for _ in range(draw(st.integers(1, 4)) if many else 1)]
     whens: list[tuple[int, ...]] = [()] if selector < 0 else [(0,), (1, 2)]
     cases = tuple(Case(when, tuple(draw(numbers(width)) for width in widths)) for when in whens)
     choices: tuple[int, ...] = ()
@@ -77,11 +95,12 @@ def fields(draw: st.DrawFn, name: str, selector: int = -1) -> Field:
     return Field(name, "number", cases, "", many, choices, (), selector)
 
 
+@cache
 @st.composite
 def shaped_fields(draw: st.DrawFn, name: str) -> Field:
     """Draw bits, bytes, a text, a list of texts, or a list of rows."""
-    kind = draw(st.sampled_from(["bits", "bytes", "text", "texts", "rows"]))
-    sizes = draw(st.sampled_from([None, (0, 5)]))
+    kind = draw(SHAPES)
+    sizes = draw(SIZES)
     count, each = draw(st.integers(0, 3)), draw(st.integers(1, 4))
     if kind == "bits":
         return Field(name, "number", (Case((), draw(bits())),), "", True)
@@ -91,10 +110,10 @@ def shaped_fields(draw: st.DrawFn, name: str) -> Field:
         case = Case((), group * count)
         return Field(name, "number", (case,), "", True, each=len(group), sizes=sizes)
     byte = Number("", 1, "big", 255, 1, 1, 0, 255, "")
-    encoding = draw(st.sampled_from(["ascii", "utf-8", "latin-1"])) if kind != "bytes" else ""
+    encoding = draw(ENCODINGS) if kind != "bytes" else ""
     if encoding == "ascii":
         byte = byte._replace(maximum=127)
-    padding = draw(st.sampled_from([-1, 0, 32])) if kind != "bytes" else -1
+    padding = draw(PADDINGS) if kind != "bytes" else -1
     case = Case((), (byte,) * (count * each))
     shape: Literal["bytes", "text"] = "bytes" if kind == "bytes" else "text"
     of = each if kind == "texts" else 0
@@ -102,11 +121,11 @@ def shaped_fields(draw: st.DrawFn, name: str) -> Field:
     return Field(name, shape, (case,), "", True, **texts)
 
 
+@cache
 @st.composite
 def bits(draw: st.DrawFn) -> tuple[Number, ...]:
     """Draw the numbers of a word, some of them flags or with a list of choices."""
-    width = draw(st.sampled_from([1, 2, 4]))
-    order: Literal["big", "little"] = draw(st.sampled_from(["big", "little"]))
+    width, order = draw(WORD_WIDTHS), draw(ORDERS)
     found: list[Number] = []
     shift = 0
     while shift < 8 * width and len(found) < 4:
@@ -114,7 +133,7 @@ def bits(draw: st.DrawFn) -> tuple[Number, ...]:
         top = 2**count - 1
         signed_at = draw(st.sampled_from([top, top // 2]))
         low = 0 if signed_at == top else signed_at - top
-        kind = draw(st.sampled_from(["number", "flag", "enum"]))
+        kind = draw(BIT_KINDS)
         choices = {"number": (), "flag": (0, 1), "enum": (low, signed_at)}[kind]
         number = Number("b", width, order, signed_at, 1, 1, low, signed_at, "")
         flag: Literal["number", "flag"] = "flag" if kind == "flag" else "number"
@@ -126,6 +145,7 @@ def bits(draw: st.DrawFn) -> tuple[Number, ...]:
     return (*found[:-1], found[-1]._replace(more=False))
 
 
+@cache
 @st.composite
 def variants(draw: st.DrawFn) -> Variant:
     """Draw up to three fields; a field may be the selector of the next one."""
@@ -137,6 +157,16 @@ def variants(draw: st.DrawFn) -> Variant:
     return Variant(tuple(found))
 
 
+REQUESTS = st.lists(variants(), min_size=1, max_size=2)
+
+
+@cache
+def _replies(least: int) -> st.SearchStrategy[list[Variant]]:
+    """Draw the variants of a reply with at least so many bytes."""
+    return st.lists(variants().filter(lambda variant: variant.size >= least), max_size=2)
+
+
+@cache
 @st.composite
 def tables(draw: st.DrawFn) -> Table:
     """Draw a table of up to four commands on up to three ids."""
@@ -144,7 +174,7 @@ def tables(draw: st.DrawFn) -> Table:
     ids = [0, 0x20, 0xFE] if format.id_number.width == 1 else [0, 0x20, 0x20FE]
     # A reply without an id has data in its place.
     least = 0 if format.reply_has_id else format.id_number.width
-    replies = variants().filter(lambda variant: variant.size >= least)
+    replies = _replies(least)
     commands = [
         Command(
             draw(st.sampled_from(ids)),
@@ -154,8 +184,8 @@ def tables(draw: st.DrawFn) -> Table:
             "test",
             "query",
             100,
-            tuple(draw(st.lists(variants(), min_size=1, max_size=2))),
-            tuple(draw(st.lists(replies, max_size=2))),
+            tuple(draw(REQUESTS)),
+            tuple(draw(replies)),
         )
         for index in range(draw(st.integers(1, 4)))
     ]
@@ -190,6 +220,7 @@ def streams(table: Table) -> st.SearchStrategy[bytes]:
 FORMATS = [MYBUDDY, *map(sample, ("crc", "sum", "alike"))]
 
 
+@cache
 def any_tables() -> st.SearchStrategy[Table]:
     """Draw the table of an edition or of one of the maker's other formats, or a random one."""
     return st.sampled_from([*strategies.TABLES.values(), *FORMATS]) | tables()

@@ -143,6 +143,7 @@ def messages(table: Table = TABLE) -> st.SearchStrategy[tuple[CommandVariant, tu
     return variants(table).flatmap(_with_values)
 
 
+@lru_cache
 def odd_values() -> st.SearchStrategy[Any]:
     """Draw values of all kinds; no field allows most of them."""
     scalars = st.one_of(
