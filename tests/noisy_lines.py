@@ -5,6 +5,7 @@ The simulator's faults make the noise and the damage; Hypothesis makes their ran
 
 from __future__ import annotations
 
+from functools import lru_cache
 from typing import NamedTuple
 
 from hypothesis import strategies as st
@@ -16,14 +17,18 @@ from cobotwire.simulator.faults.noise import NOISE
 from cobotwire.simulator.faults.stream import damaged
 
 # An undamaged frame, one after noise that looks like a header, a damaged one, and noise alone.
-KINDS = ["frame", "frame after a tail", "damaged", "noise"]
-DAMAGE: list[Damage] = [
-    Dropped(),
-    Corrupted(),
-    Truncated(),
-    Noise(classes=("byte",), where="inside"),
-    Noise(where="inside"),
-]
+KINDS = st.lists(
+    st.sampled_from(["frame", "frame after a tail", "damaged", "noise"]), min_size=1, max_size=9
+)
+DAMAGE: st.SearchStrategy[Damage] = st.sampled_from(
+    [
+        Dropped(),
+        Corrupted(),
+        Truncated(),
+        Noise(classes=("byte",), where="inside"),
+        Noise(where="inside"),
+    ]
+)
 # Hypothesis draws the random numbers, so that failing examples shrink.
 DRAWS = st.randoms(use_true_random=False)
 
@@ -41,6 +46,7 @@ def noise_of(table: Table, *classes: str) -> st.SearchStrategy[bytes]:
     return st.builds(lambda name, random: NOISE[name].draw(random, table), names, DRAWS)
 
 
+@lru_cache
 def line_noise(table: Table) -> st.SearchStrategy[bytes]:
     """Draw realistic noise: pieces of the catalogue, some cut, and any bytes."""
     pieces = noise_of(table)
@@ -55,6 +61,7 @@ def line_noise(table: Table) -> st.SearchStrategy[bytes]:
     )
 
 
+@lru_cache
 def tails(table: Table) -> st.SearchStrategy[bytes]:
     """Draw noise that ends like the start of a frame: most readers then lose the next frame."""
     heads = _heads(table)
@@ -70,9 +77,9 @@ def tails(table: Table) -> st.SearchStrategy[bytes]:
 def received(draw: st.DrawFn, frames: st.SearchStrategy[bytes], table: Table) -> Received:
     """Draw frames as they arrive over a bad line, with noise and damaged frames among them."""
     data, whole = bytearray(), []
-    for kind in draw(st.lists(st.sampled_from(KINDS), min_size=1, max_size=9)):
+    for kind in draw(KINDS):
         if kind == "damaged":
-            fault = draw(st.sampled_from(DAMAGE))
+            fault = draw(DAMAGE)
             data += damaged(fault, draw(frames), table, draw(DRAWS))
             continue
         if kind != "frame":

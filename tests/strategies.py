@@ -1,4 +1,7 @@
-"""Hypothesis strategies made from an edition's table, by default from that of ``mycobot``."""
+"""Hypothesis strategies made from an edition's table, by default from that of ``mycobot``.
+
+They are cached, because Hypothesis validates each new strategy.
+"""
 
 from __future__ import annotations
 
@@ -52,6 +55,7 @@ def codec_of(edition: str, name: codecs.CodecName) -> Codec:
     return codecs.load(table, name)
 
 
+@lru_cache
 def variants(table: Table = TABLE) -> st.SearchStrategy[CommandVariant]:
     """Draw any variant of any message of the edition."""
     return _sampled(VARIANTS if table is TABLE else variants_of(table))
@@ -138,6 +142,7 @@ def _value(variant: Variant, field: Field, rows: list[tuple[int, ...]]) -> Any:
     return field.present([number.physical(raw) for number, raw in zip(case.numbers, row)])
 
 
+@lru_cache
 def messages(table: Table = TABLE) -> st.SearchStrategy[tuple[CommandVariant, tuple[Any, ...]]]:
     """Draw any legal message: its variant and its values."""
     return variants(table).flatmap(_with_values)
@@ -173,6 +178,7 @@ def any_arguments(draw: st.DrawFn, table: Table = TABLE) -> tuple[str, Direction
     return variant.command.name, variant.direction, tuple(mixed)
 
 
+@lru_cache
 def near_frames(table: Table = TABLE) -> st.SearchStrategy[bytes]:
     """Draw bytes that begin like a frame, and are a legal frame only by chance."""
     longest = table.frame.maximum_length
@@ -186,6 +192,7 @@ def near_frames(table: Table = TABLE) -> st.SearchStrategy[bytes]:
     )
 
 
+@lru_cache
 def real_frames(table: Table = TABLE) -> st.SearchStrategy[bytes]:
     """Draw a legal frame, built by the reference codec."""
     codec = codecs.load(table, "reference")
@@ -205,11 +212,13 @@ def frame_of(
     return codec.encode(name, direction, values, variant=index, address=address)
 
 
+@lru_cache
 def line_noise(table: Table = TABLE) -> st.SearchStrategy[bytes]:
     """Draw realistic noise: servo packets, text, NULs, half headers, and any bytes."""
     return noisy_lines.line_noise(table)
 
 
+@lru_cache
 def received(table: Table, listening: Listening) -> st.SearchStrategy[noisy_lines.Received]:
     """Draw frames received over a bad line, and which of them arrive undamaged."""
     codec = codecs.load(table, "reference")
@@ -220,6 +229,7 @@ def received(table: Table, listening: Listening) -> st.SearchStrategy[noisy_line
     return noisy_lines.received(frames, table)
 
 
+@lru_cache
 def streams(table: Table = TABLE) -> st.SearchStrategy[bytes]:
     """Draw the bytes of a line: frames, near frames and noise in any order."""
     pieces = st.one_of(real_frames(table), near_frames(table), line_noise(table))
