@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import cache
+
 from hypothesis import strategies as st
 
 import strategies
@@ -49,6 +51,7 @@ def damaged_replies() -> st.SearchStrategy[bytes]:
     )
 
 
+@cache
 def noise() -> st.SearchStrategy[bytes]:
     """Generate noise of firmware, servos and bad lines, complete or cut, short and long."""
     whole = st.one_of(
@@ -72,12 +75,17 @@ def noise() -> st.SearchStrategy[bytes]:
     )
 
 
+@cache
+def _pieces(table: Table) -> st.SearchStrategy[list[bytes]]:
+    pieces = noise() | strategies.real_frames(table) | strategies.near_frames(table)
+    return st.lists(pieces, max_size=6)
+
+
 @st.composite
 def streams(draw: st.DrawFn, table: Table = TABLE) -> bytes:
     """Generate frames and noise; sometimes a frame interrupts a piece of noise."""
     stream = b""
-    pieces = noise() | strategies.real_frames(table) | strategies.near_frames(table)
-    for piece in draw(st.lists(pieces, max_size=6)):
+    for piece in draw(_pieces(table)):
         cut = draw(st.integers(0, len(piece))) if draw(st.booleans()) else len(piece)
         stream += piece[:cut]
         if cut < len(piece):
