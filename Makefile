@@ -1,5 +1,5 @@
 # Each target sets itself up once, in .venv. Needs Python 3.11+, Rust and make.
-# pip compiles nothing (--no-compile): Python compiles what is imported, a quarter of it.
+# pip compiles nothing (--no-compile): Python compiles what is imported, which is much less.
 PYTHON ?= python3
 BIN := .venv/bin
 RUST_SOURCES := $(shell find rust/core rust/py rust/simd -name '*.rs' -o -name Cargo.toml) Cargo.toml
