@@ -22,9 +22,9 @@ class InLoop:
         self._thread.start()
         try:
             self.client = client(*arguments, **options)
-            self._run(self.client.open())
+            self.run(self.client.open())
         except BaseException:
-            self._end()
+            self.end()
             raise
 
     def __getattr__(self, name: str) -> Any:
@@ -39,12 +39,13 @@ class InLoop:
             return _ViewInLoop(self, found)
         if not inspect.iscoroutinefunction(found):
             return found
-        return lambda *arguments, **options: self._run(found(*arguments, **options))
+        return lambda *arguments, **options: self.run(found(*arguments, **options))
 
     def stream(self, *requests: Any, **options: Any) -> _StreamInLoop:
-        return _StreamInLoop(self._run, self.client.stream(*requests, **options))
+        return _StreamInLoop(self.run, self.client.stream(*requests, **options))
 
-    def _run(self, work: Any) -> Any:
+    def run(self, work: Any) -> Any:
+        """Run a coroutine in the loop; return its result."""
         return asyncio.run_coroutine_threadsafe(work, self._loop).result()
 
     def __enter__(self) -> Self:
@@ -56,10 +57,11 @@ class InLoop:
         error: BaseException | None,
         traceback: TracebackType | None,
     ) -> None:
-        self._run(self.client.__aexit__(kind, error, traceback))
-        self._end()
+        self.run(self.client.__aexit__(kind, error, traceback))
+        self.end()
 
-    def _end(self) -> None:
+    def end(self) -> None:
+        """End the loop and its thread."""
         self._loop.call_soon_threadsafe(self._loop.stop)
         self._thread.join()
         self._loop.close()
@@ -79,7 +81,7 @@ class _StreamInLoop:
     """A stream of an asyncio client as an ordinary iterator."""
 
     def __init__(self, run: Callable[[Any], Any], stream: Any) -> None:
-        self._run = run
+        self.run = run
         self._stream = stream
 
     def __getattr__(self, name: str) -> Any:
@@ -90,7 +92,7 @@ class _StreamInLoop:
 
     def __next__(self) -> Any:
         try:
-            return self._run(self._stream.__anext__())
+            return self.run(self._stream.__anext__())
         except StopAsyncIteration:
             raise StopIteration from None
 

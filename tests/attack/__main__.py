@@ -7,7 +7,6 @@ PYTHONPATH=tests python -m attack --profile late --seed 7   one profile, from se
 from __future__ import annotations
 
 import argparse
-import json
 import sys
 import time
 from pathlib import Path
@@ -24,14 +23,9 @@ def main() -> int:
     tallies = {name: Tally(name) for name in names}
     began = time.monotonic()
     runs = 0
-    for plan, tally in campaign(names, given.seed, given.seconds, given.calls, given.processes):
+    for tally in campaign(names, given.seed, given.seconds, given.processes):
         runs += 1
-        tallies[plan.profile.name].add(tally)
-        if given.verbose:
-            print(
-                f"{plan}: {tally.counts['calls']} calls, {tally.forbidden} forbidden",
-                file=sys.stderr,
-            )
+        tallies[tally.profile].add(tally)
         for failure in tally.failures:
             print(f"FAILED {failure}\n", file=sys.stderr, flush=True)
     found = [tally for tally in tallies.values() if tally.counts["calls"]]
@@ -40,9 +34,6 @@ def main() -> int:
     print(text(found))
     print(f"limits: {dict(sorted(total(found).limits.items()))}")
     print(summary)
-    if given.json:
-        rows = [tally.as_json() for tally in found]
-        given.json.write_text(json.dumps({"seed": given.seed, "rows": rows}, indent=1) + "\n")
     if given.markdown:
         _write(given.markdown, markdown(found) + f"\n{summary}.\n")
     return 1 if any(tally.forbidden for tally in found) else 0
@@ -55,11 +46,8 @@ def _arguments() -> argparse.Namespace:
     parser.add_argument("--profile", action="append", choices=list(PROFILES))
     parser.add_argument("--seed", type=int, default=1, help="of the first run; 1")
     parser.add_argument("--seconds", type=float, default=180.0, help="after which no run begins")
-    parser.add_argument("--calls", type=int, help="after which no run begins")
     parser.add_argument("--processes", type=int, default=4)
-    parser.add_argument("--json", type=Path, help="write the counts to this file")
     parser.add_argument("--markdown", type=Path, help="write the table into this page")
-    parser.add_argument("--verbose", action="store_true", help="print each run")
     return parser.parse_args()
 
 

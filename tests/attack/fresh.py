@@ -11,10 +11,10 @@ import time
 from collections.abc import Callable
 from pathlib import Path
 
-from attack.blocking import run_threads
 from attack.plans import Plan
 from attack.record import Record
 from attack.setting import Setting
+from attack.users import run_threads
 
 TESTS = Path(__file__).parents[1]
 # Besides the run itself: to start, to import, and to end.

@@ -9,10 +9,9 @@ from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wai
 from functools import partial
 from multiprocessing import get_context
 from random import Random
-from typing import Any, Protocol
+from typing import Any
 
 from attack.arm import HostilePeer
-from attack.blocking import run_threads
 from attack.calls import SHORT
 from attack.ends import PtyEnd, TcpEnd
 from attack.fresh import run_fresh
@@ -23,19 +22,10 @@ from attack.plans import Plan, plan
 from attack.profiles import PROFILES
 from attack.setting import Setting, table_of
 from attack.tally import Tally
-from attack.tasks import run_tasks
+from attack.users import Shared, run_threads
 from cobotwire import codec as codecs
 from machine_stalls import PtyMeter
 from stalls import StallMeter
-
-Event = tuple[Plan, Tally]
-
-
-class Closable(Protocol):
-    """The shared client of a run."""
-
-    def close(self) -> None:
-        """Close the client; calls end with an error."""
 
 
 def attack(chosen: Plan, change: Callable[[Any], Any] | None = None) -> Tally:
@@ -57,8 +47,7 @@ def attack(chosen: Plan, change: Callable[[Any], Any] | None = None) -> Tally:
         if chosen.profile.fresh and change is None:
             failed = run_fresh(setting, settle)
         else:
-            run: Callable[..., None] = run_threads if chosen.client == "blocking" else run_tasks
-            run(setting, partial(_happen, line, setting), settle)
+            run_threads(setting, partial(_happen, line, setting), settle)
     if failed:
         # Its calls are not known; at least one of them was lost.
         counts = Counter(calls=1, lost=1)
@@ -73,7 +62,7 @@ def _settle(line: HostileLine, setting: Setting) -> None:
         line.settle(setting.record.bytes_taken)
 
 
-def _happen(line: HostileLine, setting: Setting, shared: Closable) -> None:
+def _happen(line: HostileLine, setting: Setting, shared: Shared) -> None:
     """Break, stall or close until the time of the run is over; then end the run."""
     profile, random = setting.plan.profile, Random(f"{setting.plan.seed} line")
     until = time.monotonic() + setting.plan.seconds
@@ -109,29 +98,19 @@ def _stall(line: HostileLine, setting: Setting, random: Random) -> None:
     setting.flooding = False
 
 
-def campaign(
-    profiles: Sequence[str], seed: int, seconds: float, calls: int | None, processes: int
-) -> Iterator[Event]:
-    """Yield the tallies of plans until the seconds or the calls are over.
+def campaign(profiles: Sequence[str], seed: int, seconds: float, processes: int) -> Iterator[Tally]:
+    """Yield the tallies of plans until the seconds are over.
 
     Profiles take turns by their weights, so that each gets its share of the time.
     """
-    until, made = time.monotonic() + seconds, 0
-    plans = _plans(profiles, seed)
-    pool = ProcessPoolExecutor(processes, mp_context=get_context("spawn"))
-    running: dict[Future[Tally], Plan] = {}
-    with pool:
-        while running or (time.monotonic() < until and (calls is None or made < calls)):
+    until, plans = time.monotonic() + seconds, _plans(profiles, seed)
+    running: set[Future[Tally]] = set()
+    with ProcessPoolExecutor(processes, mp_context=get_context("spawn")) as pool:
+        while running or time.monotonic() < until:
             while len(running) < processes and time.monotonic() < until:
-                if calls is not None and made >= calls:
-                    break
-                chosen = next(plans)
-                running[pool.submit(attack, chosen)] = chosen
-            done, _ = wait(running, return_when=FIRST_COMPLETED)
-            for future in done:
-                tally = future.result()
-                made += tally.counts["calls"]
-                yield running.pop(future), tally
+                running.add(pool.submit(attack, next(plans)))
+            done, running = wait(running, return_when=FIRST_COMPLETED)
+            yield from (future.result() for future in done)
 
 
 def _plans(names: Sequence[str], seed: int) -> Iterator[Plan]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import itertools
-from asyncio import CancelledError
+from concurrent.futures import CancelledError
 from importlib import import_module
 from random import Random
 from typing import Any

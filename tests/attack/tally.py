@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass, field
-from typing import Any
+from dataclasses import dataclass, field
 
 # The outcomes that must never occur.
 FORBIDDEN = ("wrong", "exceptions", "duplicates", "lost", "late", "merged")
@@ -52,10 +51,6 @@ class Tally:
         self.counts += other.counts
         self.limits += other.limits
         self.failures += other.failures
-
-    def as_json(self) -> dict[str, Any]:
-        """Return the counts as JSON values."""
-        return asdict(self)
 
 
 def rows(tallies: Sequence[Tally]) -> list[list[str]]:

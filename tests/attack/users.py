@@ -1,8 +1,12 @@
-"""Threads that share one blocking client."""
+"""Threads that share one client.
+
+The calls of an asyncio client are tasks of its loop; each thread waits for the end of its own.
+"""
 
 from __future__ import annotations
 
 import _thread
+import asyncio
 import signal
 import threading
 import time
@@ -15,6 +19,7 @@ from typing import Any
 from attack.calls import Drawn
 from attack.record import open_observed
 from attack.setting import Setting
+from both_ways import InLoop
 from cobotwire import LinkError
 
 JOIN_SECONDS = 1.0
@@ -28,6 +33,7 @@ class Shared:
         self.age = 0
         self._lock = threading.Lock()
         self._transport: Any = None
+        self._loops: list[InLoop] = []
         self.client: Any = None
         self._open()
 
@@ -42,7 +48,7 @@ class Shared:
                     if plan.reopens:
                         self._transport.reopen()
                     else:
-                        self.client.close()
+                        self.close()
                         self._open()
                     break
                 time.sleep(0.01)
@@ -51,6 +57,11 @@ class Shared:
     def close(self) -> None:
         """Close it; calls in other threads end with an error."""
         self.client.close()
+
+    def end(self) -> None:
+        """End the loops of asyncio clients, in which no call runs any more."""
+        for loop in self._loops:
+            loop.end()
 
     @property
     def transport_is_closed(self) -> bool:
@@ -62,7 +73,11 @@ class Shared:
         setting = self.setting
         small = setting.plan.profile.stalls
         self._transport = open_observed(setting.url, setting.baudrate, setting.record, small=small)
-        self.client = setting.client(self._transport, **setting.options)
+        if setting.plan.client == "blocking":
+            self.client = setting.client(self._transport, **setting.options)
+        else:
+            self.client = InLoop(setting.client, self._transport, **setting.options)
+            self._loops.append(self.client)
 
 
 class Interrupts:
@@ -137,6 +152,7 @@ def run_threads(
     shared.close()
     for thread in threads:
         thread.join(JOIN_SECONDS)
+    shared.end()
 
 
 def _signal_main() -> None:
@@ -179,6 +195,9 @@ def _call(shared: Shared, user: int, random: Random, interrupts: Interrupts | No
     drawn = setting.draw(random)
     method = getattr(shared.client, drawn.name)
     options = {} if drawn.ack_within is None else {"ack_within": drawn.ack_within}
+    if setting.plan.profile.cancels and random.random() < 0.3:
+        seconds = random.choice((0.0, 0.0005, 0.002, 0.02, 0.2)) * random.random()
+        method = _cancelled_after(seconds, shared.client, drawn.name)
     call = setting.begin(user, drawn)
     try:
         try:
@@ -192,3 +211,18 @@ def _call(shared: Shared, user: int, random: Random, interrupts: Interrupts | No
         return setting.note_error(call, error)
     setting.record.end(call, "value", value)
     return True
+
+
+def _cancelled_after(seconds: float, arm: InLoop, name: str) -> Callable[..., Any]:
+    """Return a method of an asyncio client whose task is cancelled after some seconds."""
+
+    async def call(*arguments: Any, **options: Any) -> Any:
+        task = asyncio.current_task()
+        assert task is not None, "the loop runs it in one"
+        timer = asyncio.get_running_loop().call_later(seconds, task.cancel)
+        try:
+            return await getattr(arm.client, name)(*arguments, **options)
+        finally:
+            timer.cancel()
+
+    return lambda *arguments, **options: arm.run(call(*arguments, **options))
