@@ -6,11 +6,10 @@ from functools import partial
 from typing import Any
 
 import cobotwire.pymycobot as layer
-from cobotwire import codec
-from cobotwire.codec.interface import Codec
 from cobotwire.editions import load
 from cobotwire.simulator import MemoryTransport, SimulatedArm
 from cobotwire.simulator.clock import SteppedClock
+from strategies import codec_of
 
 
 class Replies:
@@ -19,7 +18,7 @@ class Replies:
     wait = None
 
     def __init__(self, edition: str, *replies: bytes) -> None:
-        self._codec = codec_of(edition)
+        self._codec = codec_of(edition, "native")
         self._replies = list(replies)
 
     def receive(self, data: bytes) -> bytes:
@@ -29,26 +28,6 @@ class Replies:
             "tool_serial_write_data", "reply", (reply,), variant=variant
         )
         return frame
-
-    def flush(self) -> bytes:
-        return b""
-
-
-def codec_of(edition: str) -> Codec:
-    """Return the codec of an edition."""
-    return codec.load(load(edition).TABLE)
-
-
-class Silent:
-    """An arm that never replies."""
-
-    wait = None
-
-    def __init__(self, arm: SimulatedArm) -> None:
-        """Take the place of an arm."""
-
-    def receive(self, data: bytes) -> bytes:
-        return b""
 
     def flush(self) -> bytes:
         return b""

@@ -16,7 +16,9 @@ from cobotwire.protocol.errors import (
     UsageError,
 )
 from cobotwire.simulator import PtyServer, SimulatedArm
-from layer.arms import Silent, codec_of, made
+from layer.arms import made
+from silent_peer import SilentPeer
+from strategies import codec_of
 
 HOME = [0, 0, 0, 0, 0, 90, 0]
 # The id of a request; the first bytes and the size of the frame that reports the end of a motion.
@@ -49,7 +51,7 @@ class Early(Deaf):
 
     def receive(self, data: bytes) -> bytes:
         reply = super().receive(data)
-        early = codec_of("mercury_a1").encode("motion_ended", "reply", (0,))
+        early = codec_of("mercury_a1", "native").encode("motion_ended", "reply", (0,))
         return reply + early if data[3] == SEND_ANGLES else reply
 
     def _without_ends(self, data: bytes) -> bytes:
@@ -140,7 +142,7 @@ def test_order_that_cannot_work_says_why(method: str, arguments: tuple[Any, ...]
 
 
 def test_arm_that_is_silent_can_be_opened() -> None:
-    arm, _ = made("Mercury", "mercury_a1", errors="return", peer=Silent)
+    arm, _ = made("Mercury", "mercury_a1", errors="return", peer=lambda _: SilentPeer())
     assert arm.get_angles() == -1
 
 

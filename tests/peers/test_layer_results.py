@@ -9,8 +9,8 @@ import pytest
 
 from cobotwire.pymycobot.layer.registers import OF_A_JOINT
 from layer_comparison import FAILED, REJECTED, Called, call_ours, call_theirs
-from layer_robots import CLOSED_LOOP, LAYER_ROBOTS
-from pymycobot_classes import library
+from layer_robots import ALL_ROBOTS
+from migrated_calls import kinds
 from robots.robot import Call, Robot
 
 # It reads the language of the system in a way that Python deprecates.
@@ -31,35 +31,20 @@ def tool(*numbers: int) -> bytes:
 
 def frame(robot: Robot, command: int, data: bytes, address: int) -> bytes:
     """Return a frame of a robot with any data, also with data that no edition allows."""
-    head = b"\xfe\xfe"
-    if robot.peer in CLOSED_LOOP:
-        body = head + bytes([len(data) + 3, command]) + data
-        check = library(robot.peer).crc_check(body)
-        return body + bytes(check)
-    if robot.peer.startswith("MyBuddy"):
-        return head + bytes([address, len(data) + 2, command]) + data + _sum(command, data)
-    return head + bytes([len(data) + 2, command]) + data + b"\xfa"
-
-
-def _sum(command: int, data: bytes) -> bytes:
-    return bytes([command + sum(data) & 0xFF])
-
-
-def kinds(result: Any) -> Any:
-    """Return the types of a result and of its parts."""
-    return [kinds(each) for each in result] if isinstance(result, list) else type(result)
+    given = address if robot.table.addresses else None
+    return robot.table.frame.enclose(command, data, given, "reply")
 
 
 def both(name: str, method: str, given: Sequence[Any], reply: bytes | None) -> list[Called]:
     """Return what the maker's method and ours wrote and returned."""
-    robot = {**LAYER_ROBOTS, **CLOSED_LOOP}[name]
+    robot = ALL_ROBOTS[name]
     call = Call(method, tuple(given), method, tuple(given), None)
     return [call_theirs(robot, call, reply), call_ours(robot, call, reply)]
 
 
 def replied(name: str, method: str, given: Sequence[Any], command: int, data: bytes) -> list[Any]:
     """Return the results of both for a reply."""
-    robot = {**LAYER_ROBOTS, **CLOSED_LOOP}[name]
+    robot = ALL_ROBOTS[name]
     address = given[0] if given and isinstance(given[0], int) else 0
     reply = frame(robot, command, data, address)
     return [each.result for each in both(name, method, given, reply)]
@@ -126,7 +111,7 @@ def test_result_differs_from_that_of_the_maker_for_the_reason_given(
 
 @pytest.mark.parametrize("register", range(46))
 def test_register_of_320_is_read_as_by_the_maker(register: int) -> None:
-    reply = frame(LAYER_ROBOTS["MyCobot320"], 0xE9, tool(register, 2), 0)
+    reply = frame(ALL_ROBOTS["MyCobot320"], 0xE9, tool(register, 2), 0)
     theirs, mine = both("MyCobot320", "get_pro_gripper", (register,), reply)
     if register in OF_A_JOINT:
         # The reply would not name the joint.
@@ -137,7 +122,7 @@ def test_register_of_320_is_read_as_by_the_maker(register: int) -> None:
 
 @pytest.mark.parametrize("value", [0, 1, 100, 101])
 def test_registers_of_320_are_written_as_by_the_maker_or_rejected(value: int) -> None:
-    reply = frame(LAYER_ROBOTS["MyCobot320"], 0xE8, b"\1", 0)
+    reply = frame(ALL_ROBOTS["MyCobot320"], 0xE8, b"\1", 0)
     # The library checks no value of these, which move the gripper or give it force.
     unchecked = {11, 27, 32, 36} if value > 100 else {32} if value == 0 else set()
     unchecked |= {13, 37, 38, 39} if value else set()

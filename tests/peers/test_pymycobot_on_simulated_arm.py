@@ -71,17 +71,6 @@ def test_setter_without_acknowledgement_is_sent_three_times_and_each_moves_the_a
         assert found.received.count("get_angles") == 1
 
 
-def test_every_query_gets_a_reply() -> None:
-    with driven("MyCobot", "mycobot") as found:
-        queries = [
-            c.name for c in found.arm.table.commands if c.requires_reply and not c.request[0].fields
-        ]
-        known = [name for name in queries if hasattr(found.peer, name)]
-        assert [name for name in known if getattr(found.peer, name)() in (None, -1)] == []
-        assert found.received == known
-        assert len(known) > 8
-
-
 def test_angle_between_steps_is_truncated_where_ours_is_rounded() -> None:
     with driven("MyCobot280", "mycobot280") as found:
         found.peer.send_angle(1, 0.58, 100)
@@ -117,22 +106,3 @@ def test_joint_limits_read_as_unconverted_tenths() -> None:
         found.arm.state.minimum[2], found.arm.state.maximum[2] = -150.5, 150.5
         limits = found.peer.get_joint_min_angle(3), found.peer.get_joint_max_angle(3)
         assert limits == (-1505, 1505)
-
-
-@pytest.mark.parametrize(
-    ("peer", "method", "arguments"),
-    [
-        ("MyCobot", "set_encoder", (1, 1024, 50)),
-        ("MyCobot280", "jog_rpy", (1, 1, 50)),
-        ("MyCobot280", "jog_increment_coord", (1, 10, 50)),
-        ("MyCobot280", "send_coords", ([150, 0, 200, 0, 0, 0], 50)),
-        ("MyPalletizer260", "send_angles", ([10, 20, 30, 40], 50)),
-    ],
-)
-def test_request_of_newer_firmware_is_noise_to_an_arm_of_the_document(
-    peer: str, method: str, arguments: tuple[Any, ...]
-) -> None:
-    with driven(peer, "mycobot") as found:
-        getattr(found.peer, method)(*arguments)
-        assert set(found.received) == {"unknown"}
-        assert found.angles == (0.0,) * 6

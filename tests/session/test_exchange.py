@@ -189,16 +189,6 @@ def test_lost_transport_ends_every_request(exchange_280: Exchange) -> None:
             pending.result()
 
 
-def test_acknowledgement_ends_the_wait_for_it(exchange_280: Exchange) -> None:
-    request = encode_280("set_color", (1, 2, 3))
-    _, pending = exchange_280.send_one_way(request, 0.0, ack_within=0.5)
-    assert pending is not None
-    assert exchange_280.idle_seconds(0.1) == pytest.approx(0.4)
-    exchange_280.receive(bytes.fromhex("FE FE 03 6A 01 FA"), 0.2)
-    assert pending.done
-    pending.result()
-
-
 def test_missing_acknowledgement_is_a_timeout(exchange_280: Exchange) -> None:
     _, pending = exchange_280.send_one_way(encode_280("set_color", (1, 2, 3)), 0.0, ack_within=0.5)
     exchange_280.receive(b"cmd_len error", 0.2)

@@ -79,12 +79,6 @@ def test_copy_of_a_late_reply_does_not_count_for_another_attempt(codec: Codec) -
     assert exchange.outgoing(0.2 + GRACE_SECONDS, drained=True)
 
 
-def test_reply_to_a_cancelled_request_is_outstanding(session: OneCaller) -> None:
-    session.request("get_encoder", (1,), now=5.0)
-    session.give_up()
-    assert session.free_at("get_encoder", 2, now=5.1) == 5.0 + GRACE_SECONDS
-
-
 def test_repeated_arguments_distinguish_replies(session: OneCaller) -> None:
     give_up(session, "get_joint_min_angle", 1)
     assert session.free_at("get_joint_min_angle", 1, now=0.2) == GRACE_SECONDS

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from cobotwire import codec as codecs
 from cobotwire.codec.interface import Codec, Noise
 from cobotwire.editions.mycobot import TABLE
-from cobotwire.protocol.errors import UsageError
 from cobotwire.session import (
     LateReply,
     ReplyMatched,
@@ -33,23 +31,6 @@ def test_request_waits_until_its_reply_is_complete(codec: Codec) -> None:
     [event] = session.receive(ANGLES[9:], now=10.2)
     assert isinstance(event, ReplyMatched)
     assert event.fields == {"angles": (1.4, 0.61, -0.26, -1.93, 1.75, -1.75)}
-    assert not session.waiting
-
-
-def test_second_request_is_not_sent_while_one_waits(codec: Codec) -> None:
-    session = OneCaller(codec)
-    session.request("get_angles", (), now=0.0)
-    first = session.pending
-    assert session.request("get_coords", (), now=0.1) == b""
-    assert first is not None
-    session.exchange.give_up(first)
-    assert session.exchange.outgoing(0.1, drained=True) == bytes.fromhex("FE FE 02 23 FA")
-
-
-def test_rejected_argument_changes_nothing(codec: Codec) -> None:
-    session = OneCaller(codec)
-    with pytest.raises(UsageError):
-        session.request("get_encoder", (9,), now=0.0)
     assert not session.waiting
 
 

@@ -10,7 +10,6 @@ from collections.abc import Iterator
 import pytest
 
 from cobotwire import codec as codecs
-from cobotwire.protocol.errors import LinkError
 from cobotwire.transport.descriptor import DescriptorTransport
 from transport.ends import Line
 
@@ -55,11 +54,3 @@ def test_handler_that_returns_does_not_end_a_read(line: Line) -> None:
         signal.signal(signal.SIGALRM, before)
         sending.join()
     assert calls
-
-
-def test_close_ends_a_read_in_another_thread(line: Line) -> None:
-    closing = threading.Timer(0.05, line.transport.close)
-    closing.start()
-    with pytest.raises(LinkError, match="it was closed meanwhile"):
-        line.transport.read(30.0)
-    closing.join()
