@@ -58,7 +58,7 @@ def commands(draw: st.DrawFn, features: frozenset[str]) -> Record:
         free = st.integers(0, 255).filter(lambda id: id not in ids)
         made |= draw(sharing_queries(draw(free), kinds))
     for command in made.values():
-        _read_by(draw, command, made)
+        _stored(draw, command, made)
     return made
 
 
@@ -106,7 +106,7 @@ def _varying(draw: st.DrawFn, kinds: list[str], varying: list[str]) -> Record:
         command["request"] = draw(_sized_fields(kinds, varying))
     if draw(st.booleans()) or not command:
         fields = draw(_sized_fields(kinds, varying))
-        # The last field of a query's reply is what `read_by` compares.
+        # The last field of a query's reply is what a setting stores.
         fields[-1]["name"] = "answer"
         command |= {"safety": "query", "reply": fields}
     return command
@@ -139,7 +139,7 @@ def acks(draw: st.DrawFn) -> Record:
     return {"fields": fields, "why": "So it is."} | ({"accepted": accepted} if accepted else {})
 
 
-def _read_by(draw: st.DrawFn, command: Record, made: Record) -> None:
+def _stored(draw: st.DrawFn, command: Record, made: Record) -> None:
     """Let a query report an argument of a setting, if their types are the same."""
     plain = [f for f in command.get("request", ()) if f.keys() == {"name", "type"}]
     own = {field["type"]: field["name"] for field in plain}
@@ -153,7 +153,18 @@ def _read_by(draw: st.DrawFn, command: Record, made: Record) -> None:
     ]
     query = draw(st.sampled_from(["", *fitting]))
     if query:
-        command["read_by"] = {query: {"answer": own[made[query]["reply"][-1]["type"]]}}
+        answer = made[query]["reply"][-1]
+        command["effect"] = {"stores": {own[answer["type"]]: query}}
+        made[query]["effect"] = {"reports": {answer["name"]: query}}
+
+
+def states_of(commands: Record) -> Record:
+    """Return the declaration of the state that the effects of commands name."""
+    return {
+        name: {"type": command["reply"][-1]["type"]}
+        for name, command in commands.items()
+        if "reports" in command.get("effect", ())
+    }
 
 
 @st.composite
@@ -174,6 +185,8 @@ def specs(
         "types": draw(types(features)),
         "commands": draw(commands(features)),
     }
+    if state := states_of(data["commands"]):
+        data["state"] = state
     if "ack" in features and draw(st.booleans()):
         data["acks"] = draw(acks())
     path = folder / f"{name}.yaml"

@@ -4,7 +4,7 @@
     python use_lamp.py [PORT]
 
 Without a port it uses a simulated lamp, which remembers its brightness because lamp.yaml says which
-command reads what another one sets (`read_by`).
+command reads what another one sets (`effect`).
 """
 
 import sys

@@ -92,7 +92,7 @@ def test_call_accepts_lists_enum_names_and_negative_numbers(
     # Requests without a reply have been received once a later one is answered.
     assert run(*call, "is_power_on").stdout == "True\n"
     assert simulated.state.angles.target(0.0) == pytest.approx((-10, 0, 0, 0, 0, 5.5), abs=0.044)
-    assert (simulated.state.end_type, simulated.state.pins) == (1, {23: True})
+    assert (simulated.state.kept["end_type"], simulated.state.kept["pins"]) == (1, {(23,): True})
 
 
 @pytest.mark.parametrize(

@@ -113,7 +113,7 @@ def test_each_address_is_an_arm_with_a_state_of_its_own(duo: Any, asynchronous: 
             assert arm.at(LEFT).get_angles() == (10.0, 0.0)
             arm.left.set_color(1, 2, 3, ack_within=2)
             arm.right.set_color(4, 5, 6, ack_within=2)
-    assert [robot.state_at(each).colour for each in (LEFT, RIGHT)] == [(1, 2, 3), (4, 5, 6)]
+    assert [robot.state_at(each).light for each in (LEFT, RIGHT)] == [(1, 2, 3), (4, 5, 6)]
 
 
 def test_reply_of_another_address_is_rejected(duo: Any) -> None:
@@ -144,7 +144,7 @@ def test_broadcast_reaches_every_device(duo: Any) -> None:
         with pytest.raises(UsageError, match="cannot be waited for"):
             arm.quiet.set_color(1, 1, 1, ack_within=1)
     states = [robot.state_at(each) for each in (LEFT, RIGHT)]
-    assert [(state.colour, state.powered) for state in states] == [((7, 8, 9), True)] * 2
+    assert [(state.light, state.powered) for state in states] == [((7, 8, 9), True)] * 2
 
 
 def test_acknowledgement_of_another_address_is_not_counted(duo: Any) -> None:

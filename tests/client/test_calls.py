@@ -28,7 +28,7 @@ def test_readme_example_runs_to_its_end(
 
 def test_text_reply_ends_after_a_silence(arm: MyCobot, simulated: SimulatedArm) -> None:
     assert arm.get_ssid_pwd() == WifiAccount("MyCobotWiFi2.4G", "mycobot123")
-    simulated.state.ssid, simulated.state.password = "two words", "pass word "
+    simulated.state.kept |= {"ssid": "two words", "password": "pass word "}
     assert arm.get_ssid_pwd() == WifiAccount("two words", "pass word ")
     assert arm.is_power_on() is False, "the next call succeeds"
 

@@ -65,7 +65,7 @@ def test_gripper_opens_and_closes(edition: str) -> None:
 def test_arguments_have_the_defaults_of_the_makers_library() -> None:
     driven = Driven()
     driven.arm.set_color(green=255)
-    assert driven.simulated.state.colour == (0, 255, 0)
+    assert driven.simulated.state.light == (0, 255, 0)
     assert driven.arm.is_in_position([0.0] * 6)
 
 

@@ -12,6 +12,7 @@ import pytest
 
 from cobotwire import MotionTimeout, ReplyTimeout, RequestRefused, UsageError
 from cobotwire import codec as codecs
+from cobotwire.client.events import EventQueue
 from cobotwire.inspect.doctor import harmless_queries
 from cobotwire.inspect.evidence import bare_queries
 from cobotwire.protocol.messages import Event

@@ -17,7 +17,7 @@ from cobotwire_codegen.publish import edition_json
 
 EDITIONS = ("mycobot", "mycobot280")
 # The document has the places of commands and types, but not those of fields, members and texts.
-WITHOUT_PLACE = ("Field", "Member", "Text", "ReadBack")
+WITHOUT_PLACE = ("Field", "Member", "Text", "ReadBack", "Effect")
 
 
 def leaves(value: Any) -> Iterator[str]:
@@ -41,9 +41,10 @@ def leaves(value: Any) -> Iterator[str]:
 
 
 def texts(value: Any) -> Iterator[str]:
-    """Yield every text of a JSON document."""
+    """Yield every text of a JSON document; the words of effects are keys."""
     if isinstance(value, dict):
-        for part in value.values():
+        for key, part in value.items():
+            yield key
             yield from texts(part)
     elif isinstance(value, list):
         for part in value:

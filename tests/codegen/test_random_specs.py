@@ -19,6 +19,7 @@ from hypothesis import strategies as st
 import random_specs
 from cobotwire import codec as codecs
 from cobotwire.codec.interface import Frame
+from cobotwire.protocol.effects import Stores, effect_of
 from cobotwire.protocol.errors import ReplyTimeout, UsageError
 from cobotwire.session import RetryPolicy
 from cobotwire.simulator import MemoryTransport, SimulatedArm, SteppedClock
@@ -84,14 +85,11 @@ def test_simulated_arm_of_a_random_protocol_sends_legal_replies(
 def _assert_remembered(
     arm: SimulatedArm, table: Any, vector: Any, given_values: dict[str, Any]
 ) -> None:
-    """Check that the query of ``read_by`` now reports what the request has set."""
-    back = table.command(vector.command).read_by
-    if back is None:
-        return
-    [(name, argument)] = back.fields
-    query = table.command(back.query)
-    asked = {f.name: given_values.get(f.name, 0) for v in query.request for f in v.fields}
-    assert arm.state.remembered.recall(query, asked)[name] == given_values[argument]
+    """Check that the arm has stored what the request sets."""
+    effect = effect_of(table.command(vector.command))
+    if isinstance(effect, Stores):
+        [(argument, state)] = effect.values.items()
+        assert arm.state.kept[state] == given_values[argument]
 
 
 def _sent(generated: ModuleType, name: str, given_values: dict[str, Any]) -> bytes:

@@ -6,6 +6,7 @@ from functools import partial
 from typing import Any
 
 import pytest
+from silent_peer import SilentPeer
 
 import cobotwire.pymycobot as layer
 from cobotwire.editions import mercury_a1, mercury_b1
@@ -17,7 +18,6 @@ from cobotwire.protocol.errors import (
 )
 from cobotwire.simulator import PtyServer, SimulatedArm
 from layer.arms import made
-from silent_peer import SilentPeer
 from strategies import codec_of
 
 HOME = [0, 0, 0, 0, 0, 90, 0]

@@ -7,12 +7,12 @@ from contextlib import nullcontext
 from typing import Any
 
 import pytest
+from silent_peer import SilentPeer
 
 import cobotwire.pymycobot as layer
 from cobotwire.protocol.errors import MotionTimeout, ReplyTimeout, UsageError
 from cobotwire.protocol.roles import row_index
 from layer.arms import made
-from silent_peer import SilentPeer
 
 
 def test_order_without_acknowledgement_raises_or_returns_minus_one() -> None:
@@ -21,7 +21,7 @@ def test_order_without_acknowledgement_raises_or_returns_minus_one() -> None:
             made("MyCobot280", errors=errors, acks=False)[0].set_color(1, 2, 3)
     found, arm = made("MyCobot280", errors="return", acks=False)
     assert found.set_color(1, 2, 3) == -1
-    assert arm.state.colour == (1, 2, 3)
+    assert arm.state.light == (1, 2, 3)
 
 
 def test_query_without_reply_raises_or_returns_minus_one() -> None:

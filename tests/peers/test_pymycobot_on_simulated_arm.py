@@ -63,7 +63,7 @@ def test_setter_without_acknowledgement_is_sent_three_times_and_each_moves_the_a
         start = found.clock.now
         assert found.peer.set_color(255, 128, 1) == result
         assert found.clock.now - start == pytest.approx(seconds, abs=0.15)
-        assert (found.received, found.arm.state.colour) == (["set_color"] * times, (255, 128, 1))
+        assert (found.received, found.arm.state.light) == (["set_color"] * times, (255, 128, 1))
         # This is why cobotwire never sends a motion twice.
         assert found.peer.jog_increment(1, 10, 100) == result
         assert found.angles[0] == pytest.approx(10.0 * times, abs=2 * HALF_TICK)

@@ -150,7 +150,10 @@ class AnyOrder(RuleBasedStateMachine):
                 given = dict.fromkeys(command.request_text.fields, account)
                 self.send(command.name)
                 assert self.arm.receive(text.encode(command.request_text, given)) == b""
-                assert (self.arm.state.ssid, self.arm.state.password) == (account, account)
+                assert (self.arm.state.kept["ssid"], self.arm.state.kept["password"]) == (
+                    account,
+                    account,
+                )
 
     # Laws.
 

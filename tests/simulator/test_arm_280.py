@@ -86,7 +86,7 @@ def test_account_is_read_from_the_text_after_the_frame() -> None:
     with PtyServer(arm) as server, MyCobot280(server.url) as client:
         client.set_ssid_pwd("home", "se cret")
         assert client.get_ssid_pwd().password == "se cret"
-        assert arm.state.ssid == "home"
+        assert arm.state.kept["ssid"] == "home"
         client.set_color(1, 2, 3)
         client.send_radians([0.1] * 6, speed=50)
         assert client.is_power_on() is False, "acknowledgements are not replies"

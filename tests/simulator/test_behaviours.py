@@ -13,10 +13,11 @@ import pytest
 
 from cobotwire import editions
 from cobotwire.conformance.device.read_back import settings_of
+from cobotwire.protocol.effects import Stores, effect_of, states_of
 from cobotwire.protocol.errors import UsageError
 from cobotwire.protocol.table import Table
 from cobotwire.simulator import PtyServer, SimulatedArm, TcpServer
-from cobotwire.simulator.behaviour import BEHAVIOURS, by_role, external, own, registry
+from cobotwire.simulator.behaviour import Sized, external, own
 from cobotwire_codegen.build import build_edition
 from cobotwire_codegen.check import check
 from cobotwire_codegen.emit import Target, write
@@ -31,6 +32,7 @@ GETTER = """
     title: Read the mode
     doc: Reads how a channel shines.
     safety: query
+    effect: {reports: mode, at: channel}
     request: [{name: channel, type: channel}]
     reply: [{name: mode, type: mode}]
 """
@@ -55,7 +57,12 @@ def get_warmth(arm, now, request):
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
     """Generate a package and its behaviours outside of the repository."""
     folder = tmp_path_factory.mktemp("bedside")
-    text = LAMP.read_text().replace("safety: setting", "safety: setting\n    read_by: get_mode", 1)
+    text = LAMP.read_text().replace(
+        "safety: setting", "safety: setting\n    effect: {stores: {mode: mode}, at: channel}", 1
+    )
+    text = text.replace(
+        "joints: 0\n", "joints: 0\nstate:\n  mode: {type: mode, each: channel}\n", 1
+    )
     at = text.index("vectors:")
     vectors = (
         "\n  - {name: m, command: get_mode, direction: request, frame: FE FE 03 11 01 FA, "
@@ -125,27 +132,31 @@ def test_without_behaviours_what_a_setter_sets_is_reported_by_its_query(bedside:
 
 
 @pytest.mark.parametrize("name", editions.names())
-def test_what_read_by_promises_is_remembered_in_every_edition(
-    name: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    for command in list(BEHAVIOURS):
-        monkeypatch.delitem(BEHAVIOURS, command)
-    for role in list(by_role.PERFORMED):
-        monkeypatch.delitem(by_role.PERFORMED, role)
-    monkeypatch.setattr(registry, "_FAMILIES", {})
-    monkeypatch.setattr(registry, "HOMES", {})
+def test_what_a_setter_stores_is_what_its_query_reports_in_every_edition(name: str) -> None:
     table: Table = editions.load(name).TABLE
     settings = [setting for command in table.commands for setting in settings_of(table, command)]
-    assert settings
-    for setting in settings:
-        arm = SimulatedArm(table, behaviours={})
+    declared = set(states_of(table)) | {"free", "lowest", "highest"}
+    stored = [
+        each
+        for each in settings
+        if isinstance(effect := effect_of(each.command), Stores)
+        and declared.issuperset(effect.values.values())
+    ]
+    assert stored
+    for setting in stored:
+        arm = SimulatedArm(table, powered=True)
         fields = {field.name: _highest(field) for field in setting.variant.fields}
         if setting.command.request_text is not None:
             fields |= dict.fromkeys(setting.command.request_text.fields, "text")
-        arm.perform(setting.command, fields, arm.receivers(None)[0])
+        device = arm.receivers(None)[0]
+        arm.perform(setting.command, fields, device)
         asked = {f.name: fields[f.name] for f in setting.query_variant.fields}
-        found = arm.state.remembered.recall(setting.query, asked)
-        assert found == {reported: fields[argument] for reported, argument in setting.pairs}
+        found: Any = arm.perform(setting.query, asked, device)
+        reply = found.reply.fields if isinstance(found, Sized) else found
+        for reported, argument in setting.pairs:
+            low_byte = isinstance(found, Sized) and found.size == 1
+            wanted = fields[argument] % 256 if low_byte else fields[argument]
+            assert reply[reported] == wanted, (setting.command.name, reported)
 
 
 def _highest(field: Any) -> Any:

@@ -71,10 +71,12 @@ def test_rejected_motion_has_the_number_that_the_edition_states() -> None:
 
 
 def test_servos_report_what_the_edition_states() -> None:
-    bench = Bench(_with(servos=Servos(((21, 9),), 24.0, 39.6)))
+    start = {"kind": "quantity", "each": ["joint"], "start": 24.0}
+    state = {**TABLE.robot.state, "servo_voltages": start}
+    bench = Bench(_with(servos=Servos(((21, 9),)), state=state))
     assert bench.query("get_servo_data", 2, 21, 0) == 9
     assert bench.query("get_servo_voltages") == (24.0,) * 6
-    assert bench.query("get_servo_temps") == (40,) * 6
+    assert bench.query("get_servo_temps") == (30,) * 6
 
 
 def test_arm_begins_at_its_start_angles() -> None:

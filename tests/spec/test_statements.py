@@ -13,7 +13,7 @@ from cobotwire_codegen.load import Mapping, Node, Scalar, Sequence, load
 from cobotwire_codegen.model import Command
 from pymycobot_classes import RobotLimit, without_port, written
 from robots.arguments import plain
-from spec_statements import STATEMENTS, Statement, meanings
+from spec_statements import STATEMENTS, Statement, effects, meanings
 
 EDITIONS = ("mycobot", "mycobot280")
 BY_MAKER = "The maker's library 4.0.7 sends the accepted values and raises for the refused ones."
@@ -27,7 +27,8 @@ def test_edition_agrees_with_independent_statement(edition: str, statement: Stat
 
 def test_every_pattern_of_a_meaning_describes_a_command() -> None:
     commands = [command for name in EDITIONS for command in vectors.edition(name).commands]
-    for word, name, doc in (*meanings.SAFETY, *meanings.ROLES):
+    said = [(effect, name, doc) for name, doc, effect in effects.EFFECTS]
+    for word, name, doc in (*meanings.SAFETY, *meanings.ROLES, *said):
         assert any(meanings.fits(command, name, doc) for command in commands), (word, name)
 
 

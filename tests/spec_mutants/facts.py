@@ -7,6 +7,7 @@ from typing import Any, NamedTuple
 
 from cobotwire_codegen import language
 from cobotwire_codegen.language.changes import CHANGE
+from cobotwire_codegen.language.effects import ByCase, Computes, Lists, Moves
 from cobotwire_codegen.language.messages import SelectedReplyField
 from cobotwire_codegen.language.records import (
     Changed,
@@ -31,6 +32,8 @@ STATED = {
     language.Command.alias,
     language.SelectedRequestField.selector,
     SelectedReplyField.selector,
+    *(Moves.by, Moves.about, Moves.direction, Moves.speed),
+    *(Lists.list, Lists.append, Computes.from_, Computes.near, ByCase.selector),
 }
 # Other files, and what the facts are compared with.
 BESIDE = (InFile, InFiles, Lines)

@@ -17,14 +17,26 @@ from cobotwire_codegen.language.number_shapes import (
     Whole,
     as_fraction,
 )
-from cobotwire_codegen.language.shapes import Hex, Known, Names, Shape, Text, Word, YesNo
+from cobotwire_codegen.language.shapes import (
+    Anything,
+    Hex,
+    Known,
+    Names,
+    Shape,
+    Text,
+    Word,
+    YesNo,
+)
+from cobotwire_codegen.language.words import BUILT_IN
 from cobotwire_codegen.load import Mapping, Node, Scalar, Sequence
 from cobotwire_codegen.model import Edition, Quantity, Type
 from spec_mutants.facts import Fact, facts_of
-from spec_mutants.nodes import Path, changed, with_key, with_value
+from spec_mutants.nodes import Path, changed, with_value
 
 # What a longer list of words is reduced to: the neighbours in the list.
 MOST_WORDS = 6
+# What names state.
+STATED_STATES = ("reports.reports", "stores.stores")
 Wrong = Iterator[tuple[str, Node | None]]
 
 
@@ -53,8 +65,8 @@ def mutants_of(root: Node, edition: Edition) -> Iterator[Mutant]:
 
 def _wrong(fact: Fact, edition: Edition) -> Wrong:
     shape, node = fact.shape, fact.node
-    if fact.kind.endswith(".read_by"):
-        yield from _read_by(node, edition)
+    if fact.kind in STATED_STATES:
+        yield from _states(node, edition)
     elif fact.kind.endswith(".samples"):
         yield from _each_number(node, Numbers())
     elif isinstance(shape, Range | Ranges | Reals | Numbers) and isinstance(node, Sequence):
@@ -88,14 +100,20 @@ def _values(shape: Shape[Any] | None, node: Scalar, edition: Edition) -> Iterato
         yield number + 1
         if number:
             yield -number
+    elif isinstance(shape, Anything) and isinstance(node.value, bool):
+        yield not node.value
+    elif isinstance(shape, Anything) and number is not None:
+        yield int(number) + 1
     elif shape is RequestText.text.shape or isinstance(shape, Text):
         yield from _texts(str(node.value), edition)
 
 
 def _texts(text: str, edition: Edition) -> Iterator[str]:
-    """Yield a text with another character, or the name of another command."""
+    """Yield a text with another character, or the name of another command or argument."""
     if any(command.name == text for command in edition.commands):
         yield next(command.name for command in edition.commands if command.name != text)
+    elif text in _arguments(edition):
+        yield from _near(text, _arguments(edition))
     elif "{" in text:
         yield text.replace("{", "x{", 1)
 
@@ -178,38 +196,41 @@ def _near(given: str, names: list[str]) -> list[str]:
     return list({names[at - 1]: 0, names[(at + 1) % len(names)]: 0})
 
 
-def _read_by(node: Node, edition: Edition) -> Wrong:
-    queries = _queries(edition)
-    if isinstance(node, Scalar):
-        for name in [*_near(str(node.value), queries), *_fitting(node, edition)]:
-            yield f"{node.value} -> {name}", with_value(node, name)
-    elif isinstance(node, Mapping):
-        (query,) = node.entries
-        for name in _near(query, queries):
-            yield f"{query} -> {name}", with_key(node, query, name)
-        yield from _each_number(node, Numbers())
+def _states(node: Node, edition: Edition) -> Wrong:
+    """Yield what is reported or stored with another state: a neighbour, or one of its type."""
+    if isinstance(node, Mapping):
+        for name, inner in node.entries.items():
+            for what, wrong in _states(inner, edition):
+                yield f"{name}: {what}", changed(node, (name,), wrong)
+    elif isinstance(node, Scalar):
+        given = str(node.value)
+        types = {state.name: state.type for state in edition.states} | dict.fromkeys(BUILT_IN)
+        alike = [name for name, type in types.items() if type == types.get(given) and name != given]
+        for name in dict.fromkeys([*_near(given, list(types)), *alike[:2]]):
+            yield f"{given} -> {name}", with_value(node, name)
 
 
-def _fitting(node: Scalar, edition: Edition) -> list[str]:
-    """Return another query that reports a field of the same name, which check has to allow."""
-    replies = {c.name: {field.name for field in c.reply} for c in edition.commands}
-    wanted = replies.get(str(node.value), set())
-    queries = [name for name in _queries(edition) if name != node.value]
-    return [name for name in queries if wanted & replies[name]][:1]
+def _arguments(edition: Edition) -> list[str]:
+    given = (field.name for c in edition.commands for variant in c.requests for field in variant)
+    return list(dict.fromkeys(given))
 
 
 def _names(fact: Fact, edition: Edition) -> Wrong:
-    """Yield a list of names with one name left out, or replaced by the name of another command."""
+    """Yield a list of names with one name left out, or replaced by another of its kind."""
     node = fact.node
-    commands = [command.name for command in edition.commands]
-    known = _queries(edition) if fact.kind.endswith(Command.agrees_with.name) else commands
+    named = [command.name for command in edition.commands]
+    known = _queries(edition) if fact.kind.endswith(Command.agrees_with.name) else named
+    if fact.kind == "state.each":
+        named = known = [type.name for type in edition.types]
+    elif fact.kind.endswith(".at"):
+        named = known = _arguments(edition)
     items = node.items if isinstance(node, Sequence) else (node,)
     for index, item in enumerate(items):
         assert isinstance(item, Scalar)
         path: Path = (index,) if isinstance(node, Sequence) else ()
         if isinstance(node, Sequence):
             yield f"without {item.value}", changed(node, path, None)
-        if item.value in commands:
+        if item.value in named:
             for name in _near(str(item.value), known)[:1]:
                 new = with_value(item, name)
                 yield f"{item.value} -> {name}", changed(node, path, new) if path else new

@@ -30,13 +30,6 @@ def _with_child(children: dict[Any, Node], path: Path, new: Node | None) -> dict
     return children
 
 
-def with_key(root: Mapping, old: str, new: str) -> Mapping:
-    """Return a mapping with another name for one of its keys."""
-    entries = {new if name == old else name: node for name, node in root.entries.items()}
-    keys = {new if name == old else name: place for name, place in root.keys.items()}
-    return replace(root, entries=entries, keys=keys)
-
-
 def with_value(node: Scalar, value: str | int | bool) -> Scalar:
     """Return a plain value in the place of another."""
     return replace(node, value=value)

@@ -24,8 +24,13 @@ REASONS = (
         "only the notes on kinematics state it, and only for the simulated arm",
     ),
     (
-        r"(gripper\.speed|servos\.temperature|\w+_edition\.start_values) .*",
+        r"gripper\.speed .*|state\.start .*\.(?!ssid|servo_voltages)\w+\.start: .* -> .*"
+        r"|state\.start .*\.(speed|password|server_port|gripper_\w+)\.start: left out",
         "no source states it: this project has chosen it, as the edition says",
+    ),
+    (
+        r"state\.type .*\.points\.type: .*",
+        "only code reads the points, each with the type of its reply",
     ),
     (
         r"quantity\.wire .*\.(servo_word|target_servo_speed|frequency|torque|current|encoder)"

@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 
 from cobotwire_codegen.model import Edition
-from spec_statements import maker, meanings, quantities, recorded
+from spec_statements import effects, maker, meanings, quantities, recorded
 
 Statement = Callable[[Edition], Iterator[str]]
 
 STATEMENTS: tuple[Statement, ...] = (
     *meanings.RULES,
+    *effects.RULES,
     *quantities.RULES,
     *maker.RULES,
     *recorded.RULES,

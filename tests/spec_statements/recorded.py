@@ -136,8 +136,9 @@ def servos(edition: Edition) -> Iterator[str]:
     stated = edition.robot.servos
     if stated is None or dict(stated.registers) != chart:
         yield f"the registers differ from the document's chart: {chart}"
-    elif stated.voltage is None or f"{stated.voltage}V" != POWER_INPUT.partition(",")[0]:
-        yield f"the servos report {stated.voltage} V, but the power input is {POWER_INPUT}"
+    for state in edition.states:
+        if state.name == "servo_voltages" and f"{state.start}V" != POWER_INPUT.partition(",")[0]:
+            yield f"the servos report {state.start} V, but the power input is {POWER_INPUT}"
 
 
 def gripper(edition: Edition) -> Iterator[str]:
@@ -154,7 +155,7 @@ def account(edition: Edition) -> Iterator[str]:
     if edition.name not in (ARM, "mycobot280"):
         return
     shown = {dict(vector.values)["ssid"] for vector in edition.vectors if vector.text}
-    stated = {dict(each.values).get("ssid") for each in edition.robot.start_values}
+    stated = {state.start for state in edition.states if state.name == "ssid"}
     if not shown & stated:
         yield f"the arm's Wi-Fi is {stated}, in examples {shown}"
 

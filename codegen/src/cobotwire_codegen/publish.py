@@ -33,6 +33,7 @@ from cobotwire_codegen.model import (
     Variant,
     Wire,
 )
+from cobotwire_codegen.publish_effects import published_effect, published_states
 from cobotwire_codegen.publish_robot import robot_parts
 from cobotwire_codegen.publish_sections import (
     Record,
@@ -99,6 +100,7 @@ def _document(edition: Edition) -> Record:
             bases=edition.bases,
             joints=edition.joints,
             **robot_parts(edition),
+            state=published_states(edition),
         ),
         "frame": given(
             header=hexed(frame.header),
@@ -159,6 +161,7 @@ class _Writer:
 
     def __init__(self, edition: Edition) -> None:
         self._types = {type.name: type for type in edition.types}
+        self._states = {state.name: state for state in edition.states}
         self._wires = {wire.name: wire for wire in edition.wires}
 
     def type(self, type: Type) -> Record:
@@ -228,6 +231,7 @@ class _Writer:
             samples=[[[name, list(raw)] for name, raw in sample] for sample in command.samples],
             agrees_with=list(command.agrees_with),
             arguments=list(command.method_order),
+            effect=command.effect and published_effect(command.effect, command, self._states),
             title=command.title,
             doc=command.doc,
             notes=list(lower.notes(command)),

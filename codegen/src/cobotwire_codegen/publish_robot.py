@@ -5,9 +5,8 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import Any
 
-from cobotwire_codegen.model import Edition, Geometry, Link, Robot
+from cobotwire_codegen.model import Edition, Geometry, Link
 from cobotwire_codegen.publish_sections import exact_number
-from cobotwire_codegen.start_values import raw_start_values, reported_fields
 
 Record = dict[str, Any]
 
@@ -24,7 +23,6 @@ def robot_parts(edition: Edition) -> Record:
         },
         "joint_limits": [list(map(exact_number, pair)) for pair in robot.joint_limits],
         "start_angles": [exact_number(angle) for angle in robot.start_angles],
-        "start_values": _start_values(edition, robot),
     }
 
 
@@ -60,9 +58,3 @@ def _plain(value: Any) -> Any:
     if isinstance(value, tuple):
         return [_plain(item) for item in value]
     return exact_number(value) if isinstance(value, Fraction) else value
-
-
-def _start_values(edition: Edition, robot: Robot) -> Record:
-    """Return raw values, or texts, by query and field."""
-    fields = {command.name: reported_fields(command) for command in edition.commands}
-    return {each.query: raw_start_values(fields[each.query], each) for each in robot.start_values}

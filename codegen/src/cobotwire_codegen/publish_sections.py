@@ -35,14 +35,12 @@ def places_of(command: Command) -> str:
 
 
 def _sources(edition: Edition) -> Iterator[Record]:
-    """Yield for each named thing its place, its lines in the document, disputes and changes.
-
-    Start values have exact physical values here; the table has raw ones.
-    """
+    """Yield for each named thing its place, its lines in the document, disputes and changes."""
     things: list[tuple[str, Any]] = [("edition", edition), ("frame", edition.frame)]
     things += [("wire", wire) for wire in edition.wires]
     things += [("type", type) for type in edition.types]
     things += [("family", family) for family in edition.families]
+    things += [("state", state) for state in edition.states]
     things += [("command", command) for command in edition.commands]
     for kind, thing in things:
         yield given(
@@ -53,8 +51,6 @@ def _sources(edition: Edition) -> Iterator[Record]:
             disputed=getattr(thing, "disputed", ()),
             changes=() if kind == "edition" else getattr(thing, "changes", ()),
         )
-    for stated in edition.robot.start_values:
-        yield given(of="start values", name=stated.query, place=stated.place, values=stated.values)
 
 
 def _plain_record(record: Record) -> Record:

@@ -76,7 +76,7 @@ def run(
         checks.append(Check("get_tool_reference", arm.get_tool_reference(), TOOL))
         # No command reads the light, so its state is taken from the simulated arm. The reply above
         # came after set_color on the same port, so the arm has processed set_color by now.
-        checks.append(Check("the arm's light", simulated.state.colour, COLOUR))
+        checks.append(Check("the arm's light", simulated.state.light, COLOUR))
     return Result(tuple(checks), tuple(traffic))
 
 

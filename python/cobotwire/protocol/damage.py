@@ -30,8 +30,8 @@ _KEYS: tuple[tuple[type, str], ...] = (
     ),
     (
         dict,
-        "crc edition encoders error_codes frame geometry motion read_by request_text servos"
-        " start_values text",
+        "crc edition effect encoders error_codes frame geometry motion read_by request_text"
+        " servos state text",
     ),
     (bool, "ack event more optional radians refin refout replies_without_id"),
 )
@@ -111,8 +111,9 @@ def _wrong_types(value: Any, path: str) -> Iterator[str]:
     elif isinstance(value, dict):
         for key, each in value.items():
             here = f"{path}.{key}"
-            # Below start_values, keys are the names of queries and of their fields.
-            kind = object if ".start_values." in here else KINDS.get(key, object)
+            # There, keys are the names of states, fields and verbs.
+            named = ".state." in here or ".effect." in here
+            kind = object if named else KINDS.get(key, object)
             if not isinstance(each, kind) or (kind is int and isinstance(each, bool)):
                 yield f"{here} is {NAMES_OF_JSON[type(each)]}; allowed: {NAMES_OF_JSON[kind]}"
             yield from _wrong_types(each, here)

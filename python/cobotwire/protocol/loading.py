@@ -220,6 +220,7 @@ class _Reader:
             get("event", False),
             tuple(get("accepted", ())),
             self._package,
+            get("effect"),
         )
 
     def _variants(self, records: list[list[Record]]) -> tuple[Variant, ...]:

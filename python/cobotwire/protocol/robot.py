@@ -6,6 +6,8 @@ Everything that is not stated is None or empty.
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
+from types import MappingProxyType
 from typing import Any, NamedTuple
 
 Record = dict[str, Any]
@@ -108,13 +110,9 @@ class Servos(NamedTuple):
 
     Attributes:
         registers: the address and initial value of each register.
-        voltage: the supply voltage while the arm has power, in volts.
-        temperature: in degrees Celsius.
     """
 
     registers: tuple[tuple[int, int], ...] = ()
-    voltage: float | None = None
-    temperature: float | None = None
 
 
 class ErrorCodes(NamedTuple):
@@ -135,10 +133,6 @@ class ErrorCodes(NamedTuple):
     no_power: int = 0
 
 
-# By query and field: raw values, or a text.
-StartValues = tuple[tuple[str, tuple[tuple[str, tuple[int, ...] | str], ...]], ...]
-
-
 class Robot(NamedTuple):
     """The robot of an edition.
 
@@ -151,7 +145,7 @@ class Robot(NamedTuple):
         error_codes: the numbers of rejected motions.
         joint_limits: the lowest and the highest angle of each joint.
         start_angles: where each joint of a simulated arm is at first.
-        start_values: what queries report before anything has set it.
+        state: what the arm keeps, by name (:func:`cobotwire.protocol.effects.states_of`).
         geometry_unknown: why the links are not known, where they are not.
     """
 
@@ -163,7 +157,7 @@ class Robot(NamedTuple):
     error_codes: ErrorCodes | None = None
     joint_limits: tuple[tuple[float, float], ...] = ()
     start_angles: tuple[float, ...] = ()
-    start_values: StartValues = ()
+    state: Mapping[str, Record] = MappingProxyType({})
     geometry_unknown: str = ""
 
     @property
@@ -190,7 +184,7 @@ def load_robot(edition: Record) -> Robot:
         codes and ErrorCodes(**_numbers(codes)),
         tuple([(real(low), real(high)) for low, high in get("joint_limits", ())]),
         tuple([real(angle) for angle in get("start_angles", ())]),
-        tuple([(query, _values(fields)) for query, fields in get("start_values", {}).items()]),
+        get("state", UNSTATED.state),
         get("geometry_unknown", ""),
     )
 
@@ -217,10 +211,6 @@ def _number(value: Any) -> Any:
     if isinstance(value, list):
         return tuple([_number(item) for item in value])
     return real(value) if isinstance(value, str) else value
-
-
-def _values(fields: Record) -> tuple[tuple[str, tuple[int, ...] | str], ...]:
-    return tuple([(n, v if isinstance(v, str) else tuple(v)) for n, v in fields.items()])
 
 
 def real(number: int | str) -> float:

@@ -127,6 +127,7 @@ class _CommandFields(NamedTuple):
     event: bool = False
     accepted: tuple[int, ...] = ()
     package: str = ""
+    stated_effect: Mapping[str, Any] | None = None
 
 
 class Command(_CommandFields):
@@ -141,7 +142,13 @@ class Command(_CommandFields):
     names the queries that report the same quantity while the arm rests. ``arguments`` is the order
     of the method's arguments; if it is empty, they have the order of the wire.
     ``package`` is the generated package with the message types; empty for a table without one.
+    ``stated_effect`` is what the command does, as in ``edition.json``
+    (:func:`cobotwire.protocol.effects.effect_of`).
     """
+
+    def __hash__(self) -> int:
+        """Return a hash of some fields, which tell commands apart: that of all takes long."""
+        return hash((self.package, self.name, self.id))
 
     @property
     def argument_names(self) -> tuple[str, ...]:

@@ -10,13 +10,13 @@ from typing import Any, NamedTuple
 from cobotwire import codec as codecs
 from cobotwire.protocol.addresses import devices_of, find_address
 from cobotwire.protocol.errors import UsageError
-from cobotwire.protocol.messages import Event, Reply
+from cobotwire.protocol.messages import Event
 from cobotwire.protocol.table import Command, Table
-from cobotwire.simulator.arm_connection import ArmConnection, EventListener
-from cobotwire.simulator.behaviour import Behaviour, Sized, own
-from cobotwire.simulator.behaviour.by_role import PERFORMED, perform_role
+from cobotwire.simulator.arm_connection import ArmConnection, Done, EventListener
+from cobotwire.simulator.behaviour import Behaviour, own
 from cobotwire.simulator.behaviour.external import installed
 from cobotwire.simulator.devices import new_state
+from cobotwire.simulator.effects import Asked, perform
 from cobotwire.simulator.events import Events
 from cobotwire.simulator.kinematics import Geometry, geometry_of
 from cobotwire.simulator.motion.hand import checked
@@ -220,10 +220,8 @@ class SimulatedArm:
         """Forget an incomplete request on the arm's own connection; its client has left."""
         self._own_connection.forget_client()
 
-    def perform(
-        self, command: Command, fields: Mapping[str, Any], address: int | None
-    ) -> Reply[Any] | Sized | None:
-        """Perform a command; return the reply, None if the behaviour leaves it to the arm.
+    def perform(self, command: Command, fields: Mapping[str, Any], address: int | None) -> Done:
+        """Perform a command; return the reply or some of its fields; the arm fills in the rest.
 
         ``fields`` are those of the request, as the codec decodes them; ``address`` is that of the
         device, None if it has none.
@@ -233,16 +231,13 @@ class SimulatedArm:
         behaviour = self._behaviours.get(command.name) or self._own(command)
         elsewhere = self._is_elsewhere(fields)
         if elsewhere:
-            # The state has no place for it: what is set is only remembered.
+            # The arm has no such joint: what is set is only kept.
             behaviour, state.at_once = None, command.starts_motion
         try:
             if behaviour is not None:
                 request = behaviour.request_type.from_fields(fields)
                 return behaviour.behave(state, now, request)
-            if command.role in PERFORMED and not elsewhere:
-                return self._perform_role(command, state, now, fields)
-            state.remembered.store(self.table, command, fields)
-            return None
+            return perform(Asked(self.table, state, now, command, fields), elsewhere=elsewhere)
         finally:
             self.events.watch(command, address)
             for event, at in state.emitted:
@@ -263,20 +258,6 @@ class SimulatedArm:
         joint = fields.get("joint")
         # The servo after the last joint is the gripper's.
         return isinstance(joint, int) and self.table.joints + 1 < joint < EVERY_JOINT
-
-    def _perform_role(
-        self, command: Command, state: ArmState, now: float, fields: Mapping[str, Any]
-    ) -> Reply[Any] | None:
-        found = perform_role(self.table, state, now, command, fields)
-        if not found or command.reply_type is None:
-            return None
-        return command.reply_type.from_fields(found)
-
-    def recall(
-        self, command: Command, given: Mapping[str, Any], address: int | None
-    ) -> dict[str, Any]:
-        """Return what a device remembers of the values that a query reports."""
-        return self._states[address].remembered.recall(command, given)
 
     def note(self, command: Command, text: str) -> None:
         """Add a note."""

@@ -22,6 +22,10 @@ EventListener = Callable[[DeviceEvent, bytes], None]
 """Takes an event of a connection and the bytes of the reply; empty: there is no reply."""
 
 
+# What a command gives its reply.
+Done = Reply[Any] | Sized | Mapping[str, Any] | None
+
+
 class ConnectedArm(Protocol):
     """What a connection needs of its arm."""
 
@@ -40,15 +44,8 @@ class ConnectedArm(Protocol):
     def receivers(self, address: int | None) -> tuple[int | None, ...]:
         """Return the addresses of the devices that receive a request to an address."""
 
-    def perform(
-        self, command: Command, fields: Mapping[str, Any], address: int | None
-    ) -> Reply[Any] | Sized | None:
-        """Perform a command; return the reply, None if the behaviour leaves it to the arm."""
-
-    def recall(
-        self, command: Command, given: Mapping[str, Any], address: int | None
-    ) -> dict[str, Any]:
-        """Return what a device remembers of the values that a query reports."""
+    def perform(self, command: Command, fields: Mapping[str, Any], address: int | None) -> Done:
+        """Perform a command; return the reply or some of its fields; the arm fills in the rest."""
 
     def note(self, command: Command, text: str) -> None:
         """Add a note."""
@@ -163,7 +160,7 @@ class ArmConnection:
         self,
         command: Command,
         given: Mapping[str, Any],
-        reply: Reply[Any] | Sized | None,
+        reply: Done,
         address: int | None,
     ) -> bytes:
         """Return the bytes of a reply or an acknowledgement; empty if the command has none."""
@@ -171,7 +168,7 @@ class ArmConnection:
             return b""
         if isinstance(reply, Sized):
             return self._encode_sized(command, reply, address)
-        result = self._arm.recall(command, given, address) if reply is None else reply.fields
+        result = reply.fields if isinstance(reply, Reply) else reply or {}
         fields = completed(command, given, result)
         try:
             return self._session.encode_reply(command.name, fields, address)

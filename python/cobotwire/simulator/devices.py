@@ -7,8 +7,9 @@ from typing import Any
 
 from cobotwire.protocol.addresses import find_address, lacks_joints
 from cobotwire.protocol.table import Address, Command, Table
+from cobotwire.simulator.effects import begin
 from cobotwire.simulator.kinematics import Geometry
-from cobotwire.simulator.start import coordinates, joint_limits, set_start_values, steps
+from cobotwire.simulator.start import coordinates, joint_limits, steps
 from cobotwire.simulator.state import ArmState
 
 
@@ -20,7 +21,7 @@ def new_state(table: Table, geometry: Geometry | None, address: int | None) -> A
     state = ArmState(joints, own_geometry, table.robot, coordinates(table), steps(table))
     for joint, (lowest, highest) in enumerate(joint_limits(table)[:joints]):
         state.minimum[joint], state.maximum[joint] = lowest, highest
-    set_start_values(table, state)
+    begin(table, state)
     return state
 
 

@@ -39,7 +39,8 @@ def completed(
         command: the command.
         request: the fields of the request.
         result: the fields of the reply that the behaviour states.
-        usual: the value of fields without another one; None: 1 for acknowledgements, else 0.
+        usual: the value of fields without another one; None: 1 for acknowledgements and for flags
+            of commands that are no queries, else 0.
     """
     if command.text is not None:
         return {name: result.get(name, "") for name in command.text.fields}
@@ -54,7 +55,7 @@ def completed(
         if field.echo
         else result[field.name]
         if field.name in result
-        else _legal(field, usual)
+        else _legal(field, 1 if field.kind == "flag" and command.safety != "query" else usual)
         for field in _variant(command, result).fields
     }
 

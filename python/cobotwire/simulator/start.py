@@ -2,14 +2,10 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 from cobotwire.protocol.roles import row_index
-from cobotwire.protocol.table import Command, Number, Table
-from cobotwire.simulator.behaviour import BEHAVIOURS, own
+from cobotwire.protocol.table import Number, Table
 from cobotwire.simulator.coordinates import ALL_SIX, places_of
 from cobotwire.simulator.kinematics.ticks import Steps
-from cobotwire.simulator.state import ArmState
 
 Limits = list[tuple[float, float]]
 
@@ -56,21 +52,3 @@ def steps(table: Table) -> Steps:
 
 def _steps_of(number: Number) -> float:
     return 0.0 if number.encoding == "float" else number.divide / number.multiply
-
-
-def set_start_values(table: Table, state: ArmState) -> None:
-    """Let queries report what their edition states, until something else is set."""
-    for name, values in table.robot.start_values:
-        query = table.command(name)
-        for field, stated in values:
-            value = stated if isinstance(stated, str) else _physical(query, field, stated)
-            attribute = BEHAVIOURS.attributes.get((name, field))
-            if attribute is not None and own(table, query) is not None:
-                setattr(state, attribute, value)
-            else:
-                state.remembered.begin(name, field, value)
-
-
-def _physical(query: Command, name: str, raw: tuple[int, ...]) -> Any:
-    fields = (each for variant in query.reply for each in variant.fields if each.name == name)
-    return next(fields).physical(raw)

@@ -21,7 +21,6 @@ from cobotwire.simulator.kinematics import Geometry, Pose, flange
 from cobotwire.simulator.kinematics.ticks import Steps, reported_angles, reported_coords
 from cobotwire.simulator.motion import Axes
 from cobotwire.simulator.motion.hand import TimedPoint
-from cobotwire.simulator.remembered import Remembered
 
 NO_STEPS = Steps()
 # What this simulator assumes of a robot if the edition does not state it.
@@ -29,6 +28,7 @@ UNSTATED_MOTION = Dynamics(1.0, 100.0, 200.0)
 UNSTATED_GRIPPER = Gripper(1.0, 0, 100)
 NEAR_DEGREES, NEAR_MILLIMETRES = 0.1, 5.0
 HALF_TURN = 180.0
+NO_POSE = (0.0,) * 6
 # A gripper is at full speed from the beginning, in percent a square second.
 OPENING_ACCELERATION = 10_000.0
 # No source says how often a point is recorded; their number is a word.
@@ -53,43 +53,19 @@ class ArmState:
     connected: bool = True
     free: bool = False
     paused: bool = False
-    fresh_mode: int = 0
-    movement_type: int = 0
-    vision: bool = False
-    transparent: bool = False
-    speed: int = 50
-    colour: tuple[int, int, int] = (0, 0, 0)
-    reference_frame: int = 0
-    end_type: int = 0
-    # Whether the arm reports the end of each motion, and checks its position.
-    reports_ends: bool = True
-    checks_position: bool = True
-    port: int = 0
-    ssid: str = ""
-    password: str = ""
-    tool: tuple[float, ...] = (0.0,) * 6
-    world: tuple[float, ...] = (0.0,) * 6
-    remembered: Remembered = field(default_factory=Remembered)
-    # Whatever behaviours from outside of cobotwire keep.
+    # The state that the edition declares, by name, and what behaviours from outside keep. Of a
+    # state with a value for each index, a mapping from the index.
     kept: dict[str, Any] = field(default_factory=dict)
-    pins: dict[int, bool] = field(default_factory=dict)
-    pin_modes: dict[int, int] = field(default_factory=dict)
-    basic_pins: dict[int, bool] = field(default_factory=dict)
-    # By pin: the frequency in hertz and the duty cycle in 256ths.
-    pulses: dict[int, tuple[int, int]] = field(default_factory=dict)
-    gripper_torque: int = 0
-    gripper_current: int = 0
     # The last error; 0: none.
     error: int = 0
     recording: bool = False
-    # The encoders and speeds of each recorded point, and how many points were read back.
-    recorded: list[tuple[tuple[int, ...], tuple[int, ...]]] = field(default_factory=list)
+    # How many of the recorded points were read back.
     played: int = 0
     # When the next point is recorded.
     record_at: float = 0.0
     # How somebody leads the arm whenever it is released.
     hand: tuple[TimedPoint, ...] = ()
-    # The registers of backed up servos, counted from 0.
+    # The registers of backed up servos, counted from 1.
     backups: dict[int, dict[int, int]] = field(default_factory=dict)
     # How often the controller has started.
     starts: int = 1
@@ -106,7 +82,6 @@ class ArmState:
     enabled: list[bool] = field(init=False)
     minimum: list[float] = field(init=False)
     maximum: list[float] = field(init=False)
-    registers: list[dict[int, int]] = field(init=False)
 
     def __post_init__(self) -> None:
         start = self.robot.start_angles or (0.0,) * self.joints
@@ -114,8 +89,47 @@ class ArmState:
         self.enabled = [False] * self.joints
         self.minimum = [-HALF_TURN] * self.joints
         self.maximum = [HALF_TURN] * self.joints
-        # One servo more than joints: newer firmware counts the gripper's servo as the last.
-        self.registers = [dict(self.servos.registers) for _ in range(self.joints + 1)]
+
+    # The declared state that motion and kinematics obey. An edition that does not declare one has
+    # the value that changes nothing.
+    @property
+    def queues(self) -> bool:
+        """Whether a new target waits for the end of the present motion."""
+        return not self.kept.get("fresh_mode", 0)
+
+    @property
+    def moves_straight(self) -> bool:
+        """Whether the end moves on a straight line if the command does not choose."""
+        return bool(self.kept.get("movement_type", 0))
+
+    @property
+    def reports_ends(self) -> bool:
+        """Whether the arm reports the end of each motion."""
+        return bool(self.kept.get("reports_ends", True))
+
+    @property
+    def tool(self) -> tuple[float, ...] | None:
+        """The tool's pose on the flange, if it is the end; else None."""
+        return tuple(self.kept.get("tool", NO_POSE)) if self.kept.get("end_type", 0) else None
+
+    @property
+    def world(self) -> tuple[float, ...] | None:
+        """The base's pose in the world, if that is the frame of reference; else None."""
+        chosen = self.kept.get("reference_frame", 0)
+        return tuple(self.kept.get("world", NO_POSE)) if chosen else None
+
+    @property
+    def points(self) -> list[Any]:
+        """The recorded points: each has the encoder and the speed of each joint in turn."""
+        if not isinstance(self.kept.get("points"), list):
+            self.kept["points"] = []
+        points: list[Any] = self.kept["points"]
+        return points
+
+    @property
+    def light(self) -> tuple[int, ...]:
+        """The red, green and blue part of the light."""
+        return tuple(self.kept.get(part, 0) for part in ("red", "green", "blue"))
 
     @property
     def motion(self) -> Dynamics:
@@ -206,14 +220,15 @@ class ArmState:
 
     def record(self, now: float) -> None:
         """Record the points that were due by now; the sources do not define how often."""
-        while self.recording and self.record_at <= now and len(self.recorded) < MOST_POINTS:
+        while self.recording and self.record_at <= now and len(self.points) < MOST_POINTS:
             self.record_point(self.record_at)
             self.record_at += RECORD_EVERY_SECONDS
 
     def record_point(self, now: float) -> None:
         """Record the encoders and speeds of the joints."""
         encoders = tuple(self.encoder(joint, now) for joint in range(self.joints))
-        self.recorded.append((encoders, self.servo_speeds(now)))
+        pairs = zip(encoders, self.servo_speeds(now))
+        self.points.append(tuple(part for pair in pairs for part in pair))
 
     def power_on(self) -> None:
         """Power and hold every joint where it is; connect the Atom."""
@@ -270,12 +285,12 @@ class ArmState:
         if self.geometry is None:
             return None
         pose = flange(self.geometry, angles)
-        if self.end_type:
+        if self.tool is not None:
             pose = pose.then(Pose.of(self.tool))
-        return Pose.of(self.world).then(pose) if self.reference_frame and not base else pose
+        return pose if base or self.world is None else Pose.of(self.world).then(pose)
 
     def flange_for(self, end: Pose) -> Pose:
         """Return the flange's pose in the frame of the base when the end is at ``end``."""
-        if self.end_type:
+        if self.tool is not None:
             end = end.then(Pose.of(self.tool).inverted())
-        return Pose.of(self.world).inverted().then(end) if self.reference_frame else end
+        return end if self.world is None else Pose.of(self.world).inverted().then(end)

@@ -81,7 +81,7 @@ def go_to_angles(
                 return reject(arm, why, arm.error_codes.joint_limits[joint])
             wish = min(max(arm.on_tick(wish), low), high)
         goal.append(wish)
-    arm.angles.go(goal, rate(arm, speed), now, queue=_queues(arm) if queue is None else queue)
+    arm.angles.go(goal, rate(arm, speed), now, queue=arm.queues if queue is None else queue)
     # Also if it is there already: then the motion takes no time.
     arm.at_once = True
     _note_a_pause(arm)
@@ -130,7 +130,7 @@ def go_to_coords(
         return False
     if arm.geometry is None:
         raise Unanswerable
-    start = arm.angles.target(now) if _queues(arm) else arm.angles.stop_at(now)
+    start = arm.angles.target(now) if arm.queues else arm.angles.stop_at(now)
     if not isinstance(target, Pose):
         target = tuple(target)
         if is_there(arm, target, start):
@@ -148,7 +148,7 @@ def go_to_coords(
     if not points:
         why = f"rejected: the joints cannot follow a straight line{_ended(effort)}"
         return reject(arm, why, arm.error_codes.no_straight_line)
-    _go_along(arm, points, speed, now, queue=_queues(arm))
+    _go_along(arm, points, speed, now, queue=arm.queues)
     return True
 
 
@@ -247,7 +247,3 @@ def _note_a_pause(arm: ArmState) -> None:
 def _steps(start: Pose, end: Pose) -> int:
     way, turn = start.distance(end)
     return max(math.ceil(way / STEP_MILLIMETRES), math.ceil(turn / STEP_DEGREES), 1)
-
-
-def _queues(arm: ArmState) -> bool:
-    return arm.fresh_mode == 0

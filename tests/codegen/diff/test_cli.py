@@ -194,7 +194,7 @@ def test_bad_waiver_is_reported_with_its_place(waivers: str, message: str) -> No
 def test_problem_of_a_compared_spec_is_reported_with_its_place() -> None:
     result = run(("safety: motion", "safety: moton"))
     assert result.exit_code == 2
-    assert "new.yaml:92:17: unknown-word: " in result.output
+    assert "new.yaml:96:17: unknown-word: " in result.output
 
 
 def test_diff_with_an_unknown_source_exits_with_2() -> None:

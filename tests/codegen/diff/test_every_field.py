@@ -23,16 +23,17 @@ from cobotwire_codegen.model import Edition
 
 HERE = Path(__file__).parent
 PLACE = Place("test", 1, 1)
-# Fields that say where something stands or stood in the spec.
-PLACES = ("place", "gone")
+# Fields that say where something stands or stood in the spec, or that follow from other fields.
+PLACES = ("place", "gone", "by_role", "read_by")
 RECORDS = [
     item
     for item in vars(model).values()
     if isinstance(item, type)
     and is_dataclass(item)
     and item.__module__.startswith(model.__name__)
-    # The frames of the small spec have only a footer; below, a check is put in its place.
-    and item is not model.FrameCheck
+    # The frames of the small spec have only a footer; below, a check is put in its place. What
+    # reads a command back follows from effects.
+    and item not in (model.FrameCheck, model.ReadBack)
 ]
 FIELDS = [
     (record, field.name)
@@ -63,6 +64,7 @@ NEW: dict[str, Any] = {
     "printed": b"\xfe",
     "default": (1,),
     "arguments": ("new",),
+    "options": (("speed", "new"),),
     "example": 3,
     "line": 3,
 }
@@ -90,7 +92,9 @@ def _spots(value: Any, path: tuple[str | int, ...]) -> Iterator[Any]:
             # A selector without cases, or cases without a selector, is not a valid model.
             if field.name not in PLACES and not (field.name in ("selector", "cases") and not part):
                 yield type(value), field.name, (*path, field.name)
-                yield from _spots(part, (*path, field.name))
+                # The type of a state is one of the edition's types.
+                if not isinstance(value, model.State):
+                    yield from _spots(part, (*path, field.name))
 
 
 @lru_cache

@@ -115,5 +115,5 @@ def test_diff_reports_that_git_is_missing(
 def test_problem_of_a_compared_spec_is_reported_with_its_revision(repository: Path) -> None:
     put(repository, BASE.replace("safety: motion", "safety: moton"))
     git(repository, "commit", "-am", "bad")
-    with pytest.raises(SpecError, match=r"HEAD:spec/editions/small\.yaml:92:17: unknown-word: "):
+    with pytest.raises(SpecError, match=r"HEAD:spec/editions/small\.yaml:96:17: unknown-word: "):
         read("HEAD")

@@ -52,11 +52,11 @@ def test_run_restores_what_it_changes(edition: str) -> None:
 
 # A change of each kind of value: plain, in a row, in a dict of a list, in a dict of a dict.
 CHANGES: list[Callable[[ArmState], object]] = [
-    lambda state: setattr(state, "speed", state.speed + 1),
-    lambda state: setattr(state, "tool", (*state.tool[:5], 0.1)),
+    lambda state: state.kept.update(speed=state.kept["speed"] + 1),
+    lambda state: state.kept.update(tool=(*state.kept["tool"][:5], 0.1)),
     lambda state: state.minimum.append(state.minimum.pop() + 0.1),
-    lambda state: state.registers[3].update({21: state.registers[3][21] + 1}),
-    lambda state: state.pins.update({5: True}),
+    lambda state: state.kept["registers"].update({(4, 21): 11}),
+    lambda state: state.kept["pins"].update({(5,): True}),
     lambda state: state.backups.update({1: {20: 1}}),
 ]
 

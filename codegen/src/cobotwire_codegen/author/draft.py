@@ -31,6 +31,7 @@ class Draft:
     source: str
     request: tuple[tuple[str, str, bool], ...]
     reply: tuple[tuple[str, str, bool], ...]
+    effect: str = ""
 
 
 def command_lines(draft: Draft) -> list[str]:
@@ -38,6 +39,8 @@ def command_lines(draft: Draft) -> list[str]:
     lines = [f"{draft.name}:", f"  id: 0x{draft.id:02X}"]
     lines += [f"  title: {_scalar(draft.title)}", *_long("  doc", draft.doc)]
     lines.append(f"  safety: {draft.safety}")
+    if draft.effect:
+        lines.append(f"  effect: {draft.effect}")
     if draft.source:
         lines.append(f"  source: [{draft.source}]")
     for key, fields in (("request", draft.request), ("reply", draft.reply)):

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from cobotwire_codegen import language
+from cobotwire_codegen.build.effects import build_effect
 from cobotwire_codegen.build.fields import build_field, build_variants
 from cobotwire_codegen.build.parts import FamilyParts, Parts
-from cobotwire_codegen.build.read_back import build_read_back, build_samples
+from cobotwire_codegen.build.read_back import build_samples
 from cobotwire_codegen.build.text import build_reply_text, build_request_text
 from cobotwire_codegen.build.types import Types, disputes
 from cobotwire_codegen.errors import Place, Problem
@@ -115,7 +118,7 @@ def _command(
     else:
         accepted = build_accepted(reader.get(spec.accepted), replies, reader)
     event = reader.get(spec.event)
-    return Command(
+    command = Command(
         place=place,
         id=_id(reader),
         name=name,
@@ -134,7 +137,7 @@ def _command(
         shares_id=reader.get(spec.shares_id),
         text=text,
         request_text=build_request_text(reader, spec.request_text),
-        read_by=build_read_back(reader),
+        read_by=None,
         samples=build_samples(reader),
         agrees_with=reader.get(spec.agrees_with),
         notes=reader.get(spec.notes),
@@ -142,3 +145,5 @@ def _command(
         changes=tuple(parts.changes.get(name, ())),
         arguments=reader.get(spec.arguments),
     )
+    effect = build_effect(reader.get(spec.effect), command, problems)
+    return replace(command, effect=effect)

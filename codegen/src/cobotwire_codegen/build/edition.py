@@ -8,9 +8,11 @@ from pathlib import Path
 from cobotwire_codegen import language
 from cobotwire_codegen.build.commands import build_family
 from cobotwire_codegen.build.delta import apply_changes
+from cobotwire_codegen.build.effects import build_state
 from cobotwire_codegen.build.frame import build_frame_format
 from cobotwire_codegen.build.inherit import carried
 from cobotwire_codegen.build.parts import Files, Inherited, Parts, Texts, add_own
+from cobotwire_codegen.build.read_back import with_read_back
 from cobotwire_codegen.build.robot import build_robot
 from cobotwire_codegen.build.types import Types
 from cobotwire_codegen.build.vectors import build_erratum, build_vector
@@ -98,11 +100,16 @@ def _build(reader: Reader, parts: Parts, problems: list[Problem]) -> Edition:
     spec = language.WholeEdition
     frame = build_frame_format(parts, reader.place, problems)
     types = Types(parts.types, problems)
-    families = tuple(
-        build_family(family, parts, types, frame.deadline_ms, problems)
-        for family in parts.families.values()
-        if family.commands
+    robot = build_robot(parts, problems)
+    families = with_read_back(
+        [
+            build_family(family, parts, types, frame.deadline_ms, problems)
+            for family in parts.families.values()
+            if family.commands
+        ],
+        robot.encoders.zero if robot.encoders else None,
     )
+    commands = [command for family in families for command in family.commands]
     return Edition(
         place=reader.place,
         name=reader.get(spec.edition),
@@ -113,7 +120,7 @@ def _build(reader: Reader, parts: Parts, problems: list[Problem]) -> Edition:
         firmware=reader.get(spec.firmware),
         base=_base_name(reader),
         joints=parts.joints or 0,
-        robot=build_robot(parts, families, problems),
+        robot=robot,
         frame=frame,
         wires=tuple(types.wires.values()),
         types=tuple(types.types.values()),
@@ -124,6 +131,7 @@ def _build(reader: Reader, parts: Parts, problems: list[Problem]) -> Edition:
             *(build_vector(node, problems) for node in parts.vectors),
         ),
         changes=tuple(parts.general_changes),
+        states=build_state(parts, types, commands, problems),
         gone=tuple(parts.gone.items()),
         bases=(parts.base.name, *parts.base.bases) if parts.base else (),
     )

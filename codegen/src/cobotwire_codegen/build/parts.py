@@ -63,9 +63,9 @@ class Parts:
     robot: dict[str, Node] = field(default_factory=dict)
     # Why there is no geometry; it has no effect beside one.
     geometry_unknown: str = ""
-    # By query; those that the edition states itself, not its base.
-    start_values: dict[str, Node] = field(default_factory=dict)
-    own_start_values: set[str] = field(default_factory=set)
+    # What the arm keeps, by name; and the names that the edition states itself, not its base.
+    state: Named = field(default_factory=dict)
+    own_state: set[str] = field(default_factory=set)
     acks: Node | None = None
     # Commands that the rule in `acks` no longer covers, by changes of a delta.
     unacknowledged: set[str] = field(default_factory=set)
@@ -206,9 +206,18 @@ def _add_robot(parts: Parts, reader: Reader) -> None:
         node = reader.node(spec.keys()[name])
         if node is not None:
             parts.robot[name] = node
-    own = {name: node for name, _, node in reader.get(spec.start_values)}
-    parts.start_values |= own
-    parts.own_start_values = set(own)
+    parts.own_state = set()
+    for name, place, node in reader.get(spec.state):
+        parts.own_state.add(name)
+        _, before = parts.state.get(name, (place, node))
+        parts.state[name] = (place, _over(before, node))
+
+
+def _over(before: Node, node: Node) -> Node:
+    """Return a mapping with the keys of another one in place of its own."""
+    if not (isinstance(before, Mapping) and isinstance(node, Mapping)):
+        return node
+    return Mapping(node.place, before.entries | node.entries, before.keys | node.keys)
 
 
 def _one_or_many(node: Node | None) -> tuple[Node, ...]:

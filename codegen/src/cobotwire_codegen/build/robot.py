@@ -3,49 +3,32 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import replace
 from fractions import Fraction
 from functools import partial
 from typing import TypeVar
 
 from cobotwire_codegen import language
 from cobotwire_codegen.build.parts import Parts
-from cobotwire_codegen.build.vectors import plain_value
 from cobotwire_codegen.errors import Place, Problem
-from cobotwire_codegen.language.records import Key, entries_of
+from cobotwire_codegen.language.records import Key
 from cobotwire_codegen.load import Node
 from cobotwire_codegen.model import (
     Encoders,
     ErrorCodes,
-    Family,
     Geometry,
     Gripper,
     Link,
     Motion,
     Robot,
     Servos,
-    StartValues,
 )
 from cobotwire_codegen.reader import Reader
-from cobotwire_codegen.start_values import reported_fields
 
 T = TypeVar("T")
 
 
-def build_robot(parts: Parts, families: Iterable[Family], problems: list[Problem]) -> Robot:
-    """Return what an edition and its bases state about their robot.
-
-    What the base states about queries and fields that the edition lacks is left out.
-    """
-    values = [_start_values(*entry, problems) for entry in parts.start_values.items()]
-    reported = {
-        command.name: reported_fields(command) for each in families for command in each.commands
-    }
-    for index, stated in enumerate(values):
-        if stated.query not in parts.own_start_values:
-            fields = reported.get(stated.query, {})
-            kept = tuple(pair for pair in stated.values if pair[0] in fields)
-            values[index] = replace(stated, values=kept)
+def build_robot(parts: Parts, problems: list[Problem]) -> Robot:
+    """Return what an edition and its bases state about their robot."""
     build = partial(_part, parts, problems)
     robot = Robot(
         build("geometry", _geometry),
@@ -56,7 +39,6 @@ def build_robot(parts: Parts, families: Iterable[Family], problems: list[Problem
         build("error_codes", _error_codes),
         build("joint_limits", _joint_limits) or (),
         build("start_angles", _start_angles) or (),
-        tuple(each for each in values if each.values),
         "" if "geometry" in parts.robot else parts.geometry_unknown,
     )
     for number, (angle, pair) in enumerate(zip(robot.start_angles, robot.joint_limits), 1):
@@ -156,8 +138,7 @@ def _servos(node: Node, joints: int, problems: list[Problem]) -> Servos:
         for name, _, value in reader.get(spec.registers)
         if name.isdigit()
     )
-    voltage, temperature = (_stated(reader, key) for key in (spec.voltage, spec.temperature))
-    return Servos(registers, voltage, temperature, reader.get(spec.doc))
+    return Servos(registers, reader.get(spec.doc))
 
 
 def _error_codes(node: Node, joints: int, problems: list[Problem]) -> ErrorCodes:
@@ -207,11 +188,3 @@ def _one_each(
 
 def _note(problems: list[Problem], code: str, message: str, place: Place) -> None:
     problems.append(Problem(place, code, message))
-
-
-def _start_values(query: str, node: Node, problems: list[Problem]) -> StartValues:
-    note = partial(_note, problems)
-    entries = entries_of(node, f"{query} in start_values", note)
-    return StartValues(
-        node.place, query, tuple((name, plain_value(value)) for name, _, value in entries)
-    )

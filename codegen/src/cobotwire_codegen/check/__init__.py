@@ -9,12 +9,12 @@ from cobotwire_codegen.build import build_edition
 from cobotwire_codegen.check import (
     arguments,
     commands,
+    effects,
     evidence,
     names,
-    read_back,
     reserved,
-    robot,
     roles,
+    samples,
     types,
     variants,
 )
@@ -30,9 +30,9 @@ RULES: tuple[Rule, ...] = (
     *commands.RULES,
     *variants.RULES,
     *arguments.RULES,
-    *read_back.RULES,
+    *samples.RULES,
     *roles.RULES,
-    *robot.RULES,
+    *effects.RULES,
     *evidence.RULES,
 )
 

@@ -22,11 +22,14 @@ from cobotwire_codegen.check import check as check_edition
 from cobotwire_codegen.cli.explain import DEFAULT_EDITION
 from cobotwire_codegen.cli.shared import edition_path, report_problems
 from cobotwire_codegen.errors import nearest
-from cobotwire_codegen.language.words import SAFETY
+from cobotwire_codegen.language.words import BUILT_IN, SAFETY
 from cobotwire_codegen.load import Mapping, Node, Scalar, Sequence, parse
 from cobotwire_codegen.model import Command, Edition, Variant
 from cobotwire_codegen.wire import build_frame
 
+_ASKED_EFFECT = (
+    "What it does: {stores: STATE}, {reports: STATE}, {sets: {STATE: VALUE}}, {moves: PART, ...}"
+)
 _NEEDED = {
     "name": "The method's name",
     "id": "The id, such as 0x7E",
@@ -53,6 +56,12 @@ _NEEDED = {
 @click.option("--reply-vector", help="A captured reply, in hex.")
 @click.option("--values", help="Values for the request's vector, as 'NAME: VALUE, NAME: VALUE'.")
 @click.option("--reply-values", help="Values for the reply's vector.")
+@click.option(
+    "--effect",
+    help="What it does, as in the spec: {stores: fan_speed}. A state that is new is declared with "
+    "the type of its field.",
+)
+@click.option("--start", help="What a new state is at the start.")
 @click.option("--source", default="", help="Lines of the document, such as 20-39.")
 @click.option("--dry-run", is_flag=True, help="Print the YAML and write nothing.")
 def new_command(file: str, dry_run: bool, **given: str | None) -> None:
@@ -70,6 +79,10 @@ def new_command(file: str, dry_run: bool, **given: str | None) -> None:
         home, target = homes[given["family"] or ""], vectors_file(path)
         text = home.read_text(encoding="utf-8")
         changed = {home: appended(text, str(home), "commands", command_lines(draft), True)}
+        declared = list(_new_states(draft, built_with(path, {}), given["start"]))
+        if declared:
+            text = changed.get(path) or path.read_text(encoding="utf-8")
+            changed[path] = appended(text, str(path), "state", declared, False)
         vectors = list(_vectors(built_with(path, changed), draft, given))
         for lines in vectors:
             text = changed.get(target) or target.read_text(encoding="utf-8")
@@ -77,6 +90,8 @@ def new_command(file: str, dry_run: bool, **given: str | None) -> None:
         check_edition(built_with(path, changed))
     if dry_run:
         _show(home, command_lines(draft))
+        if declared:
+            _show(path, declared)
         _show(target, [line for lines in vectors for line in lines])
         return
     for place, text in changed.items():
@@ -106,6 +121,8 @@ def _complete(given: dict[str, str | None], homes: dict[str, Path]) -> None:
         for word in ("request", "reply"):
             if given[word] is None:
                 given[word] = click.prompt(f"Fields of the {word}, NAME:TYPE,...", default="")
+        if given["effect"] is None:
+            given["effect"] = click.prompt(_ASKED_EFFECT, default="")
     family = given["family"] or ""
     if family not in homes:
         raise click.UsageError(f"there is no family {family}{nearest(family, homes)}")
@@ -131,7 +148,36 @@ def _draft(given: dict[str, str | None]) -> Draft:
         words["source"],
         _fields("request", words["request"]),
         _fields("reply", words["reply"]),
+        words["effect"],
     )
+
+
+def _new_states(draft: Draft, edition: Edition, start: str | None) -> Iterator[str]:
+    """Yield the declaration of each state that a draft stores or reports, and that is new."""
+    node = parse(draft.effect or "{}", "--effect")
+    entries = node.entries if isinstance(node, Mapping) else {}
+    types = {name: type for name, type, echo in (*draft.request, *draft.reply) if not echo}
+    indices = [str(item) for item in _listed(entries.get("at"))]
+    others = [name for name in types if name not in indices]
+    known = {*BUILT_IN, *(state.name for state in edition.states)}
+    for verb in ("stores", "reports"):
+        stated = entries.get(verb)
+        if isinstance(stated, Mapping):
+            pairs = [(name, str(_plain(state))) for name, state in stated.entries.items()]
+        else:
+            pairs = [(name, str(_plain(stated))) for name in others[:1] if stated is not None]
+        for name, state in pairs:
+            if state not in known and name in types:
+                each = f", each: [{', '.join(types[i] for i in indices if i in types)}]"
+                begins = f", start: {start}" if start else ""
+                yield f"{state}: {{type: {types[name]}{each if indices else ''}{begins}}}"
+
+
+def _listed(node: Node | None) -> tuple[object, ...]:
+    if node is None:
+        return ()
+    found = _plain(node)
+    return found if isinstance(found, tuple) else (found,)
 
 
 def _fields(flag: str, text: str) -> tuple[tuple[str, str, bool], ...]:

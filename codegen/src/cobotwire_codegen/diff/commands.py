@@ -65,8 +65,8 @@ def _command(where: str, old: Command, new: Command) -> Iterator[Finding]:
         yield finding("safety-changed", where, old.safety, new.safety)
     if old.role != new.role:
         yield finding("role-changed", where, old.role or "none", new.role or "none")
-    if words.read_back(old) != words.read_back(new):
-        yield finding("read-back-changed", where, words.read_back(old), words.read_back(new))
+    if words.effect(old.effect) != words.effect(new.effect):
+        yield finding("effect-changed", where, words.effect(old.effect), words.effect(new.effect))
     if old.agrees_with != new.agrees_with:
         shown = [words.names(side.agrees_with) or "nothing" for side in (old, new)]
         yield finding("agreement-changed", where, *shown)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 
-from cobotwire_codegen.diff import prose
+from cobotwire_codegen.diff import prose, words
 from cobotwire_codegen.diff.commands import command_changes
 from cobotwire_codegen.diff.families import family_changes
 from cobotwire_codegen.diff.finding import Finding, finding
@@ -65,6 +65,7 @@ def _edition(old: Edition, new: Edition) -> Iterator[Finding]:
         if before != after:
             yield finding(rule, where, before, after)
     yield from robot_changes(old.robot, new.robot)
+    yield from _state_changes(old, new)
     yield from prose.doc("edition/title", old.title, new.title)
     yield from prose.doc("edition", old.doc, new.doc)
     yield from prose.doc("edition/document", old.document, new.document)
@@ -75,3 +76,14 @@ def _bases(old: Edition, new: Edition) -> tuple[str, str]:
     if old.base != new.base:
         return old.base, new.base
     return ", ".join(old.bases), ", ".join(new.bases)
+
+
+def _state_changes(old: Edition, new: Edition) -> Iterator[Finding]:
+    """Compare what two editions declare that their arms keep."""
+    before, after = ({state.name: state for state in side.states} for side in (old, new))
+    for name in dict.fromkeys((*before, *after)):
+        shown = [
+            words.state(side[name]) if name in side else "not declared" for side in (before, after)
+        ]
+        if shown[0] != shown[1]:
+            yield finding("state-changed", f"edition/state/{name}", *shown)

@@ -8,11 +8,11 @@ from typing import Any
 
 from cobotwire_codegen.diff import prose
 from cobotwire_codegen.diff.finding import Finding, finding
-from cobotwire_codegen.model import Geometry, Robot, StartValues
+from cobotwire_codegen.model import Geometry, Robot
 from cobotwire_codegen.publish_robot import is_coupled
 
 _PARTS = ("geometry", "motion", "encoders", "gripper", "servos", "error_codes")
-_LISTS = ("joint_limits", "start_angles", "start_values")
+_LISTS = ("joint_limits", "start_angles")
 
 
 def robot_changes(old: Robot, new: Robot) -> Iterator[Finding]:
@@ -46,8 +46,6 @@ def _fields(part: Any, hidden: tuple[str, ...]) -> str:
 
 
 def _value(value: Any) -> str:
-    if isinstance(value, StartValues):
-        return f"{value.query}: {_value(value.values)}"
     if isinstance(value, tuple):
         return f"[{', '.join(map(_value, value))}]"
     return str(value) if isinstance(value, Fraction | int | str) else repr(value)

@@ -92,7 +92,7 @@ _API = {
 _BEHAVIOUR = {
     "address-joints-changed": "the joints of the device were {old}, are {new}",
     "agreement-changed": "agreed with {old}, agrees with {new}: runs compare other queries",
-    "read-back-changed": "read_by was {old}, is {new}: conformance runs send other queries",
+    "effect-changed": "it did: {old}; it does: {new}",
     "samples-changed": "a conformance run sent {old}, sends {new}",
     "ack-changed": "whether it has an acknowledgement: was {old}, is {new}",
     "choices-narrowed": "legal raw values were {old}, are {new}: some are now rejected",
@@ -107,7 +107,7 @@ _BEHAVIOUR = {
     "error-codes-changed": "the numbers of rejected motions were {old}, are {new}",
     "joint-limits-changed": "the limits of the joints were {old}, are {new}",
     "start-angles-changed": "a simulated arm began at {old}, begins at {new}",
-    "start-values-changed": "queries first reported {old}, now report {new}",
+    "state-changed": "the state was {old}, is {new}",
     "joints-changed": "the arm had {old} joints, has {new}",
     "maximum-data-changed": "a frame carried up to {old} data bytes, carries {new}",
     "range-moved": "the range was {old}, is {new}: values on either side are rejected",

@@ -5,7 +5,18 @@ from __future__ import annotations
 from collections.abc import Iterable
 from fractions import Fraction
 
-from cobotwire_codegen.model import Address, Command, Frame, Member, Quantity, Text, Variant, Wire
+from cobotwire_codegen.model import (
+    Address,
+    Command,
+    Effect,
+    Frame,
+    Member,
+    Quantity,
+    State,
+    Text,
+    Variant,
+    Wire,
+)
 from cobotwire_codegen.render.words import decimal, lines
 
 LONGEST = 60
@@ -13,16 +24,17 @@ LONGEST = 60
 __all__ = [
     "address_range",
     "choices",
+    "effect",
     "frame_check",
     "layout",
     "lines",
     "member",
     "names",
-    "read_back",
     "samples",
     "short",
     "sign",
     "span",
+    "state",
     "template",
     "variant",
     "yes",
@@ -114,13 +126,23 @@ def variant(found: Variant) -> str:
     )
 
 
-def read_back(command: Command) -> str:
-    """Return the query that reads what a command sets."""
-    back = command.read_by
-    if back is None:
-        return "nothing"
-    shown = names(f"{name} = {value}" for name, value in back.fields)
-    return f"{back.query} ({shown})" if shown else back.query
+def effect(found: Effect | None) -> str:
+    """Return what a command does, as the spec states it, in one line."""
+    if found is None:
+        return "not stated"
+    pairs = [f"{name}: {value}" for name, value in (*found.values, *found.options)]
+    pairs += [f"{name}: ({effect(inner)})" for name, inner in found.cases]
+    pairs += [f"at: {names(found.at)}"] if found.at else []
+    pairs += [f"assumed: {found.assumed}"] if found.assumed else []
+    return names([" ".join(filter(None, (found.verb, found.what))), *pairs])
+
+
+def state(found: State) -> str:
+    """Return what is declared of a state, in one line."""
+    parts = [found.type.name if found.type else "a text"]
+    parts += [f"for each {names(found.each)}"] if found.each else []
+    parts += [f"at the start {found.start}"] if found.start is not None else []
+    return names(parts)
 
 
 def samples(command: Command) -> str:

@@ -12,7 +12,7 @@ from cobotwire_codegen.model import Edition
 
 # Keys whose values are names of commands, types and vectors.
 _COMMANDS = {"command", "commands", "change", "remove", "rename", "alias", "shares_id", "except"}
-_COMMANDS |= {"agrees_with", "read_by", "withdraw_acks"}
+_COMMANDS |= {"agrees_with", "withdraw_acks"}
 
 
 class Completion(NamedTuple):

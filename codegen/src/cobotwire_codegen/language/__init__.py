@@ -28,6 +28,13 @@ from cobotwire_codegen.language.edition import (
     DeltaEdition,
     WholeEdition,
 )
+from cobotwire_codegen.language.effects import (
+    ANY_EFFECT,
+    ByCase,
+    Does,
+    Moves,
+    State,
+)
 from cobotwire_codegen.language.facts import Dispute, Evidence
 from cobotwire_codegen.language.frame import Address, Frame, FrameFile, Transport
 from cobotwire_codegen.language.messages import (
@@ -78,6 +85,7 @@ from cobotwire_codegen.language.types import (
 )
 
 __all__ = [
+    "ANY_EFFECT",
     "CHANGE",
     "EDITION",
     "FIELDS",
@@ -92,6 +100,7 @@ __all__ = [
     "Address",
     "BitPart",
     "Bits",
+    "ByCase",
     "Case",
     "ChangeCommands",
     "ChangeRequestField",
@@ -103,6 +112,7 @@ __all__ = [
     "CommandsFile",
     "DeltaEdition",
     "Dispute",
+    "Does",
     "Encoders",
     "Enum",
     "ErrataFile",
@@ -120,6 +130,7 @@ __all__ = [
     "Listed",
     "Member",
     "Motion",
+    "Moves",
     "NamedVector",
     "Octets",
     "Quantity",
@@ -135,6 +146,7 @@ __all__ = [
     "RequestText",
     "SelectedRequestField",
     "Servos",
+    "State",
     "TextField",
     "Transport",
     "TypesFile",

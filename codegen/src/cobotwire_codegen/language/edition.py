@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from cobotwire_codegen.language.changes import CHANGE, ChangesFile
+from cobotwire_codegen.language.effects import State
 from cobotwire_codegen.language.frame import FrameFile
 from cobotwire_codegen.language.json_schema import ref
 from cobotwire_codegen.language.messages import Command, CommandsFile, ReplyField, accepted_key
@@ -30,7 +31,7 @@ from cobotwire_codegen.language.robot import (
     Motion,
     Servos,
 )
-from cobotwire_codegen.language.shapes import Anything, Name, Names, Text
+from cobotwire_codegen.language.shapes import Name, Names, Text
 from cobotwire_codegen.language.types import SECTIONS, TypesFile
 
 _JOINTS = "How many joints the arm has."
@@ -122,10 +123,10 @@ class _Edition(Record):
         "For each joint, where that of a simulated arm is at first. A delta with as many joints "
         "inherits them. Left out: at 0 degrees.",
     )
-    start_values = optional(
-        Named(Anything("a mapping from fields to values", {"type": "object"}), METHOD),
-        "By query: the fields of its reply, and what they report before anything has set them. A "
-        "delta inherits those of its base, as far as it has the queries and fields.",
+    state = optional(
+        Named(State, LOWER),
+        "What the arm keeps, by name. A delta inherits the state of its base, and replaces single "
+        "keys of it.",
     )
 
 

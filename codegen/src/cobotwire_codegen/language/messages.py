@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from cobotwire_codegen.language import facts
-from cobotwire_codegen.language.json_schema import Schema, either
+from cobotwire_codegen.language.effects import ANY_EFFECT_PART
 from cobotwire_codegen.language.names import CASE, CLASS, LOWER, METHOD
 from cobotwire_codegen.language.number_shapes import Numbers, Range, Whole, WholeOrMember
 from cobotwire_codegen.language.records import (
@@ -151,16 +151,6 @@ fields:
 """
 
 
-def _read_by() -> Schema:
-    stated: Schema = {
-        "type": "object",
-        "propertyNames": {"pattern": LOWER},
-        "additionalProperties": {"type": ["string", "integer"]},
-    }
-    query = {"additionalProperties": stated, "minProperties": 1, "maxProperties": 1}
-    return either("object", {"type": "object", **query}, {"type": "string"})
-
-
 def accepted_key() -> Key[Node | None]:
     """Return the key for the status values that mean success."""
     return optional(
@@ -222,13 +212,10 @@ class Command(Record):
     role = optional(
         Word(ROLES, ROLES.values()), "How hand-written code finds the command in every edition.", ""
     )
-    read_by = optional(
-        Anything(
-            "a query's name, or {QUERY: {reply field: request field or whole number}}", _read_by()
-        ),
-        "The query that reports what the command has set, so that a conformance run can set, read "
-        "and compare. Fields of the same name are compared. If the names differ, or the reply then "
-        "has a fixed value, map each field of the reply to an argument or to that value.",
+    effect = optional(
+        ANY_EFFECT_PART,
+        "What the command does. A role that says it already replaces the key. Left out: not "
+        "stated; a simulated arm sends a legal reply, and its state does not change.",
     )
     agrees_with = optional(Names(), "Queries that report the same values while the arm rests.")
     samples = optional(

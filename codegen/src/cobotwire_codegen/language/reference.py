@@ -13,6 +13,7 @@ from cobotwire_codegen.language.changes import (
     ChangesFile,
 )
 from cobotwire_codegen.language.edition import Acks, DeltaEdition, WholeEdition
+from cobotwire_codegen.language.effects import ANY_EFFECT, State
 from cobotwire_codegen.language.facts import Dispute, Evidence
 from cobotwire_codegen.language.frame import Address, Frame, FrameFile, Transport
 from cobotwire_codegen.language.messages import (
@@ -50,6 +51,7 @@ _CHAPTERS: tuple[tuple[str, tuple[Described, ...]], ...] = (
     ("The frame", (FrameFile, Frame, Address, Transport)),
     ("Types", (TypesFile, *SECTIONS.values(), Member, BitPart)),
     ("Commands", (CommandsFile, Command)),
+    ("State and effects", (State, ANY_EFFECT)),
     ("Fields", (ANY_REQUEST_FIELD, ANY_REPLY_FIELD, Case)),
     ("Text outside any frame", (RequestText, ReplyText, TextField)),
     ("Changes of a delta", (ChangesFile, CHANGE, REQUEST_CHANGE, REPLY_CHANGE)),

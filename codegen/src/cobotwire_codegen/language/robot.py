@@ -90,10 +90,8 @@ class Servos(Record):
     registers = optional(
         Named(Whole(0), NUMBER), "The registers by address, and their initial values."
     )
-    voltage = optional(Exact(), "The supply voltage while the arm has power, in volts.")
-    temperature = optional(Real(), "The temperature, in degrees Celsius.")
     doc = required(Text(), "Where the numbers are taken from.")
-    EXAMPLE = "{registers: {21: 10}, voltage: 12, temperature: 30, doc: The chart of registers.}"
+    EXAMPLE = "{registers: {21: 10}, doc: The chart of registers.}"
 
 
 class ErrorCodes(Record):

@@ -43,6 +43,51 @@ ROLES = {
     "halt": "Ends a motion or discards targets, and starts no motion.",
     "light": "Sets the colour of a light; nothing moves, and nothing need be restored.",
 }
+MOVED = {
+    "joints": "All joints.",
+    "joint": "One joint.",
+    "end": "The end of the arm, or with `about` one of its coordinates.",
+    "gripper": "The gripper; 0 percent is closed, 100 open.",
+}
+ZEROED = {
+    "joints": "All joints.",
+    "joint": "One joint.",
+    "gripper": "The gripper.",
+}
+CONTROLS = {
+    "stop": "Every motion and every pause ends; the next motion is obeyed.",
+    "halt": "The present motion ends; the next one is obeyed.",
+    "pause": "The arm stops, and keeps its targets.",
+    "resume": "A pause ends, and the arm continues.",
+    "forget": "The waiting targets are discarded.",
+}
+# The state that every arm has: the simulator computes it, so no edition declares it.
+BUILT_IN = {
+    "angles": "The angles of all joints, or with `at` of one, in the field's unit.",
+    "coords": "The coordinates of the end, in the frame and for the end that are set.",
+    "base_coords": "The coordinates of the end in the frame of the base.",
+    "planned_angles": "The angles at which the present motion ends.",
+    "planned_coords": "The coordinates at which the present motion ends, in the frame of the base.",
+    "opening": "How far the gripper is open, in percent.",
+    "speeds": "How fast the joints turn.",
+    "moving": "Whether the arm moves.",
+    "gripper_moving": "Whether the gripper moves.",
+    "reached": "Whether the arm is at the target of the request.",
+    "powered": "Whether the motors have power.",
+    "held": "Whether a joint has torque, for each joint.",
+    "free": "Whether free mode is on: no joint has torque.",
+    "paused": "Whether the motion is paused.",
+    "connected": "Whether the controller at the end of the arm is connected.",
+    "error": "The number of the last error; 0 is no error.",
+    "lowest": "The smallest allowed angle, for each joint.",
+    "highest": "The largest allowed angle, for each joint.",
+    "starts": "How often the controller has started.",
+}
+# Those of them that a command can store or set.
+SETTABLE = (
+    *("powered", "connected", "free", "error", "held", "lowest", "highest"),
+    *("opening", "base_coords"),
+)
 CONFIDENCE = ("high", "medium", "low")
 VERDICTS = ("consistent", "erratum", "label only", "text and byte disagree")
 REASONS = (

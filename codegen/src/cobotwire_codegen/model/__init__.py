@@ -20,6 +20,7 @@ from cobotwire_codegen.model.edition import (
     Limits,
     Vector,
 )
+from cobotwire_codegen.model.effects import Effect, State
 from cobotwire_codegen.model.facts import Change, Dispute, Evidence, Lines
 from cobotwire_codegen.model.frame import Address, Frame, FrameCheck, FrameNumber
 from cobotwire_codegen.model.robot import (
@@ -31,7 +32,6 @@ from cobotwire_codegen.model.robot import (
     Motion,
     Robot,
     Servos,
-    StartValues,
 )
 from cobotwire_codegen.model.shapes import BitPart, Bits, Chars, Listed, Octets, Type
 from cobotwire_codegen.model.types import (
@@ -54,6 +54,7 @@ __all__ = [
     "Derivation",
     "Dispute",
     "Edition",
+    "Effect",
     "Encoders",
     "Enum",
     "Erratum",
@@ -80,7 +81,7 @@ __all__ = [
     "Samples",
     "Scalar",
     "Servos",
-    "StartValues",
+    "State",
     "Text",
     "Type",
     "Value",

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 from cobotwire_codegen.errors import Place
+from cobotwire_codegen.model.effects import Effect
 from cobotwire_codegen.model.facts import Change, Dispute, Lines
 from cobotwire_codegen.model.shapes import Type
 from cobotwire_codegen.model.types import Member, Value
@@ -82,6 +83,8 @@ class Text:
 class ReadBack:
     """How to read what a command has set: the query, and what its reply then contains.
 
+    It is derived from the effects of both.
+
     ``fields`` pairs a field of the reply with the argument that it repeats, or with the raw
     value that it then has. If it is empty, fields of the same name are compared.
     """
@@ -132,6 +135,7 @@ class Command:
     disputed: tuple[Dispute, ...]
     changes: tuple[Change, ...]
     arguments: tuple[str, ...] = ()
+    effect: Effect | None = None
 
     @property
     def reply(self) -> Variant:

@@ -9,6 +9,7 @@ from typing import Literal
 
 from cobotwire_codegen.errors import Place, nearest
 from cobotwire_codegen.model.commands import Command, Family
+from cobotwire_codegen.model.effects import State
 from cobotwire_codegen.model.facts import Change, Lines
 from cobotwire_codegen.model.frame import Frame
 from cobotwire_codegen.model.robot import Robot
@@ -91,6 +92,8 @@ class Edition:
     errata: tuple[Erratum, ...]
     vectors: tuple[Vector, ...]
     changes: tuple[Change, ...]
+    states: tuple[State, ...] = ()
+    """What the arm keeps."""
     gone: tuple[tuple[str, str], ...] = ()
     """Commands of the base that this edition takes away, each with a hint that says where."""
     bases: tuple[str, ...] = ()

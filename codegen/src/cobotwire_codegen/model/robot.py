@@ -5,8 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 from fractions import Fraction
 
-from cobotwire_codegen.errors import Place
-
 
 @dataclass(frozen=True, slots=True)
 class Link:
@@ -65,11 +63,9 @@ class Gripper:
 
 @dataclass(frozen=True, slots=True)
 class Servos:
-    """What servos report: registers by address, volts and degrees Celsius."""
+    """What servos report: registers by address."""
 
     registers: tuple[tuple[int, int], ...]
-    voltage: Fraction | None
-    temperature: Fraction | None
     doc: str
 
 
@@ -83,15 +79,6 @@ class ErrorCodes:
     stopped: int
     no_power: int
     doc: str
-
-
-@dataclass(frozen=True, slots=True)
-class StartValues:
-    """What a query reports before anything has set it."""
-
-    place: Place
-    query: str
-    values: tuple[tuple[str, object], ...]
 
 
 Part = Geometry | Motion | Encoders | Gripper | Servos | ErrorCodes
@@ -109,6 +96,5 @@ class Robot:
     error_codes: ErrorCodes | None = None
     joint_limits: tuple[tuple[Fraction, Fraction], ...] = ()
     start_angles: tuple[Fraction, ...] = ()
-    start_values: tuple[StartValues, ...] = ()
     # Why the geometry is not known, where it is not.
     geometry_unknown: str = ""

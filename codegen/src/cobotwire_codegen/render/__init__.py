@@ -26,6 +26,7 @@ from cobotwire_codegen.publish import edition_json, errata_json
 from cobotwire_codegen.render import examples, layout, markdown, parameters, python_api, words
 from cobotwire_codegen.render.byte_table import byte_rows, on_one_line, only_fixed
 from cobotwire_codegen.render.diagram import byte_diagram
+from cobotwire_codegen.render.effects import effect_in_words
 from cobotwire_codegen.render.escape_markdown import escaped
 from cobotwire_codegen.render.example_call import example_call, example_result
 from cobotwire_codegen.render.literal import literal, quoted
@@ -230,6 +231,7 @@ def _environment(kind: type[Environment], *loaders: BaseLoader) -> Environment:
         byte_rows=byte_rows,
         only_fixed=only_fixed,
         on_one_line=on_one_line,
+        effect_in_words=effect_in_words,
         example_call=example_call,
         example_result=example_result,
         lower=lower,

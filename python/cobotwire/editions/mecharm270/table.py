@@ -3,4 +3,4 @@
 
 from cobotwire.protocol.loading import load_table
 
-TABLE = load_table(__package__, checksum="725b5816")
+TABLE = load_table(__package__, checksum="417039e6")

@@ -3,4 +3,4 @@
 
 from cobotwire.protocol.loading import load_table
 
-TABLE = load_table(__package__, checksum="91da1af9")
+TABLE = load_table(__package__, checksum="33fa28f5")

@@ -3,4 +3,4 @@
 
 from cobotwire.protocol.loading import load_table
 
-TABLE = load_table(__package__, checksum="51360553")
+TABLE = load_table(__package__, checksum="dba30ab7")

@@ -3,4 +3,4 @@
 
 from cobotwire.protocol.loading import load_table
 
-TABLE = load_table(__package__, checksum="0d8948ff")
+TABLE = load_table(__package__, checksum="2b13cdf1")

@@ -3,4 +3,4 @@
 
 from cobotwire.protocol.loading import load_table
 
-TABLE = load_table(__package__, checksum="4caf5a6b")
+TABLE = load_table(__package__, checksum="a569bdf0")

@@ -3,4 +3,4 @@
 
 from cobotwire.protocol.loading import load_table
 
-TABLE = load_table(__package__, checksum="f83dcf02")
+TABLE = load_table(__package__, checksum="523f931c")

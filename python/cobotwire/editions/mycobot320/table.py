@@ -3,4 +3,4 @@
 
 from cobotwire.protocol.loading import load_table
 
-TABLE = load_table(__package__, checksum="4dd7e898")
+TABLE = load_table(__package__, checksum="5e314f2d")

@@ -3,4 +3,4 @@
 
 from cobotwire.protocol.loading import load_table
 
-TABLE = load_table(__package__, checksum="08f009e4")
+TABLE = load_table(__package__, checksum="167410f8")

@@ -3,4 +3,4 @@
 
 from cobotwire.protocol.loading import load_table
 
-TABLE = load_table(__package__, checksum="e0bbf8d5")
+TABLE = load_table(__package__, checksum="5570694f")

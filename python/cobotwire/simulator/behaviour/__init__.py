@@ -1,20 +1,9 @@
-"""What the arm does for each command: registered by the type of its request.
+"""What code says about commands: physics, and what only one robot does.
 
 The behaviours of families (``registry.HOMES``) are imported when an arm of the family needs them.
 """
 
-from cobotwire.simulator.behaviour import (  # noqa: F401  (importing them registers them)
-    drag,
-    gripper,
-    io,
-    jog,
-    motion,
-    planning,
-    power,
-    servo,
-    system,
-    upkeep,
-)
+from cobotwire.simulator.behaviour import drag, servo  # noqa: F401  (importing registers them)
 from cobotwire.simulator.behaviour.registry import (
     BEHAVIOURS,
     Behaviour,

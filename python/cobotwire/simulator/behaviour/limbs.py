@@ -1,7 +1,7 @@
-"""Robots with two arms and a waist: single joints, the waist, and coordinates in the base.
+"""Robots with two arms and a waist: the waist, and what concerns several limbs.
 
 Each limb has a state of its own. No source gives the geometry of such a robot, so queries of
-coordinates have no reply, and motions to coordinates are rejected.
+coordinates have no reply.
 """
 
 from __future__ import annotations
@@ -12,28 +12,12 @@ from cobotwire.editions.mybuddy import messages as m
 from cobotwire.editions.mybuddy.enums import TargetKind
 from cobotwire.simulator.behaviour.registry import Behaviours, Unanswerable, family
 from cobotwire.simulator.state import ArmState
-from cobotwire.simulator.targets import go_to_angles, go_to_encoders
+from cobotwire.simulator.targets import go_to_encoders
 
 # The speed of a motion within a time, and of one with a speed for each servo, in percent.
 USUAL_SPEED = 50
-USUAL_PLAN = 50
 
 LIMBS = family("mybuddy", Behaviours())
-
-
-@LIMBS.behaviour(m.GetAngle)
-def get_angle(arm: ArmState, now: float, request: m.GetAngle) -> m.GetAngleReply:
-    """Reply with the angle of a joint."""
-    if request.joint > arm.joints:
-        raise Unanswerable("no source says what is reported for the gripper")
-    angles = arm.reported_angles(arm.angles.position(now))
-    return m.GetAngleReply(angle=angles[request.joint - 1])
-
-
-@LIMBS.behaviour(m.SendAnglesAuto)
-def send_angles_auto(arm: ArmState, now: float, request: m.SendAnglesAuto) -> None:
-    """Move all joints."""
-    go_to_angles(arm, tuple(request.angles), USUAL_SPEED, now)
 
 
 @LIMBS.behaviour(m.SetEncoders)
@@ -71,42 +55,5 @@ def _without_geometry(arm: ArmState, now: float, request: Any) -> None:
     raise Unanswerable
 
 
-def _rejected(arm: ArmState, now: float, request: Any) -> None:
-    arm.remarks.append("rejected: the geometry of this robot is not known")
-
-
-for _query in (
-    *(m.GetCoord, m.GetBaseCoord, m.GetBaseCoords, m.Collision),
-    *(m.SingleToBaseCoords, m.BaseToSingleCoords),
-):
+for _query in (m.GetBaseCoords, m.Collision, m.SingleToBaseCoords, m.BaseToSingleCoords):
     LIMBS.behaviour(_query)(_without_geometry)
-for _motion in (m.WriteBaseCoord, m.WriteBaseCoords, m.JogIncCoord):
-    LIMBS.behaviour(_motion)(_rejected)
-
-
-@LIMBS.behaviour(m.SetPlanSpeed)
-def set_plan_speed(arm: ArmState, now: float, request: m.SetPlanSpeed) -> None:
-    """Set both speeds of planned motions: no source says which of them is set."""
-    arm.kept["plan speed"] = request.speed
-
-
-@LIMBS.behaviour(m.GetPlanSpeed)
-def get_plan_speed(arm: ArmState, now: float, request: m.GetPlanSpeed) -> m.GetPlanSpeedReply:
-    """Reply with the speeds of planned motions."""
-    speed = arm.kept.get("plan speed", USUAL_PLAN)
-    return m.GetPlanSpeedReply(linear=speed, angular=speed)
-
-
-@LIMBS.behaviour(m.SetPlanAcceleration)
-def set_plan_acceleration(arm: ArmState, now: float, request: m.SetPlanAcceleration) -> None:
-    """Set both accelerations of planned motions: no source says which of them is set."""
-    arm.kept["plan acceleration"] = request.acceleration
-
-
-@LIMBS.behaviour(m.GetPlanAcceleration)
-def get_plan_acceleration(
-    arm: ArmState, now: float, request: m.GetPlanAcceleration
-) -> m.GetPlanAccelerationReply:
-    """Reply with the accelerations of planned motions."""
-    acceleration = arm.kept.get("plan acceleration", USUAL_PLAN)
-    return m.GetPlanAccelerationReply(linear=acceleration, angular=acceleration)

@@ -4,15 +4,14 @@ A behaviour takes the arm's state, the time and the typed request, and returns t
 serves every edition that has the command: arguments that an edition lacks are None. A behaviour
 may return None or leave out optional fields of its reply: the arm then fills in usual legal values.
 It may also state how many data bytes the reply has (:class:`Sized`).
-:func:`query` and :func:`stored` register the behaviours that most commands have. A command without
-a behaviour is remembered (:mod:`cobotwire.simulator.remembered`).
+Most commands need none: the arm does what the edition states
+(:mod:`cobotwire.simulator.effects`). A behaviour is for physics, and for what only one robot does.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from importlib import import_module
-from itertools import chain
 from typing import Any, NamedTuple, TypeVar
 
 from cobotwire.protocol.messages import Reply, Request
@@ -72,12 +71,6 @@ class Behaviours(dict[str, Behaviour]):
             arm.kept["mode"] = request.mode
     """
 
-    def __init__(self, *given: Any, **more: Behaviour) -> None:
-        """Create the registry; the arguments are those of ``dict``."""
-        super().__init__(*given, **more)
-        # By query and field: the attribute of the state that holds what the query reports.
-        self.attributes: dict[tuple[str, str], str] = {}
-
     def behaviour(
         self, request_type: type[RequestT]
     ) -> Callable[
@@ -110,37 +103,16 @@ class Behaviours(dict[str, Behaviour]):
             reply_type: Any = request_type.reply_type
             return None if found is None else reply_type(found)
 
-    def reported(self, getter: type[Request[Any]], **attributes: str) -> None:
-        """Note which attributes of the state hold the fields that a query reports."""
-        for field, attribute in attributes.items():
-            self.attributes[getter.command, field] = attribute
-
-    def stored(
-        self, attribute: str, setter: type[Request[None]], getter: type[Request[Any]]
-    ) -> None:
-        """Let a setter store its only argument in an attribute; let a query return it."""
-
-        @self.behaviour(setter)
-        def store(arm: ArmState, now: float, request: Request[None]) -> None:
-            [value] = request.fields.values()
-            setattr(arm, attribute, value)
-
-        self.query(getter, lambda arm, now, request: getattr(arm, attribute))
-        assert getter.reply_type is not None, "a query has a reply"
-        field = str(next(iter(getter.reply_type.__match_args__)))
-        self.reported(getter, **{field: attribute})
-
 
 # The behaviours that come with cobotwire.
 BEHAVIOURS = Behaviours()
-behaviour, query, stored = BEHAVIOURS.behaviour, BEHAVIOURS.query, BEHAVIOURS.stored
-reported = BEHAVIOURS.reported
+behaviour, query = BEHAVIOURS.behaviour, BEHAVIOURS.query
 
 
 # Behaviours of editions that differ from the 280, by the name of the edition; they come first.
 _FAMILIES: dict[str, Behaviours] = {}
-# The modules of this package that register them.
-HOMES = {"mercury_a1": ("mercury", "mercury_checks", "mercury_drag"), "mybuddy": ("limbs",)}
+# The module of this package that registers them.
+HOMES = {"mercury_a1": "mercury", "mybuddy": "limbs"}
 
 
 def family(edition: str, behaviours: Behaviours) -> Behaviours:
@@ -156,25 +128,14 @@ def own(table: Table, command: Command) -> Behaviour | None:
     them.
     """
     lineage = (table.edition, *table.bases)
-    for module in chain.from_iterable(HOMES.get(each, ()) for each in lineage):
-        import_module(f"cobotwire.simulator.behaviour.{module}")
+    for home in filter(None, map(HOMES.get, lineage)):
+        import_module(f"cobotwire.simulator.behaviour.{home}")
     families = (_FAMILIES[each] for each in lineage if each in _FAMILIES)
     for behaviours in (*families, BEHAVIOURS):
         found = behaviours.get(command.name)
         if found is not None and found.fits(command):
             return found
     return None
-
-
-def known(values: Iterable[float] | None) -> Iterable[float]:
-    """Return the values that a reply reports.
-
-    Raises:
-        Unanswerable: there are none.
-    """
-    if values is None:
-        raise Unanswerable
-    return values
 
 
 def row(values: Iterable[float] | None) -> Any:

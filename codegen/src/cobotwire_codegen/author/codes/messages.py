@@ -105,11 +105,11 @@ EXPLANATIONS = (
         "id: 0x23\ntitle: Set a pin",
     ),
     Explanation(
-        "bad-read-back",
-        "A command's `read_by` names a query that does not report what the command sets.",
-        "A conformance run sets, queries and compares; it needs the fields of both.",
-        "Name a query of the edition, and the fields that differ: `{QUERY: {reply's: request's}}`.",
-        "id: 0x23\nread_by: get_angel\ntitle: Set a pin",
+        "bad-effect",
+        "An effect names a state, field or case that does not exist, or contradicts the command.",
+        "A simulated arm, the conformance tester and the reference do what the effect says.",
+        "Declare the state under `state:`, and name fields of the command's own messages.",
+        "id: 0x23\neffect: {stores: pinz}\ntitle: Set a pin",
         "id: 0x23\ntitle: Set a pin",
     ),
     Explanation(

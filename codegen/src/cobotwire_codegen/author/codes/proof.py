@@ -15,11 +15,19 @@ EXPLANATIONS = (
     ),
     Explanation(
         "bad-start-value",
-        "A start value is not a value that its query can report, or lies outside a limit.",
+        "A start is not a value of its state's type, or lies outside a limit.",
         "A simulated device would report what no device can.",
-        "Give fields of the reply with legal values, as a vector of the reply has them.",
-        "get_angle: {angle: 1000}",
-        "get_angle: {angle: 10}",
+        "Give a value that the type allows, as a vector has it.",
+        "level: {type: angle, start: 1000}",
+        "level: {type: angle, start: 10}",
+    ),
+    Explanation(
+        "bad-state",
+        "A state has the name of one that every arm has.",
+        "The simulator computes that state, so a declaration would have no effect.",
+        "Remove the declaration, or name the state otherwise.",
+        "state:\n  moving: {type: flag}",
+        "state:\n  level: {type: angle, start: 10}",
     ),
     Explanation(
         "vector-differs",

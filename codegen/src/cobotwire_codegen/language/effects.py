@@ -1,0 +1,182 @@
+"""What a command does: the state of an edition, and the effects of commands on it."""
+
+from __future__ import annotations
+
+from cobotwire_codegen.language.json_schema import either
+from cobotwire_codegen.language.names import CASE, LOWER
+from cobotwire_codegen.language.records import Choice, Named, Part, Record, optional, required
+from cobotwire_codegen.language.shapes import Anything, Known, Name, Names, Text, Word
+from cobotwire_codegen.language.words import CONTROLS, MOVED, ZEROED
+
+_TYPE = Known("type_name", "the name of a type")
+_PLAIN = {"type": ["number", "string", "boolean", "array"]}
+_STATES = either(
+    "object", {"additionalProperties": {"type": "string"}, "minProperties": 1}, {"type": "string"}
+)
+_AT = "The arguments that choose one value of a state that has one for each index."
+
+
+class State(Record):
+    """One thing that an arm keeps. The key in `state` is its name."""
+
+    type = optional(_TYPE, "The type of its value. Left out: a text.")
+    each = optional(
+        Names(),
+        "There is a value for each index; the type of the index, or a list of types. `joint` "
+        "stands for each joint of the arm.",
+    )
+    start = optional(
+        Anything("a value of the type, as a vector states it", _PLAIN),
+        "What a simulated arm has at the start, for every index. Left out: zero, false, the first "
+        "member, or no text.",
+    )
+    EXAMPLE = "{type: speed, each: joint, start: 50}"
+
+
+class _Effect(Record):
+    assumed = optional(
+        Text(),
+        "Why no source states this effect. A simulated arm has it and the reference tells it, but "
+        "no tester judges a device by it.",
+    )
+
+
+class _AtIndex(_Effect):
+    at = optional(Names(), _AT)
+
+
+class Reports(_AtIndex):
+    """A query reports state."""
+
+    reports = required(
+        Anything("a state, or a mapping from fields of the reply to states", _STATES),
+        "The state that the reply has, or a mapping from its fields to states. Without `at`, a "
+        "state with a value for each joint is reported as a row.",
+    )
+    EXAMPLE = "{reports: fresh_mode}"
+
+
+class Stores(_AtIndex):
+    """A command stores its arguments."""
+
+    stores = required(
+        Anything("a state, or a mapping from arguments to states", _STATES),
+        "The state that has the argument's value afterwards, or a mapping from arguments to "
+        "states. A row without `at` gives each joint its value.",
+    )
+    EXAMPLE = "{stores: joint_minimum, at: joint}"
+
+
+class Sets(_AtIndex):
+    """A command gives state a fixed value."""
+
+    sets = required(
+        Named(Anything("a value of the state", _PLAIN), LOWER, ("empty-list", "name a state")),
+        "Each state with its value afterwards. Without `at`, every index has it.",
+    )
+    EXAMPLE = "{sets: {powered: false}}"
+
+
+class Moves(_AtIndex):
+    """A command moves a part of the arm."""
+
+    moves = required(Word(MOVED, MOVED.values()), "What moves.")
+    to = optional(
+        Anything("an argument, or a number", {"type": ["string", "number"]}),
+        "The argument with the target, in degrees, radians, ticks, millimetres or percent; or a "
+        "fixed target.",
+    )
+    by = optional(Name(LOWER), "The argument with the distance from where the part is.")
+    until = optional(Word(("limit",)), "The motion continues until it is stopped, or to a limit.")
+    about = optional(Name(LOWER), "The argument that names the axis of the end.")
+    keeps = optional(Word(("position",)), "What does not move: the end turns on the spot.")
+    direction = optional(Name(LOWER), "The argument with the direction.")
+    speed = optional(Name(LOWER), "The argument with the speed, in percent.")
+    EXCLUSIVE = (("to", "by"), ("to", "until"), ("by", "until"))
+    EXAMPLE = "{moves: joint, at: joint, until: limit, direction: direction, speed: speed}"
+
+
+class Zeroes(_AtIndex):
+    """The present position of a part becomes its zero."""
+
+    zeroes = required(Word(ZEROED, ZEROED.values()), "Whose position becomes zero.")
+    EXAMPLE = "{zeroes: joint, at: joint}"
+
+
+class Does(_AtIndex):
+    """A command controls the motion that goes on."""
+
+    does = required(Word(CONTROLS, CONTROLS.values()), "What happens to the motion.")
+    EXAMPLE = "{does: pause}"
+
+
+class Lists(_Effect):
+    """A command works on a list of values, of which each has the state's type."""
+
+    list = required(Name(LOWER), "The state that is the list.")
+    append = optional(Name(LOWER), "The argument that is added at the end.")
+    take = optional(Word(("first",)), "The reply has the first value, which leaves the list.")
+    empty = optional(Word(("zeros",)), "What `take` reports of an empty list.")
+    clear = optional(Word(("all",)), "The list becomes empty.")
+    report = optional(
+        Word(("count", "empty")), "The reply has the number of values, or whether none is left."
+    )
+    EXCLUSIVE = (("append", "take"), ("append", "clear"), ("append", "report"), ("take", "report"))
+    EXAMPLE = "{list: points, take: first, empty: zeros}"
+
+
+class Computes(_Effect):
+    """A query computes a value from its arguments; nothing changes."""
+
+    computes = required(Word(("coords", "angles")), "What the reply has.")
+    from_ = required(Name(LOWER), "The argument that it is computed from.")
+    near = optional(Name(LOWER), "The argument with the angles that the solution is near to.")
+    EXAMPLE = "{computes: coords, from: angles}"
+
+
+class Unknown(Record):
+    """No source says what a command does."""
+
+    unknown = required(Text(), "What is not known.")
+    EXAMPLE = "{unknown: No source says how the arm moves.}"
+
+
+class Python(_Effect):
+    """Only code can say what a command does: the simulator has a function for it."""
+
+    python = required(Text(), "What the command does.")
+    EXAMPLE = "{python: Repeats the recorded motion.}"
+
+
+EFFECT = Choice(
+    "effect",
+    {
+        "reports": Reports,
+        "stores": Stores,
+        "sets": Sets,
+        "moves": Moves,
+        "zeroes": Zeroes,
+        "does": Does,
+        "list": Lists,
+        "computes": Computes,
+        "unknown": Unknown,
+        "python": Python,
+    },
+)
+
+
+class ByCase(Record):
+    """A command whose effect depends on an argument."""
+
+    selector = required(Name(LOWER), "The argument that decides.")
+    cases = required(Named(EFFECT, CASE), "The effect for each value: a member's name or a number.")
+    EXAMPLE = """\
+selector: state
+cases:
+  OPEN: {moves: gripper, to: 100, speed: speed}
+  CLOSE: {moves: gripper, to: 0, speed: speed}
+"""
+
+
+ANY_EFFECT = Choice("any_effect", {"selector": ByCase, **EFFECT.chosen})
+ANY_EFFECT_PART = Part(ANY_EFFECT)

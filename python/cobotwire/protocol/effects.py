@@ -1,0 +1,230 @@
+"""What a command does, as its edition states it: the state that it reports, stores or sets.
+
+The effect of a command is one of the records below. What an arm keeps is declared by the edition
+(:func:`states_of`), or built in: the angles, whether the arm moves, and so on
+(``language/words.py`` of the generator lists the built-in state).
+
+Every record has ``assumed``: why no source states the effect; empty if one does. A simulated arm
+has an assumed effect too, but no tester judges a device by it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from functools import cache
+from typing import Any, Literal, NamedTuple
+
+from cobotwire.protocol.robot import real
+from cobotwire.protocol.table import Command, Table
+
+Part = Literal["joints", "joint", "end", "gripper"]
+Control = Literal["stop", "halt", "pause", "resume", "forget"]
+
+
+class State(NamedTuple):
+    """One thing that an arm keeps.
+
+    Attributes:
+        name: its name.
+        kind: the kind of its type, such as ``quantity`` or ``value`` (a row); empty for a text.
+        size: how many numbers a value has.
+        each: the types of the indices; there is a value for each index. Empty: one value.
+        start: the value at the start; None: zero, or no text.
+    """
+
+    name: str
+    kind: str = ""
+    size: int = 1
+    each: tuple[str, ...] = ()
+    start: Any = None
+
+    @property
+    def initial(self) -> Any:
+        """The value at the start, of one index; None if only a message can give one."""
+        if isinstance(self.start, list):
+            return tuple(map(real, self.start))
+        if self.start is not None:
+            return real(self.start) if self.kind and isinstance(self.start, str) else self.start
+        if self.kind in ("bits", "bytes", "text", "list"):
+            return None
+        zero: Any = "" if not self.kind else False if self.kind == "flag" else 0
+        return (zero,) * self.size if self.kind == "value" else zero
+
+
+class Reports(NamedTuple):
+    """A query reports state: ``values`` has the state of each field of the reply."""
+
+    values: Mapping[str, str]
+    at: tuple[str, ...] = ()
+    assumed: str = ""
+
+
+class Stores(NamedTuple):
+    """A command stores arguments: ``values`` has the state of each argument."""
+
+    values: Mapping[str, str]
+    at: tuple[str, ...] = ()
+    assumed: str = ""
+
+
+class Sets(NamedTuple):
+    """A command gives each state in ``values`` a fixed physical value."""
+
+    values: Mapping[str, Any]
+    at: tuple[str, ...] = ()
+    assumed: str = ""
+
+
+class Moves(NamedTuple):
+    """A command moves a part.
+
+    Attributes:
+        part: what moves.
+        at: the argument that chooses the joint.
+        to: the argument with the target, or the target.
+        by: the argument with the distance.
+        until: ``limit`` if the motion continues until it is stopped.
+        about: the argument with the axis.
+        keeps: ``position`` if the end turns on the spot.
+        direction: the argument with the direction.
+        speed: the argument with the speed.
+        assumed: why no source states it.
+    """
+
+    part: Part
+    at: tuple[str, ...] = ()
+    to: str | float | None = None
+    by: str = ""
+    until: str = ""
+    about: str = ""
+    keeps: str = ""
+    direction: str = ""
+    speed: str = ""
+    assumed: str = ""
+
+
+class Zeroes(NamedTuple):
+    """The present position of a part becomes its zero."""
+
+    part: Part
+    at: tuple[str, ...] = ()
+    assumed: str = ""
+
+
+class Does(NamedTuple):
+    """A command controls the motion that goes on."""
+
+    what: Control
+    at: tuple[str, ...] = ()
+    assumed: str = ""
+
+
+class Lists(NamedTuple):
+    """A command appends to a list, takes its first value, clears it, or reports on it.
+
+    Attributes:
+        state: the list.
+        append: the argument that is appended.
+        take: ``first`` if the reply has the first value, which leaves the list.
+        empty: ``zeros`` if that reply has zeros when the list is empty.
+        clear: ``all`` if the list becomes empty.
+        report: ``count`` or ``empty``: what the reply has.
+        assumed: why no source states it.
+    """
+
+    state: str
+    append: str = ""
+    take: str = ""
+    empty: str = ""
+    clear: str = ""
+    report: str = ""
+    assumed: str = ""
+
+
+class Computes(NamedTuple):
+    """A query computes ``what`` from the argument ``source``, near the angles in ``near``."""
+
+    what: Literal["coords", "angles"]
+    source: str
+    near: str = ""
+    assumed: str = ""
+
+
+class Cases(NamedTuple):
+    """The effect depends on an argument: ``cases`` has the effect for each raw value of it."""
+
+    selector: str
+    cases: Mapping[int, Effect]
+    assumed: str = ""
+
+
+class Code(NamedTuple):
+    """Only code can say what the command does; ``what`` is that in words."""
+
+    what: str
+    assumed: str = ""
+
+
+class Unknown(NamedTuple):
+    """No source says what the command does; ``why`` is what is missing."""
+
+    why: str
+    assumed: str = ""
+
+
+Effect = Reports | Stores | Sets | Moves | Zeroes | Does | Lists | Computes | Cases | Code | Unknown
+
+
+@cache
+def effect_of(command: Command) -> Effect | None:
+    """Return what a command does; None if the edition does not state it."""
+    return None if command.stated_effect is None else _effect(command.stated_effect)
+
+
+def each_case(effect: Effect | None) -> Iterator[Effect]:
+    """Yield an effect, or the effect of each of its cases."""
+    if isinstance(effect, Cases):
+        yield from effect.cases.values()
+    elif effect is not None:
+        yield effect
+
+
+def states_of(table: Table) -> dict[str, State]:
+    """Return what an edition declares that its arm keeps, by name."""
+    return {
+        name: State(
+            name,
+            record.get("kind", ""),
+            record.get("size", 1),
+            tuple(record.get("each", ())),
+            record.get("start"),
+        )
+        for name, record in table.robot.state.items()
+    }
+
+
+# The record of each verb, whose first field is the verb's value.
+_RECORDS: dict[str, Any] = {
+    "reports": Reports,
+    "stores": Stores,
+    "sets": Sets,
+    "moves": Moves,
+    "zeroes": Zeroes,
+    "does": Does,
+    "list": Lists,
+    "computes": Computes,
+    "python": Code,
+    "unknown": Unknown,
+}
+
+
+def _effect(record: Mapping[str, Any]) -> Effect:
+    if "selector" in record:
+        cases = {int(raw): _effect(inner) for raw, inner in record["cases"].items()}
+        return Cases(record["selector"], cases)
+    verb = next(key for key in _RECORDS if key in record)
+    options = {("source" if k == "from" else k): v for k, v in record.items() if k != verb}
+    if "at" in options:
+        options["at"] = tuple(options["at"])
+    made: Effect = _RECORDS[verb](record[verb], **options)
+    return made

@@ -1,0 +1,284 @@
+"""What the arm does for each command, as the effect that its edition states.
+
+A motion is physics (:mod:`cobotwire.simulator.targets`), and so is the built-in state
+(:mod:`cobotwire.simulator.built_in`). Everything else is a value in ``ArmState.kept``, by the name
+that the edition gives it; of a state with a value for each index, a mapping from the index.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from typing import Any, NamedTuple
+
+from cobotwire.protocol.effects import (
+    Cases,
+    Computes,
+    Does,
+    Effect,
+    Lists,
+    Moves,
+    Reports,
+    Sets,
+    State,
+    Stores,
+    Unknown,
+    Zeroes,
+    effect_of,
+    states_of,
+)
+from cobotwire.protocol.fields import Field, named_fields
+from cobotwire.protocol.table import Command, Table
+from cobotwire.simulator.built_in import READERS, WRITERS, after_writing
+from cobotwire.simulator.kinematics import Effort
+from cobotwire.simulator.moves import move
+from cobotwire.simulator.replies import Unanswerable
+from cobotwire.simulator.state import ArmState
+from cobotwire.simulator.targets import is_there, solve
+
+# No source says how many values a list holds at most; their number is a byte.
+MOST_VALUES = 255
+
+# The state that begins as the edition's `servos` say.
+REGISTERS = "registers"
+
+Fields = Mapping[str, Any]
+
+
+class Asked(NamedTuple):
+    """A request, and the arm that performs it.
+
+    Attributes:
+        table: the edition.
+        arm: the arm's state.
+        now: the time.
+        command: the command.
+        fields: the arguments.
+    """
+
+    table: Table
+    arm: ArmState
+    now: float
+    command: Command
+    fields: Fields
+
+    def replied(self, name: str) -> Field:
+        """Return a field of the reply."""
+        return named_fields(self.command.reply)[name][0]
+
+
+def perform(asked: Asked, *, elsewhere: bool = False) -> dict[str, Any]:
+    """Perform a command; return the fields that its reply has.
+
+    With ``elsewhere`` the request is for a joint that the arm lacks: what it sets is only kept.
+
+    Raises:
+        Unanswerable: the arm does not know what the reply reports.
+    """
+    effect = effect_of(asked.command)
+    if isinstance(effect, Cases):
+        effect = effect.cases.get(asked.fields[effect.selector])
+    if effect is None:
+        return {}
+    if elsewhere:
+        return _keep_or_recall(asked, effect)
+    does = _PERFORMED.get(type(effect))
+    return (does(asked, effect) if does is not None else None) or {}
+
+
+def _keep_or_recall(asked: Asked, effect: Effect) -> dict[str, Any]:
+    """Keep what a request sets for a joint that the arm lacks, or report it; at first zero."""
+    kept: dict[str, dict[Any, Any]] = asked.arm.kept.setdefault("elsewhere", {})
+    at = getattr(effect, "at", ())
+    index = _index(asked, at)
+    if isinstance(effect, Reports):
+        values = {f: kept.get(state, {}).get(index) for f, state in effect.values.items()}
+        return {field: value for field, value in values.items() if value is not None}
+    given: dict[str, Any] = {}
+    if isinstance(effect, Stores):
+        given = {state: asked.fields[name] for name, state in effect.values.items()}
+    elif isinstance(effect, Sets):
+        given = dict(effect.values)
+    elif isinstance(effect, Moves) and isinstance(effect.to, str):
+        given = {"angles": asked.fields[effect.to]}
+    for state, value in given.items():
+        kept.setdefault(state, {})[index] = value
+    return {}
+
+
+def begin(table: Table, arm: ArmState) -> None:
+    """Give every state its value at the start."""
+    for name, state in states_of(table).items():
+        arm.kept[name] = {} if state.each else state.initial
+    if REGISTERS in arm.kept:
+        # One servo more than joints: newer firmware counts the gripper's servo as the last.
+        arm.kept[REGISTERS] = {
+            (servo, register): value
+            for servo in range(1, arm.joints + 2)
+            for register, value in arm.servos.registers
+        }
+
+
+def _reports(asked: Asked, effect: Reports) -> dict[str, Any]:
+    found = {field: _read(asked, field, state, effect.at) for field, state in effect.values.items()}
+    return {field: value for field, value in found.items() if value is not None}
+
+
+def _read(asked: Asked, name: str, state: str, at: Sequence[str]) -> Any:
+    """Return the value of a state as a field of the reply has it."""
+    field = None if asked.command.text is not None else asked.replied(name)
+    if state in READERS:
+        index = asked.fields[at[0]] if at else None
+        assert field is not None, "a built-in state is no text"
+        return READERS[state](asked.arm, asked.now, asked.command, field, index, asked.fields)
+    declared = states_of(asked.table)[state]
+    if not declared.each:
+        return asked.arm.kept[state]
+    values, index = asked.arm.kept.get(state, {}), _index(asked, at)
+    if len(index) == len(declared.each):
+        return values.get(index, declared.initial)
+    assert field is not None, "a text has no index"
+    count = len(field.cases[0].numbers) if field.many else asked.arm.joints
+    row = tuple(values.get((*index, n), declared.initial) for n in range(1, count + 1))
+    return row if field.many else all(row)
+
+
+def _index(asked: Asked, at: Sequence[str]) -> tuple[int, ...]:
+    return tuple(asked.fields[name] for name in at)
+
+
+def _stores(asked: Asked, effect: Stores) -> None:
+    given = {
+        state: asked.fields[name] for name, state in effect.values.items() if name in asked.fields
+    }
+    _write(asked, given, effect.at)
+
+
+def _sets(asked: Asked, effect: Sets) -> None:
+    _write(asked, effect.values, effect.at)
+
+
+def _write(asked: Asked, given: Mapping[str, Any], at: Sequence[str]) -> None:
+    arm, index = asked.arm, _index(asked, at)
+    built_in = {state: value for state, value in given.items() if state in WRITERS}
+    declared = states_of(asked.table)
+    for state, value in given.items():
+        if state in built_in:
+            continue
+        if isinstance(value, list):
+            value = tuple(value)
+        if not declared[state].each:
+            arm.kept[state] = value
+        elif len(index) == len(declared[state].each):
+            arm.kept.setdefault(state, {})[index] = value
+        else:
+            row = _for_all(arm, declared[state], value)
+            arm.kept.setdefault(state, {}).update({(*index, n): each for n, each in row})
+    if built_in:
+        led = arm.released
+        # Without power nothing is held, so that power is switched first.
+        for state in sorted(built_in, key="powered".__ne__):
+            WRITERS[state](arm, asked.now, built_in[state], index[0] if index else None)
+        after_writing(arm, asked.now, built_in, led=led)
+
+
+def _for_all(arm: ArmState, state: State, value: Any) -> Iterator[tuple[int, Any]]:
+    """Return each last index with its value: of a row each one its own."""
+    single = state.kind != "value" and isinstance(value, tuple)
+    return enumerate(value if single else (value,) * arm.joints, 1)
+
+
+def _moves(asked: Asked, effect: Moves) -> None:
+    move(asked.arm, asked.now, asked.command, effect, asked.fields)
+
+
+def _zeroes(asked: Asked, effect: Zeroes) -> None:
+    arm, now = asked.arm, asked.now
+    joint = asked.fields[effect.at[0]] if effect.at else None
+    if effect.part == "gripper" or joint == arm.joints + 1:
+        arm.gripper.place((0.0,), now)
+        return
+    position = list(arm.angles.position(now))
+    for at in range(arm.joints):
+        if joint is None or joint > arm.joints or at == joint - 1:
+            position[at] = 0.0
+    arm.angles.place(position, now)
+
+
+def _does(asked: Asked, effect: Does) -> None:
+    arm, now = asked.arm, asked.now
+    if effect.what == "pause":
+        arm.paused = True
+        arm.angles.pause(now)
+    elif effect.what == "resume":
+        arm.resume(now)
+    elif effect.what == "forget":
+        # The sources define no more, so the present motion continues.
+        arm.angles.forget(now)
+    else:
+        # The joints that move together stop together.
+        arm.angles.brake(now)
+        if effect.what == "stop":
+            arm.resume(now)
+
+
+def _lists(asked: Asked, effect: Lists) -> dict[str, Any] | None:
+    kept = asked.arm.kept
+    if not isinstance(kept.get(effect.state), list):
+        kept[effect.state] = []
+    values: list[Any] = kept[effect.state]
+    if effect.append:
+        if len(values) < MOST_VALUES:
+            given = asked.fields[effect.append]
+            values.append(tuple(given) if isinstance(given, list) else given)
+        return None
+    if effect.clear:
+        values.clear()
+    if not asked.command.requires_reply:
+        return None
+    field = asked.command.reply[0].fields[-1]
+    if effect.take:
+        zeros = (0,) * len(field.cases[0].numbers) if field.many else 0
+        return {field.name: values.pop(0) if values else zeros}
+    if effect.report == "empty":
+        labels = dict(zip(field.labels, field.choices))
+        empty = labels.get("EMPTY", 1)
+        return {field.name: empty if not values else next(c for c in field.choices if c != empty)}
+    return {field.name: len(values)}
+
+
+def _computes(asked: Asked, effect: Computes) -> dict[str, Any]:
+    arm, given = asked.arm, tuple(asked.fields[effect.source])
+    name = asked.command.reply[0].fields[-1].name
+    if effect.what == "coords":
+        # Joints rest on ticks, so the coordinates of the angles that are reported are those that
+        # are reported.
+        coords = arm.reported_coords(arm.on_ticks(given))
+        if coords is None:
+            raise Unanswerable
+        return {name: coords}
+    if arm.geometry is None:
+        raise Unanswerable
+    near = tuple(asked.fields[effect.near]) if effect.near else arm.standing(asked.now)
+    if is_there(arm, given, near):
+        return {name: near}
+    # No source defines the reply without a solution: the angles near it, and an error.
+    found = solve(arm, arm.pose_of(given, near), near, Effort())
+    return {name: near if found is None else found}
+
+
+def _unknown(asked: Asked, effect: Unknown) -> None:
+    if asked.command.safety != "query":
+        asked.arm.remarks.append(f"ignored: {effect.why[0].lower()}{effect.why[1:]}")
+
+
+_PERFORMED: dict[type, Callable[[Asked, Any], dict[str, Any] | None]] = {
+    Reports: _reports,
+    Stores: _stores,
+    Sets: _sets,
+    Moves: _moves,
+    Zeroes: _zeroes,
+    Does: _does,
+    Lists: _lists,
+    Computes: _computes,
+    Unknown: _unknown,
+}
