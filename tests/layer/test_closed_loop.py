@@ -6,7 +6,6 @@ from functools import partial
 from typing import Any
 
 import pytest
-from silent_peer import SilentPeer
 
 import cobotwire.pymycobot as layer
 from cobotwire.editions import mercury_a1, mercury_b1
@@ -18,6 +17,7 @@ from cobotwire.protocol.errors import (
 )
 from cobotwire.simulator import PtyServer, SimulatedArm
 from layer.arms import made
+from memory_peer import MemoryPeer
 from strategies import codec_of
 
 HOME = [0, 0, 0, 0, 0, 90, 0]
@@ -142,7 +142,7 @@ def test_order_that_cannot_work_says_why(method: str, arguments: tuple[Any, ...]
 
 
 def test_arm_that_is_silent_can_be_opened() -> None:
-    arm, _ = made("Mercury", "mercury_a1", errors="return", peer=lambda _: SilentPeer())
+    arm, _ = made("Mercury", "mercury_a1", errors="return", peer=lambda _: MemoryPeer())
     assert arm.get_angles() == -1
 
 

@@ -7,12 +7,12 @@ from contextlib import nullcontext
 from typing import Any
 
 import pytest
-from silent_peer import SilentPeer
 
 import cobotwire.pymycobot as layer
 from cobotwire.protocol.errors import MotionTimeout, ReplyTimeout, UsageError
 from cobotwire.protocol.roles import row_index
 from layer.arms import made
+from memory_peer import MemoryPeer
 
 
 def test_order_without_acknowledgement_raises_or_returns_minus_one() -> None:
@@ -26,8 +26,8 @@ def test_order_without_acknowledgement_raises_or_returns_minus_one() -> None:
 
 def test_query_without_reply_raises_or_returns_minus_one() -> None:
     with pytest.raises(ReplyTimeout):
-        made("MyCobot280", peer=lambda _: SilentPeer())[0].get_angles()
-    assert made("MyCobot280", errors="return", peer=lambda _: SilentPeer())[0].get_angles() == -1
+        made("MyCobot280", peer=lambda _: MemoryPeer())[0].get_angles()
+    assert made("MyCobot280", errors="return", peer=lambda _: MemoryPeer())[0].get_angles() == -1
 
 
 def test_quiet_order_waits_for_nothing() -> None:

@@ -39,7 +39,6 @@ def edition_of(name: str) -> Edition:
     return replace(
         edition,
         name=f"{name}_part",
-        robot=replace(edition.robot, start_values=()),
         families=tuple(family for family in families if family.commands),
         vectors=tuple(v for v in edition.vectors if v.command in names),
     )
