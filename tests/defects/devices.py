@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Iterable, Iterator
 from contextlib import suppress
 from pathlib import Path
@@ -16,10 +17,13 @@ from cobotwire.conformance.device import (
 from cobotwire.conformance.device.started import StartedDevice
 from cobotwire.editions.mycobot import TABLE
 from cobotwire.protocol.errors import LinkError
+from cobotwire.protocol.loading import table_of
 from cobotwire.simulator.clock import SteppedClock
 from cobotwire.transport import Transport
 from cobotwire_codegen.build import build_edition
+from cobotwire_codegen.publish import edition_json
 from conformance.device.testing import on_peer
+from defects.arm.closed_loop import closed_loop_arm
 from defects.arm.planted import arm_with
 from stalls import unstalled
 from targets.c.compiled import compile_c, scratch, sources
@@ -47,6 +51,14 @@ def report_on_arm(defect: str = "") -> Report:
     """Test the arm in plain Python, in stepped time, with all permissions."""
     clock = SteppedClock()
     return on_peer(arm_with(clock, defect), clock, TABLE, _Tester).run()
+
+
+def report_on_closed_loop(switch: str = "") -> Report:
+    """Test the arm in a closed loop, in stepped time, with all permissions."""
+    clock = SteppedClock()
+    edition = build_edition(HERE / "arm" / "closed_loop.yaml", HERE)
+    table = table_of(json.loads(edition_json(edition)))
+    return on_peer(closed_loop_arm(clock, switch), clock, table, _Tester).run()
 
 
 def report_on_firmware(defect: str = "") -> Report:

@@ -12,6 +12,7 @@ HERE = Path(__file__).parent
 # The subjects, each with its own file; the titles are those of the page.
 SUBJECTS = {
     "arm": "arm in plain Python",
+    "closed_loop": "the same in a closed loop",
     "firmware": "firmware in C, on a pty",
     "server": "the maker's server",
     "client": "client in plain Python",

@@ -3,21 +3,33 @@
 from __future__ import annotations
 
 from cobotwire.conformance import Report
+from defects.arm.closed_loop import CORRECT as WAYS
 from defects.clients import report_on_c_client, report_on_client
-from defects.devices import report_on_arm, report_on_firmware
+from defects.devices import report_on_arm, report_on_closed_loop, report_on_firmware
 from defects.makers_server import report_on_server
 
 LINES = ("", "lost", "late", "noise", "text", "split", "twice", "merged")
 # Where each subject must conform without a defect. The maker's server has its own defects.
-CORRECT = {"arm": ("",), "firmware": ("",), "client": LINES, "c_client": LINES}
+CORRECT = {
+    "arm": ("",),
+    "closed_loop": tuple(WAYS),
+    "firmware": ("",),
+    "client": LINES,
+    "c_client": LINES,
+}
 
 
 def report_on(subject: str, defect: str = "", line: str = "") -> Report:
-    """Test a subject with a defect; ``line`` is what the referee does to replies to a client."""
+    """Test a subject with a defect.
+
+    ``line`` is what the referee does to replies to a client, or in which way a subject is correct.
+    """
     if subject == "client":
         return report_on_client(defect, line)
     if subject == "c_client":
         return report_on_c_client(defect, line)
+    if subject == "closed_loop":
+        return report_on_closed_loop(defect or line)
     by_subject = {
         "arm": report_on_arm,
         "firmware": report_on_firmware,

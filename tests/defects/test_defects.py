@@ -7,9 +7,10 @@ import sys
 
 import pytest
 
+from defects.arm import closed_loop
 from defects.arm.planted import DEFECTS
 from defects.clients import report_on_client
-from defects.devices import report_on_arm
+from defects.devices import report_on_arm, report_on_closed_loop
 from defects.judging import Message, judge, messages_of
 from defects.key import HERE, SUBJECTS, Defect, defects
 from defects.listing import figures, line
@@ -38,6 +39,17 @@ def test_correct_arm_conforms() -> None:
     assert messages_of(report_on_arm()) == []
 
 
+@pytest.mark.parametrize("switch", closed_loop.DEFECTS)
+def test_defect_of_the_closed_loop_is_named(switch: str) -> None:
+    judgement = judge(KEY["closed_loop", switch], messages_of(report_on_closed_loop(switch)))
+    assert judgement.named, judgement.messages
+
+
+@pytest.mark.parametrize("way", closed_loop.CORRECT)
+def test_correct_closed_loop_conforms(way: str) -> None:
+    assert messages_of(report_on_closed_loop(way)) == []
+
+
 @pytest.mark.parametrize("switch", CLIENTS)
 def test_defect_of_the_client_is_named(switch: str) -> None:
     defect = KEY["client", switch]
@@ -53,6 +65,7 @@ def test_correct_client_conforms(line: str) -> None:
 def test_key_lists_each_switch_of_the_subjects() -> None:
     assert {switch for subject, switch in KEY if subject == "arm"} == set(DEFECTS)
     for subject, source in {
+        "closed_loop": "arm/closed_loop.py",
         "firmware": "firmware/firmware.c",
         "c_client": "client/client.c",
         "client": "client/plain.py",

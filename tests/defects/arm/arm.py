@@ -141,8 +141,12 @@ class Arm:
         body = self.answer(id, data)
         if body is None:
             self.change(id, data)
-            return b""
+            return self.acknowledgement(id)
         return framed(id, body)
+
+    def acknowledgement(self, id: int) -> bytes:
+        """Return what is sent after a change: the document defines nothing."""
+        return b""
 
     @property
     def ticks(self) -> list[int]:

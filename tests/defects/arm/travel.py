@@ -40,6 +40,12 @@ class Travel:
             self.go(self.goal, self._rate)
 
     @property
+    def ends_at(self) -> float:
+        """When the numbers are all at their goals, unless a pause holds them."""
+        way = max(abs(b - a) for a, b in zip(self._start, self.goal))
+        return self._since + way / self._rate
+
+    @property
     def moves(self) -> bool:
         """Whether any number is on its way."""
         return self._held_at is None and self.place() != self.goal

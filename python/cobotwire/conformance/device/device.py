@@ -71,8 +71,8 @@ class Device:
         self._replied: EncodedRequest | None = None
         # Commands that were replied to only when they were sent again.
         self.retried: set[str] = set()
-        # For each command that may be acknowledged: whether it was.
-        self.acknowledged: dict[str, bool] = {}
+        # For each command that may be acknowledged: what came after it was sent first.
+        self.acknowledged: dict[str, Response] = {}
         # The state before the first malformed request, while such requests are sent.
         self.kept: Comparison | None = None
         # Whether the device finds the next frame after a malformed request without a pause, as far
@@ -103,7 +103,7 @@ class Device:
             response = self.requester.send(request)
         while response.replies and len(response.replies) < sent and self.connection.now < until:
             received = len(response.replies)
-            self.requester.listen(response, self.connection.now, self.timing.grace)
+            self.requester.listen(response, self.timing.grace)
             if len(response.replies) == received:
                 break
         return bool(response.replies)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from contextlib import suppress
 from dataclasses import dataclass
 from typing import Any
 
@@ -15,7 +14,8 @@ from cobotwire.protocol.addresses import addresses_of, lacks_joints
 from cobotwire.protocol.errors import ProtocolError
 from cobotwire.protocol.messages import Reply, Request
 from cobotwire.protocol.table import Address, Command, TextReply
-from cobotwire.session.matching import can_come_from
+from cobotwire.session.acks import MOTION_SECONDS
+from cobotwire.session.matching import as_event, can_come_from, can_reply_to
 from cobotwire.session.request import EncodedRequest, RequestEncoder, as_call
 from cobotwire.session.text import TextCollector
 
@@ -36,6 +36,10 @@ class Timing:
     pause: float = 0.01
 
 
+# After this many commands without an acknowledgement in time, an arm counts as one that sends none.
+ENOUGH_SILENT = 4
+
+
 class Requester:
     """Sends requests of one edition on one connection, and returns what came after each."""
 
@@ -53,11 +57,16 @@ class Requester:
         self._devices: dict[int | None, Address] = {d.value: d for d in addresses_of(codec.table)}
         self._framer = codec.framer("reply")
         self._diagnoser = Diagnoser(codec)
-        self._event_ids = {each.id for each in codec.table.commands if each.event}
         # Most requests are repeated, so each is described once.
         self._descriptions: dict[tuple[str, bytes], str] = {}
         # The last two requests, of different commands, that had a reply.
         self._replied: list[EncodedRequest] = []
+        # The one-way requests whose acknowledgement may still come, oldest first.
+        self._unacknowledged: list[Response] = []
+        # How long the slowest acknowledgement took, but of no motion; None: there was none.
+        self._slowest: float | None = None
+        # The commands that were not acknowledged in time.
+        self._silent: set[str] = set()
 
     def prepare(self, request: Request[Any]) -> EncodedRequest:
         """Validate and encode a request.
@@ -89,40 +98,77 @@ class Requester:
 
     def send_instead(self, request: EncodedRequest, data: bytes, note: str) -> Response:
         """Send ``data`` instead of a request's frame, and listen as if for its reply."""
-        self._connection.send(data, note)
+        response = self._begin(request, data, note)
+        command = request.command
         if request.text:
             self._connection.send(request.text, "the text of the request")
-        start = self._connection.now
-        response = self._begin(request)
-        if request.command.text is not None:
-            self._await_text(response, request.command.text, start)
-        elif request.command.requires_reply:
-            self._await_reply(response, start, request.command.deadline_ms / 1000)
-        elif request.command.ack:
-            self._await_reply(response, start, self._timing.silence)
-        self.listen(response, start, self._after(response))
+        if command.text is not None:
+            self._await_text(response, command.text)
+        elif command.requires_reply:
+            self._await_reply(response, command.deadline_ms / 1000)
+        elif command.ack:
+            self._unacknowledged.append(response)
+            self._await_reply(response, self._patience(command))
+            if not response.replies and command.safety != "motion":
+                self._silent.add(command.name)
+        self.listen(response, self._after(response))
         return response
 
     def send_bytes(
         self, request: EncodedRequest, data: bytes, note: str, seconds: float
     ) -> Response:
-        """Send ``data``, to which no reply is due, and listen for ``seconds``."""
-        self._connection.send(data, note)
-        response = self._begin(request)
-        self.listen(response, self._connection.now, seconds)
+        """Send ``data``, to which no reply is due, and listen for ``seconds``.
+
+        If acknowledgements of this device take longer, it listens longer, too.
+        """
+        self._await_late(request.command.id)
+        if request.command.ack and self._slowest is not None:
+            seconds = max(seconds, self._slowest + self._timing.silence)
+        response = self._begin(request, data, note)
+        self.listen(response, seconds)
         return response
 
-    def _begin(self, request: EncodedRequest) -> Response:
-        """Return an empty response, which knows the last request of another command."""
-        others = [each for each in self._replied if each.command.id != request.command.id]
-        return Response(request, others[-1] if others else None)
+    def await_acknowledgements(self) -> None:
+        """Wait until each acknowledgement has come or is too late, but not for those of motions."""
+        for id in {each.request.command.id for each in self._unacknowledged}:
+            self._await_late(id)
 
-    def listen(self, response: Response, start: float, seconds: float) -> None:
+    def _await_late(self, id: int) -> None:
+        """Wait for late acknowledgements: they would be taken for replies to the next request."""
+        late = [each for each in self._unacknowledged if each.request.command.id == id]
+        for each in () if self._slowest is None else late:
+            left = self._too_late(each) - self._connection.now
+            if each.request.command.safety != "motion" and left > 0 and not each.replies:
+                self.listen(each, left)
+        self._unacknowledged = [e for e in self._unacknowledged if e.request.command.id != id]
+
+    def _patience(self, command: Command) -> float:
+        """Return how long to wait for an acknowledgement: not long if it is unlikely to come.
+
+        Some firmware acknowledges a motion only when it ends.
+        """
+        none = self._slowest is None and len(self._silent) >= ENOUGH_SILENT
+        unlikely = command.safety == "motion" or none or command.name in self._silent
+        return self._timing.silence if unlikely else command.deadline_ms / 1000
+
+    def _too_late(self, response: Response) -> float:
+        """Return when a frame can no longer be the acknowledgement of a request."""
+        command = response.request.command
+        late = command.deadline_ms / 1000 + self._timing.grace
+        return response.sent_at + (MOTION_SECONDS if command.safety == "motion" else late)
+
+    def _begin(self, request: EncodedRequest, data: bytes, note: str) -> Response:
+        """Send; return an empty response, which knows the last request of another command."""
+        self._connection.send(data, note)
+        others = [each for each in self._replied if each.command.id != request.command.id]
+        return Response(request, self._connection.now, others[-1] if others else None)
+
+    def listen(self, response: Response, seconds: float) -> None:
         """Listen until nothing has come for ``seconds``, and classify all that came."""
         end = self._connection.now + max(self._timing.grace, 4 * seconds)
         while self._connection.now < end and (data := self._connection.receive(seconds)):
-            self._sort(response, self._framer.feed(data), start)
-        self._sort(response, self._framer.flush(), start)
+            self._sort(response, self._framer.feed(data))
+        self._sort(response, self._framer.flush())
         self._keep(response, self._diagnoser.flush())
 
     def _after(self, response: Response) -> float:
@@ -134,19 +180,25 @@ class Requester:
         waited = bool(response.replies) or command.ack
         return self._timing.linger if waited else self._timing.silence
 
-    def _await_reply(self, response: Response, start: float, seconds: float) -> None:
-        end = start + seconds
-        while not response.replies and (left := end - self._connection.now) > 0:
-            self._sort(response, self._framer.feed(self._connection.receive(left)), start)
+    def _await_reply(self, response: Response, seconds: float) -> None:
+        """Listen until a reply has come or ``seconds`` are over.
 
-    def _await_text(self, response: Response, variant: TextReply, start: float) -> None:
+        What comes is read even if the host itself was late, so it is never counted as late.
+        """
+        end, left = response.sent_at + seconds, seconds
+        while not response.replies and left > 0:
+            self._sort(response, self._framer.feed(self._connection.receive(left)))
+            left = end - self._connection.now
+        response.late = not response.replies
+
+    def _await_text(self, response: Response, variant: TextReply) -> None:
         """Receive until the line is silent: text has no frame that would end it."""
-        end = start + response.request.command.deadline_ms / 1000
+        end = response.sent_at + response.request.command.deadline_ms / 1000
         received, first = b"", 0.0
         while data := self._connection.receive(
             variant.silence_ms / 1000 if received else end - self._connection.now
         ):
-            first = first or self._connection.now - start
+            first = first or self._connection.now - response.sent_at
             received += data
         self._read_text(response, variant, received, first)
 
@@ -156,7 +208,7 @@ class Requester:
         """Find the text in what was received; the rest is frames and noise like any other."""
         begins = received.find(variant.prefixes[0].encode("ascii"))
         if begins < 0:
-            self._sort(response, self._framer.feed(received), self._connection.now)
+            self._sort(response, self._framer.feed(received))
             return
         text, rest = _first_line(received[begins:])
         collector = TextCollector(variant)
@@ -166,27 +218,41 @@ class Requester:
             response.replies.append(ReceivedReply(seconds, text, message=message))
         except ProtocolError as error:
             response.replies.append(ReceivedReply(seconds, text, error))
-        others = self._framer.feed(received[:begins] + rest)
-        self._sort(response, others, self._connection.now)
+        self._sort(response, self._framer.feed(received[:begins] + rest))
 
-    def _sort(self, response: Response, events: list[Event], start: float) -> None:
+    def _sort(self, response: Response, events: list[Event]) -> None:
         """Keep frames at once, and feed all events to the diagnoser: noise may need later bytes."""
-        request = response.request
-        command = request.command
         for event in events:
-            if not isinstance(event, Frame):
+            if not isinstance(event, Frame) or as_event(event, self._codec.table):
                 continue
-            address = self._codec.table.frame.address(event.data)
-            own = request.can_have_reply(event) and self._can_come_from(address, request)
-            if self._is_event(event):
-                continue
-            if own and command.reply:
-                self._replied = [e for e in self._replied if e.command is not command][-1:]
-                self._replied.append(request)
-                response.replies.append(self._read(event, self._connection.now - start, command))
-            else:
+            owner = self._owner(event, response)
+            if owner is None:
                 response.others.append(event)
+                continue
+            command = owner.request.command
+            self._replied = [e for e in self._replied if e.command is not command][-1:]
+            self._replied.append(owner.request)
+            seconds = self._connection.now - owner.sent_at
+            owner.replies.append(self._read(event, seconds, command))
+            if command.ack and command.safety != "motion":
+                self._slowest = max(self._slowest or 0.0, seconds)
+                self._silent.discard(command.name)
         self._keep(response, self._diagnoser.feed(events))
+
+    def _owner(self, frame: Frame, response: Response) -> Response | None:
+        """Return to which request a frame replies; None: to none.
+
+        A late acknowledgement belongs to the oldest request that can have it.
+        """
+        now, request = self._connection.now, response.request
+        own = bool(request.command.reply) and request.can_have_reply(frame)
+        own = own and self._can_come_from(self._codec.table.frame.address(frame.data), request)
+        waiting = [each for each in self._unacknowledged if self._too_late(each) > now]
+        late = () if own and request.command.requires_reply else waiting
+        owner = next((each for each in late if can_reply_to(frame, each.request)), None)
+        owner = owner or (response if own else None)
+        self._unacknowledged = [each for each in waiting if each is not owner]
+        return owner
 
     def _can_come_from(self, address: int | None, request: EncodedRequest) -> bool:
         """Return whether a reply of an address can belong to a request.
@@ -196,17 +262,6 @@ class Requester:
         device = self._devices.get(address)
         lacks = lacks_joints(self._codec.table, device, request.command)
         return can_come_from(address, request) and not lacks
-
-    def _is_event(self, frame: Frame) -> bool:
-        """Return whether a frame is a legal event: the device may send it at any time."""
-        if frame.command not in self._event_ids:
-            return False
-        for command in self._codec.table.commands:
-            if command.event and command.id == frame.command:
-                with suppress(ProtocolError):
-                    frame.decode("reply", of=command.name)
-                    return True
-        return False
 
     def _keep(self, response: Response, items: Sequence[Frame | Finding]) -> None:
         response.findings.extend(item for item in items if isinstance(item, Finding))

@@ -30,14 +30,21 @@ class ReceivedReply(NamedTuple):
 
 @dataclass(slots=True)
 class Response:
-    """Everything that was received between a request and the next one."""
+    """Everything that was received between a request and the next one.
+
+    An acknowledgement that comes after the next request is still added to ``replies``. ``sent_at``
+    is when the request was sent, in seconds of the run. ``late`` is whether its deadline passed
+    without a reply.
+    """
 
     request: EncodedRequest
+    sent_at: float
     # The last request of another command that had a reply.
     earlier: EncodedRequest | None = None
     replies: list[ReceivedReply] = field(default_factory=list)
     others: list[Frame] = field(default_factory=list)
     findings: list[Finding] = field(default_factory=list)
+    late: bool = False
 
     @property
     def noise(self) -> list[Finding]:

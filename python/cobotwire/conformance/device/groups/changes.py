@@ -66,13 +66,13 @@ def request_change(probe: Probe, request: Request[Any]) -> Response:
 
 def _judge_reply(probe: Probe, response: Response, call: str) -> None:
     device, deadline = probe.device, response.request.command.deadline_ms
-    device.requester.listen(response, device.connection.now, device.timing.silence)
+    device.requester.listen(response, device.timing.silence)
     reason = f"{call}: expected one legal reply; came {response.summary}"
     probe.expect(REPLIED, response.only_valid, reason)
     if response.replies:
         took = 1000 * response.replies[0].seconds
         reason = f"{call}: expected the reply within {deadline} ms; it took {took:.0f} ms"
-        probe.expect(REPLIED, took <= deadline, reason)
+        probe.expect(REPLIED, not response.late, reason)
 
 
 def _judge_acknowledgement(probe: Probe, response: Response, call: str) -> None:
@@ -80,8 +80,8 @@ def _judge_acknowledgement(probe: Probe, response: Response, call: str) -> None:
     device.changes[name] += 1
     if device.changes[name] <= AWAITED:
         # A second one may come a little later.
-        device.requester.listen(response, device.connection.now, device.timing.silence)
-    probe.device.acknowledged.setdefault(name, bool(response.replies))
+        device.requester.listen(response, device.timing.silence)
+    device.acknowledged.setdefault(name, response)
     at_most_one = len(response.replies) <= 1 and not response.unexpected
     done = all(
         reply.message is not None and all(v == DONE for v in reply.message.fields.values())
@@ -95,8 +95,9 @@ def _all_acknowledged(probe: Probe) -> None:
     """Compare all changes that were sent until now."""
     if not any(command.ack for command in probe.device.table.commands):
         probe.drop(ALIKE)
+    probe.device.requester.await_acknowledgements()
     acknowledged = probe.device.acknowledged
-    silent = [name for name, came in acknowledged.items() if not came]
+    silent = [name for name, response in acknowledged.items() if not response.replies]
     if len(acknowledged) < 2:
         raise NotSupported("fewer than two changes were sent")
     reason = f"some commands were acknowledged, but not {', '.join(silent)}"

@@ -83,7 +83,8 @@ def _facts(probe: Probe) -> None:
     declared = statement.acknowledgements
     if declared is Acknowledgements.UNKNOWN:
         probe.drop(ACKNOWLEDGEMENTS)
-    for name, came in device.acknowledged.items():
+    for name, response in device.acknowledged.items():
+        came = bool(response.replies)
         right = came is (declared is Acknowledgements.ALL)
         was = "was acknowledged" if came else "was not acknowledged"
         reason = f"{declared} changes are acknowledged, as declared; but {name} {was}"

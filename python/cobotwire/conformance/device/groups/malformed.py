@@ -164,7 +164,7 @@ def _together(probe: Probe, request: EncodedRequest) -> None:
         response = device.count(device.requester.send_instead(request, data, what))
         if len(response.replies) < count:
             deadline = request.command.deadline_ms / 1000
-            device.requester.listen(response, device.connection.now, deadline)
+            device.requester.listen(response, deadline)
         legal = [reply for reply in response.replies if response.accepts(reply)]
         complete = len(legal) == len(response.replies) == count and not response.unexpected
         reason = f"{what}: expected {count} replies; came {response.summary}"

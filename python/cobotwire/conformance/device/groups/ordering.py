@@ -46,7 +46,7 @@ def _ordered(probe: Probe) -> None:
         response = device.count(device.requester.send_instead(mine, data, names))
         if not response.replies or not response.others:
             deadline = max(mine.command.deadline_ms, theirs.command.deadline_ms) / 1000
-            device.requester.listen(response, device.connection.now, deadline)
+            device.requester.listen(response, deadline)
         came = device.connection.received_since(start)
         right = [each.command.id for each in pair]
         frames = [reply.data for reply in response.replies] + [f.data for f in response.others]

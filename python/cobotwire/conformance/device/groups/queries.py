@@ -144,7 +144,7 @@ def _judge(probe: Probe, response: Response) -> None:
         once = len(response.replies) == 1 and not response.unexpected
         probe.expect(ONCE, once, f"{call}: expected one reply and no more; came {response.summary}")
     deadline = command.deadline_ms
-    in_time = bool(response.replies) and response.replies[0].seconds <= deadline / 1000
+    in_time = bool(response.replies) and not response.late
     probe.expect(REPLIED, in_time, _late(call, response, deadline))
 
 

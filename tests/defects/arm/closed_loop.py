@@ -1,0 +1,106 @@
+"""The arm in a closed loop: it acknowledges each change, and reports the end of each motion.
+
+It conforms to the edition in ``closed_loop.yaml``, in each of the ways in ``CORRECT``.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+
+from defects.arm.arm import Arm
+from defects.arm.numbers import framed
+from defects.arm.spoilt import Defect, Right
+
+MOVES = (0x21, 0x22, 0x30, 0x31, 0x33, 0x3A, 0x3C)
+STOPS = (0x11, 0x13, 0x29, 0x34)
+ENDED, ARRIVED, STOPPED = 0x5B, 0, 11
+# Two replies to different requests come at least this long after each other, in seconds.
+LATE = 0.04
+
+
+class ClosedLoopArm(Arm):
+    """The arm; ``ends_at`` is when the motion ends whose end it has not reported yet."""
+
+    ends_at: float | None = None
+
+    def change(self, id: int, data: bytes) -> None:
+        """Carry out a request that is no query; note or report the end of a motion."""
+        moving = self.travel.moves or self.travel.held
+        super().change(id, data)
+        if id in STOPS and moving:
+            self.end(STOPPED)
+        elif self.travel.moves:
+            self.ends_at = self.travel.ends_at
+        elif self.travel.held:
+            self.ends_at = None
+
+    def acknowledgement(self, id: int) -> bytes:
+        """Acknowledge a change."""
+        return framed(id, b"\x01")
+
+    def end(self, status: int) -> None:
+        """Report how a motion has ended."""
+        self.ends_at = None
+        self.later(0.0, framed(ENDED, bytes([status])))
+
+    @property
+    def wait(self) -> float | None:
+        """Seconds until something is due; None: never."""
+        before = super().wait
+        left = None if self.ends_at is None else max(0.0, self.ends_at - self.clock())
+        return min((each for each in (before, left) if each is not None), default=None)
+
+    def flush(self) -> bytes:
+        """Return what is due by now."""
+        if self.ends_at is not None and self.clock() >= self.ends_at:
+            self.end(ARRIVED)
+        return super().flush()
+
+
+def closed_loop_arm(clock: Callable[[], float], switch: str = "") -> Arm:
+    """Return the arm in a correct way or with a defect; without a name, the plain one."""
+    arm = ClosedLoopArm(clock)
+    for method, hook in (CORRECT | DEFECTS)[switch].items():
+        setattr(arm, method, partial(hook, arm, getattr(arm, method)))
+    return arm
+
+
+def _later(seconds: Callable[[int], float]) -> Defect:
+    """Send the acknowledgement of a command later."""
+
+    def acknowledgement(arm: Arm, right: Right, id: int) -> bytes:
+        arm.later(seconds(id), right(id))
+        return b""
+
+    return {"acknowledgement": acknowledgement}
+
+
+CORRECT: dict[str, Defect] = {
+    "": {},
+    "acknowledges-late": _later(lambda id: LATE),
+    "acknowledges-very-late": _later(lambda id: 0.45),
+    "acknowledges-at-different-times": _later(lambda id: id % 7 * LATE),
+    "acknowledges-nothing": {"acknowledgement": lambda arm, right, id: b""},
+}
+
+
+def _takes_illegal_speeds(arm: Arm, right: Right, id: int, data: bytes) -> bytes:
+    if id != 0x41 or data[0] <= 100:
+        return bytes(right(id, data))
+    arm.later(LATE, framed(id, b"\x01"))
+    return b""
+
+
+def _twice(arm: Arm, right: Right, id: int) -> bytes:
+    arm.later(LATE / 2, right(id))
+    return bytes(right(id))
+
+
+DEFECTS: dict[str, Defect] = {
+    "acknowledges-an-illegal-speed": {"reply": _takes_illegal_speeds},
+    "acknowledges-twice": {"acknowledgement": _twice},
+    "one-change-unacknowledged": {
+        "acknowledgement": lambda arm, right, id: b"" if id == 0x41 else right(id)
+    },
+}
