@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable
+from collections.abc import Callable, Container
 from contextlib import suppress
 from typing import Any
 
@@ -14,7 +14,7 @@ from cobotwire.conformance.device.permissions import Permissions
 from cobotwire.conformance.device.requester import Requester, Timing
 from cobotwire.conformance.device.requests import Known, units
 from cobotwire.conformance.device.response import Response
-from cobotwire.conformance.statement import Statement
+from cobotwire.conformance.statement import Statement, without
 from cobotwire.protocol.errors import UsageError
 from cobotwire.protocol.messages import Reply, Request, Result
 from cobotwire.protocol.table import Address, Command, Role, Table
@@ -54,12 +54,16 @@ class Device:
         retries: int = 0,
         address: Address | None = None,
         statement: Statement | None = None,
+        optional: Container[str] = (),
     ) -> None:
         self.connection = connection
         self.statement = statement or Statement()
+        self._optional = optional
         # How many joints the device has: one of several devices may have fewer than the edition.
         self.joints = (address and address.joints) or codec.table.joints
-        self.table: Table = codec.table
+        self.edition: Table = codec.table
+        # The edition with the commands that the device has, as far as is known.
+        self.table = without(codec.table, self.statement.deselected)
         self.permissions = permissions
         self.timing = timing
         self.requester = Requester(connection, codec, timing, address)
@@ -109,7 +113,7 @@ class Device:
         return bool(response.replies)
 
     def command(self, role: Role) -> Command | None:
-        """Return the first command in a role; None if the edition has none."""
+        """Return the first command in a role; None if the edition or the device has none."""
         return self.table.find_role(role)
 
     def request(self, request: Request[Any]) -> Response:
@@ -146,6 +150,9 @@ class Device:
             plain = command.safety == "query" and command.text is None
             self._replied = response.request if plain and response.valid else self._replied
         elif command.requires_reply:
+            name = command.name
+            if name in self._optional and not self.reply_seconds.get(name):
+                self.table = without(self.table, lambda other: other.name == name)
             self._silent += 1
             if self._silent >= SILENT:
                 self._expect_alive(response.request)
@@ -197,10 +204,10 @@ class Device:
             return {}
         found: dict[tuple[str, ...], tuple[float, ...]] = {}
         for role in ("joints", "coordinates"):
-            command = self.command(role)
+            command, query = self.edition.find_role(role), self.command(role)
             if command is None:
                 continue
-            reply = self.read(command.request_type())
+            reply = None if query is None else self.read(query.request_type())
             field = command.reply[0].fields[0]
             row = () if reply is None else getattr(reply, field.name)
             found[units(field.cases[0].numbers)] = row

@@ -177,8 +177,10 @@ def settings_of(table: Table, command: Command) -> list[Setting]:
     back = command.read_by
     if back is None or has_fixed_effect(command):
         return []
-    query = table.command(back.query)
-    found = []
+    query = next((each for each in table.commands if each.name == back.query), None)
+    found: list[Setting] = []
+    if query is None:
+        return found
     for variant in _of_corner_sizes(command.request):
         query_variant = _query_variant(query, variant)
         pairs = _pairs(command, variant, query)

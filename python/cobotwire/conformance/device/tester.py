@@ -16,16 +16,17 @@ from cobotwire.conformance.device.device import (
 from cobotwire.conformance.device.excuses import cut_short, excused
 from cobotwire.conformance.device.permissions import Permissions
 from cobotwire.conformance.device.plan import Plan, Step
-from cobotwire.conformance.device.probe import Probe, needed
+from cobotwire.conformance.device.probe import Body, Probe, needed
 from cobotwire.conformance.device.read_as import sent_last
 from cobotwire.conformance.device.requester import Timing
 from cobotwire.conformance.device.suite import SUITE
 from cobotwire.conformance.report import Report, Result
 from cobotwire.conformance.statement import Statement
+from cobotwire.conformance.suite import Group
 from cobotwire.conformance.tally import Tally, merged
 from cobotwire.protocol.addresses import find_address
 from cobotwire.protocol.errors import LinkError, UsageError
-from cobotwire.protocol.table import Table
+from cobotwire.protocol.table import Command, Table
 
 Progress = Callable[[Step, int, int], None]
 
@@ -90,6 +91,7 @@ class Tester:
             retries=retries,
             address=device_address,
             statement=self._statement,
+            optional=self._optional,
         )
         at = "" if device_address is None else f" at address {device_address.name}"
         self.report = Report("device", table.edition, f"{connection.name}{at}")
@@ -110,6 +112,19 @@ class Tester:
                 # Nothing is sent for an event.
                 if not command.event and group.selects(self.table, command):
                     yield Step(group, command)
+
+    def _selects(self, group: Group[Body], command: Command) -> bool:
+        """Return whether a group can test a command by the commands that the device has."""
+        own = self._own(command)
+        return (
+            own is not None
+            and group.selects is not None
+            and (group.selects(self.device.table, own))
+        )
+
+    def _own(self, command: Command) -> Command | None:
+        """Return a command that refers to none that the device lacks; None if it lacks this one."""
+        return next((c for c in self.device.table.commands if c.name == command.name), None)
 
     def run(self, progress: Progress | None = None, plan: Plan | None = None) -> Report:
         """Run everything that is permitted; restore all changes, however the run ends.
@@ -191,10 +206,16 @@ class Tester:
         """Return why the statement deselects a step; empty: it does not."""
         if step.command is None or step.group.declared:
             return ""
-        return self._statement.deselected(step.command)
+        reason = self._statement.deselected(step.command)
+        if reason or self._selects(step.group, step.command):
+            return reason
+        if self._own(step.command) is None:
+            return f"The device lacks {step.command.name}, which is optional."
+        return "The device lacks another command, without which this cannot be observed."
 
     def _probe(self, step: Step) -> Probe:
-        return Probe(self.device, step.group, step.command, Tally(self._sources))
+        command = step.command and (self._own(step.command) or step.command)
+        return Probe(self.device, step.group, command, Tally(self._sources))
 
     def _run_once(self, step: Step) -> list[Result]:
         probe = self._probe(step)

@@ -6,6 +6,7 @@ from cobotwire.conformance.statement.statement import (
     Statement,
     Support,
     is_mandatory,
+    without,
 )
 from cobotwire.conformance.statement.template import statement_template
 
@@ -17,4 +18,5 @@ __all__ = [
     "load_statement",
     "read_statement",
     "statement_template",
+    "without",
 ]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Container, Iterator, Mapping
 from dataclasses import dataclass, field
 from enum import StrEnum
 
@@ -86,6 +86,25 @@ class Statement:
                 f"The statement declares that there is no equipment of the kind {command.family}."
             )
         return ""
+
+
+def without(table: Table, lacks: Callable[[Command], object]) -> Table:
+    """Return an edition without some commands; no other command refers to one of them."""
+    missing = {command.name for command in table.commands if lacks(command)}
+    if not missing:
+        return table
+    kept = [command for command in table.commands if command.name not in missing]
+    return table._replace(commands=tuple(_referring(command, missing) for command in kept))
+
+
+def _referring(command: Command, missing: Container[str]) -> Command:
+    """Return a command that refers to none of the missing ones."""
+    agreeing = tuple(name for name in command.agrees_with if name not in missing)
+    if command.read_by is not None and command.read_by.query in missing:
+        return command._replace(read_by=None, agrees_with=agreeing)
+    if agreeing != command.agrees_with:
+        return command._replace(agrees_with=agreeing)
+    return command
 
 
 def is_mandatory(command: Command) -> bool:

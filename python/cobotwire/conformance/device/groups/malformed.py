@@ -173,10 +173,9 @@ def _together(probe: Probe, request: EncodedRequest) -> None:
 
 def _unknown_ids(probe: Probe) -> None:
     """Send ids that the edition lacks, with and without data."""
-    table = probe.device.table
-    carrier = next(
-        c for c in table.commands if _is_framed_query(table, c) and not c.request[0].fields
-    )
+    table = probe.device.edition
+    queries = (c for c in probe.device.table.commands if _is_framed_query(table, c))
+    carrier = next(query for query in queries if not query.request[0].fields)
     request = probe.device.requester.prepare(carrier.request_type())
     sender = MalformedSender(probe, request)
     for id in _free_ids(table):

@@ -21,7 +21,7 @@ def _can_be_told_apart(table: Table, command: Command) -> bool:
 
 
 def _other(table: Table, command: Command) -> Command | None:
-    """Return another query without arguments, which is not slow."""
+    """Return another query without arguments, which is not slow and which the device has."""
     found = [
         c
         for c in table.commands

@@ -44,7 +44,8 @@ def _choosers(table: Table) -> Iterator[Command]:
     """Yield the settings that choose between flange and tool, or base and world."""
     for command in table.commands:
         fields = command.request[0].fields if command.request else ()
-        if command.safety == "setting" and len(fields) == 1 and fields[0].labels in (TOOL, WORLD):
+        chooses = len(fields) == 1 and fields[0].labels in (TOOL, WORLD)
+        if command.safety == "setting" and chooses and settings_of(table, command):
             yield command
 
 
