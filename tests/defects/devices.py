@@ -33,11 +33,14 @@ HERE = Path(__file__).parent
 # A reply is late after 500 ms; in seconds.
 ALLOWED_STALL = 0.3
 AT_REST = ("setting", "persistent-write", "power", "malformed")
+CLOSED_LOOP = table_of(
+    json.loads(edition_json(build_edition(HERE / "arm" / "closed_loop.yaml", HERE)))
+)
 # Not built in the arm: motion to coordinates.
 LEFT_OUT = ("send_coord", "send_coords", "jog_coord")
 
 
-class _Tester(Tester):
+class OurTester(Tester):
     """The tester, without the commands that the subject lacks."""
 
     def steps(self) -> Iterator[Step]:
@@ -50,15 +53,13 @@ class _Tester(Tester):
 def report_on_arm(defect: str = "") -> Report:
     """Test the arm in plain Python, in stepped time, with all permissions."""
     clock = SteppedClock()
-    return on_peer(arm_with(clock, defect), clock, TABLE, _Tester).run()
+    return on_peer(arm_with(clock, defect), clock, TABLE, OurTester).run()
 
 
 def report_on_closed_loop(switch: str = "") -> Report:
     """Test the arm in a closed loop, in stepped time, with all permissions."""
     clock = SteppedClock()
-    edition = build_edition(HERE / "arm" / "closed_loop.yaml", HERE)
-    table = table_of(json.loads(edition_json(edition)))
-    return on_peer(closed_loop_arm(clock, switch), clock, table, _Tester).run()
+    return on_peer(closed_loop_arm(clock, switch), clock, CLOSED_LOOP, OurTester).run()
 
 
 def report_on_firmware(defect: str = "") -> Report:
@@ -77,7 +78,7 @@ def report_on_firmware(defect: str = "") -> Report:
 def report_on(transport: Transport, allow: Iterable[str]) -> Report:
     """Test what a transport leads to, in real time, without motion."""
     allowed = Permissions.of(allow, joints=6)
-    tester = _Tester(DeviceConnection(transport), TABLE, permissions=allowed)
+    tester = OurTester(DeviceConnection(transport), TABLE, permissions=allowed)
     # The report says so if the connection is lost.
     with suppress(LinkError):
         tester.run()

@@ -33,6 +33,8 @@ class Cause(StrEnum):
     RUN_ENDED = "run ended"
     # Inconclusive: the subject lacks what the test case is about, or is in the wrong state.
     NOT_SUPPORTED = "not supported"
+    # Inconclusive: what shows only for a while was not there any more, or the host was late.
+    NOT_TIMED = "not timed"
     # Fail: repetitions of the same test case differ.
     UNSTABLE = "unstable"
 
@@ -45,6 +47,7 @@ class Cause(StrEnum):
 OF_CAUSE = {
     Cause.NONE: Verdict.PASS,
     Cause.NOT_SUPPORTED: Verdict.INCONCLUSIVE,
+    Cause.NOT_TIMED: Verdict.INCONCLUSIVE,
     Cause.UNSTABLE: Verdict.FAIL,
 }
 

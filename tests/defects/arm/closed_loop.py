@@ -76,11 +76,17 @@ def _later(seconds: Callable[[int], float]) -> Defect:
     return {"acknowledgement": acknowledgement}
 
 
+def _faster(factor: int) -> Defect:
+    return {"go": lambda arm, right, ticks, speed: right(ticks, factor * speed)}
+
+
 CORRECT: dict[str, Defect] = {
     "": {},
     "acknowledges-late": _later(lambda id: LATE),
     "acknowledges-very-late": _later(lambda id: 0.45),
     "acknowledges-at-different-times": _later(lambda id: id % 7 * LATE),
+    "fast": _faster(3),
+    "very-fast": _faster(20),
     "acknowledges-nothing": {"acknowledgement": lambda arm, right, id: b""},
 }
 
@@ -97,7 +103,18 @@ def _twice(arm: Arm, right: Right, id: int) -> bytes:
     return bytes(right(id))
 
 
+def _refreshes(arm: Arm, right: Right, ticks: list[float], speed: int) -> None:
+    mode, arm.flags[0x16] = arm.flags[0x16], 1
+    right(ticks, speed)
+    arm.flags[0x16] = mode
+
+
 DEFECTS: dict[str, Defect] = {
+    "fast-and-never-moving": {
+        **_faster(3),
+        "answer": lambda arm, right, id, data: b"\0" if id == 0x2B else right(id, data),
+    },
+    "targets-never-wait": {"go": _refreshes},
     "acknowledges-an-illegal-speed": {"reply": _takes_illegal_speeds},
     "acknowledges-twice": {"acknowledgement": _twice},
     "one-change-unacknowledged": {

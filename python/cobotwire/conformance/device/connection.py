@@ -38,10 +38,13 @@ class DeviceConnection:
         """Return the last ``most`` exchanges between two marks."""
         return tuple(self._exchanges[max(first, last - most) : last])
 
+    def since(self, mark: int) -> list[Exchange]:
+        """Return all exchanges since a mark."""
+        return self._exchanges[mark:]
+
     def received_since(self, mark: int) -> bytes:
         """Return all bytes that were received since a mark."""
-        later = self._exchanges[mark:]
-        return b"".join(each.data for each in later if each.direction == "received")
+        return b"".join(each.data for each in self.since(mark) if each.direction == "received")
 
     def last_sent(self, most: int = 3) -> list[Exchange]:
         """Return the last requests that were sent."""

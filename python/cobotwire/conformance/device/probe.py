@@ -59,6 +59,11 @@ class Probe:
         """Report this text if the verdict on a test case is pass."""
         self._tally.note(case, self._name, text)
 
+    def not_timed(self, case: TestCase, reason: str) -> None:
+        """Give no verdict on a test case, unless it has failed: the right moment was missed."""
+        if (case, self._name) in self._tally:
+            self._tally.excuse(case, self._name, Cause.NOT_TIMED, reason)
+
     def results(self, unsupported: str = "") -> list[Result]:
         """Return a result for each test case; ``unsupported`` says why nothing was observed."""
         return self._tally.results(evidence=self._evidence(), unobserved=unsupported)

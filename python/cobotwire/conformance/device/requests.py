@@ -53,6 +53,14 @@ def _typed(command: Command, fields: Mapping[str, Any]) -> Request[Any]:
     )
 
 
+def flag_text(query: Command, value: bool | None) -> str:
+    """Return what a query reports, by the name of the value if it has one: FILLED; else True."""
+    if value is None:
+        return "no valid reply"
+    field = query.reply[0].fields[-1]
+    return dict(zip(field.choices, field.labels)).get(int(value), str(value))
+
+
 def arguments_of(request: Request[Any]) -> str:
     """Return the arguments of a request as a person writes them: ``joint=1, angle=20.0``."""
     return ", ".join(f"{name}={value}" for name, value in request.fields.items())

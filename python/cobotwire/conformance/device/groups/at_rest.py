@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from cobotwire.conformance.device.device import NotSupported
 from cobotwire.conformance.device.groups.motion import REACHED
 from cobotwire.conformance.device.probe import Probe
-from cobotwire.conformance.device.requests import request_of, units
+from cobotwire.conformance.device.requests import flag_text, request_of, units
 from cobotwire.conformance.mistakes import Pair, likely_mistake
 from cobotwire.conformance.suite import Group, TestCase
 from cobotwire.protocol.roles import ANGLES, COORDS, KINDS, ReachedQuery, as_reached_query
@@ -119,8 +119,7 @@ def _reached_by_one(probe: Probe, angle: Command) -> None:
     for target, there in ((here, True), (here + FAR["degree"], False)):
         reported = probe.device.is_set(request_of(probe.command, target, KINDS[ANGLES]))
         call = f"{probe.command.name}({target:.4g})"
-        came = "no valid reply" if reported is None else str(reported)
-        probe.expect(REACHED, reported is there, f"at rest, {call}: expected {there}; came {came}")
+        _expect_flag(probe, call, reported, there)
 
 
 def _reached(probe: Probe) -> None:
@@ -147,9 +146,13 @@ def _expect(
     probe: Probe, query: ReachedQuery, kind: str, target: Sequence[float], there: bool
 ) -> None:
     reported = probe.device.is_set(query.request(target, kind))
-    came = "no valid reply" if reported is None else str(reported)
-    call = f"{probe.command.name}({_short(target)}, {kind})"
-    probe.expect(REACHED, reported is there, f"at rest, {call}: expected {there}; came {came}")
+    _expect_flag(probe, f"{probe.command.name}({_short(target)}, {kind})", reported, there)
+
+
+def _expect_flag(probe: Probe, call: str, reported: bool | None, there: bool) -> None:
+    expected = f"at rest, {call}: expected {flag_text(probe.command, there)}"
+    reason = f"{expected}; came {flag_text(probe.command, reported)}"
+    probe.expect(REACHED, reported is there, reason)
 
 
 def is_limit(table: Table, command: Command) -> bool:

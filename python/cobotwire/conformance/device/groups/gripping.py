@@ -5,11 +5,20 @@ from __future__ import annotations
 from typing import Any
 
 from cobotwire.conformance.device.groups.changes import AFTER_CHANGE, request_change
-from cobotwire.conformance.device.groups.motion import ARRIVES, MOVING, expect_moving, is_replayed
-from cobotwire.conformance.device.mover import Mover
+from cobotwire.conformance.device.groups.motion import (
+    ARRIVED,
+    ARRIVES,
+    MOVING,
+    NEAR,
+    Motion,
+    expect_on_the_way,
+    expect_rest,
+    is_replayed,
+)
+from cobotwire.conformance.device.mover import Mover, Pose
 from cobotwire.conformance.device.probe import Probe
 from cobotwire.conformance.device.read_back import Setting, settings_of
-from cobotwire.conformance.device.requests import request_of
+from cobotwire.conformance.device.requests import as_row, request_of
 from cobotwire.conformance.suite import Group
 from cobotwire.protocol.messages import Request
 from cobotwire.protocol.table import Command, Table
@@ -30,11 +39,21 @@ def _reports_moving(probe: Probe) -> None:
     mover, motion = Mover(probe), settings_of(probe.device.table, probe.command)[-1]
     moving, position = _moving(probe.device.table, probe.command), motion.query.request_type()
     assert moving is not None
+    reported, argument = motion.pairs[0]
+    observed = []
+
+    def place() -> Pose:
+        return as_row(probe.device.require(position).fields[reported])
+
     for target in _ends(probe, motion, position, min(SLOW, mover.speed)):
+        start, end = place(), as_row(target.fields[argument])
         probe.device.request(target)
-        expect_moving(probe, mover, moving, True)
+        way = Motion(place, start, end, NEAR["percent"])
+        observed.append(expect_on_the_way(probe, moving, way))
         mover.settle(lambda: probe.device.read(position))
-        expect_moving(probe, mover, moving, False)
+        expect_rest(probe, moving)
+    if not any(observed):
+        probe.not_timed(MOVING, ARRIVED)
 
 
 def _ends(probe: Probe, motion: Setting, position: Request[Any], speed: int) -> list[Request[Any]]:

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from functools import partial
+from itertools import pairwise
 from random import Random
 
 from cobotwire.conformance.device.device import NotSupported
@@ -25,6 +26,8 @@ from cobotwire.protocol.table import Command, FrameFormat, Table, Variant
 from cobotwire.session.request import EncodedRequest
 from cobotwire.simulator.faults.noise import NOISE
 
+# How often a request is sent in pieces; and how many times too long a pause of the host may be.
+ATTEMPTS, LATE = 3, 2
 MALFORMED = frozenset({"malformed"})
 # Classes of the simulator's catalogue: packets of the servo bus, text, and bytes of a header.
 PACKETS = ("servo", "servo FE")
@@ -146,14 +149,25 @@ def _is_replied_to(probe: Probe) -> bool:
 
 
 def _in_pieces(probe: Probe, request: EncodedRequest) -> None:
-    """Send one byte at a time."""
-    device, frame = probe.device, request.frame
-    for at in range(len(frame) - 1):
-        piece, pause = frame[at : at + 1], device.timing.pause
-        response = device.requester.send_bytes(request, piece, "a piece", pause)
-        probe.expect(PIECES, not response.replies, f"half a request: came {response.summary}")
-    response = device.count(device.requester.send_instead(request, frame[-1:], "the last piece"))
-    expect_one_reply(probe, PIECES, response, "the request in pieces")
+    """Send one byte at a time; again if the host was late, so that a device may give up."""
+    device, frame, longest = probe.device, request.frame, LATE * probe.device.timing.pause
+    for _ in range(ATTEMPTS):
+        start = device.connection.mark
+        for at in range(len(frame) - 1):
+            piece, pause = frame[at : at + 1], device.timing.pause
+            half = device.requester.send_bytes(request, piece, "a piece", pause)
+            probe.expect(PIECES, not half.replies, f"half a request: came {half.summary}")
+        response = device.requester.send_instead(request, frame[-1:], "the last piece")
+        times = [each.at for each in device.connection.since(start) if each.direction == "sent"]
+        pauses = [1000 * (after - before) for before, after in pairwise(times)]
+        were = f"the pauses between the pieces were {min(pauses):.0f} to {max(pauses):.0f} ms"
+        if response.only_valid or max(pauses) <= 1000 * longest:
+            device.count(response)
+            probe.note(PIECES, f"In pieces: {were}.")
+            expect_one_reply(probe, PIECES, response, f"the request in pieces ({were})")
+            return
+        device.connection.clock.sleep(device.timing.idle)
+    probe.not_timed(PIECES, f"The host was late: {were}, so the device may have given up.")
 
 
 def _together(probe: Probe, request: EncodedRequest) -> None:

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Callable
+from typing import Any, NamedTuple
 
 from cobotwire.conformance.device.groups.changes import AFTER_CHANGE, request_change
 from cobotwire.conformance.device.mover import POLL, Mover, Pose, off_by
 from cobotwire.conformance.device.probe import Probe
 from cobotwire.conformance.device.read_back import Setting, settings_of
-from cobotwire.conformance.device.requests import request_of
+from cobotwire.conformance.device.requests import flag_text, request_of
 from cobotwire.conformance.suite import Group, Selects, TestCase
 from cobotwire.protocol.messages import Reply, Request
 from cobotwire.protocol.roles import ANGLES, reached_query
@@ -21,8 +22,11 @@ STOPS = TestCase("stops", "A stop ends the motion, and the arm stays at rest.")
 
 # The tolerance between sent and read values, by unit: one tick, and the end's motion within it.
 NEAR = {"millimetre": 1.5, "tick": 1.0, "percent": 1.0}
-# After this time, in seconds, the arm reports that it moves and has not arrived yet.
+# After this time, in seconds, an arm on its way reports that it moves.
 UNDER_WAY = 0.1
+ARRIVED = "The arm had arrived before it could be observed on the way."
+# How often, and for how long, it is observed whether the arm reports that it moves, in seconds.
+LOOK, OBSERVED = 0.01, 2.0
 
 
 def _has(role: Role) -> Selects:
@@ -32,17 +36,21 @@ def _has(role: Role) -> Selects:
 def _to_poses(probe: Probe) -> None:
     """Move all joints at once, from pose to pose."""
     mover, moving = Mover(probe), probe.device.command("moving")
+    observed = []
     for which in (0, 1):
         pose, other = mover.pose(which), mover.pose(1 - which)
         mover.go(other)
         request_change(probe, request_of(probe.command, pose, mover.speed))
-        expect_moving(probe, mover, moving, True)
+        motion = Motion(mover.angles, other, pose, mover.tolerance)
+        observed.append(expect_on_the_way(probe, moving, motion))
         mover.wait()
         wrong = mover.differences(pose)
         probe.expect(ARRIVES, not wrong, f"{probe.command.name}: {'; '.join(wrong)}")
-        expect_moving(probe, mover, moving, False)
+        expect_rest(probe, moving)
         _expect_reached(probe, pose, True)
         _expect_reached(probe, other, False)
+    if not any(observed):
+        probe.not_timed(MOVING, ARRIVED)
 
 
 def _to_angles(probe: Probe) -> None:
@@ -106,18 +114,25 @@ def _replay(
 def _stops(probe: Probe) -> None:
     """Stop on the way: the arm is short of its target, and stays there."""
     mover, moving = Mover(probe), probe.device.command("moving")
-    mover.go(mover.pose(0))
-    probe.device.request(mover.to(mover.pose(1), 1))
+    start, target = mover.pose(0), mover.pose(1)
+    mover.go(start)
+    probe.device.request(mover.to(target, 1))
+    motion = Motion(mover.angles, start, target, mover.tolerance)
+    observed = expect_on_the_way(probe, moving, motion)
     mover.rest(UNDER_WAY)
+    if not under_way(probe, mover, target, STOPS):
+        return
     request_change(probe, probe.command.request_type())
     # The arm slows down first.
     mover.rest(POLL)
-    expect_moving(probe, mover, moving, False)
+    expect_rest(probe, moving)
+    if not observed:
+        probe.not_timed(MOVING, ARRIVED)
     stopped = mover.angles()
     mover.rest(4 * UNDER_WAY)
     wrong = off_by(mover.angles(), stopped, mover.tolerance, "was at")
     probe.expect(STOPS, not wrong, f"after {probe.command.name}: {'; '.join(wrong)}")
-    short = bool(off_by(stopped, mover.pose(1), mover.tolerance))
+    short = bool(off_by(stopped, target, mover.tolerance))
     probe.expect(STOPS, short, f"{probe.command.name}: expected the arm to stop on its way")
     resume(probe)
 
@@ -130,26 +145,69 @@ def resume(probe: Probe) -> None:
             probe.device.request(going.request_type())
 
 
-def expect_moving(probe: Probe, mover: Mover, query: Command | None, moves: bool) -> None:
-    """Expect a query, if the edition has it, to report whether something moves."""
+class Motion(NamedTuple):
+    """A motion that has just been requested: what reads its place, where from and where to.
+
+    ``near`` is how far from a place its readings may be.
+    """
+
+    place: Callable[[], Pose]
+    start: Pose
+    target: Pose
+    near: float
+
+
+def expect_on_the_way(probe: Probe, query: Command | None, motion: Motion) -> bool:
+    """Expect a query, if the edition has it, to report motion; return whether that was observed.
+
+    A reply counts if the places that are read before and after it are neither the start nor the
+    target. So the verdict does not depend on how late the host is, or how fast the arm.
+    """
+    device, missed, reported = probe.device, False, None
+    left_at: float | None = None
+    until = device.connection.now + OBSERVED
+    while query is not None and device.connection.now < until:
+        sent_at, reported = device.connection.now, device.is_set(query.request_type())
+        place = motion.place()
+        if not off_by(place, motion.target, motion.near):
+            break
+        if left_at is None:
+            left_at = device.connection.now if off_by(place, motion.start, motion.near) else None
+        elif reported:
+            probe.expect(MOVING, True, "")
+            return True
+        else:
+            missed = missed or sent_at - left_at >= UNDER_WAY
+        device.connection.clock.sleep(LOOK)
+    if missed and query is not None:
+        expected = f"{query.name}: expected {flag_text(query, True)} on the way"
+        probe.expect(MOVING, False, f"{expected}; came {flag_text(query, reported)}")
+    return missed or query is None
+
+
+def expect_rest(probe: Probe, query: Command | None) -> None:
+    """Expect a query, if the edition has it, to report no motion."""
     if query is not None:
-        if moves:
-            mover.rest(UNDER_WAY)
         reported = probe.device.is_set(query.request_type())
-        reason = f"{query.name}: expected {moves}; came {_came(reported)}"
-        probe.expect(MOVING, reported is moves, reason)
+        expected = f"{query.name}: expected {flag_text(query, False)} at rest"
+        probe.expect(MOVING, reported is False, f"{expected}; came {flag_text(query, reported)}")
+
+
+def under_way(probe: Probe, mover: Mover, target: Pose, case: TestCase) -> bool:
+    """Return whether the arm has not reached its target; give no verdict on a test case if so."""
+    on_the_way = bool(off_by(mover.angles(), target, mover.tolerance))
+    if not on_the_way:
+        probe.not_timed(case, ARRIVED)
+    return on_the_way
 
 
 def _expect_reached(probe: Probe, pose: Pose, there: bool) -> None:
     query = reached_query(probe.device.table)
     if query is not None and ANGLES in query.kinds:
         reported = probe.device.is_set(query.request(pose, ANGLES))
-        reason = f"{query.command.name}{pose}: expected {there}; came {_came(reported)}"
+        expected = f"{query.command.name}{pose}: expected {flag_text(query.command, there)}"
+        reason = f"{expected}; came {flag_text(query.command, reported)}"
         probe.expect(REACHED, reported is there, reason)
-
-
-def _came(reported: bool | None) -> str:
-    return "no valid reply" if reported is None else str(reported)
 
 
 POSES = Group(

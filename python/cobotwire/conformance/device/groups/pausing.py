@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from cobotwire.conformance.device.device import NotSupported
 from cobotwire.conformance.device.groups.changes import AFTER_CHANGE, request_change
-from cobotwire.conformance.device.groups.motion import ARRIVES, UNDER_WAY
+from cobotwire.conformance.device.groups.motion import ARRIVES, UNDER_WAY, under_way
 from cobotwire.conformance.device.mover import POLL, Mover, off_by
 from cobotwire.conformance.device.probe import Probe
+from cobotwire.conformance.device.requests import flag_text
 from cobotwire.conformance.suite import Group, TestCase
 from cobotwire.protocol.table import Command, Table
 
@@ -45,6 +46,8 @@ def _pause(probe: Probe) -> None:
     target = mover.pose(1)
     device.request(mover.to(target, 1))
     mover.rest(UNDER_WAY)
+    if not under_way(probe, mover, target, PAUSES):
+        return
     request_change(probe, probe.command.request_type())
     # The arm slows down first.
     mover.rest(2 * POLL)
@@ -68,7 +71,8 @@ def _expect_reported(probe: Probe, paused: bool) -> None:
     """Expect the query to report whether the arm is paused, long after it is."""
     query = probe.device.table.in_role("paused")
     reported = probe.device.is_set(query.request_type())
-    reason = f"after {probe.command.name}, {query.name}: expected {paused}; came {reported}"
+    expected = f"after {probe.command.name}, {query.name}: expected {flag_text(query, paused)}"
+    reason = f"{expected}; came {flag_text(query, reported)}"
     probe.expect(PAUSES, reported is paused, reason)
 
 

@@ -12,7 +12,7 @@ from typing import Any
 from cobotwire.conformance.device.device import NotSupported
 from cobotwire.conformance.device.groups.changes import AFTER_CHANGE, request_change
 from cobotwire.conformance.device.probe import Probe
-from cobotwire.conformance.device.requests import as_row, request_of, revealing, units
+from cobotwire.conformance.device.requests import as_row, flag_text, request_of, revealing, units
 from cobotwire.conformance.suite import Group, TestCase
 from cobotwire.protocol.table import Command, Field, Table
 
@@ -111,7 +111,8 @@ def _expect_count(probe: Probe, counter: Command, count: int) -> None:
     for query in _bare(probe.device.table, probe.command, "query"):
         if len(query.reply[0].fields[0].choices) == 2:
             filled = probe.device.is_set(query.request_type())
-            reason = f"{query.name}: expected {count > 0}, with {count} points; came {filled}"
+            expected = f"{query.name}: expected {flag_text(query, count > 0)}, with {count} points"
+            reason = f"{expected}; came {flag_text(query, filled)}"
             probe.expect(IN_ORDER, filled is (count > 0), reason)
 
 

@@ -1,0 +1,68 @@
+"""A host that is late accuses no device: its clock is stepped, so the load of the machine is none.
+
+A stall is time that passes between a request and the next look at the port.
+"""
+
+from __future__ import annotations
+
+import pytest
+
+from cobotwire.conformance import Cause, Report, Verdict
+from cobotwire.conformance.device import ALL_PERMISSIONS, DeviceConnection
+from cobotwire.protocol.table import Table
+from cobotwire.simulator.clock import SteppedClock
+from cobotwire.simulator.memory import MemoryTransport
+from conformance.device.testing import permissions
+from defects.arm.closed_loop import closed_loop_arm
+from defects.devices import CLOSED_LOOP, OurTester
+
+
+class StallingTransport(MemoryTransport):
+    """A connection on which each ``every``-th write is followed by a stall, in seconds."""
+
+    every, seconds, _writes = 1, 0.0, 0
+
+    def write(self, data: bytes) -> None:
+        """Send, and let time pass."""
+        super().write(data)
+        self._writes += 1
+        if self._writes % self.every == 0:
+            self.clock.sleep(self.seconds)
+
+
+def run(way: str, every: int, seconds: float, table: Table = CLOSED_LOOP) -> Report:
+    clock = SteppedClock()
+    transport = StallingTransport(closed_loop_arm(clock, way), clock)
+    transport.every, transport.seconds = every, seconds
+    allowed = permissions(*ALL_PERMISSIONS)
+    return OurTester(DeviceConnection(transport, clock), table, permissions=allowed).run()
+
+
+@pytest.mark.parametrize(
+    ("every", "seconds"), [(2, 0.02), (3, 0.06), (5, 0.3), (7, 0.8), (13, 3.0)]
+)
+@pytest.mark.parametrize("way", ["", "acknowledges-late", "fast"])
+def test_late_host_accuses_no_device(way: str, every: int, seconds: float) -> None:
+    report = run(way, every, seconds)
+    assert [f"{r.group}, {r.case} {r.command}: {r.reason}" for r in report.failures] == []
+
+
+def test_host_that_is_always_late_leaves_request_in_pieces_open_and_says_how_late_it_was() -> None:
+    report = run("", 2, 0.3)
+    found = [result for result in report.results if result.case == "request-in-pieces"]
+    assert {result.cause for result in found} == {Cause.NOT_TIMED}
+    assert "10 to 310 ms" in found[0].reason
+
+
+def test_report_shows_the_pauses_that_were_made() -> None:
+    report = run("", 1, 0.002)
+    found = [result for result in report.results if result.case == "request-in-pieces"]
+    assert {result.verdict for result in found} == {Verdict.PASS}
+    assert "12 to 12 ms" in found[0].reason
+
+
+def test_arm_that_arrives_at_once_leaves_moving_open_and_passes_it_at_a_slow_motion() -> None:
+    report = run("very-fast", 1, 0.02)
+    found = {r.command: r for r in report.results if r.case == "moving"}
+    assert found["send_angles"].outcome == "inconclusive (not timed)"
+    assert found["stop"].verdict is Verdict.PASS
