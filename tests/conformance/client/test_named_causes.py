@@ -7,8 +7,11 @@ from __future__ import annotations
 
 import pytest
 
+from cobotwire.codec.interface import Noise
+from cobotwire.conformance.client.broken_frames import described, joined
+from cobotwire.conformance.client.history import Received
 from cobotwire.conformance.report import Report, Result
-from conformance.client.test_cases import checked, line, spaced
+from conformance.client.test_cases import TABLE, checked, line, spaced
 
 POWER_OFF, RELEASE_ALL = bytes.fromhex("FEFE0211FA"), bytes.fromhex("FEFE0213FA")
 # jog_increment: joint 1, 10 degrees, speed 50. set_gripper_value: 60 percent, speed 80.
@@ -25,6 +28,14 @@ def test_frame_in_pieces_is_one_occurrence_and_shown_whole() -> None:
     found = only(checked(pieces), "frame-length")
     assert "FE FE [LEN 03] [id 20] 00 FA" in found.reason
     assert "of" not in found.reason.rpartition("FA")[2]
+
+
+def test_pause_inside_a_frame_is_named_as_one() -> None:
+    first, rest = Noise(0, STEP[:6], "truncated"), Noise(6, STEP[6:], "no-header")
+    [whole] = joined([Received(1.2, first), Received(1.25, rest)])
+    assert isinstance(whole.event, Noise)
+    text = described(TABLE, whole.event)
+    assert "jog_increment_angle is sent in parts with a pause of over 200 ms: FE FE" in text
 
 
 def test_each_occurrence_is_described_and_all_are_counted() -> None:

@@ -7,6 +7,7 @@ from typing import Any
 
 import pytest
 
+from cobotwire import codec as codecs
 from cobotwire import editions
 from cobotwire.conformance import Result, Verdict
 from cobotwire.conformance.device import ALL_PERMISSIONS
@@ -94,6 +95,21 @@ def test_wrong_speed_of_a_servo_fails(
     [result] = _failures(ARM, "reported speeds", "get_servo_speeds")
     assert result.case == "speeds-reported"
     assert named in result.reason
+
+
+def test_message_names_what_a_query_reports_by_the_names_of_its_values() -> None:
+    table = editions.load("mercury_a1").TABLE
+    codec, query = codecs.load(table), table.command("is_drag_fifo_empty")
+
+    def altered(request: bytes, reply: bytes, count: int) -> bytes:
+        if request[3:4] != bytes([query.id]):
+            return reply
+        content = codec.decode("reply", reply, of=query.name).fields["content"]
+        return codec.encode(query.name, "reply", [1 - content])
+
+    options = {"wrap": lambda arm: Altered(arm, altered)}
+    [result] = _failures(table, "recorded points", "set_drag_fifo", **options)
+    assert f"{query.name}: expected EMPTY, with 0 points; came FILLED" in result.reason
 
 
 def test_setting_that_none_of_several_numbers_reports_fails() -> None:

@@ -72,7 +72,11 @@ def described(table: Table, noise: Noise) -> str:
         return f"{name}: {table.edition} has no such address (it has {allowed}): {text}"
     if noise.reason == "truncated":
         missing = length + frame.overhead - len(data)
-        return f"{name} breaks off: {missing} more bytes follow LEN {length:02X}: {text}"
+        if missing <= 0:
+            return (
+                f"{name} is sent in parts with a pause of over {1000 * IDLE_SECONDS:g} ms: {text}"
+            )
+        return f"{name} breaks off: by LEN {length:02X}, {missing} more bytes belong to it: {text}"
     return f"{name} does not end with {_right_end(frame, data)}: {text}"
 
 
