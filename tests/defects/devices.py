@@ -18,6 +18,7 @@ from cobotwire.conformance.device.started import StartedDevice
 from cobotwire.editions.mycobot import TABLE
 from cobotwire.protocol.errors import LinkError
 from cobotwire.protocol.loading import table_of
+from cobotwire.protocol.table import Table
 from cobotwire.simulator.clock import SteppedClock
 from cobotwire.transport import Transport
 from cobotwire_codegen.build import build_edition
@@ -25,6 +26,7 @@ from cobotwire_codegen.publish import edition_json
 from conformance.device.testing import on_peer
 from defects.arm.closed_loop import closed_loop_arm
 from defects.arm.planted import arm_with
+from defects.arm.two_arms import TwoArms
 from stalls import unstalled
 from targets.c.compiled import compile_c, scratch, sources
 from vectors import ROOT
@@ -33,9 +35,15 @@ HERE = Path(__file__).parent
 # A reply is late after 500 ms; in seconds.
 ALLOWED_STALL = 0.3
 AT_REST = ("setting", "persistent-write", "power", "malformed")
-CLOSED_LOOP = table_of(
-    json.loads(edition_json(build_edition(HERE / "arm" / "closed_loop.yaml", HERE)))
-)
+
+
+def _table(name: str) -> Table:
+    """Return an edition of the arms here."""
+    edition = build_edition(HERE / "arm" / f"{name}.yaml", HERE)
+    return table_of(json.loads(edition_json(edition)))
+
+
+CLOSED_LOOP, TWO_ARMS = _table("closed_loop"), _table("two_arms")
 # Not built in the arm: motion to coordinates.
 LEFT_OUT = ("send_coord", "send_coords", "jog_coord")
 
@@ -60,6 +68,12 @@ def report_on_closed_loop(switch: str = "") -> Report:
     """Test the arm in a closed loop, in stepped time, with all permissions."""
     clock = SteppedClock()
     return on_peer(closed_loop_arm(clock, switch), clock, CLOSED_LOOP, OurTester).run()
+
+
+def report_on_two_arms(defect: str = "") -> Report:
+    """Test the robot with two arms, in stepped time, with all permissions."""
+    clock = SteppedClock()
+    return on_peer(TwoArms(clock, defect), clock, TWO_ARMS, OurTester).run()
 
 
 def report_on_firmware(defect: str = "") -> Report:

@@ -13,6 +13,7 @@ HERE = Path(__file__).parent
 SUBJECTS = {
     "arm": "arm in plain Python",
     "closed_loop": "the same in a closed loop",
+    "two_arms": "two of them on one line",
     "firmware": "firmware in C, on a pty",
     "server": "the maker's server",
     "client": "client in plain Python",

@@ -5,7 +5,12 @@ from __future__ import annotations
 from cobotwire.conformance import Report
 from defects.arm.closed_loop import CORRECT as WAYS
 from defects.clients import report_on_c_client, report_on_client
-from defects.devices import report_on_arm, report_on_closed_loop, report_on_firmware
+from defects.devices import (
+    report_on_arm,
+    report_on_closed_loop,
+    report_on_firmware,
+    report_on_two_arms,
+)
 from defects.makers_server import report_on_server
 
 LINES = ("", "lost", "late", "noise", "text", "split", "twice", "merged")
@@ -13,6 +18,7 @@ LINES = ("", "lost", "late", "noise", "text", "split", "twice", "merged")
 CORRECT = {
     "arm": ("",),
     "closed_loop": tuple(WAYS),
+    "two_arms": ("",),
     "firmware": ("",),
     "client": LINES,
     "c_client": LINES,
@@ -32,6 +38,7 @@ def report_on(subject: str, defect: str = "", line: str = "") -> Report:
         return report_on_closed_loop(defect or line)
     by_subject = {
         "arm": report_on_arm,
+        "two_arms": report_on_two_arms,
         "firmware": report_on_firmware,
         "server": report_on_server,
     }

@@ -7,10 +7,10 @@ import sys
 
 import pytest
 
-from defects.arm import closed_loop
+from defects.arm import closed_loop, two_arms
 from defects.arm.planted import DEFECTS
 from defects.clients import report_on_client
-from defects.devices import report_on_arm, report_on_closed_loop
+from defects.devices import report_on_arm, report_on_closed_loop, report_on_two_arms
 from defects.judging import Message, judge, messages_of
 from defects.key import HERE, SUBJECTS, Defect, defects
 from defects.listing import figures, line
@@ -45,6 +45,16 @@ def test_defect_of_the_closed_loop_is_named(switch: str) -> None:
     assert judgement.named, judgement.messages
 
 
+@pytest.mark.parametrize("switch", two_arms.DEFECTS)
+def test_defect_of_two_arms_is_named(switch: str) -> None:
+    judgement = judge(KEY["two_arms", switch], messages_of(report_on_two_arms(switch)))
+    assert judgement.named, judgement.messages
+
+
+def test_correct_two_arms_conform() -> None:
+    assert messages_of(report_on_two_arms()) == []
+
+
 @pytest.mark.parametrize("way", closed_loop.CORRECT)
 def test_correct_closed_loop_conforms(way: str) -> None:
     assert messages_of(report_on_closed_loop(way)) == []
@@ -66,6 +76,7 @@ def test_key_lists_each_switch_of_the_subjects() -> None:
     assert {switch for subject, switch in KEY if subject == "arm"} == set(DEFECTS)
     for subject, source in {
         "closed_loop": "arm/closed_loop.py",
+        "two_arms": "arm/two_arms.py",
         "firmware": "firmware/firmware.c",
         "c_client": "client/client.c",
         "client": "client/plain.py",

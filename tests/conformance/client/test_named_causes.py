@@ -11,7 +11,8 @@ from cobotwire.codec.interface import Noise
 from cobotwire.conformance.client.broken_frames import described, joined
 from cobotwire.conformance.client.history import Received
 from cobotwire.conformance.report import Report, Result
-from conformance.client.test_cases import TABLE, checked, line, spaced
+from cobotwire.editions.mycobot280 import TABLE
+from conformance.client.test_cases import checked, line, spaced
 
 POWER_OFF, RELEASE_ALL = bytes.fromhex("FEFE0211FA"), bytes.fromhex("FEFE0213FA")
 # jog_increment: joint 1, 10 degrees, speed 50. set_gripper_value: 60 percent, speed 80.

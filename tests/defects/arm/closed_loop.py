@@ -17,6 +17,8 @@ STOPS = (0x11, 0x13, 0x29, 0x34)
 ENDED, ARRIVED, STOPPED = 0x5B, 0, 11
 # Two replies to different requests come at least this long after each other, in seconds.
 LATE = 0.04
+# How long before the end of a motion a wrong arm reports it, in seconds.
+EARLY = 0.1
 
 
 class ClosedLoopArm(Arm):
@@ -31,7 +33,7 @@ class ClosedLoopArm(Arm):
         if id in STOPS and moving:
             self.end(STOPPED)
         elif self.travel.moves:
-            self.ends_at = self.travel.ends_at
+            self.ends_at = None if self.flags[0x16] else self.travel.ends_at
         elif self.travel.held:
             self.ends_at = None
 
@@ -63,6 +65,7 @@ def closed_loop_arm(clock: Callable[[], float], switch: str = "") -> Arm:
     arm = ClosedLoopArm(clock)
     for method, hook in (CORRECT | DEFECTS)[switch].items():
         setattr(arm, method, partial(hook, arm, getattr(arm, method)))
+    arm.reset()
     return arm
 
 
@@ -80,6 +83,16 @@ def _faster(factor: int) -> Defect:
     return {"go": lambda arm, right, ticks, speed: right(ticks, factor * speed)}
 
 
+def _nul_now_and_then(arm: Arm, right: Right, id: int, data: bytes) -> bytes:
+    sent: bytes = right(id, data)
+    return b"\0" * (arm.requests % 5 < 3) + sent
+
+
+def _refreshes_at_first(arm: Arm, right: Right) -> None:
+    right()
+    arm.flags[0x16] = 1
+
+
 CORRECT: dict[str, Defect] = {
     "": {},
     "acknowledges-late": _later(lambda id: LATE),
@@ -87,6 +100,8 @@ CORRECT: dict[str, Defect] = {
     "acknowledges-at-different-times": _later(lambda id: id % 7 * LATE),
     "fast": _faster(3),
     "very-fast": _faster(20),
+    "refreshes-at-first": {"reset": _refreshes_at_first},
+    "nul-now-and-then": {"reply": _nul_now_and_then},
     "acknowledges-nothing": {"acknowledgement": lambda arm, right, id: b""},
 }
 
@@ -109,7 +124,44 @@ def _refreshes(arm: Arm, right: Right, ticks: list[float], speed: int) -> None:
     arm.flags[0x16] = mode
 
 
+def _ended(change: Callable[[Arm, Right, int], None]) -> Defect:
+    """Report the end of a motion in another way, which takes the status."""
+    return {"end": change}
+
+
+def _ends_early(arm: Arm, right: Right, id: int, data: bytes) -> None:
+    right(id, data)
+    if isinstance(arm, ClosedLoopArm) and arm.ends_at is not None:
+        arm.ends_at = max(arm.clock(), arm.ends_at - EARLY)
+
+
+def _ends_twice(arm: Arm, right: Right, status: int) -> None:
+    right(status)
+    arm.later(2 * LATE, framed(ENDED, bytes([status])))
+
+
+def _slow_power(arm: Arm, right: Right, id: int, data: bytes) -> None:
+    right(id, data)
+    if id == 0x10:
+        arm.memory["on at"] = arm.clock() + 10 * LATE
+
+
+def _power(arm: Arm, right: Right, id: int, data: bytes) -> bytes | None:
+    late = id == 0x12 and arm.clock() < arm.memory.get("on at", 0.0)
+    answer: bytes | None = b"\0" if late else right(id, data)
+    return answer
+
+
 DEFECTS: dict[str, Defect] = {
+    "ends-early": {"change": _ends_early},
+    "ends-twice": _ended(_ends_twice),
+    "ends-never": _ended(lambda arm, right, status: None),
+    "ends-never-after-a-stop": _ended(
+        lambda arm, right, status: None if status == STOPPED else right(status)
+    ),
+    "ends-with-success-after-a-stop": _ended(lambda arm, right, status: right(ARRIVED)),
+    "ends-with-another-status": _ended(lambda arm, right, status: right(status or 1)),
+    "power-on-after-its-acknowledgement": {"change": _slow_power, "answer": _power},
     "fast-and-never-moving": {
         **_faster(3),
         "answer": lambda arm, right, id, data: b"\0" if id == 0x2B else right(id, data),

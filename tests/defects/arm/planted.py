@@ -188,6 +188,9 @@ DEFECTS: dict[str, Defect] = {
     "reply-in-two-halves": spoilt(0x3D, _halved),
     "double-reply": spoilt(0x65, _twice),
     "one-reply-behind": {"receive": _one_behind},
+    "nul-before-each-reply": {
+        "reply": lambda _, right, id, data: b"\0" * bool(sent := right(id, data)) + sent
+    },
     # Framing, acknowledgements, values and state.
     "echo": {"receive": lambda _, right, data: data + right(data)},
     "reboots": {"reply": _reboots},

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 
 
@@ -28,7 +29,10 @@ class Travel:
         """Return where the numbers are now."""
         until = self._clock() if self._held_at is None else self._held_at
         most = self._rate * (until - self._since)
-        return [a + max(-most, min(most, b - a)) for a, b in zip(self._start, self.goal)]
+        return [
+            b if abs(b - a) <= most else a + math.copysign(most, b - a)
+            for a, b in zip(self._start, self.goal)
+        ]
 
     def hold(self) -> None:
         """Stay here for now."""

@@ -40,5 +40,11 @@ HISTORY = (
         "new: `points-in-order`, and streams with frames around frames; queries that take a "
         "position need one that the device reports",
     ),
+    CatalogueVersion(
+        6,
+        "e023c65db0a3",
+        "new: `motion-ended`, `acknowledged-done` and `others-rest`; `reply-once` includes a NUL "
+        "with each reply; a test case that must be observed in time is inconclusive if it was not",
+    ),
 )
 VERSION = HISTORY[-1].number

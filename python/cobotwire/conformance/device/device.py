@@ -58,6 +58,7 @@ class Device:
     ) -> None:
         self.connection = connection
         self.statement = statement or Statement()
+        self.address = address
         self._optional = optional
         # How many joints the device has: one of several devices may have fewer than the edition.
         self.joints = (address and address.joints) or codec.table.joints

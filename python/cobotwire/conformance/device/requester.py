@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Any
 
@@ -15,6 +16,7 @@ from cobotwire.protocol.errors import ProtocolError
 from cobotwire.protocol.messages import Reply, Request
 from cobotwire.protocol.table import Address, Command, TextReply
 from cobotwire.session.acks import MOTION_SECONDS
+from cobotwire.session.events import EventReceived
 from cobotwire.session.matching import as_event, can_come_from, can_reply_to
 from cobotwire.session.request import EncodedRequest, RequestEncoder, as_call
 from cobotwire.session.text import TextCollector
@@ -63,6 +65,8 @@ class Requester:
         self._replied: list[EncodedRequest] = []
         # The one-way requests whose acknowledgement may still come, oldest first.
         self._unacknowledged: list[Response] = []
+        # What the device has sent without a request, each with when it was received.
+        self.events: list[tuple[float, EventReceived]] = []
         # How long the slowest acknowledgement took, but of no motion; None: there was none.
         self._slowest: float | None = None
         # The commands that were not acknowledged in time.
@@ -75,6 +79,15 @@ class Requester:
             UsageError: the edition does not allow the arguments.
         """
         return self._requests.encode_request(request)
+
+    @contextmanager
+    def addressed(self, address: Address) -> Iterator[None]:
+        """Send all requests of a ``with`` block to another device."""
+        usual, self._requests = self._requests, RequestEncoder(self._codec, address)
+        try:
+            yield
+        finally:
+            self._requests = usual
 
     def is_legal(self, data: bytes) -> bool:
         """Return whether bytes are a legal request of any command."""
@@ -223,7 +236,10 @@ class Requester:
     def _sort(self, response: Response, events: list[Event]) -> None:
         """Keep frames at once, and feed all events to the diagnoser: noise may need later bytes."""
         for event in events:
-            if not isinstance(event, Frame) or as_event(event, self._codec.table):
+            if not isinstance(event, Frame):
+                continue
+            if (sent_alone := as_event(event, self._codec.table)) is not None:
+                self.events.append((self._connection.now, sent_alone))
                 continue
             owner = self._owner(event, response)
             if owner is None:

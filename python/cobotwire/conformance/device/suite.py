@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from cobotwire.conformance.device.groups import (
+    addresses,
     agreement,
     at_rest,
     calibration,
@@ -16,6 +17,7 @@ from cobotwire.conformance.device.groups import (
     limits_kept,
     malformed,
     motion,
+    motion_ends,
     ordering,
     pausing,
     queries,
@@ -56,6 +58,8 @@ SUITE: Suite[Body] = Suite(
         motion.JOINTS,
         motion.REPLAYS,
         motion.STOPPING,
+        motion_ends.MOTION_ENDS,
+        addresses.ADDRESSES,
         pausing.PAUSING,
         speeds.SPEEDS,
         reported_speeds.REPORTED_SPEEDS,

@@ -160,14 +160,14 @@ def _in_pieces(probe: Probe, request: EncodedRequest) -> None:
         response = device.requester.send_instead(request, frame[-1:], "the last piece")
         times = [each.at for each in device.connection.since(start) if each.direction == "sent"]
         pauses = [1000 * (after - before) for before, after in pairwise(times)]
-        paused = f"pauses of {min(pauses):.0f} to {max(pauses):.0f} ms"
+        paused = f"Pauses of {min(pauses):.0f} to {max(pauses):.0f} ms"
         if response.only_valid or max(pauses) <= 1000 * longest:
             device.count(response)
-            probe.note(PIECES, f"Observed with {paused}.")
-            expect_one_reply(probe, PIECES, response, f"the request in pieces, with {paused}")
+            probe.note(PIECES, f"{paused}.")
+            expect_one_reply(probe, PIECES, response, f"the request in pieces ({paused})")
             return
         device.connection.clock.sleep(device.timing.idle)
-    probe.not_timed(PIECES, f"The host was late: {paused}, so a device may have given up.")
+    probe.not_timed(PIECES, f"{paused}: the host was late, so a device may have given up.")
 
 
 def _together(probe: Probe, request: EncodedRequest) -> None:

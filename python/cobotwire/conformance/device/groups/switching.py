@@ -23,6 +23,17 @@ from cobotwire.conformance.samples import ordinary, physical_values
 from cobotwire.conformance.suite import Group, TestCase
 from cobotwire.protocol.table import Command, Table
 
+
+def _reports_done(command: Command) -> bool:
+    """Return whether an acknowledgement reports that a command is done, not only accepted."""
+    return command.ack and not command.accepted
+
+
+DONE = TestCase(
+    "acknowledged-done",
+    "What an acknowledgement reports as done is what the query reports at once.",
+    applies=_reports_done,
+)
 EFFECT = TestCase("effect", "The query reports the state that the command has set.")
 
 # How long a switch may take to show, and how often it is read, in seconds.
@@ -52,8 +63,14 @@ def _switch(probe: Probe) -> None:
         device.restore_after_body[command.name] = partial(_send, probe, undo)
     if back is not None and before == wanted:
         _send(probe, back)
-    _send(probe, command)
-    value = _await(probe, query, name, int(wanted))
+    acknowledged = _send(probe, command)
+    value = _read(probe, query, name)
+    if acknowledged:
+        reason = f"{command.name} is acknowledged as done: expected {query.name} to report {wanted}"
+        probe.expect(DONE, value == wanted, f"{reason} at once; came {value}")
+    else:
+        probe.drop(DONE)
+    value = value if value == wanted else _await(probe, query, name, int(wanted))
     reason = f"{command.name}: expected {query.name} to report {wanted}; came {value}"
     probe.expect(EFFECT, value == wanted, reason)
     if command.safety != "power" or wanted:
@@ -74,10 +91,15 @@ def _expect_steady_replies(probe: Probe) -> None:
                 expect_repetition(probe, query, first, again)
 
 
-def _send(probe: Probe, command: Command) -> None:
-    """Send a command for each joint that it accepts."""
-    for request in harmless(command):
-        request_change(probe, request)
+def _send(probe: Probe, command: Command) -> bool:
+    """Send a command for each joint that it accepts; return whether each is acknowledged."""
+    came = [bool(request_change(probe, request).replies) for request in harmless(command)]
+    return command.ack and all(came)
+
+
+def _read(probe: Probe, query: Command, name: str) -> int | None:
+    reply = probe.device.read(query.request_type())
+    return None if reply is None else int(getattr(reply, name))
 
 
 def _await(probe: Probe, query: Command, name: str, wanted: int) -> int | None:
@@ -85,8 +107,7 @@ def _await(probe: Probe, query: Command, name: str, wanted: int) -> int | None:
     connection = probe.device.connection
     end = connection.now + SHOWS
     while True:
-        reply = probe.device.read(query.request_type())
-        value = None if reply is None else int(getattr(reply, name))
+        value = _read(probe, query, name)
         if value == wanted or connection.now >= end:
             return value
         connection.clock.sleep(POLL)
@@ -140,7 +161,7 @@ def _send_colours(probe: Probe) -> None:
 
 SWITCHES = Group(
     "switches",
-    (EFFECT, *AFTER_CHANGE_OR_REPLY, REPEATS),
+    (EFFECT, DONE, *AFTER_CHANGE_OR_REPLY, REPEATS),
     _switch,
     _is_switch,
     sends=(

@@ -1,0 +1,154 @@
+"""The event at the end of a motion comes once, when the arm is at rest, with the right status."""
+
+from __future__ import annotations
+
+from functools import partial
+from typing import NamedTuple
+
+from cobotwire.conformance.device.device import NotSupported
+from cobotwire.conformance.device.groups.changes import request_change
+from cobotwire.conformance.device.groups.motion import UNDER_WAY, under_way
+from cobotwire.conformance.device.mover import Mover, Pose, off_by
+from cobotwire.conformance.device.probe import Probe
+from cobotwire.conformance.device.read_back import settings_of
+from cobotwire.conformance.device.requests import request_of
+from cobotwire.conformance.suite import Group, TestCase
+from cobotwire.protocol.table import Command, Table
+from cobotwire.session.events import EventReceived
+
+ENDS = TestCase(
+    "motion-ended",
+    "The end of a motion is reported once, when the arm is at rest, with how the motion ended.",
+)
+
+# In percent of the fastest, so that the arm can be observed on its way.
+SLOW = 20
+# How often the angles are read, and how long after the last change of theirs, in seconds.
+LOOK, RESTS = 0.01, 0.7
+# The name of the mode in which motions are interpolated: the end of others is not reported.
+INTERPOLATED = ("INTERPOLATION", "QUEUE")
+# The field of the query that reports whether the arm reports ends.
+SWITCH = "motion_ends"
+
+
+class _Look(NamedTuple):
+    """A pose that was read; ``sent_at`` is when its query was sent."""
+
+    sent_at: float
+    pose: Pose
+
+
+def _is_reported(table: Table, command: Command) -> bool:
+    moves = command is table.find_role("joint targets")
+    return moves and table.find_role("motion ended") is not None
+
+
+def _ends(probe: Probe) -> None:
+    """Move there and back, and stop on the way there."""
+    mover, stop = Mover(probe), probe.device.command("stop")
+    _interpolate(probe)
+    poses = mover.pose(0), mover.pose(1)
+    mover.go(poses[0])
+    _looks(mover)
+    slow = min(SLOW, mover.speed)
+    for target in reversed(poses):
+        _expect_end(probe, mover, target, slow)
+    if stop is not None:
+        _expect_end(probe, mover, poses[1], 1, stop)
+
+
+def _interpolate(probe: Probe) -> None:
+    """Have the arm interpolate motions and report their ends, if a setting chooses that.
+
+    Raises:
+        NotSupported: it does not, and the run may not change it.
+    """
+    device = probe.device
+    for command in device.table.commands:
+        fields = command.request[0].fields if command.safety == "setting" else ()
+        names = [name for field in fields for name in field.labels if name in INTERPOLATED]
+        if not names:
+            continue
+        mode = request_of(command, fields[0].choices[fields[0].labels.index(names[0])])
+        # Where no query reports the mode, the one that the edition names first is the default.
+        old, needed = request_of(command, fields[0].choices[0]), {"setting", "irreversible"}
+        for setting in settings_of(device.table, command):
+            old = setting.again(setting.queries[0], device.require(setting.queries[0]))
+            needed = {"setting"} if old != mode else set()
+        if missing := device.permissions.missing(frozenset(needed)):
+            raise NotSupported(f"the mode may not be {names[0]}; to set it needs {missing}")
+        if needed:
+            device.restore_after_body[command.name] = partial(device.request, old)
+            device.request(mode)
+    for query in device.table.commands:
+        plain = query.safety == "query" and query.requires_reply and not query.request[0].fields
+        if plain and SWITCH in [f.name for variant in query.reply for f in variant.fields]:
+            reply = device.read(query.request_type())
+            if reply is not None and not reply.fields[SWITCH]:
+                raise NotSupported(f"{query.name} reports that the arm does not report ends")
+
+
+def _expect_end(
+    probe: Probe, mover: Mover, target: Pose, speed: int, stop: Command | None = None
+) -> None:
+    """Start a motion, perhaps stop it, and check the events until the arm has been at rest."""
+    requester, event = probe.device.requester, probe.device.edition.in_role("motion ended")
+    requester.events.clear()
+    request_change(probe, request_of(probe.command, target, speed))
+    if stop is not None:
+        mover.rest(UNDER_WAY)
+        if not under_way(probe, mover, target, ENDS):
+            return
+        probe.device.request(stop.request_type())
+    looks, events = _looks(mover), list(requester.events)
+    call = f"{stop.name if stop else probe.command.name}: expected one {event.name}"
+    came = ", ".join(f"{_status(each)} at {at:.3f} s" for at, each in events) or "none"
+    probe.expect(ENDS, len(events) == 1, f"{call} at the end of the motion; came {came}")
+    for at, each in events[:1]:
+        later = [look for look in looks if look.sent_at > at]
+        moved = off_by(later[0].pose, later[-1].pose, mover.tolerance, "ends at") if later else []
+        reason = f"{call}, when the arm is at rest; at {at:.3f} s it was on its way"
+        probe.expect(ENDS, not moved, f"{reason}: {'; '.join(moved)}")
+        right = _is_right(probe, each, stopped=stop is not None)
+        way = "for a motion that was stopped" if stop else "for a motion to its target"
+        probe.expect(ENDS, right, f"{call} {way}; came {_status(each)}")
+
+
+def _looks(mover: Mover) -> list[_Look]:
+    """Read the angles until they have not changed for some time."""
+    connection = mover.device.connection
+    looks = [_Look(connection.now, mover.angles())]
+    last, still_since = looks[0].pose, connection.now
+    while looks[-1].sent_at - still_since < RESTS:
+        mover.rest(LOOK)
+        looks.append(_Look(connection.now, mover.angles()))
+        if off_by(looks[-1].pose, last, mover.tolerance):
+            last, still_since = looks[-1].pose, connection.now
+    return looks
+
+
+def _status(event: EventReceived) -> str:
+    return ", ".join(f"{name} {value}" for name, value in event.message.fields.items())
+
+
+def _is_right(probe: Probe, event: EventReceived, *, stopped: bool) -> bool:
+    """Return whether the status is that of success, or of a stop, if the edition states one."""
+    codes, field = probe.device.edition.robot.error_codes, event.message.variant.fields[-1]
+    if not stopped:
+        return event.command.refusal(event.message.fields) is None
+    if codes is None or not codes.stopped:
+        return True
+    # A motion may be stopped in several ways; the words about each begin alike.
+    value, meaning = event.message.fields[field.name], field.meaning(codes.stopped)
+    alike = bool(meaning) and field.meaning(value).startswith(meaning)
+    return value == codes.stopped or alike
+
+
+MOTION_ENDS = Group(
+    "ends of motions",
+    (ENDS,),
+    _ends,
+    _is_reported,
+    sends="Two motions to their targets, and one that is stopped; the angles all the time.",
+    subject="the command that moves all joints, if an event reports the end of a motion",
+)
