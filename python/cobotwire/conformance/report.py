@@ -112,6 +112,7 @@ class Report:
     """The results of a run, in the order in which they were found.
 
     ``finished`` is False until the run has reached its end; ``stopped`` says why it ended before.
+    ``untested`` says what the run could not show, and which permission would.
     ``options`` are those of the command line, without the subject: a run is repeated with them, in
     the order of the results. ``statement`` is the text of the subject's implementation conformance
     statement. ``catalogue`` is the version of the catalogue of test cases; the digests are those of
@@ -128,6 +129,7 @@ class Report:
     reply_seconds: dict[str, list[float]] = field(default_factory=dict)
     deadline_seconds: dict[str, float] = field(default_factory=dict)
     stopped: str = ""
+    untested: str = ""
     options: dict[str, str] = field(default_factory=dict)
     statement: str = ""
     catalogue: str = ""

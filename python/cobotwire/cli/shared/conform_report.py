@@ -123,6 +123,8 @@ def _print_summary(report: Report, to_stderr: bool) -> None:
     echo(
         f"{printable(report.subject)}, edition {report.edition}: {summary or 'nothing was tested'}"
     )
+    if report.untested:
+        echo(printable(report.untested))
     if not report.finished:
         why = f": {printable(report.stopped)}" if report.stopped else ""
         echo(f"The run is incomplete{why}.")

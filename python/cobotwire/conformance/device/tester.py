@@ -28,6 +28,9 @@ from cobotwire.protocol.addresses import find_address
 from cobotwire.protocol.errors import LinkError, UsageError
 from cobotwire.protocol.table import Command, Table
 
+# From this angle on, a joint shows a wrong scale, order or direction; in degrees.
+AWAY = 5.0
+
 Progress = Callable[[Step, int, int], None]
 
 
@@ -140,6 +143,7 @@ class Tester:
         done = 0
         try:
             self._read_version()
+            self._note_zero()
             for step in steps:
                 if progress is not None:
                     progress(step, done, len(steps))
@@ -249,6 +253,20 @@ class Tester:
         stop = self.device.command("stop")
         if stop is not None and self.device.permissions.workspace:
             self.device.request(stop.request_type())
+
+    def _note_zero(self) -> None:
+        """Report which joints stand at zero, if none of them may move."""
+        query = self.device.command("joints")
+        if query is None or self.device.permissions.workspace:
+            return
+        reply = self.device.read(query.request_type())
+        angles = () if reply is None else reply.result
+        still = [str(at) for at, angle in enumerate(angles, 1) if abs(angle) < AWAY]
+        if still:
+            self.report.untested = (
+                f"Not tested away from zero: joint {', '.join(still)}. There, a wrong scale, order "
+                "or direction does not show; with --allow motion the arm is also tested elsewhere."
+            )
 
     def _read_version(self) -> None:
         query = self.device.command("version")

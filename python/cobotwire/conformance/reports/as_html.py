@@ -73,6 +73,8 @@ def _head(report: Report, title: str) -> Iterator[Element]:
         yield _banner("fail", "It does not conform.")
     elif report.finished:
         yield _banner("pass", "It conforms as far as it was tested.")
+    if report.untested:
+        yield _banner("unstable", report.untested)
     chips: list[Element | str] = []
     for outcome in sorted(counts, key=order_of):
         words = words_of(counts[outcome], outcome)

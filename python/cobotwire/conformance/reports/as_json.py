@@ -23,6 +23,7 @@ PLAIN = {
     "reply_seconds": dict,
     "deadline_seconds": dict,
     "stopped": str,
+    "untested": str,
     "options": dict,
     "statement": str,
     "catalogue": str,

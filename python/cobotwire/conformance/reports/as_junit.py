@@ -38,7 +38,7 @@ def _suite(report: Report, case: str, cells: list[Cell]) -> ElementTree.Element:
         timestamp=printable(report.started),
     )
     properties = ElementTree.SubElement(suite, "properties")
-    for name in ("kind", "subject", "edition", "firmware"):
+    for name in ("kind", "subject", "edition", "firmware", "untested"):
         value = printable(getattr(report, name))
         ElementTree.SubElement(properties, "property", name=name, value=value)
     for cell in cells:
