@@ -11,7 +11,7 @@ import pytest
 
 import small_specs
 from cobotwire import codec as codecs
-from cobotwire.conformance.samples import samples
+from cobotwire.conformance.samples.raw import samples
 from cobotwire.inspect.call_arguments import parse, request_values, variant_of
 from cobotwire.protocol.errors import UsageError
 from cobotwire.simulator import MemoryTransport, RunningClock, SteppedClock

@@ -9,7 +9,8 @@ from typing import Any, NamedTuple
 from cobotwire.codec.reference import ReferenceCodec
 from cobotwire.conformance.client import ScriptLine
 from cobotwire.conformance.codec.questions.frames import frame_of
-from cobotwire.conformance.samples import RawValues, ordinary, physical_values
+from cobotwire.conformance.samples.physical import physical_values
+from cobotwire.conformance.samples.raw import RawValues, ordinary
 from cobotwire.protocol.table import Command, Table, Variant
 from cobotwire.session import text
 

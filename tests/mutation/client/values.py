@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from cobotwire.conformance.codec.questions.frames import frame_of
-from cobotwire.conformance.samples import beyond, with_one
+from cobotwire.conformance.samples.raw import beyond, with_one
 from cobotwire.protocol.table import Field, Number, Variant
 from mutation.client.sessions import ClientMutant, Session
 from mutation.tables import wrong_tables

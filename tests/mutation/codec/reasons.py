@@ -8,12 +8,8 @@ from cobotwire.codec.interface import Codec
 from cobotwire.codec.reference import ReferenceCodec
 from cobotwire.conformance.codec.questions.frames import frame_of
 from cobotwire.conformance.codec.questions.our_codec import encode_named, plain_fields
-from cobotwire.conformance.samples import (
-    RawValues,
-    named_values,
-    ordinary,
-    with_one,
-)
+from cobotwire.conformance.samples.physical import named_values
+from cobotwire.conformance.samples.raw import RawValues, ordinary, with_one
 from cobotwire.protocol.errors import ProtocolError, UsageError
 from cobotwire.protocol.table import Field, Number, Table
 from mutation.tables import Place, WrongTable, variant_at

@@ -6,25 +6,15 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from cobotwire.conformance.device.requests import (
-    Limits,
-    as_row,
-    gentle_values,
-    limits_of,
-    requests,
-    revealing,
-)
+from cobotwire.conformance.device.requests import as_row, gentle_values, limits_of, requests
 from cobotwire.conformance.mistakes import Pair, likely_mistake
-from cobotwire.conformance.places import is_list, numbers_of
-from cobotwire.conformance.samples import ordinary, physical_values
+from cobotwire.conformance.places import numbers_of
+from cobotwire.conformance.samples.physical import setting_values, takes_whole
+from cobotwire.conformance.samples.raw import Limits
 from cobotwire.protocol.fields import named_fields
 from cobotwire.protocol.messages import Reply, Request
 from cobotwire.protocol.table import Command, Field, Number, Table, Variant
 
-# Texts that differ in every place, of characters that a name may have.
-TEXTS = (("cobot 1", "pass-word 2"), ("A", "B8"))
-# The ordinary values of bytes, texts and lists that are set one after the other.
-TURNS = (0, 7)
 # Both values are multiples of the wire's step, so only floating-point errors are tolerated.
 EXACT = 1e-6
 
@@ -75,21 +65,10 @@ class Setting:
         return [self._request(query, values, speed) for values in self._values(query, old)]
 
     def _values(self, query: Request[Any], old: Reply[Any]) -> list[dict[str, Any]]:
-        names = [argument for _, argument in self.pairs]
-        if self.command.request_text is not None:
-            return [dict(zip(names, texts)) for texts in TEXTS]
-        fields = [self._field(name) for name in names]
-        if any(map(_is_whole, fields)):
-            tried = [physical_values(self.variant, ordinary(self.variant, turn=n)) for n in TURNS]
-            return [{name: given[name] for name in names} for given in tried]
-        if len(fields) == 1 and fields[0].choices:
-            return [{names[0]: value} for value in fields[0].choices]
-        rows = [list(zip(self._numbers(name, query), self._reported_as(name))) for name in names]
-        present = [as_row(value) for value in self._reported(old).values()]
-        return [
-            {name: row if field.many else row[0] for name, field, row in zip(names, fields, sample)}
-            for sample in revealing(rows, present)
-        ]
+        def numbers(name: str) -> list[tuple[Number, Number]]:
+            return list(zip(self._numbers(name, query), self._reported_as(name)))
+
+        return setting_values(self.variant, self._reported(old), numbers)
 
     def _reported(self, reply: Reply[Any]) -> dict[str, Any]:
         """Return what a reply reports, by argument and in the units of the wire."""
@@ -120,7 +99,7 @@ class Setting:
             return ["nothing was reported"]
         found, sent, pairs = [], wanted.fields, list[Pair]()
         for name, value in self._reported(reply).items():
-            if self.command.request_text is None and _is_whole(self._field(name)):
+            if self.command.request_text is None and takes_whole(self._field(name)):
                 if sent[name] != value:
                     found.append(f"{name}: set {sent[name]!r}, read {value!r}")
                 continue
@@ -221,11 +200,6 @@ def _pairs(command: Command, variant: Variant, query: Command) -> tuple[tuple[st
 
 def _is_speed(field: Field) -> bool:
     return any(number.unit == "percent" for number in field.cases[0].numbers[:1])
-
-
-def _is_whole(field: Field) -> bool:
-    """Return whether a value is set and compared as a whole: bits, bytes, text or a list."""
-    return is_list(field) or any(number.bits for number in field.cases[0].numbers)
 
 
 def _number(value: Any) -> bool:

@@ -16,7 +16,8 @@ from collections.abc import Iterable
 from typing import Any
 
 from cobotwire.conformance.codec.questions.question import Json
-from cobotwire.conformance.samples import named_values, plainest
+from cobotwire.conformance.samples.physical import named_values
+from cobotwire.conformance.samples.raw import plainest
 from cobotwire.protocol.table import Command, Field, Table, Variant
 
 # Exceptions that it raises by accident. Its own checks raise its own classes.

@@ -4,20 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import suppress
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from cobotwire.codec.interface import Codec
 from cobotwire.conformance.codec.questions.our_codec import OurCodec
 from cobotwire.conformance.codec.questions.question import Json, Question, hexed
-from cobotwire.conformance.samples import (
-    Sample,
-    illegal_samples,
-    named_values,
-    ordinary,
-    samples,
-)
+from cobotwire.conformance.samples.physical import between_steps, named_values, wrong_counts
+from cobotwire.conformance.samples.raw import Sample, illegal_samples, ordinary, samples
 from cobotwire.conformance.suite import Group, TestCase
-from cobotwire.protocol.table import Command, Direction, Field, Number, Table, Variant
+from cobotwire.protocol.table import Command, Direction, Table, Variant
 
 DIRECTIONS: tuple[Direction, ...] = ("request", "reply")
 SOURCE = "docs/codec-protocol.md"
@@ -75,7 +70,7 @@ def _encoding(codec: Codec) -> Iterator[Question]:
     for variant in variants_of(codec.table):
         for sample in samples(variant.variant):
             yield from _encode_sample(codec, variant, sample)
-        for name, values in _between_steps(variant):
+        for name, values in between_steps(variant.variant):
             yield _encode(codec, variant, name, values)
 
 
@@ -84,7 +79,7 @@ def _rejected_values(codec: Codec) -> Iterator[Question]:
     for variant in variants_of(codec.table):
         for sample in illegal_samples(variant.variant):
             yield from _encode_sample(codec, variant, sample)
-        for name, values in _wrong_counts(variant):
+        for name, values in wrong_counts(variant.variant):
             yield _encode(codec, variant, name, values)
 
 
@@ -101,45 +96,6 @@ def _encode(codec: Codec, variant: CommandVariant, name: str, values: Json) -> Q
     expect = OurCodec(codec).ask(ask)
     case = ENCODE_REJECTS if "error" in expect else ENCODE_BYTES
     return Question(f"{case.id}/{variant.label}/{name}", case, command, ask, expect)
-
-
-def _between_steps(variant: CommandVariant) -> Iterator[tuple[str, Json]]:
-    """Yield values to be rounded: to the nearest step, ties to the even one, within the bounds."""
-    base = ordinary(variant.variant)
-    values = named_values(variant.variant, base)
-    for field in variant.variant.fields:
-        case = variant.variant.raw_case(field, base)
-        assert case is not None, "an ordinary selector has a case"
-        number = next(iter(case.numbers), None)
-        if number is None or not number.scaled or field.choices or field.each:
-            continue
-        for steps in _fractions(number):
-            value: Any = steps * number.multiply / number.divide
-            if field.many:
-                value = [value, *values[field.name][1:]]
-            yield f"{field.name}={steps}-steps", {**values, field.name: value}
-
-
-def _fractions(number: Number) -> list[float]:
-    low, high = number.minimum, number.maximum
-    wished = [0.4, 0.6, -0.4, -0.6, 1.5, 2.5, -1.5, -2.5, 28.999999999999996, 100.3]
-    return [steps for steps in wished if low <= steps <= high] + [high + 0.4, low - 0.4]
-
-
-def _wrong_counts(variant: CommandVariant) -> Iterator[tuple[str, Json]]:
-    values = named_values(variant.variant, ordinary(variant.variant))
-    for field in _rows(variant.variant):
-        row = values[field.name]
-        if not row:
-            continue
-        # A byte has two digits.
-        size = 2 if field.kind == "bytes" else 1
-        yield f"{field.name}-one-short", {**values, field.name: row[:-size]}
-        yield f"{field.name}-one-more", {**values, field.name: row + row[-size:]}
-
-
-def _rows(variant: Variant) -> list[Field]:
-    return [field for field in variant.fields if field.many]
 
 
 def _decoding(codec: Codec) -> Iterator[Question]:

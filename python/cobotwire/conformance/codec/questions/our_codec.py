@@ -8,7 +8,7 @@ from typing import Any
 
 from cobotwire.codec.interface import Codec, DecodedMessage, Framer, Noise
 from cobotwire.conformance.codec.questions.question import Json, hexed
-from cobotwire.conformance.samples import plain
+from cobotwire.conformance.samples.physical import plain
 from cobotwire.protocol.errors import ProtocolError, UsageError
 from cobotwire.protocol.table import Direction, Field
 
