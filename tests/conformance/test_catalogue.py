@@ -8,8 +8,9 @@ import pytest
 
 from cobotwire import editions
 from cobotwire.conformance import Suite
-from cobotwire.conformance.catalogue import HISTORY, VERSION, code_digest, listing
+from cobotwire.conformance.catalogue import HISTORY, VERSION, listing
 from cobotwire.conformance.device import SUITE
+from cobotwire.conformance.provenance import code_digest
 from conformance.device.testing import permissions, prepared
 
 

@@ -3,14 +3,20 @@
 from __future__ import annotations
 
 import platform
+from collections.abc import Iterator
 from functools import cache
 from hashlib import sha256
+from importlib.resources import files
+from importlib.resources.abc import Traversable
 
 import cobotwire
 from cobotwire import editions
-from cobotwire.conformance.catalogue import VERSION, code_digest
+from cobotwire.conformance.catalogue import VERSION
 from cobotwire.conformance.report import Environment, Report
 from cobotwire.protocol.loading import stored_file
+
+# What writes and shows results does not change them.
+NO_TESTERS = ("reports", "catalogue")
 
 
 def identify(report: Report, edition: str, *, port: str = "") -> None:
@@ -24,7 +30,14 @@ def identify(report: Report, edition: str, *, port: str = "") -> None:
     report.edition_digest = edition_digest(edition)
     report.catalogue = f"{VERSION}"
     report.code_digest = code_digest()
-    report.environment = environment(port)
+    report.environment = Environment(
+        host=platform.node(),
+        system=platform.platform(),
+        python=f"{platform.python_implementation()} {platform.python_version()}",
+        package=cobotwire.__version__,
+        codec=cobotwire.codec_in_use(),
+        port=port,
+    )
 
 
 @cache
@@ -37,13 +50,20 @@ def edition_digest(edition: str) -> str:
         return ""
 
 
-def environment(port: str = "") -> Environment:
-    """Return the machine and the programs of this run."""
-    return Environment(
-        host=platform.node(),
-        system=platform.platform(),
-        python=f"{platform.python_implementation()} {platform.python_version()}",
-        package=cobotwire.__version__,
-        codec=cobotwire.codec_in_use(),
-        port=port,
-    )
+@cache
+def code_digest() -> str:
+    """Return the SHA-256 of the modules of the testers; it names the exact code of a run."""
+    hashed = sha256()
+    for name, module in sorted(_modules(files("cobotwire.conformance"), "")):
+        hashed.update(f"{name}\n".encode())
+        hashed.update(module.read_bytes().replace(b"\r\n", b"\n"))
+    return hashed.hexdigest()
+
+
+def _modules(folder: Traversable, path: str) -> Iterator[tuple[str, Traversable]]:
+    for entry in folder.iterdir():
+        name = f"{path}{entry.name}"
+        if entry.is_dir() and name not in NO_TESTERS:
+            yield from _modules(entry, f"{name}/")
+        elif name.endswith(".py"):
+            yield name, entry

@@ -1,6 +1,5 @@
 """The catalogue of the test suite: all test cases, and a version that changes when they do."""
 
 from cobotwire.conformance.catalogue.history import HISTORY, VERSION, CatalogueVersion
-from cobotwire.conformance.catalogue.sources import code_digest
 
-__all__ = ["HISTORY", "VERSION", "CatalogueVersion", "code_digest"]
+__all__ = ["HISTORY", "VERSION", "CatalogueVersion"]

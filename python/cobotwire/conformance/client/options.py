@@ -2,25 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, fields
-from typing import Any
+from dataclasses import dataclass
 
 from cobotwire.conformance.client.delivery import faulty_replies
+from cobotwire.conformance.options import Options
 from cobotwire.protocol.errors import UsageError
 from cobotwire.simulator.faults import Scenario
 
-# The options that are not text.
-KINDS: Mapping[str, type] = {"every": int, "delay": float, "patience": float}
-
 
 @dataclass(frozen=True, slots=True)
-class ClientOptions:
+class ClientOptions(Options):
     """What a caller chooses for a run; ``delay`` and ``patience`` are in milliseconds.
 
     ``script`` is the text of the calls that the client makes, and ``script_name`` the name of its
     file; empty: they are not known.
     """
+
+    kind = "client"
 
     misbehave: str = ""
     every: int = 3
@@ -29,29 +27,6 @@ class ClientOptions:
     no_acks: bool = False
     script: str = ""
     script_name: str = ""
-
-    @classmethod
-    def of_report(cls, options: Mapping[str, Any]) -> ClientOptions:
-        """Return the options that a report keeps.
-
-        Raises:
-            UsageError: an option is unknown or illegible.
-        """
-        known = {field.name for field in fields(cls)}
-        if set(options) - known:
-            message = "the report does not hold the options of a run on a client"
-            raise UsageError("report", message=message)
-        try:
-            given = {name: KINDS.get(name, str)(text) for name, text in options.items()}
-        except (TypeError, ValueError) as error:
-            raise UsageError("report", message=f"its options: {error}") from error
-        return cls(**given | ({"no_acks": True} if given.get("no_acks") else {}))
-
-    def for_report(self) -> dict[str, str]:
-        """Return the options that differ from their defaults."""
-        given = {field.name: getattr(self, field.name) for field in fields(self)}
-        usual = {field.name: field.default for field in fields(self)}
-        return {name: str(value) for name, value in given.items() if value != usual[name]}
 
     def scenario(self) -> Scenario:
         """Return how replies are delivered.

@@ -3,33 +3,26 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, fields
-from typing import Any
+from dataclasses import dataclass
 
 from cobotwire.conformance.device.connection import DeviceConnection
 from cobotwire.conformance.device.permissions import Permissions, parse_workspace, words
 from cobotwire.conformance.device.requester import Timing
 from cobotwire.conformance.device.tester import Tester
+from cobotwire.conformance.options import Options
 from cobotwire.conformance.statement import Statement
 from cobotwire.protocol.errors import UsageError
 from cobotwire.protocol.table import Table
 
-# The options that are numbers; the others are text.
-NUMBERS: Mapping[str, type] = {
-    "max_speed": int,
-    "repeat": int,
-    "retries": int,
-    "linger": float,
-    "baudrate": int,
-}
-
 
 @dataclass(frozen=True, slots=True)
-class RunOptions:
+class RunOptions(Options):
     """What a caller chooses for a run, in the words of the command line.
 
     ``linger`` is in milliseconds, ``max_speed`` in percent.
     """
+
+    kind = "device"
 
     allow: str = ""
     max_speed: int | None = None
@@ -40,33 +33,6 @@ class RunOptions:
     address: str | None = None
     linger: float | None = None
     baudrate: int | None = None
-
-    @classmethod
-    def of_report(cls, options: Mapping[str, Any]) -> RunOptions:
-        """Return the options that a report keeps.
-
-        Raises:
-            UsageError: an option is unknown or illegible.
-        """
-        known = {field.name for field in fields(cls)}
-        given: dict[str, Any] = {}
-        for name, text in options.items():
-            if name not in known:
-                message = f"the report has an option that a run does not have: {name}"
-                raise UsageError("report", name, message=message)
-            try:
-                given[name] = NUMBERS.get(name, str)(text)
-            except (TypeError, ValueError) as error:
-                raise UsageError("report", message=f"its option {name}: {error}") from error
-        return cls(**given)
-
-    def for_report(self) -> dict[str, str]:
-        """Return the options that differ from their defaults."""
-        return {
-            field.name: str(getattr(self, field.name))
-            for field in fields(self)
-            if getattr(self, field.name) != field.default
-        }
 
     def validate(self, table: Table) -> None:
         """Check the options before a port is opened.

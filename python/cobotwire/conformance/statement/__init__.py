@@ -6,9 +6,9 @@ from cobotwire.conformance.statement.statement import (
     Statement,
     Support,
     is_mandatory,
+    statement_template,
     without,
 )
-from cobotwire.conformance.statement.template import statement_template
 
 __all__ = [
     "Acknowledgements",

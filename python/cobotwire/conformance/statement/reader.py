@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection
+from collections.abc import Callable, Mapping
 from enum import StrEnum
+from functools import partial
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any
 
 from cobotwire.conformance.statement.statement import (
+    FORMAT,
     Acknowledgements,
     Statement,
     Support,
@@ -18,15 +20,10 @@ from cobotwire.protocol.errors import StatementError, UsageError, did_you_mean
 from cobotwire.protocol.table import Command, Table
 from cobotwire.simulator.faults.nodes import Node, Place, parse
 
-# The version of the format of statements.
-FORMAT = 1
 WHAT = "statements"
-KEYS = (
-    *("statement", "edition", "maker", "product", "firmware"),
-    *("acknowledgements", "fitted", "commands"),
-)
 SHOWN = 60
-Word = TypeVar("Word", bound=StrEnum)
+# Returns the value of a key as a statement holds it. A ValueError says what is wrong with it.
+Rule = Callable[[Any], object]
 
 
 def load_statement(path: str | Path, table: Table) -> Statement:
@@ -46,113 +43,91 @@ def load_statement(path: str | Path, table: Table) -> Statement:
 
 def read_statement(text: str, table: Table, name: str = "statement") -> Statement:
     """Read a statement from text; messages call the file ``name``. See :func:`load_statement`."""
-    return _Reader(table).read(parse(text, name, WHAT, StatementError), text)
+    root = parse(text, name, WHAT, StatementError)
+    problems: list[tuple[Place, str]] = []
+    given = _mapping(root, "a statement", _rules(table), problems)
+    for key in ("statement", "edition"):
+        if isinstance(root.value, dict) and key not in root.value:
+            problems.append((root.place, f"the key {key} is missing"))
+    if problems:
+        raise StatementError([f"{place}: {message}" for place, message in sorted(set(problems))])
+    del given["statement"]
+    return Statement(**given, text=text)
 
 
-class _Reader:
-    """Reads the keys of a statement, and collects the mistakes."""
+def _rules(table: Table) -> dict[str, Rule | Mapping[str, Rule]]:
+    """Return the rules for the keys of a statement; a mapping has a rule for each of its keys."""
+    return {
+        "statement": partial(_exactly, FORMAT),
+        "edition": partial(_exactly, table.edition),
+        "maker": _text,
+        "product": _text,
+        "firmware": _text,
+        "acknowledgements": partial(_word, Acknowledgements),
+        "fitted": dict.fromkeys(equipment(table), _flag),
+        "commands": {command.name: partial(_support, command) for command in table.commands},
+    }
 
-    def __init__(self, table: Table) -> None:
-        self._table = table
-        self._problems: list[tuple[Place, str]] = []
 
-    def read(self, root: Node, text: str) -> Statement:
-        """Return the statement; raise a StatementError with all mistakes."""
-        entries = self._entries(root, "a statement", KEYS)
-        for key in ("statement", "edition"):
-            if key not in entries and isinstance(root.value, dict):
-                self._report(root.place, f"the key {key} is missing")
-        self._must_be(entries.get("statement"), "statement", FORMAT)
-        self._must_be(entries.get("edition"), "edition", self._table.edition)
-        texts = {
-            key: self._text(key, entries[key])
-            for key in ("maker", "product", "firmware")
-            if key in entries
-        }
-        acks = entries.get("acknowledgements")
-        families = equipment(self._table)
-        fitted = self._mapping(entries.get("fitted"), "fitted", families, self._flag)
-        names = [command.name for command in self._table.commands]
-        commands = self._mapping(entries.get("commands"), "commands", names, self._support)
-        found = Statement(
-            edition=self._table.edition,
-            acknowledgements=Acknowledgements.UNKNOWN
-            if acks is None
-            else self._word("acknowledgements", acks, Acknowledgements),
-            fitted=fitted,
-            commands=commands,
-            text=text,
-            **texts,
+def _mapping(
+    node: Node,
+    what: str,
+    rules: Mapping[str, Rule | Mapping[str, Rule]],
+    problems: list[tuple[Place, str]],
+) -> dict[str, Any]:
+    """Return the values of a mapping; add its mistakes to ``problems``."""
+    if not isinstance(node.value, dict):
+        problems.append((node.place, f"{what} is {_shown(node)}; allowed: a mapping"))
+        return {}
+    given: dict[str, Any] = {}
+    for key, inner in node.value.items():
+        rule = rules.get(key)
+        if rule is None:
+            hint = did_you_mean(key, rules) or f"; known: {', '.join(rules)}"
+            problems.append((node.keys[key], f"{what} has no key {key}{hint}"))
+        elif isinstance(rule, Mapping):
+            given[key] = {} if inner.value is None else _mapping(inner, key, rule, problems)
+        else:
+            try:
+                given[key] = rule(inner.value)
+            except ValueError as error:
+                problems.append((inner.place, f"{key} is {_shown(inner)}{error}"))
+    return given
+
+
+def _exactly(right: int | str, value: Any) -> int | str:
+    if value != right or isinstance(value, bool):
+        raise ValueError(f"; allowed: {right}{did_you_mean(value, [str(right)])}")
+    return right
+
+
+def _text(value: Any) -> str:
+    if value is not None and not isinstance(value, str):
+        raise ValueError("; allowed: text, in quotes")
+    return " ".join((value or "").split())
+
+
+def _flag(value: Any) -> bool:
+    if not isinstance(value, bool):
+        raise ValueError("; allowed: true, false")
+    return value
+
+
+def _word(words: type[StrEnum], value: Any) -> StrEnum:
+    for word in words:
+        if value == word.value:
+            return word
+    raise ValueError(f"; allowed: {', '.join(words)}{did_you_mean(value, list(words))}")
+
+
+def _support(command: Command, value: Any) -> StrEnum:
+    support = _word(Support, value)
+    if support is not Support.IMPLEMENTED and is_mandatory(command):
+        raise ValueError(
+            f", but every arm must have it (its role: {command.role}); omit the line: then the run "
+            "reports that it is missing"
         )
-        if self._problems:
-            lines = [f"{place}: {message}" for place, message in sorted(set(self._problems))]
-            raise StatementError(lines)
-        return found
-
-    def _report(self, place: Place, message: str) -> None:
-        self._problems.append((place, message))
-
-    def _entries(self, node: Node, what: str, known: Collection[str]) -> dict[str, Node]:
-        """Return the known keys of a mapping; report the others."""
-        if not isinstance(node.value, dict):
-            self._report(node.place, f"{what} is {_shown(node)}; allowed: a mapping")
-            return {}
-        for key in node.value:
-            if key not in known:
-                hint = did_you_mean(key, known) or f"; known: {', '.join(known)}"
-                self._report(node.keys[key], f"{what} has no key {key}{hint}")
-        return {key: inner for key, inner in node.value.items() if key in known}
-
-    def _mapping(
-        self,
-        node: Node | None,
-        key: str,
-        known: Collection[str],
-        value: Callable[[str, Node], Any],
-    ) -> dict[str, Any]:
-        if node is None or node.value is None:
-            return {}
-        return {name: value(name, n) for name, n in self._entries(node, key, known).items()}
-
-    def _must_be(self, node: Node | None, key: str, right: object) -> None:
-        if node is not None and (node.value != right or isinstance(node.value, bool)):
-            hint = did_you_mean(node.value, [str(right)])
-            self._report(node.place, f"{key} is {_shown(node)}; allowed: {right}{hint}")
-
-    def _text(self, key: str, node: Node) -> str:
-        if isinstance(node.value, str):
-            return " ".join(node.value.split())
-        if node.value is not None:
-            self._report(node.place, f"{key} is {_shown(node)}; allowed: text, in quotes")
-        return ""
-
-    def _flag(self, key: str, node: Node) -> bool:
-        if not isinstance(node.value, bool):
-            self._report(node.place, f"{key} is {_shown(node)}; allowed: true, false")
-        return node.value is not False
-
-    def _support(self, name: str, node: Node) -> Support:
-        support = self._word(name, node, Support)
-        command = self._table.command(name)
-        if support is not Support.IMPLEMENTED and is_mandatory(command):
-            self._report(node.place, _mandatory(command, support))
-        return support
-
-    def _word(self, key: str, node: Node, words: type[Word]) -> Word:
-        known = list(words)
-        for word in known:
-            if node.value == word.value:
-                return word
-        allowed = ", ".join(known) + did_you_mean(node.value, known)
-        self._report(node.place, f"{key} is {_shown(node)}; allowed: {allowed}")
-        return known[0]
-
-
-def _mandatory(command: Command, support: Support) -> str:
-    return (
-        f"{command.name} is {support}, but every arm must have it (its role: {command.role}); omit "
-        "the line: then the run reports that it is missing"
-    )
+    return support
 
 
 def _shown(node: Node) -> str:

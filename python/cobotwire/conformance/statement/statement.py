@@ -1,13 +1,16 @@
-"""The records of a statement, and what it deselects."""
+"""The records of a statement, what it deselects, and the template for writing one."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Container, Iterator, Mapping
 from dataclasses import dataclass, field
 from enum import StrEnum
+from itertools import groupby
 
 from cobotwire.protocol.table import Command, Role, Table
 
+# The version of the format of statements.
+FORMAT = 1
 # Every client drives and stops an arm by the commands in these roles: none can be absent.
 MANDATORY_ROLES: tuple[Role, ...] = (
     "joints",
@@ -19,6 +22,28 @@ MANDATORY_ROLES: tuple[Role, ...] = (
 )
 # Families of commands for equipment that an arm may be without.
 EQUIPMENT = ("gripper", "grippers", "hand", "accessories", "network")
+
+HEAD = """\
+# Implementation conformance statement: what a device has and lacks of the edition {edition}.
+# To test a device by it:
+#
+#   cobotwire --edition {edition} conform device URL --statement FILE
+#
+statement: {format}
+edition: {edition}
+maker: ""
+product: ""
+# As {version} reports it; empty: it is not compared.
+firmware: ""
+# Whether changes are acknowledged, where the edition allows it: all, none, unknown.
+acknowledgements: unknown
+"""
+COMMANDS = """\
+# implemented: tested. optional: tested, but silence is no failure. absent: not tested, except that
+# it must not reply. A command that is left out is implemented, and those that are marked as
+# mandatory cannot be anything else.
+commands:
+"""
 
 
 class Support(StrEnum):
@@ -116,3 +141,28 @@ def equipment(table: Table) -> list[str]:
     """Return the families of an edition that a statement can declare as not fitted."""
     found = {command.family for command in table.commands}
     return [family for family in EQUIPMENT if family in found]
+
+
+def statement_template(table: Table) -> str:
+    """Return the template for an edition, as YAML; it is a valid statement."""
+    version = table.find_role("version")
+    name = version.name if version else "the device"
+    text = HEAD.format(edition=table.edition, format=FORMAT, version=name)
+    families = equipment(table)
+    if families:
+        text += "# Equipment that is not there is not tested.\nfitted:\n"
+        text += "".join(f"  {family}: true\n" for family in families)
+    return text + COMMANDS + "".join(f"{line}\n" for line in _commands(table))
+
+
+def _commands(table: Table) -> Iterator[str]:
+    usual = [command for command in table.commands if not command.event]
+    for family, commands in groupby(usual, key=lambda command: command.family):
+        yield f"  # {family}"
+        for command in commands:
+            yield _line(command)
+
+
+def _line(command: Command) -> str:
+    about = f"mandatory {command.safety}" if is_mandatory(command) else command.safety
+    return f"  {command.name}: {Support.IMPLEMENTED}  # {about}"

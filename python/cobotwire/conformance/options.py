@@ -1,0 +1,52 @@
+"""The options of a run, as a report keeps them, so that the run can be repeated from it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, fields
+from typing import Any, ClassVar, Self
+
+from cobotwire.conformance.report import Kind
+from cobotwire.protocol.errors import UsageError
+
+# How the text of an option is read, by its annotation; the others are text.
+READERS: Mapping[str, type] = {"int": int, "float": float, "bool": bool}
+
+
+@dataclass(frozen=True, slots=True)
+class Options:
+    """What a caller chooses for a run, in the words of the command line."""
+
+    kind: ClassVar[Kind]
+
+    @classmethod
+    def of_report(cls, options: Mapping[str, Any]) -> Self:
+        """Return the options that a report keeps.
+
+        Raises:
+            UsageError: an option is unknown or illegible.
+        """
+        readers = {
+            each.name: READERS.get(str(each.type).removesuffix(" | None"), str)
+            for each in fields(cls)
+        }
+        given: dict[str, Any] = {}
+        for name, text in options.items():
+            if name not in readers:
+                message = (
+                    f"the report has an option that a run on a {cls.kind} does not have: {name}"
+                )
+                raise UsageError("report", name, message=message)
+            try:
+                given[name] = readers[name](text)
+            except (TypeError, ValueError) as error:
+                raise UsageError("report", message=f"its option {name}: {error}") from error
+        return cls(**given)
+
+    def for_report(self) -> dict[str, str]:
+        """Return the options that differ from their defaults."""
+        return {
+            each.name: str(getattr(self, each.name))
+            for each in fields(self)
+            if getattr(self, each.name) != each.default
+        }
