@@ -15,7 +15,8 @@ if TYPE_CHECKING:
 # Exercises or checks the test cases of a group; each kind of subject has its own type.
 Body = TypeVar("Body", covariant=True)
 
-Selects = Callable[["Table", "Command"], bool]
+# What a group is for: nothing, or what its body needs to know of the command.
+Selects = Callable[["Table", "Command"], object]
 
 
 def every_command(command: Command) -> bool:

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Callable, Container
 from contextlib import suppress
-from typing import Any
+from dataclasses import dataclass, field
+from typing import Any, TypeVar
 
 from cobotwire.codec.interface import Codec
-from cobotwire.conformance.device.comparison import Comparison
 from cobotwire.conformance.device.connection import DeviceConnection
 from cobotwire.conformance.device.permissions import Permissions
 from cobotwire.conformance.device.requester import Requester, Timing
@@ -20,7 +20,7 @@ from cobotwire.protocol.messages import Reply, Request, Result
 from cobotwire.protocol.table import Address, Command, Role, Table
 from cobotwire.session.request import EncodedRequest
 
-Restore = Callable[[], object]
+Reading = TypeVar("Reading")
 
 # After SILENT queries in a row without any reply, another query shows whether the device is there;
 # it is sent up to PINGS times.
@@ -41,8 +41,43 @@ class NotSupported(Exception):
     """A test case cannot run on this kind of device, or in its present state."""
 
 
+class Restores(dict[str, Callable[[], object]]):
+    """What restores the changes of a body, or of the run, by the name of what was changed."""
+
+    def run(self) -> None:
+        """Restore everything, the last change first.
+
+        After an interrupt, what is not restored yet stays here for the next call.
+        """
+        while self:
+            name = next(reversed(self))
+            # The old value may be one that cannot be sent; the body may have failed too often.
+            with suppress(UsageError, EnoughFailures, NoMoreReplies):
+                self[name]()
+            self.pop(name, None)
+
+
+@dataclass(slots=True)
+class Noticed:
+    """What a run has noticed of its device, which alone writes it.
+
+    Attributes:
+        reply_seconds: the times of the valid replies, by command.
+        retried: the commands that were replied to only when they were sent again.
+        acknowledged: what came after each command that may be acknowledged, when it was sent first.
+        changes: how often each of these was sent and checked.
+        poses: the indices of the poses from which the arm has made a short motion, latest first.
+    """
+
+    reply_seconds: dict[str, list[float]] = field(default_factory=dict)
+    retried: set[str] = field(default_factory=set)
+    acknowledged: dict[str, Response] = field(default_factory=dict)
+    changes: Counter[str] = field(default_factory=Counter)
+    poses: list[int] = field(default_factory=list)
+
+
 class Device:
-    """Sends requests, and remembers what the run has to report and to restore."""
+    """Sends requests, notices what the run has to report, and knows what it has to restore."""
 
     def __init__(
         self,
@@ -69,28 +104,13 @@ class Device:
         self.timing = timing
         self.requester = Requester(connection, codec, timing, address)
         self.retries = retries
-        # Reply times in seconds, by command.
-        self.reply_seconds: dict[str, list[float]] = {}
+        self.noticed = Noticed()
         # How many queries in a row had no reply, and the last query that had one.
         self._silent = 0
         self._replied: EncodedRequest | None = None
-        # Commands that were replied to only when they were sent again.
-        self.retried: set[str] = set()
-        # For each command that may be acknowledged: what came after it was sent first.
-        self.acknowledged: dict[str, Response] = {}
-        # The state before the first malformed request, while such requests are sent.
-        self.kept: Comparison | None = None
-        # Whether the device finds the next frame after a malformed request without a pause, as far
-        # as is known; and the kinds of malformed requests that were sent with pauses.
-        self.resyncs = True
-        self.tried_with_pauses: set[str] = set()
-        # The indices of the poses from which the arm has made a short motion.
-        self.preferred_poses: list[int] = []
-        # How often each command that may be acknowledged was sent and checked.
-        self.changes: Counter[str] = Counter()
         # What to restore after a body, and what at the end of the run.
-        self.restore_after_body: dict[str, Restore] = {}
-        self.restore_at_end: dict[str, Restore] = {}
+        self.restore_after_body = Restores()
+        self.restore_at_end = Restores()
 
     def await_start(self, seconds: float) -> bool:
         """Repeat a query until a device that has just been started replies; return whether it does.
@@ -128,7 +148,7 @@ class Device:
             retries -= 1
             response = self.count(self.requester.send(encoded))
             if response.valid is not None:
-                self.retried.add(request.command)
+                self.noticed.retried.add(request.command)
         return response
 
     def _request_text(self, request: EncodedRequest) -> Response:
@@ -145,19 +165,30 @@ class Device:
         """Count the reply time of a response, and return the response."""
         command = response.request.command
         if command.requires_reply and response.valid is not None:
-            self.reply_seconds.setdefault(command.name, []).append(response.valid.seconds)
+            self.noticed.reply_seconds.setdefault(command.name, []).append(response.valid.seconds)
         if response.replies or response.others or response.findings:
             self._silent = 0
             plain = command.safety == "query" and command.text is None
             self._replied = response.request if plain and response.valid else self._replied
         elif command.requires_reply:
             name = command.name
-            if name in self._optional and not self.reply_seconds.get(name):
+            if name in self._optional and not self.noticed.reply_seconds.get(name):
                 self.table = without(self.table, lambda other: other.name == name)
             self._silent += 1
             if self._silent >= SILENT:
                 self._expect_alive(response.request)
         return response
+
+    def note_change(self, response: Response) -> int:
+        """Note what came after a command that may be acknowledged; return how often it was sent."""
+        name = response.request.command.name
+        self.noticed.acknowledged.setdefault(name, response)
+        self.noticed.changes[name] += 1
+        return self.noticed.changes[name]
+
+    def note_motion(self, pose: int) -> None:
+        """Note from which pose the arm has made a short motion."""
+        self.noticed.poses = list(dict.fromkeys([pose, *self.noticed.poses]))
 
     def _expect_alive(self, request: EncodedRequest) -> None:
         """Repeat the last query that was replied to, or this one if none was.
@@ -214,25 +245,30 @@ class Device:
             found[units(field.cases[0].numbers)] = row
         return found
 
-    def setter(self, query: Command, value: int) -> Command | None:
-        """Return the command that makes the flag of a query have ``value``."""
-        for command in self.table.commands:
-            back = command.read_by
-            if back and back.query == query.name and any(v == value for _, v in back.fields):
-                return command
-        return None
+    def cannot_send(self, request: Request[Any]) -> str:
+        """Return why the edition does not allow a request; empty: it does."""
+        try:
+            self.requester.prepare(request)
+        except UsageError as error:
+            return str(error)
+        return ""
 
-    def restore(self, what: dict[str, Restore]) -> None:
-        """Restore what a body, or the run, has changed: the last change first.
+    def poll(
+        self,
+        read: Callable[[], Reading],
+        done: Callable[[Reading], object],
+        seconds: float,
+        every: float,
+    ) -> Reading:
+        """Repeat a reading until it is as wanted, or ``seconds`` are over; return the last one."""
+        until = self.connection.now + seconds
+        while not done(reading := read()) and self.connection.now < until:
+            self.rest(every)
+        return reading
 
-        After an interrupt, what is not restored yet stays in ``what`` for the next call.
-        """
-        while what:
-            name = next(reversed(what))
-            # The old value may be one that cannot be sent; the body may have failed too often.
-            with suppress(UsageError, EnoughFailures, NoMoreReplies):
-                what[name]()
-            what.pop(name, None)
+    def rest(self, seconds: float) -> None:
+        """Let time pass without a request."""
+        self.connection.clock.sleep(seconds)
 
 
 def _same_text(one: Response, other: Response) -> bool:

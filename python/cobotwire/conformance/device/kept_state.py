@@ -7,18 +7,23 @@ sent again, one by one, to find the one that changes it.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from functools import partial
 from itertools import zip_longest
 from typing import Any
 
-from cobotwire.conformance.device.comparison import Malformed
 from cobotwire.conformance.device.device import Device
 from cobotwire.conformance.device.mover import give_power
-from cobotwire.conformance.device.read_back import Setting, has_fixed_effect, settings_of
+from cobotwire.conformance.device.read_back import (
+    Setting,
+    Spot,
+    fixed_effect,
+    read_spot,
+    settings_of,
+)
 from cobotwire.conformance.device.requests import arguments_of, gentle
-from cobotwire.protocol.errors import UsageError
+from cobotwire.conformance.hex_text import shown
 from cobotwire.protocol.messages import Reply, Request
 from cobotwire.protocol.table import Command, Table
 
@@ -28,8 +33,20 @@ MOST_NAMES = 12
 SEARCHES = 3
 
 
+@dataclass(frozen=True, slots=True)
+class Malformed:
+    """A malformed request that was sent: what it is, its bytes, and what sends it again."""
+
+    what: str
+    data: bytes
+    again: Callable[[], object]
+
+    def __str__(self) -> str:
+        return f"{self.what} ({shown(self.data)})"
+
+
 @dataclass(slots=True)
-class _Spot:
+class _Kept:
     """A value that a query reads; ``set`` is the request that gives it that value, if any does.
 
     ``since`` holds the malformed requests that were sent since it was read last.
@@ -59,6 +76,10 @@ class KeptState:
             give_power(device)
         self._spots = [spot for query in _queries(device.table) for spot in self._read(query)]
         self._turn = 0
+        # Whether the device finds the next frame after a malformed request without a pause, as far
+        # as is known; and the kinds of malformed requests that were sent with pauses.
+        self.resyncs = True
+        self.tried_with_pauses: set[str] = set()
 
     def close(self) -> None:
         """Restore what was set; the next malformed request begins a new comparison."""
@@ -66,7 +87,6 @@ class KeptState:
             restore = self._device.restore_at_end.pop(name, None)
             if restore is not None:
                 restore()
-        self._device.kept = None
 
     def next_query(self, other_than: int) -> Request[Any] | None:
         """Return the query that is compared next, of another id; None if there is none."""
@@ -91,7 +111,7 @@ class KeptState:
         changed = self._compare(spot, reply)
         return changed and changed + self._also_changed(spot)
 
-    def _also_changed(self, known: _Spot) -> str:
+    def _also_changed(self, known: _Kept) -> str:
         """Compare the other values, which may have changed with the known one; name them."""
         names = []
         for spot in self._spots:
@@ -111,43 +131,33 @@ class KeptState:
             if changed:
                 yield changed
 
-    def _read(self, queries: list[tuple[Setting | None, Request[Any]]]) -> Iterator[_Spot]:
+    def _read(self, queries: list[tuple[Setting | None, Request[Any]]]) -> Iterator[_Kept]:
         for setting, query in queries:
-            before = self._device.read(query)
-            if before is None:
+            spot = read_spot(self._device, setting, query) if setting else None
+            if setting is not None and spot is None:
                 continue
-            mark = None if setting is None else self._mark(setting, query, before)
-            value = before if mark is None else self._device.read(query)
+            mark = None if spot is None else self._mark(spot)
+            value = spot.before if spot and mark is None else self._device.read(query)
             if value is not None:
-                yield _Spot(query, value, mark)
+                yield _Kept(query, value, mark)
 
-    def _mark(
-        self, setting: Setting, query: Request[Any], before: Reply[Any]
-    ) -> Request[Any] | None:
+    def _mark(self, spot: Spot) -> Request[Any] | None:
         """Give a value that the run may set another one; return the request that did it."""
-        if setting.command.safety != "setting" or "setting" not in self._device.permissions.classes:
+        command = spot.setting.command
+        if command.safety != "setting" or "setting" not in self._device.permissions.classes:
             return None
-        old = setting.again(query, before)
-        try:
-            # The last sample is the nearest to zero.
-            marks: list[Request[Any]] = [
-                sample for sample in reversed(setting.samples(query, before)) if sample != old
-            ]
-            self._device.requester.prepare(old)
-        except UsageError:
+        if spot.obstacle or not spot.others:
             return None
-        if not marks:
-            return None
-        name = f"{setting.command.name}({arguments_of(query)})"
-        self._device.restore_at_end[name] = partial(self._device.request, old)
+        name = str(spot)
+        self._device.restore_at_end[name] = partial(self._device.request, spot.old)
         self._marked.append(name)
         # The device may return to the plainest value instead of its default.
-        plain = gentle(setting.command)
-        mark = next((each for each in marks if each != plain), marks[0])
+        plain = gentle(command)
+        mark = next((each for each in spot.others if each != plain), spot.others[0])
         self._device.request(mark)
         return mark
 
-    def _compare(self, spot: _Spot, reply: Reply[Any] | None = None) -> str:
+    def _compare(self, spot: _Kept, reply: Reply[Any] | None = None) -> str:
         now = reply or self._device.read(spot.query)
         sent, spot.since = spot.since, []
         if now is None or now == spot.value:
@@ -160,7 +170,7 @@ class KeptState:
             return f"after {cause}: {change}"
         return f"after one of {len(sent)} requests, from {sent[0]} to {sent[-1]}: {change}"
 
-    def _find(self, spot: _Spot, sent: list[Malformed]) -> Malformed | None:
+    def _find(self, spot: _Kept, sent: list[Malformed]) -> Malformed | None:
         """Send requests again, the last one first, until one changes the value."""
         for each in reversed(sent):
             if not self._set_again(spot):
@@ -170,7 +180,7 @@ class KeptState:
                 return each
         return None
 
-    def _set_again(self, spot: _Spot) -> bool:
+    def _set_again(self, spot: _Kept) -> bool:
         """Give a value back what the run has set; return whether it has it."""
         if spot.set is not None:
             self._device.request(spot.set)
@@ -209,7 +219,7 @@ def _read_by(table: Table, command: Command) -> Iterator[tuple[Setting | None, R
     query = table.command(back.query)
     if query.role == "error" or query.text is not None:
         return
-    if has_fixed_effect(command):
+    if fixed_effect(table, command):
         if command.safety != "persistent write" and not query.request[0].fields:
             yield None, query.request_type()
     elif command.safety != "motion":

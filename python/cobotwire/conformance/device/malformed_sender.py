@@ -6,8 +6,7 @@ from collections.abc import Callable
 from functools import partial
 from typing import Any
 
-from cobotwire.conformance.device.comparison import Malformed
-from cobotwire.conformance.device.kept_state import KeptState
+from cobotwire.conformance.device.kept_state import KeptState, Malformed
 from cobotwire.conformance.device.probe import Probe
 from cobotwire.conformance.device.response import Response
 from cobotwire.conformance.suite import TestCase
@@ -36,26 +35,24 @@ class MalformedSender:
         self._probe = probe
         self._device = probe.device
         self._request = request
-        if self._device.kept is None:
-            self._device.kept = KeptState(self._device)
-        self._kept = self._device.kept
+        self._kept = probe.run.kept = probe.run.kept or KeptState(self._device)
         self._lost = False
 
     def send(self, case: TestCase, what: str, data: bytes) -> None:
         """Send a malformed request; the firmware may send an error text, but no reply."""
         kind = case.id if case.id in ONE_KIND else what
-        known = kind in self._device.tried_with_pauses
+        known = kind in self._kept.tried_with_pauses
         query = self._kept.next_query(other_than=self._request.command.id)
-        at_once = known and self._device.resyncs and query is not None
+        at_once = known and self._kept.resyncs and query is not None
         reply = self._reply_after(what, data, query) if query is not None and at_once else None
         if query is not None and reply is not None:
             self._probe.expect(case, True, "")
             self._probe.expect(RECOVERS, True, "")
             self.expect_kept(what, data, partial(self._reply_after, what, data, query), reply)
         else:
-            self._device.tried_with_pauses.add(kind)
+            self._kept.tried_with_pauses.add(kind)
             passed = self._send_and_wait(case, what, data)
-            self._device.resyncs = self._device.resyncs and not (at_once and passed)
+            self._kept.resyncs = self._kept.resyncs and not (at_once and passed)
             self.expect_kept(what, data, partial(self._again, what, data))
 
     def _reply_after(self, what: str, data: bytes, query: Request[Any]) -> Reply[Any] | None:
@@ -119,6 +116,7 @@ class MalformedSender:
         changes = list(self._kept.check_all())
         self._probe.expect(KEPT, not changes, "; ".join(changes[:MOST_CHANGES]))
         self._kept.close()
+        self._probe.run.kept = None
 
     def _again(self, what: str, data: bytes) -> None:
         self._send_alone(what, data)

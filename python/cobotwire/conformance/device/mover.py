@@ -8,7 +8,7 @@ from typing import Any
 
 from cobotwire.conformance.device.device import Device, NotSupported
 from cobotwire.conformance.device.permissions import Range
-from cobotwire.conformance.device.probe import Probe
+from cobotwire.conformance.device.read_back import setter_of
 from cobotwire.conformance.device.response import ReceivedReply
 from cobotwire.protocol.messages import Request
 from cobotwire.protocol.roles import row_index, targets_request
@@ -42,13 +42,13 @@ def angle_tolerance(table: Table) -> float:
 class Mover:
     """Moves the arm by the commands that the edition names for each role."""
 
-    def __init__(self, probe: Probe) -> None:
+    def __init__(self, device: Device) -> None:
         """Prepare to move.
 
         Raises:
             NotSupported: the edition lacks a role, or the arm may not be given power.
         """
-        self.device = probe.device
+        self.device = device
         self.targets = self._in_role("joint targets")
         self.joints = self._in_role("joints")
         self.speed = self.device.permissions.max_speed or 1
@@ -61,11 +61,7 @@ class Mover:
     @property
     def poses(self) -> list[int]:
         """The indices of the poses; first those from which the arm has moved, latest first."""
-        return list(dict.fromkeys([*self.device.preferred_poses, *range(len(POSES))]))
-
-    def prefer(self, which: int) -> None:
-        """Try this pose first from now on: the arm has moved from it."""
-        self.device.preferred_poses = [which, *self.poses]
+        return list(dict.fromkeys([*self.device.noticed.poses, *range(len(POSES))]))
 
     def go_near(self, which: int) -> None:
         """Go to a pose, unless the arm has only made small motions since it was there."""
@@ -104,24 +100,26 @@ class Mover:
     def wait(self) -> None:
         """Wait until the arm reports that it is at rest."""
         moving = self.device.command("moving")
-        until = self.device.connection.now + LONGEST
-        while moving is not None and self.device.connection.now < until:
+        if moving is not None:
             self.rest(POLL)
-            if self.device.is_set(moving.request_type()) is False:
-                return
+            reading = partial(self.device.is_set, moving.request_type())
+            self.device.poll(reading, lambda moves: moves is False, LONGEST, POLL)
 
     def settle(self, read: Callable[[], object]) -> None:
         """Wait until the arm is at rest and a reading stays the same: a gripper moves by itself."""
         self.wait()
-        until, same, last = self.device.connection.now + LONGEST, 0, read()
-        while same < 2 and self.device.connection.now < until:
-            self.rest(POLL)
-            now = read()
-            same, last = (same + 1 if now == last else 0), now
+        seen = [read()]
+        self.rest(POLL)
+
+        def stays(reading: object) -> bool:
+            seen.append(reading)
+            return seen[-3:] == [reading] * 3
+
+        self.device.poll(read, stays, LONGEST, POLL)
 
     def rest(self, seconds: float) -> None:
         """Let time pass without a request."""
-        self.device.connection.clock.sleep(seconds)
+        self.device.rest(seconds)
 
     def angles(self) -> Pose:
         """Return the joints' angles, in degrees."""
@@ -184,7 +182,7 @@ def give_power(device: Device) -> None:
     powered = device.command("powered")
     if powered is None or device.is_set(powered.request_type()):
         return
-    on, off = device.setter(powered, 1), device.setter(powered, 0)
+    on, off = (setter_of(device.table, powered, value) for value in (1, 0))
     if on is None or "power" not in device.permissions.classes:
         raise NotSupported("the arm has no power, and the run may not switch it on")
     if off is not None:

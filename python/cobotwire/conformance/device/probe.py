@@ -3,13 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any, TypeVar
 
-from cobotwire.conformance.device.device import Device, EnoughFailures
+from cobotwire.conformance.device.device import Device, EnoughFailures, NotSupported
+from cobotwire.conformance.device.kept_state import KeptState
 from cobotwire.conformance.device.permissions import class_of
+from cobotwire.conformance.device.requests import flag_text
 from cobotwire.conformance.report import Cause, Result
 from cobotwire.conformance.suite import Group, TestCase
 from cobotwire.conformance.tally import Evidence, Tally
-from cobotwire.protocol.table import Command
+from cobotwire.protocol.messages import Request
+from cobotwire.protocol.table import Command, Table
 
 # How many exchanges before the first failure are its evidence.
 EVIDENCE = 12
@@ -17,17 +22,27 @@ EVIDENCE = 12
 PATIENCE = 3
 
 
+@dataclass(slots=True)
+class Run:
+    """What the bodies of a run share: the device, and the state before the first malformed request.
+
+    ``kept`` is written by what sends malformed requests; None: nothing is compared.
+    """
+
+    device: Device
+    kept: KeptState | None = None
+
+
 class Probe:
     """Observes the device, and collects a verdict on each test case of a group."""
 
-    def __init__(
-        self, device: Device, group: Group[Body], command: Command | None, tally: Tally
-    ) -> None:
-        self.device = device
+    def __init__(self, run: Run, group: Group[Body], command: Command | None, tally: Tally) -> None:
+        self.run = run
+        self.device = run.device
         self._command = command
         self._tally = tally
         self._name = "" if command is None else command.name
-        self._start = device.connection.mark
+        self._start = run.device.connection.mark
         for case in group.cases:
             if command is None or case.applies(command):
                 tally.expect(case, self._name)
@@ -51,6 +66,14 @@ class Probe:
             if not holds and failed >= PATIENCE:
                 raise EnoughFailures
 
+    def expect_flag(
+        self, case: TestCase, query: Request[Any], right: bool, call: str = "", when: str = ""
+    ) -> None:
+        """Observe whether a query reports a flag; by default, its name is the ``call``."""
+        command, reported = self.device.table.command(query.command), self.device.is_set(query)
+        expected = f"{call or command.name}: expected {flag_text(command, right)}{when}"
+        self.expect(case, reported is right, f"{expected}; came {flag_text(command, reported)}")
+
     def drop(self, case: TestCase) -> None:
         """Give no verdict on a test case that has no meaning for the command."""
         self._tally.drop(case, self._name)
@@ -68,19 +91,8 @@ class Probe:
         """Return a result for each test case; ``unsupported`` says why nothing was observed."""
         return self._tally.results(evidence=self._evidence(), unobserved=unsupported)
 
-    def not_permitted(self, missing: str) -> list[Result]:
-        """Return the results of a body that was not run for lack of permission."""
-        return self._without_verdict(Cause.NOT_PERMITTED, f"It needs permission: {missing}.")
-
-    def not_selected(self, reason: str) -> list[Result]:
-        """Return the results of a body that was not run, because the statement deselects it."""
-        return self._without_verdict(Cause.NOT_SELECTED, reason)
-
-    def not_run(self, reason: str) -> list[Result]:
-        """Return the results of a body that was not run, because the run ended before."""
-        return self._without_verdict(Cause.RUN_ENDED, reason)
-
-    def _without_verdict(self, cause: Cause, reason: str) -> list[Result]:
+    def without_verdict(self, cause: Cause, reason: str) -> list[Result]:
+        """Return the results of a body that was not run; ``reason`` is a sentence."""
         for case in self._tally.cases:
             self._tally.excuse(case, self._name, cause, reason)
         return self._tally.results()
@@ -92,6 +104,20 @@ class Probe:
 
 # Exercises the test cases of a group on one command, or on the line as a whole.
 Body = Callable[[Probe], None]
+Row = TypeVar("Row")
+RowBody = Callable[[Probe, Row], None]
+
+
+def with_row(find: Callable[[Table, Command], Row | None], body: RowBody[Row]) -> Body:
+    """Return a body that is given the row which ``find`` has for the command, and selects it by."""
+
+    def run(probe: Probe) -> None:
+        row = find(probe.device.table, probe.command)
+        if row is None:
+            raise NotSupported("the device lacks a command without which this cannot be observed")
+        body(probe, row)
+
+    return run
 
 
 def needed(group: Group[Body], command: Command | None) -> frozenset[str]:

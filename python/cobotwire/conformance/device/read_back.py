@@ -4,9 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
-from cobotwire.conformance.device.requests import as_row, gentle_values, limits_of, requests
+from cobotwire.conformance.device.device import Device, NotSupported
+from cobotwire.conformance.device.requests import (
+    arguments_of,
+    as_row,
+    gentle_values,
+    limits_of,
+    requests,
+)
 from cobotwire.conformance.mistakes import Pair, likely_mistake
 from cobotwire.conformance.places import numbers_of
 from cobotwire.conformance.samples.physical import setting_values, takes_whole
@@ -99,36 +106,20 @@ class Setting:
             return ["nothing was reported"]
         found, sent, pairs = [], wanted.fields, list[Pair]()
         for name, value in self._reported(reply).items():
-            if self.command.request_text is None and takes_whole(self._field(name)):
+            if self.command.request_text is not None or takes_whole(self._field(name)):
                 if sent[name] != value:
                     found.append(f"{name}: set {sent[name]!r}, read {value!r}")
                 continue
-            for at, (want, have) in enumerate(zip(as_row(sent[name]), as_row(value))):
-                most = (near or {}).get(self._unit(name, at), EXACT)
-                if want != have and not (_number(want) and abs(want - have) <= most):
-                    found.append(f"{self._label(name, at)}: set {want}, read {have}")
-                if _number(want):
-                    pairs.append(self._pair(name, at, want, have, most))
+            numbers = self._field(name).cases[0].numbers
+            for number, want, have in zip(numbers, as_row(sent[name]), as_row(value)):
+                part = f"{name}.{number.name}" if number.name else name
+                pair = Pair(part, want, have, (near or {}).get(number.unit, EXACT), number)
+                pairs.append(pair)
+                if pair.wrong:
+                    unit = f" ({number.unit})" if number.unit else ""
+                    found.append(f"{part}{unit}: set {want}, read {have}")
         mistake = likely_mistake(pairs) if len(pairs) > 1 else ""
         return [*found, mistake] if mistake else found
-
-    def _pair(self, name: str, at: int, want: float, have: float, near: float) -> Pair:
-        """Return a number that was set, and the one that was read."""
-        number = self._field(name).cases[0].numbers[at]
-        label = f"{name}.{number.name}" if number.name else name
-        return Pair(label, want, have, near, number)
-
-    def _label(self, name: str, at: int) -> str:
-        """Return the name of a field and its part, with the unit."""
-        if self.command.request_text is not None:
-            return name
-        number = self._field(name).cases[0].numbers[at]
-        part = f"{name}.{number.name}" if number.name else name
-        return f"{part} ({number.unit})" if number.unit else part
-
-    def _unit(self, name: str, at: int) -> str:
-        text = self.command.request_text is not None
-        return "" if text else self._field(name).cases[0].numbers[at].unit
 
     def _field(self, name: str) -> Field:
         return next(field for field in self.variant.fields if field.name == name)
@@ -151,10 +142,62 @@ class Setting:
         return max(rows, key=lambda numbers: numbers[0].maximum)
 
 
+@dataclass(frozen=True, slots=True)
+class Spot:
+    """What a query read, and the request that sets that again.
+
+    ``obstacle`` says why that request cannot be sent; empty: it can.
+    """
+
+    setting: Setting
+    query: Request[Any]
+    before: Reply[Any]
+    old: Request[Any]
+    obstacle: str = ""
+
+    def __str__(self) -> str:
+        return f"{self.old.command}({arguments_of(self.query)})"
+
+    @property
+    def samples(self) -> list[Request[Any]]:
+        """Requests that set values which reveal mistakes."""
+        return self.setting.samples(self.query, self.before)
+
+    @property
+    def others(self) -> list[Request[Any]]:
+        """Requests that change the value; the one nearest to zero comes first."""
+        return [sample for sample in reversed(self.samples) if sample != self.old]
+
+
+def read_spot(device: Device, setting: Setting, query: Request[Any]) -> Spot | None:
+    """Read one joint, pin or register; None if no valid reply comes."""
+    before = device.read(query)
+    if before is None:
+        return None
+    old = setting.again(query, before)
+    return Spot(setting, query, before, old, device.cannot_send(old))
+
+
+def restorable_spot(
+    device: Device, setting: Setting, query: Request[Any], *, or_lost: bool = False
+) -> Spot:
+    """Read one joint, pin or register that can be restored; with ``or_lost`` it need not be.
+
+    Raises:
+        NotSupported: no valid reply comes, or the value cannot be set again.
+    """
+    spot = read_spot(device, setting, query)
+    if spot is None:
+        raise NotSupported(f"{query.command} reports nothing, so nothing can be read back")
+    if spot.obstacle and not or_lost:
+        raise NotSupported(f"the present value could not be set again: {spot.obstacle}")
+    return spot
+
+
 def settings_of(table: Table, command: Command) -> list[Setting]:
     """Return the variants of a command that a query reads back; none if its effect is fixed."""
     back = command.read_by
-    if back is None or has_fixed_effect(command):
+    if back is None or fixed_effect(table, command):
         return []
     query = next((each for each in table.commands if each.name == back.query), None)
     found: list[Setting] = []
@@ -176,10 +219,45 @@ def _of_corner_sizes(variants: tuple[Variant, ...]) -> Iterator[Variant]:
             yield variant
 
 
-def has_fixed_effect(command: Command) -> bool:
-    """Return whether a query reports a fixed value after a command, such as power on."""
+class Fixed(NamedTuple):
+    """A query that reports the fixed effect of a command, such as power on, and what it reports."""
+
+    query: Command
+    field: str
+    value: int
+
+    def for_part(self, part: Request[Any]) -> Request[Any]:
+        """Return the query of the part that a request names; of all, if it can name none."""
+        known = self.query.argument_names
+        fields = {name: value for name, value in part.fields.items() if name in known}
+        return self.query.request_type.from_fields(fields)
+
+    def read(self, device: Device, query: Request[Any]) -> int:
+        """Return what the query reports now.
+
+        Raises:
+            NotSupported: no valid reply comes.
+        """
+        return int(getattr(device.require(query), self.field))
+
+
+def fixed_effect(table: Table, command: Command) -> Fixed | None:
+    """Return what a query reports after a command, if that is fixed."""
     back = command.read_by
-    return back is not None and any(not isinstance(value, str) for _, value in back.fields)
+    if back is not None:
+        for field, value in back.fields:
+            if not isinstance(value, str):
+                return Fixed(table.command(back.query), field, int(value))
+    return None
+
+
+def setter_of(table: Table, query: Command, value: int) -> Command | None:
+    """Return the command that makes a query report ``value``; None if none does."""
+    for command in table.commands:
+        fixed = fixed_effect(table, command)
+        if fixed and fixed.query.name == query.name and fixed.value == value:
+            return command
+    return None
 
 
 def _query_variant(query: Command, variant: Variant) -> Variant | None:
@@ -200,7 +278,3 @@ def _pairs(command: Command, variant: Variant, query: Command) -> tuple[tuple[st
 
 def _is_speed(field: Field) -> bool:
     return any(number.unit == "percent" for number in field.cases[0].numbers[:1])
-
-
-def _number(value: Any) -> bool:
-    return isinstance(value, int | float)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Container, Iterator, Mapping
 from dataclasses import replace
 
 from cobotwire import codec as codecs
@@ -13,14 +13,13 @@ from cobotwire.conformance.device.device import (
     NoMoreReplies,
     NotSupported,
 )
-from cobotwire.conformance.device.excuses import cut_short, excused
 from cobotwire.conformance.device.permissions import Permissions
 from cobotwire.conformance.device.plan import Plan, Step
-from cobotwire.conformance.device.probe import Body, Probe, needed
+from cobotwire.conformance.device.probe import Body, Probe, Run, needed
 from cobotwire.conformance.device.read_as import sent_last
 from cobotwire.conformance.device.requester import Timing
 from cobotwire.conformance.device.suite import SUITE
-from cobotwire.conformance.report import Report, Result
+from cobotwire.conformance.report import Cause, Report, Result, Verdict
 from cobotwire.conformance.statement import Statement
 from cobotwire.conformance.suite import Group
 from cobotwire.conformance.tally import Tally, merged
@@ -30,6 +29,9 @@ from cobotwire.protocol.table import Command, Table
 
 # From this angle on, a joint shows a wrong scale, order or direction; in degrees.
 AWAY = 5.0
+# What reasons say if nothing came, or nothing but the noise of a healthy line. The evidence may go
+# on with a query that was replied to.
+SILENCE = ("came nothing", "came no valid reply", "came noise ")
 
 Progress = Callable[[Step, int, int], None]
 
@@ -96,10 +98,11 @@ class Tester:
             statement=self._statement,
             optional=self._optional,
         )
+        self._run = Run(self.device)
         at = "" if device_address is None else f" at address {device_address.name}"
         self.report = Report("device", table.edition, f"{connection.name}{at}")
         self.report.statement = self._statement.text
-        self.report.reply_seconds = self.device.reply_seconds
+        self.report.reply_seconds = self.device.noticed.reply_seconds
         self.report.deadline_seconds = {c.name: c.deadline_ms / 1000 for c in table.commands}
 
     def steps(self) -> Iterator[Step]:
@@ -118,12 +121,8 @@ class Tester:
 
     def _selects(self, group: Group[Body], command: Command) -> bool:
         """Return whether a group can test a command by the commands that the device has."""
-        own = self._own(command)
-        return (
-            own is not None
-            and group.selects is not None
-            and (group.selects(self.device.table, own))
-        )
+        own, selects = self._own(command), group.selects
+        return own is not None and selects is not None and bool(selects(self.device.table, own))
 
     def _own(self, command: Command) -> Command | None:
         """Return a command that refers to none that the device lacks; None if it lacks this one."""
@@ -179,11 +178,11 @@ class Tester:
         An interrupt also stops an arm that is on its way back.
         """
         try:
-            self.device.restore(self.device.restore_after_body)
-            self.device.restore(self.device.restore_at_end)
+            self.device.restore_after_body.run()
+            self.device.restore_at_end.run()
         except KeyboardInterrupt:
             self._halt()
-            self.device.restore(self.device.restore_after_body)
+            self.device.restore_after_body.run()
             raise
 
     def missing(self, step: Step) -> str:
@@ -192,19 +191,23 @@ class Tester:
 
     def results(self, step: Step) -> list[Result]:
         """Run one step as often as the run repeats steps."""
-        if self.missing(step) or self._deselected(step) or self._ended:
+        if self._obstacle(step) or self._ended:
             return self.results_without_run(step)
         found = merged([self._run_once(step) for _ in range(self._repeat)])
         return [replace(result, group=step.group.name) for result in found]
 
     def results_without_run(self, step: Step) -> list[Result]:
         """Return the results of a step that is not selected or permitted, or was not reached."""
-        missing, deselected, probe = self.missing(step), self._deselected(step), self._probe(step)
-        if deselected:
-            found = probe.not_selected(deselected)
-        else:
-            found = probe.not_permitted(missing) if missing else probe.not_run(f"{self._ended}.")
+        obstacle = self._obstacle(step) or (Cause.RUN_ENDED, f"{self._ended}.")
+        found = self._probe(step).without_verdict(*obstacle)
         return [replace(result, group=step.group.name) for result in found]
+
+    def _obstacle(self, step: Step) -> tuple[Cause, str] | None:
+        """Return why a step is not run: the statement deselects it, or it is not permitted."""
+        deselected, missing = self._deselected(step), self.missing(step)
+        if deselected:
+            return Cause.NOT_SELECTED, deselected
+        return (Cause.NOT_PERMITTED, f"It needs permission: {missing}.") if missing else None
 
     def _deselected(self, step: Step) -> str:
         """Return why the statement deselects a step; empty: it does not."""
@@ -219,7 +222,7 @@ class Tester:
 
     def _probe(self, step: Step) -> Probe:
         command = step.command and (self._own(step.command) or step.command)
-        return Probe(self.device, step.group, command, Tally(self._sources))
+        return Probe(self._run, step.group, command, Tally(self._sources))
 
     def _run_once(self, step: Step) -> list[Result]:
         probe = self._probe(step)
@@ -238,13 +241,13 @@ class Tester:
             self._halt()
             raise
         finally:
-            self.device.restore(self.device.restore_after_body)
+            self.device.restore_after_body.run()
         found = [
-            excused(result, self.device.reply_seconds, self._optional, self._lacking)
+            _excused(result, self.device.noticed.reply_seconds, self._optional, self._lacking)
             for result in probe.results(unsupported)
         ]
         # What passed until the device fell silent may not have been observed to its end.
-        return [cut_short(result, self._ended) for result in found] if self._ended else found
+        return [_cut_short(result, self._ended) for result in found] if self._ended else found
 
     def _halt(self) -> None:
         """Stop the arm. An arm that has not come to rest is not sent back, and keeps its power."""
@@ -273,3 +276,37 @@ class Tester:
         reply = None if query is None else self.device.read(query.request_type())
         if reply is not None:
             self.report.firmware = str(reply.result)
+
+
+def _excused(
+    result: Result,
+    reply_seconds: Mapping[str, list[float]],
+    optional: Container[str],
+    lacking: Mapping[str, str],
+) -> Result:
+    """Turn a failure by silence into not supported, if the device may lack the command.
+
+    Args:
+        result: the result.
+        reply_seconds: the times of all valid replies, by command.
+        optional: the commands that the device may lack altogether.
+        lacking: what the device states that it does not support: by command, the reason.
+    """
+    if result.verdict is not Verdict.FAIL:
+        return result
+    silent = any(words in result.reason for words in SILENCE)
+    stated = lacking.get(result.command, "") if silent else ""
+    never = not reply_seconds.get(result.command)
+    if not stated and not (never and result.command in optional):
+        return result
+    reason = f"The device states: {stated}." if stated else result.reason
+    return replace(result, verdict=Verdict.INCONCLUSIVE, cause=Cause.NOT_SUPPORTED, reason=reason)
+
+
+def _cut_short(result: Result, why: str) -> Result:
+    """Return a failure as it is, and anything else as not run."""
+    if result.verdict is Verdict.FAIL:
+        return result
+    return replace(
+        result, verdict=Verdict.NOT_RUN, cause=Cause.RUN_ENDED, reason=f"{why}.", evidence=()
+    )

@@ -9,9 +9,11 @@ from cobotwire.conformance.device.mover import POSES, Mover, angle_tolerance
 from cobotwire.conformance.device.probe import Probe
 from cobotwire.conformance.device.requests import as_row, request_of, units
 from cobotwire.conformance.device.same_pose import is_same_pose
+from cobotwire.conformance.device.selection import does
 from cobotwire.conformance.mistakes import ANOTHER_ORDER, Pair, likely_mistake
 from cobotwire.conformance.places import places
 from cobotwire.conformance.suite import Group, TestCase
+from cobotwire.protocol.effects import Computes
 from cobotwire.protocol.table import Command, Number, Table
 
 AGREES = TestCase("agrees", "While the arm rests, queries of the same quantity agree.")
@@ -41,7 +43,7 @@ def _has_equals(table: Table, command: Command) -> bool:
 def _agree(probe: Probe) -> None:
     """Compare with each of the other queries, joint by joint."""
     if probe.device.permissions.workspace:
-        mover = Mover(probe)
+        mover = Mover(probe.device)
         mover.go(mover.pose(0))
     for name in probe.command.agrees_with:
         other = probe.device.table.command(name)
@@ -139,21 +141,9 @@ def _matching(mine: list[_Part], theirs: list[_Part]) -> list[_Part]:
 CALCULATED = {"degree": 3.0, "millimetre": 2.5}
 
 
-def _calculates(table: Table, command: Command) -> bool:
-    """Return whether the arm also reports every row that a query takes and returns."""
-    shown = {
-        units(c.reply[0].fields[0].cases[0].numbers)
-        for c in table.commands
-        if c.role in ("joints", "coordinates")
-    }
-    rows = [*command.request[0].fields, *(command.reply[0].fields if command.reply else ())]
-    rowwise = all(f.many and units(f.cases[0].numbers) in shown for f in rows)
-    return command.safety == "query" and bool(command.request[0].fields) and rowwise
-
-
 def _calculate(probe: Probe) -> None:
     """Calculate with the arm's position: the result must be the arm's position."""
-    mover = Mover(probe) if probe.device.permissions.workspace else None
+    mover = Mover(probe.device) if probe.device.permissions.workspace else None
     for which in range(len(POSES)) if mover else (0,):
         if mover:
             mover.go(mover.pose(which))
@@ -188,7 +178,7 @@ CALCULATION = Group(
     "calculation",
     (AGREES,),
     _calculate,
-    _calculates,
+    does(Computes),
     sends=(
         "The calculation with the position that the arm reports, at several poses if motion "
         "is permitted."

@@ -7,7 +7,8 @@ from collections.abc import Sequence
 from cobotwire.conformance.device.device import NotSupported
 from cobotwire.conformance.device.groups.motion import REACHED
 from cobotwire.conformance.device.probe import Probe
-from cobotwire.conformance.device.requests import flag_text, request_of, units
+from cobotwire.conformance.device.requests import request_of, units
+from cobotwire.conformance.device.selection import reported, reporters
 from cobotwire.conformance.mistakes import Pair, likely_mistake
 from cobotwire.conformance.suite import Group, TestCase
 from cobotwire.protocol.roles import ANGLES, COORDS, KINDS, ReachedQuery, as_reached_query
@@ -26,6 +27,7 @@ COORDINATES = (*3 * ("millimetre",), *3 * ("degree",))
 NEAR_MILLIMETRES, NEAR_DEGREES = 15.0, 5.0
 # Far from the present value, in the units of angles and of coordinates.
 FAR = {"degree": 25.0, "millimetre": 60.0}
+LIMIT_STATES = {"lowest", "highest"}
 # A wrong scale multiplies all limits by the same of these factors, within a tenth.
 FACTORS = (0.01, 0.1, 10.0, 100.0)
 
@@ -46,10 +48,12 @@ def _geometry(probe: Probe) -> None:
     device, table = probe.device, probe.device.table
     geometry, joints = geometry_of(table), table.in_role("joints")
     assert geometry is not None, "the group selects editions with a geometry"
-    for query, label in _frames(table):
-        reply = device.read(query.request_type())
-        if reply is not None and any(reply.fields.values()):
-            raise NotSupported(f"the coordinates are not those of {label}: see {query.name}")
+    for state, label in (("reference_frame", "the base"), ("end_type", "the flange")):
+        # The first choice is the default.
+        for query in (each.query for each in reporters(table, state)):
+            reply = device.read(query.request_type())
+            if reply is not None and any(reply.fields.values()):
+                raise NotSupported(f"the coordinates are not those of {label}: see {query.name}")
     angles = device.require(joints.request_type()).result
     reported = tuple(device.require(probe.command.request_type()).result)
     right = coords_of(geometry, angles)
@@ -79,54 +83,38 @@ def _pairs(query: Command, right: Sequence[float], came: Sequence[float]) -> lis
     ]
 
 
-def _frames(table: Table) -> list[tuple[Command, str]]:
-    """Return the queries that report a frame, or an end, which is the first of two by default."""
-    labels = {("BASE", "WORLD"): "the base", ("FLANGE", "TOOL"): "the flange"}
-    found = []
-    for command in table.commands:
-        fields = command.reply[0].fields if command.safety == "query" and command.reply else ()
-        if len(fields) == 1 and fields[0].labels in labels and not command.request[0].fields:
-            found.append((command, labels[fields[0].labels]))
-    return found
-
-
 def _is_reached_query(table: Table, command: Command) -> bool:
-    return command.role == "reached" or _single_angle(table, command) is not None
+    """Return whether a command is that query, also for a device with a single joint."""
+    one = not any(field.many for field in command.request[0].fields)
+    single = one and "reached" in reported(command) and _angle(table) is not None
+    return command.role == "reached" or single
 
 
-def _single_angle(table: Table, command: Command) -> Command | None:
-    """Return the query of a joint's angle, if a command is the query for a device with one joint.
-
-    It is a variant of the query in the role ``reached``, with one number in place of a row.
-    """
-    reached, joints = table.find_role("reached"), table.find_role("joints")
-    if reached is None or joints is None or command.id != reached.id or command is reached:
-        return None
-    if command.request[0].fields[0].many:
-        return None
-    return next((c for c in table.commands if joints.name in c.agrees_with and _is_angle(c)), None)
+def _angle(table: Table) -> Command | None:
+    """Return the query of one joint's angle, in degrees."""
+    queries = (each.query for each in reporters(table, "angles") if each.at)
+    return next((query for query in queries if query.reply_type and _unit(query) == "degree"), None)
 
 
-def _is_angle(command: Command) -> bool:
-    """Return whether a query with one argument reports one angle."""
-    reported = [field.cases[0].numbers[0].unit for field in command.reply[0].fields]
-    return len(command.request[0].fields) == 1 and reported == ["degree"]
+def _unit(query: Command) -> str:
+    return query.reply[0].fields[-1].cases[0].numbers[0].unit
 
 
-def _reached_by_one(probe: Probe, angle: Command) -> None:
+def _reached_by_one(probe: Probe) -> None:
     """Send the present angle of the only joint, and another one."""
+    angle = _angle(probe.device.table)
+    assert angle is not None, "the group selects editions with it"
     here = probe.device.require(request_of(angle, 1)).result
     for target, there in ((here, True), (here + FAR["degree"], False)):
-        reported = probe.device.is_set(request_of(probe.command, target, KINDS[ANGLES]))
-        call = f"{probe.command.name}({target:.4g})"
-        _expect_flag(probe, call, reported, there)
+        query = request_of(probe.command, target, KINDS[ANGLES])
+        call = f"at rest, {probe.command.name}({target:.4g})"
+        probe.expect_flag(REACHED, query, there, call)
 
 
 def _reached(probe: Probe) -> None:
     """Send the present position, and others that differ in one part each."""
-    angle = _single_angle(probe.device.table, probe.command)
-    if angle is not None:
-        _reached_by_one(probe, angle)
+    if not any(field.many for field in probe.command.request[0].fields):
+        _reached_by_one(probe)
         return
     query = as_reached_query(probe.command)
     for kind, role in ((ANGLES, "joints"), (COORDS, "coordinates")):
@@ -145,26 +133,14 @@ def _reached(probe: Probe) -> None:
 def _expect(
     probe: Probe, query: ReachedQuery, kind: str, target: Sequence[float], there: bool
 ) -> None:
-    reported = probe.device.is_set(query.request(target, kind))
-    _expect_flag(probe, f"{probe.command.name}({_short(target)}, {kind})", reported, there)
+    call = f"at rest, {probe.command.name}({_short(target)}, {kind})"
+    probe.expect_flag(REACHED, query.request(target, kind), there, call)
 
 
-def _expect_flag(probe: Probe, call: str, reported: bool | None, there: bool) -> None:
-    expected = f"at rest, {call}: expected {flag_text(probe.command, there)}"
-    reason = f"{expected}; came {flag_text(probe.command, reported)}"
-    probe.expect(REACHED, reported is there, reason)
-
-
-def is_limit(table: Table, command: Command) -> bool:
+def _reports_limits(table: Table, command: Command) -> bool:
     """Return whether a query reports one limit, in degrees, of each joint."""
-    stated = table.robot.joint_limits
-    if command.safety != "query" or len(command.request[0].fields) != 1 or not stated:
-        return False
-    part = command.request[0].fields[0].cases[0].numbers[0]
-    reported = [field for v in command.reply[:1] for field in v.fields if not field.echo]
-    is_set = any(c.read_by is not None and c.read_by.query == command.name for c in table.commands)
-    angle = [field.cases[0].numbers[0].unit for field in reported] == ["degree"]
-    return is_set and angle and not reported[0].many and part.maximum >= len(stated)
+    limits = LIMIT_STATES & set(reported(command)) if table.robot.joint_limits else ()
+    return bool(limits) and bool(command.request[0].fields)
 
 
 def _limits(probe: Probe) -> None:
@@ -172,7 +148,7 @@ def _limits(probe: Probe) -> None:
     stated = probe.device.table.robot.joint_limits
     parts = range(1, len(stated) + 1)
     found = [probe.device.require(request_of(probe.command, part)).result for part in parts]
-    side = 0 if sum(found) < 0 else 1
+    side = 0 if "lowest" in reported(probe.command) else 1
     ratios = [value / limits[side] for value, limits in zip(found, stated) if limits[side]]
     wrong = [f for f in FACTORS if ratios and all(0.9 * f <= r <= 1.1 * f for r in ratios)]
     right = ", ".join(f"{limits[side]:g}" for limits in stated)
@@ -205,7 +181,7 @@ JOINT_LIMITS = Group(
     "joint limits",
     (LIMITS,),
     _limits,
-    is_limit,
+    _reports_limits,
     sends="The query for each joint.",
     subject="each query of the joints' limits, if the edition states them",
 )

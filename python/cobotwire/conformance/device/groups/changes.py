@@ -76,12 +76,10 @@ def _judge_reply(probe: Probe, response: Response, call: str) -> None:
 
 
 def _judge_acknowledgement(probe: Probe, response: Response, call: str) -> None:
-    name, device = response.request.command.name, probe.device
-    device.changes[name] += 1
-    if device.changes[name] <= AWAITED:
+    device = probe.device
+    if device.note_change(response) <= AWAITED:
         # A second one may come a little later.
         device.requester.listen(response, device.timing.silence)
-    device.acknowledged.setdefault(name, response)
     at_most_one = len(response.replies) <= 1 and not response.unexpected
     done = all(
         reply.message is not None and all(v == DONE for v in reply.message.fields.values())
@@ -96,7 +94,7 @@ def _all_acknowledged(probe: Probe) -> None:
     if not any(command.ack for command in probe.device.table.commands):
         probe.drop(ALIKE)
     probe.device.requester.await_acknowledgements()
-    acknowledged = probe.device.acknowledged
+    acknowledged = probe.device.noticed.acknowledged
     silent = [name for name, response in acknowledged.items() if not response.replies]
     if len(acknowledged) < 2:
         raise NotSupported("fewer than two changes were sent")

@@ -6,11 +6,10 @@ from typing import Any
 
 from cobotwire.conformance.device.device import NotSupported
 from cobotwire.conformance.device.probe import Probe
-from cobotwire.conformance.device.read_back import settings_of
+from cobotwire.conformance.device.read_back import read_spot, settings_of
 from cobotwire.conformance.device.requests import harmless
 from cobotwire.conformance.statement import Acknowledgements
 from cobotwire.conformance.suite import Group, TestCase
-from cobotwire.protocol.errors import UsageError
 from cobotwire.protocol.messages import Request
 from cobotwire.protocol.table import Command, Table
 
@@ -58,15 +57,9 @@ def _present(probe: Probe) -> Request[Any]:
     """
     for setting in settings_of(probe.device.table, probe.command):
         for query in setting.queries:
-            reply = probe.device.read(query)
-            if reply is None:
-                continue
-            try:
-                request = setting.again(query, reply)
-                probe.device.requester.prepare(request)
-            except UsageError:
-                continue
-            return request
+            spot = read_spot(probe.device, setting, query)
+            if spot is not None and not spot.obstacle:
+                return spot.old
     raise NotSupported("no value is known that would change nothing")
 
 
@@ -83,7 +76,7 @@ def _facts(probe: Probe) -> None:
     declared = statement.acknowledgements
     if declared is Acknowledgements.UNKNOWN:
         probe.drop(ACKNOWLEDGEMENTS)
-    for name, response in device.acknowledged.items():
+    for name, response in device.noticed.acknowledged.items():
         came = bool(response.replies)
         right = came is (declared is Acknowledgements.ALL)
         was = "was acknowledged" if came else "was not acknowledged"

@@ -16,29 +16,32 @@ from cobotwire.conformance.device.groups.motion import (
     is_replayed,
 )
 from cobotwire.conformance.device.mover import Mover, Pose
-from cobotwire.conformance.device.probe import Probe
+from cobotwire.conformance.device.probe import Probe, with_row
 from cobotwire.conformance.device.read_back import Setting, settings_of
-from cobotwire.conformance.device.requests import as_row, request_of
+from cobotwire.conformance.device.requests import as_row
+from cobotwire.conformance.device.selection import does, reporter, reporters
 from cobotwire.conformance.suite import Group
+from cobotwire.protocol.effects import Cases, Moves
 from cobotwire.protocol.messages import Request
 from cobotwire.protocol.table import Command, Table
 
 # Slow enough to be reported as moving, in percent of the fastest.
 SLOW = 20
-# The names of the gripper's states.
-OPEN, CLOSE = "OPEN", "CLOSE"
 
 
-def _has_own_moving(table: Table, command: Command) -> bool:
-    """Return whether a query of the command's family reports that what it moves is moving."""
-    return is_replayed(table, command) and _moving(table, command) is not None
+def _moving(table: Table, command: Command) -> Command | None:
+    """Return the query, besides that of the role, that reports whether what is moved moves."""
+    motion = does(Moves)(table, command)
+    if motion is None or not is_replayed(table, command):
+        return None
+    found = reporters(table, "gripper_moving" if motion.part == "gripper" else "moving")
+    return next((each.query for each in found if each.query.role != "moving"), None)
 
 
-def _reports_moving(probe: Probe) -> None:
+def _reports_moving(probe: Probe, moving: Command) -> None:
     """Expect the query to report motion on the way, and no motion at the target."""
-    mover, motion = Mover(probe), settings_of(probe.device.table, probe.command)[-1]
-    moving, position = _moving(probe.device.table, probe.command), motion.query.request_type()
-    assert moving is not None
+    mover, motion = Mover(probe.device), settings_of(probe.device.table, probe.command)[-1]
+    position = motion.query.request_type()
     reported, argument = motion.pairs[0]
     observed = []
 
@@ -60,75 +63,58 @@ def _ends(probe: Probe, motion: Setting, position: Request[Any], speed: int) -> 
     """Return requests for two values apart from each other, the one further away first."""
     old = probe.device.require(position)
     reported, argument = motion.pairs[0]
-    now = old.fields[reported]
-    between = motion.samples(position, old, speed)[:2]
-    return sorted(between, key=lambda sample: -_distance(sample.fields[argument], now))
+
+    def distance(sample: Request[Any]) -> float:
+        pairs = zip(as_row(sample.fields[argument]), as_row(old.fields[reported]))
+        return max(abs(float(one) - float(other)) for one, other in pairs)
+
+    return sorted(motion.samples(position, old, speed)[:2], key=distance, reverse=True)
 
 
-def _distance(value: Any, other: Any) -> float:
-    """Return how far two values are apart; of two rows, the numbers that are furthest apart."""
-    if isinstance(value, tuple):
-        return max(map(_distance, value, other))
-    return abs(float(value) - float(other))
+def opens(table: Table, command: Command) -> Cases | None:
+    """Return the cases of a command that open and close a gripper, if a query reports how wide."""
+    cases = does(Cases)(table, command)
+    shown = reporter(table, "opening") is not None
+    return cases if cases and shown and len(_openings(cases)) > 1 else None
 
 
-def _moving(table: Table, command: Command) -> Command | None:
-    """Return the query of the family that has the same field as the arm's own query."""
-    arm = table.find_role("moving")
-    names = [field.name for field in arm.reply[0].fields] if arm else []
-    for query in _queries(table, command):
-        if query is not arm and [field.name for field in query.reply[0].fields] == names:
-            return query
-    return None
+def _openings(cases: Cases) -> dict[float, tuple[int, Moves]]:
+    """Return the value of the selector and the motion for each opening, in percent."""
+    return {
+        case.to: (raw, case)
+        for raw, case in cases.cases.items()
+        if isinstance(case, Moves) and case.part == "gripper" and isinstance(case.to, int | float)
+    }
 
 
-def opens(table: Table, command: Command) -> bool:
-    """Return whether a command opens what a query of its family reports in percent."""
-    labels = command.request[0].fields[0].labels if command.request[0].fields else ()
-    return {OPEN, CLOSE} <= set(labels) and _opening(table, command) is not None
-
-
-def _open_and_close(probe: Probe) -> None:
+def _open_and_close(probe: Probe, cases: Cases) -> None:
     """Expect open to be wider than closed."""
-    mover, query = Mover(probe), _opening(probe.device.table, probe.command)
-    assert query is not None
-    position = query.request_type()
-    state = probe.command.request[-1].fields[0]
-    wide = {}
-    for label in (OPEN, CLOSE, OPEN, CLOSE):
-        choice = state.choices[state.labels.index(label)]
-        request_change(probe, request_of(probe.command, choice, mover.speed))
+    mover, opening = Mover(probe.device), reporter(probe.device.table, "opening")
+    assert opening is not None, "the group selects editions with it"
+    position, wide, openings = opening.query.request_type(), dict[str, Any](), _openings(cases)
+    for label, wanted in 2 * (("open", max(openings)), ("closed", min(openings))):
+        raw, motion = openings[wanted]
+        speed = {motion.speed: mover.speed} if motion.speed else {}
+        fields = {cases.selector: raw, **speed}
+        request_change(probe, probe.command.request_type.from_fields(fields))
         mover.settle(lambda: probe.device.read(position))
         wide[label] = probe.device.require(position).result
-    wider = wide[OPEN] > wide[CLOSE]
+    wider = wide["open"] > wide["closed"]
     probe.expect(ARRIVES, wider, f"{probe.command.name}: expected open to be wider; came {wide}")
-
-
-def _opening(table: Table, command: Command) -> Command | None:
-    for query in _queries(table, command):
-        if query.reply[0].fields[0].cases[0].numbers[0].unit == "percent":
-            return query
-    return None
-
-
-def _queries(table: Table, command: Command) -> list[Command]:
-    """Return the queries of a command's family that have a framed reply."""
-    family = [query for query in table.commands if query.family == command.family]
-    return [query for query in family if query.safety == "query" and query.reply]
 
 
 GRIPPER_MOVES = Group(
     "gripper moves",
     (MOVING,),
-    _reports_moving,
-    _has_own_moving,
+    with_row(_moving, _reports_moving),
+    _moving,
     sends="Two positions of the gripper; whether it moves is read on the way and at the end.",
     subject="each motion of a gripper that a query reports as moving",
 )
 GRIPPER_OPENS = Group(
     "gripper opens",
     (ARRIVES, *AFTER_CHANGE),
-    _open_and_close,
+    with_row(opens, _open_and_close),
     opens,
     sends="Open and close, twice; the opening is read after each.",
     subject="each command that opens and closes a gripper",

@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import partial
+from typing import Any
 
 from cobotwire.conformance.device.device import NotSupported
 from cobotwire.conformance.device.groups.changes import AFTER_CHANGE, request_change
 from cobotwire.conformance.device.groups.motion import ARRIVES, STOPS, UNDER_WAY, resume
 from cobotwire.conformance.device.mover import POLL, POSES, Mover
-from cobotwire.conformance.device.probe import Probe
-from cobotwire.conformance.device.requests import request_of
+from cobotwire.conformance.device.probe import Probe, with_row
+from cobotwire.conformance.device.selection import does, first
 from cobotwire.conformance.suite import Group
-from cobotwire.protocol.errors import UsageError
-from cobotwire.protocol.table import Command, Field, Number, Table
+from cobotwire.protocol.effects import Does, Moves
+from cobotwire.protocol.messages import Request
 
 # A step by unit: far more than a tick, but still near.
 DISTANCES = {"degree": 4.0, "millimetre": 8.0}
@@ -23,271 +25,212 @@ SLOW = 20
 # A jog is stopped when it has moved something by this multiple of its value in STRAYS.
 SHOWS = 3.0
 
-
-def _shape(command: Command) -> tuple[Field, Field] | None:
-    """Return the fields of a motion for its part and its distance or direction; else None."""
-    if command.safety != "motion" or command.role or command.read_by or command.requires_reply:
-        return None
-    fields = command.request[0].fields
-    if len(fields) != 3 or any(field.many for field in fields):
-        return None
-    part, travel, speed = fields
-    if part.cases[0].numbers[0].real:
-        return None
-    return (part, travel) if speed.cases[0].numbers[0].unit == "percent" else None
+STEPPING, JOGGING = does(Moves, by=True), does(Moves, until="limit")
+TO_COORDINATE = does(Moves, part="end", about=True, to=True)
+HALTS = does(Does, what="halt", at=False)
 
 
-def _is_step(table: Table, command: Command) -> bool:
-    """Return whether a command moves one part by a distance."""
-    shape = _shape(command)
-    return shape is not None and shape[1].cases[0].numbers[0].real
+class _Parts:
+    """The joints or axes that a command moves one by one, and the query that reports them.
+
+    ``places`` has the index of each part's number in the query's row, by the argument that names
+    the part; None: the end turns in place, so no number is its own.
+    """
+
+    def __init__(self, probe: Probe, motion: Moves) -> None:
+        query = probe.device.command("coordinates" if motion.about else "joints")
+        if query is None:
+            raise NotSupported("no query reports where the arm is")
+        self.probe, self.motion, self.mover = probe, motion, Mover(probe.device)
+        self.query, self.numbers = query.request_type(), query.reply[0].fields[0].cases[0].numbers
+        fields = {field.name: field for field in probe.command.request[0].fields}
+        self.part, self.way = fields[motion.about or motion.at[0]], fields.get(motion.direction)
+        if motion.about:
+            names = [] if motion.keeps else [number.name for number in self.numbers]
+            labels = [label.lower() for label in self.part.labels]
+            found = [names.index(label) if label in names else None for label in labels]
+            self.places = dict(zip(self.part.choices, found))
+        else:
+            # A waist has other joints, which the query does not report.
+            joint = self.part.cases[0].numbers[0]
+            every = self.part.choices or range(joint.minimum, joint.maximum + 1)
+            self.places = {at: at - 1 for at in every if at <= probe.device.table.joints}
+
+    def where(self) -> Sequence[float]:
+        """Return the position of the joints, or of the end."""
+        return tuple(self.probe.device.require(self.query).result)
+
+    def apart(self, one: Sequence[float], other: Sequence[float], often: float = 1.0) -> list[int]:
+        """Return where two positions differ by more than may stray, or a multiple of it."""
+        every = enumerate(zip(one, other, self.numbers))
+        return [at for at, (a, b, n) in every if abs(a - b) > often * STRAYS[n.unit]]
+
+    def request(self, part: int, speed: int, **others: float) -> Request[Any]:
+        """Return the request that moves a part."""
+        speeds = {self.motion.speed: speed} if self.motion.speed else {}
+        fields = {self.part.name: part, **speeds, **others}
+        return self.probe.command.request_type.from_fields(fields)
+
+    def call(self, part: int) -> str:
+        """Return the call for a part, for people."""
+        return f"{self.probe.command.name}({self.part.name}={part}"
+
+    def expect_motion(self, moved: bool, detail: str = "") -> None:
+        """Expect that anything has moved."""
+        reason = f"{self.probe.command.name}: the arm moved from none of {len(POSES)} poses"
+        self.probe.expect(ARRIVES, moved, reason + detail)
 
 
-def _is_jog(table: Table, command: Command) -> bool:
-    """Return whether a command moves one part in one of two directions."""
-    shape = _shape(command)
-    return shape is not None and len(shape[1].choices) == 2
-
-
-def _moves_one_axis(table: Table, command: Command) -> bool:
-    """Return whether a command moves the arm's end to a coordinate of one axis."""
-    return command.role == "coordinate target"
-
-
-def _to_coordinates(probe: Probe) -> None:
-    """Move the end a short distance along or about each axis; the other coordinates stay."""
-    _nearby(probe, probe.command.request[0].fields[0], absolute=True)
-
-
-def _step(probe: Probe) -> None:
-    """Move each part by a step, up and down."""
-    _nearby(probe, _parts(probe)[0], absolute=False)
-
-
-def _nearby(probe: Probe, part: Field, *, absolute: bool) -> None:
+def _nearby(probe: Probe, motion: Moves) -> None:
     """Move each part a short distance up and down.
 
     An arm may reject what it cannot reach: a direction in which it moves from none of the poses
     counts as out of reach. An arm that moves in no direction fails.
     """
-    mover = Mover(probe)
+    parts = _Parts(probe, motion)
     stays = [
-        _stays(probe, mover, part, chosen, sign, absolute=absolute)
-        for chosen in _choices(probe, part)
+        _stays(parts, part, at, sign)
+        for part, at in parts.places.items()
+        if at is not None
         for sign in (1, -1)
     ]
-    reason = f"{probe.command.name}: the arm moved from none of {len(POSES)} poses"
-    reason += f"; {next(filter(None, stays), '')}"
-    probe.expect(ARRIVES, None in stays, reason)
+    parts.expect_motion(None in stays, f"; {next(filter(None, stays), '')}")
 
 
-def _stays(
-    probe: Probe, mover: Mover, part: Field, chosen: int, sign: int, *, absolute: bool
-) -> str | None:
+def _stays(parts: _Parts, part: int, at: int, sign: int) -> str | None:
     """Move a part one way, from pose to pose, until it moves.
 
     Return what was sent and what came of it if it never moves; None: it moves.
     """
-    stayed = ""
-    for which in mover.poses:
-        mover.go_near(which)
-        before, numbers = _where(probe, part)
-        at = _place(part, chosen, numbers)
-        distance = sign * DISTANCES[numbers[at].unit]
+    probe, motion, numbers, stayed = parts.probe, parts.motion, parts.numbers, ""
+    distance = sign * DISTANCES[numbers[at].unit]
+    call = f"{parts.call(part)}), {distance} {numbers[at].units} from there"
+    for which in parts.mover.poses:
+        parts.mover.go_near(which)
+        before = parts.where()
         target = round(before[at] + distance, 2)
-        try:
-            way = target if absolute else distance
-            request_change(probe, request_of(probe.command, chosen, way, mover.speed))
-        except UsageError:
+        way = {motion.by: distance} if motion.by else {str(motion.to): target}
+        request = parts.request(part, parts.mover.speed, **way)
+        if probe.device.cannot_send(request):
             # The edition does not allow it there; another pose is nearer to the middle.
             continue
-        mover.wait()
-        after, _ = _where(probe, part)
-        call = f"{probe.command.name}({part.name}={chosen}), {distance} {numbers[at].units}"
-        stayed = stayed or f"{call} from there: it moved by {after[at] - before[at]:.2f}"
-        if _off(numbers, before, after):
-            mover.prefer(which)
-            wrong = _off(numbers, [*before[:at], target, *before[at + 1 :]], after)
-            probe.expect(ARRIVES, not wrong, f"{call} from there: {'; '.join(wrong)}")
+        request_change(probe, request)
+        parts.mover.wait()
+        after = parts.where()
+        if parts.apart(before, after):
+            probe.device.note_motion(which)
+            right = [*before[:at], target, *before[at + 1 :]]
+            wrong = "; ".join(
+                f"{numbers[i].name}: expected {right[i]:.2f}, is {after[i]:.2f} {numbers[i].units}"
+                for i in parts.apart(right, after)
+            )
+            probe.expect(ARRIVES, not wrong, f"{call}: {wrong}")
             return None
+        stayed = stayed or f"{call}: it moved by {after[at] - before[at]:.2f}"
     return stayed
 
 
-def _jogs(probe: Probe) -> None:
+def _jogs(probe: Probe, motion: Moves) -> None:
     """Jog each part both ways and stop; as with steps, some may be out of reach."""
-    mover, (part, way) = Mover(probe), _parts(probe)
-    went = False
-    for chosen in _choices(probe, part):
-        moved = [_jog(probe, mover, part, chosen, direction) for direction in way.choices]
-        went = went or any(moved)
-        if all(moved) and not part.labels:
+    parts, went = _Parts(probe, motion), False
+    for part, at in parts.places.items():
+        ways = parts.way.choices if parts.way else ()
+        one, other = (_jog(parts, part, at, way) for way in ways)
+        went = went or bool(one or other)
+        if one and other and at is not None and not motion.about:
             # Of a joint, the edition does not state the direction.
-            one, other = (by[chosen - 1] for by in moved if by is not None)
             reason = (
-                f"{probe.command.name}({part.name}={chosen}): expected the directions "
-                f"{way.choices[0]} and {way.choices[1]} to be opposite; it moved by {one:.2f} and "
-                f"by {other:.2f} degrees"
+                f"{parts.call(part)}): expected the directions {ways[0]} and {ways[1]} to be "
+                f"opposite; it moved by {one[at]:.2f} and by {other[at]:.2f} degrees"
             )
-            probe.expect(ARRIVES, one * other < 0, reason)
-    reason = f"{probe.command.name}: the arm moved from none of {len(POSES)} poses"
-    probe.expect(ARRIVES, went, reason)
+            probe.expect(ARRIVES, one[at] * other[at] < 0, reason)
+    parts.expect_motion(went)
 
 
-def _jog(
-    probe: Probe, mover: Mover, part: Field, chosen: int, direction: int
-) -> list[float] | None:
+def _jog(parts: _Parts, part: int, at: int | None, direction: int) -> list[float]:
     """Jog a part in a direction, from pose to pose, until it moves.
 
-    Return by how much each joint or axis has moved, in units of what may stray; None: nothing has.
+    Return by how much each joint or axis has moved; empty: nothing has.
     """
+    probe, mover, device = parts.probe, parts.mover, parts.probe.device
     for which in mover.poses:
         mover.go_near(which)
-        before, numbers = _where(probe, part)
-        speed = min(SLOW, mover.speed)
-        request_change(probe, request_of(probe.command, chosen, direction, speed))
-        began = probe.device.connection.now
-        _under_way(probe, mover, part, before)
-        after = _stopped(probe, mover, part, probe.device.connection.now - began)
-        moved = [now - then for now, then in zip(after, before)]
-        if any(abs(by) > STRAYS[number.unit] for by, number in zip(moved, numbers)):
-            mover.prefer(which)
-            way = _parts(probe)[1]
-            wrong = _not_so(part, chosen, way, direction, numbers, moved)
-            call = f"{probe.command.name}({part.name}={chosen}, {direction})"
-            reason = f"{call}: expected {wrong}; it moved by {_short(moved)}"
-            probe.expect(ARRIVES, not wrong, reason)
+        before, began = parts.where(), device.connection.now
+        way = {parts.motion.direction: direction}
+        request_change(probe, parts.request(part, min(SLOW, mover.speed), **way))
+        # What shows clearly, but not for long: it may be out of reach.
+        clear = partial(parts.apart, before, often=SHOWS)
+        device.poll(parts.where, clear, 4 * UNDER_WAY, POLL)
+        after = _stopped(parts, device.connection.now - began)
+        if parts.apart(before, after):
+            device.note_motion(which)
+            moved = [now - then for now, then in zip(after, before)]
+            wrong = _not_so(parts, at, direction, moved)
+            reason = f"{parts.call(part)}, {direction}): expected {wrong}; it moved by "
+            probe.expect(ARRIVES, not wrong, reason + ", ".join(f"{by:.2f}" for by in moved))
             return moved
-    return None
+    return []
 
 
-def _under_way(probe: Probe, mover: Mover, part: Field, before: Sequence[float]) -> None:
-    """Wait until a jog shows clearly, but not for long: it may be out of reach."""
-    until = probe.device.connection.now + 4 * UNDER_WAY
-    while probe.device.connection.now < until:
-        mover.rest(POLL)
-        now, numbers = _where(probe, part)
-        if any(abs(a - b) > SHOWS * STRAYS[n.unit] for a, b, n in zip(now, before, numbers)):
-            return
-
-
-def _stopped(probe: Probe, mover: Mover, part: Field, seconds: float) -> Sequence[float]:
+def _stopped(parts: _Parts, seconds: float) -> Sequence[float]:
     """Stop, and return where the arm is then; expect that it stays there.
 
     In ``seconds`` it would move on by more than what is allowed to stray.
     """
-    bare = (
-        c for c in probe.device.table.commands if c.safety == "motion" and not c.request[0].fields
-    )
-    ending = next((c for c in bare if c.family == probe.command.family), None)
-    if ending is None:
-        _halt(probe)
-    else:
-        probe.device.request(ending.request_type())
+    probe, mover = parts.probe, parts.mover
+    ending, stop = first(probe.device.table, HALTS), probe.device.command("stop")
+    stops = [each.request_type() for each in (ending or stop, stop) if each is not None]
+    for each in stops[:1]:
+        probe.device.request(each)
     mover.rest(2 * UNDER_WAY)
-    stopped, numbers = _where(probe, part)
+    stopped = parts.where()
     mover.rest(max(seconds, UNDER_WAY))
-    later, _ = _where(probe, part)
-    moved = any(abs(a - b) > STRAYS[n.unit] for a, b, n in zip(stopped, later, numbers))
-    _halt(probe)
+    later = parts.where()
+    for each in stops[-1:]:
+        probe.device.request(each)
     resume(probe)
-    probe.expect(STOPS, not moved, f"after a stop: at {stopped}, then at {later}")
+    reason = f"after a stop: at {stopped}, then at {later}"
+    probe.expect(STOPS, not parts.apart(stopped, later), reason)
     return stopped
 
 
-def _halt(probe: Probe) -> None:
-    stop = probe.device.command("stop")
-    if stop is not None:
-        probe.device.request(stop.request_type())
-
-
-def _not_so(
-    part: Field,
-    chosen: int,
-    way: Field,
-    direction: int,
-    numbers: tuple[Number, ...],
-    moved: Sequence[float],
-) -> str:
+def _not_so(parts: _Parts, at: int | None, direction: int, moved: Sequence[float]) -> str:
     """Describe the motion that was expected; empty if it happened."""
-    far = [abs(by) > STRAYS[number.unit] for by, number in zip(moved, numbers)]
-    label = part.labels[part.choices.index(chosen)].lower() if part.labels else ""
-    if label and label not in [number.name for number in numbers]:
-        turns = [number.unit == "degree" for number in numbers]
-        right = any(far) and not any(f for f, turn in zip(far, turns) if not turn)
-        return "" if right else "the end to turn in place"
-    at = _place(part, chosen, numbers)
-    if not far[at] or any(far[:at]) or any(far[at + 1 :]):
+    far, numbers = parts.apart(moved, [0.0] * len(moved)), parts.numbers
+    if at is None:
+        turns = all(numbers[each].unit == "degree" for each in far)
+        return "" if turns else "the end to turn in place"
+    if far != [at]:
         return f"only {numbers[at].name} to move"
     # Jogging forward increases a coordinate; for a joint the edition defines only "clockwise".
-    forward = "FORWARD" in way.labels and way.choices[way.labels.index("FORWARD")] == direction
-    if "FORWARD" in way.labels and (moved[at] > 0) is not forward:
+    ways = dict(zip(parts.way.labels, parts.way.choices)) if parts.way else {}
+    forward = ways.get("FORWARD") == direction
+    if "FORWARD" in ways and (moved[at] > 0) is not forward:
         return f"{numbers[at].name} to {'grow' if forward else 'fall'}"
     return ""
-
-
-def _short(moved: Sequence[float]) -> str:
-    return ", ".join(f"{by:.2f}" for by in moved)
-
-
-def _off(numbers: tuple[Number, ...], wanted: Sequence[float], came: Sequence[float]) -> list[str]:
-    return [
-        f"{number.name}: expected {want:.2f}, is {have:.2f} {number.units}"
-        for number, want, have in zip(numbers, wanted, came)
-        if abs(want - have) > STRAYS[number.unit]
-    ]
-
-
-def _parts(probe: Probe) -> tuple[Field, Field]:
-    shape = _shape(probe.command)
-    assert shape is not None
-    return shape
-
-
-def _choices(probe: Probe, part: Field) -> Sequence[int]:
-    """Return the axes, or the joints whose angles are reported: a waist has others."""
-    number = part.cases[0].numbers[0]
-    every = part.choices or range(number.minimum, number.maximum + 1)
-    return every if part.labels else [each for each in every if each <= probe.device.table.joints]
-
-
-def _where(probe: Probe, part: Field) -> tuple[Sequence[float], tuple[Number, ...]]:
-    """Return the position of the joints or of the end, whichever has the part; and its numbers."""
-    query = probe.device.command("coordinates" if part.labels else "joints")
-    reply = None if query is None else probe.device.read(query.request_type())
-    if query is None or reply is None:
-        raise NotSupported("no query reports where the arm is")
-    return tuple(reply.result), query.reply[0].fields[0].cases[0].numbers
-
-
-def _place(part: Field, chosen: int, numbers: tuple[Number, ...]) -> int:
-    """Return which of the numbers a part is: by its label, or counted from one."""
-    names = [number.name for number in numbers]
-    labels = [label.lower() for label in part.labels]
-    label = labels[part.choices.index(chosen)] if labels else ""
-    return names.index(label) if label in names else chosen - 1
 
 
 COORDINATES = Group(
     "single coordinates",
     (ARRIVES, *AFTER_CHANGE),
-    _to_coordinates,
-    _moves_one_axis,
+    with_row(TO_COORDINATE, _nearby),
+    TO_COORDINATE,
     sends="A target a short distance up and down along or about each axis.",
     subject="the command that moves the end to one coordinate",
 )
 STEPS = Group(
     "steps",
     (ARRIVES, *AFTER_CHANGE),
-    _step,
-    _is_step,
+    with_row(STEPPING, _nearby),
+    STEPPING,
     sends="A step up and down for each joint or axis.",
     subject="each motion by a distance",
 )
 JOGS = Group(
     "jogs",
     (ARRIVES, STOPS, *AFTER_CHANGE),
-    _jogs,
-    _is_jog,
+    with_row(JOGGING, _jogs),
+    JOGGING,
     sends="A short jog in both directions for each joint or axis, and a stop.",
     subject="each motion in a direction",
 )

@@ -125,7 +125,7 @@ def _crowded(probe: Probe) -> None:
     Noise comes last: a device that is confused by it may have lost what comes next.
     """
     device, request = probe.device, _sample(probe)
-    if not device.reply_seconds.get(probe.command.name) and not _is_replied_to(probe):
+    if not device.noticed.reply_seconds.get(probe.command.name) and not _is_replied_to(probe):
         raise NotSupported("it has no reply when it is sent alone either")
     _in_pieces(probe, request)
     _together(probe, request)

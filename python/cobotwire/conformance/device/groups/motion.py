@@ -3,21 +3,30 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from typing import Any, NamedTuple
 
 from cobotwire.conformance.device.groups.changes import AFTER_CHANGE, request_change
-from cobotwire.conformance.device.mover import POLL, Mover, Pose, off_by
-from cobotwire.conformance.device.probe import Probe
-from cobotwire.conformance.device.read_back import Setting, settings_of
+from cobotwire.conformance.device.mover import Mover, Pose, off_by
+from cobotwire.conformance.device.probe import Probe, with_row
+from cobotwire.conformance.device.read_back import (
+    Setting,
+    Spot,
+    restorable_spot,
+    settings_of,
+)
 from cobotwire.conformance.device.requests import flag_text, request_of
-from cobotwire.conformance.suite import Group, Selects, TestCase
+from cobotwire.conformance.device.selection import does, first, has_role, stored
+from cobotwire.conformance.suite import Group, TestCase
+from cobotwire.protocol.effects import Does
 from cobotwire.protocol.messages import Reply, Request
 from cobotwire.protocol.roles import ANGLES, reached_query
-from cobotwire.protocol.table import Command, Role, Table
+from cobotwire.protocol.table import Command, Table
 
 ARRIVES = TestCase("arrives", "The arm goes where it was sent, and its other joints stay.")
 REACHED = TestCase("reached", "The arm reports that it is where it was sent, and nowhere else.")
 MOVING = TestCase("moving", "The arm reports that it moves while it does, and not at rest.")
+KEEPS = TestCase("limits-kept", "No joint moves beyond the limit that is set for it.")
 STOPS = TestCase("stops", "A stop ends the motion, and the arm stays at rest.")
 
 # The tolerance between sent and read values, by unit: one tick, and the end's motion within it.
@@ -27,15 +36,16 @@ UNDER_WAY = 0.1
 ARRIVED = "The arm had arrived before it could be observed on the way."
 # How often, and for how long, it is observed whether the arm reports that it moves, in seconds.
 LOOK, OBSERVED = 0.01, 2.0
-
-
-def _has(role: Role) -> Selects:
-    return lambda table, command: command.role == role
+# Where the limit and the target are, as shares of the joint's range in the workspace; and how far
+# beyond the limit a joint may come to rest, in degrees.
+LIMIT, TARGET, BEYOND = 0.04, 0.10, 1.0
+# The pose from which the joints move.
+POSE = 2
 
 
 def _to_poses(probe: Probe) -> None:
     """Move all joints at once, from pose to pose."""
-    mover, moving = Mover(probe), probe.device.command("moving")
+    mover, moving = Mover(probe.device), probe.device.command("moving")
     observed = []
     for which in (0, 1):
         pose, other = mover.pose(which), mover.pose(1 - which)
@@ -55,7 +65,7 @@ def _to_poses(probe: Probe) -> None:
 
 def _to_angles(probe: Probe) -> None:
     """Move one joint after the other; the rest stay."""
-    mover = Mover(probe)
+    mover = Mover(probe.device)
     expected, target = mover.pose(0), mover.pose(1)
     mover.go(expected)
     for at, angle in enumerate(target):
@@ -75,7 +85,7 @@ def is_replayed(table: Table, command: Command) -> bool:
 
 def _replays(probe: Probe) -> None:
     """Send what was read at another pose: the arm returns there, and reads the same."""
-    mover = Mover(probe)
+    mover = Mover(probe.device)
     motions = settings_of(probe.device.table, probe.command)
     # Everything is read at each pose once: going there takes the most time.
     queries = dict.fromkeys(query for motion in motions for query in motion.queries)
@@ -111,38 +121,11 @@ def _replay(
     probe.expect(ARRIVES, not wrong, f"{probe.command.name}: {'; '.join(wrong)}")
 
 
-def _stops(probe: Probe) -> None:
-    """Stop on the way: the arm is short of its target, and stays there."""
-    mover, moving = Mover(probe), probe.device.command("moving")
-    start, target = mover.pose(0), mover.pose(1)
-    mover.go(start)
-    probe.device.request(mover.to(target, 1))
-    motion = Motion(mover.angles, start, target, mover.tolerance)
-    observed = expect_on_the_way(probe, moving, motion)
-    mover.rest(UNDER_WAY)
-    if not under_way(probe, mover, target, STOPS):
-        return
-    request_change(probe, probe.command.request_type())
-    # The arm slows down first.
-    mover.rest(POLL)
-    expect_rest(probe, moving)
-    if not observed:
-        probe.not_timed(MOVING, ARRIVED)
-    stopped = mover.angles()
-    mover.rest(4 * UNDER_WAY)
-    wrong = off_by(mover.angles(), stopped, mover.tolerance, "was at")
-    probe.expect(STOPS, not wrong, f"after {probe.command.name}: {'; '.join(wrong)}")
-    short = bool(off_by(stopped, target, mover.tolerance))
-    probe.expect(STOPS, short, f"{probe.command.name}: expected the arm to stop on its way")
-    resume(probe)
-
-
 def resume(probe: Probe) -> None:
     """Resume motion: after a stop, some firmware ignores motion requests until then."""
-    for query in probe.device.table.commands:
-        going = probe.device.setter(query, 0)
-        if going is not None and going.safety == "motion" and query.safety == "query":
-            probe.device.request(going.request_type())
+    going_on = first(probe.device.table, does(Does, what="resume"))
+    if going_on is not None:
+        probe.device.request(going_on.request_type())
 
 
 class Motion(NamedTuple):
@@ -188,9 +171,7 @@ def expect_on_the_way(probe: Probe, query: Command | None, motion: Motion) -> bo
 def expect_rest(probe: Probe, query: Command | None) -> None:
     """Expect a query, if the edition has it, to report no motion."""
     if query is not None:
-        reported = probe.device.is_set(query.request_type())
-        expected = f"{query.name}: expected {flag_text(query, False)} at rest"
-        probe.expect(MOVING, reported is False, f"{expected}; came {flag_text(query, reported)}")
+        probe.expect_flag(MOVING, query.request_type(), False, when=" at rest")
 
 
 def under_way(probe: Probe, mover: Mover, target: Pose, case: TestCase) -> bool:
@@ -204,17 +185,51 @@ def under_way(probe: Probe, mover: Mover, target: Pose, case: TestCase) -> bool:
 def _expect_reached(probe: Probe, pose: Pose, there: bool) -> None:
     query = reached_query(probe.device.table)
     if query is not None and ANGLES in query.kinds:
-        reported = probe.device.is_set(query.request(pose, ANGLES))
-        expected = f"{query.command.name}{pose}: expected {flag_text(query.command, there)}"
-        reason = f"{expected}; came {flag_text(query.command, reported)}"
-        probe.expect(REACHED, reported is there, reason)
+        call = f"{query.command.name}{pose}"
+        probe.expect_flag(REACHED, query.request(pose, ANGLES), there, call)
+
+
+def _limit(table: Table, command: Command) -> Setting | None:
+    """Return the setting of a limit of one joint, in degrees, that a query reads."""
+    limits, single = {"lowest", "highest"} & set(stored(command)), command.request[0].fields[1:]
+    return next(iter(settings_of(table, command)), None) if limits and single else None
+
+
+def _keeps(probe: Probe, setting: Setting) -> None:
+    """Set a limit near the joint, and send the joint beyond it."""
+    # The first and the last joint; a firmware that keeps these limits keeps the others.
+    for query in (setting.queries[0], setting.queries[-1]):
+        at = int(query.values[0]) - 1
+        if at < len(probe.device.permissions.workspace):
+            _beyond(probe, restorable_spot(probe.device, setting, query), at)
+
+
+def _beyond(probe: Probe, spot: Spot, at: int) -> None:
+    mover, device = Mover(probe.device), probe.device
+    mover.go(mover.pose(POSE))
+    here, (low, high) = mover.angles(), device.permissions.workspace[at]
+    way = (high - low) * (-1 if "lowest" in stored(probe.command) else 1)
+    limit, target = round(here[at] + LIMIT * way), here[at] + TARGET * way
+    [(_, argument)] = spot.setting.pairs
+    device.restore_after_body[probe.command.name] = partial(device.request, spot.old)
+    fields = {**spot.old.fields, argument: limit}
+    request_change(probe, probe.command.request_type.from_fields(fields))
+    device.request(mover.to((*here[:at], round(target, 2), *here[at + 1 :])))
+    mover.wait()
+    beyond = (mover.angles()[at] - limit) * (1 if way > 0 else -1)
+    reason = (
+        f"{probe.command.name}(joint {at + 1}) set the limit to {limit} degrees; sent to "
+        f"{target:.1f}, the joint went {beyond:.1f} degrees beyond the limit"
+    )
+    probe.expect(KEEPS, beyond <= BEYOND, reason)
+    device.request(spot.old)
 
 
 POSES = Group(
     "poses",
     (ARRIVES, REACHED, MOVING, *AFTER_CHANGE),
     _to_poses,
-    _has("joint targets"),
+    has_role("joint targets"),
     sends=(
         "Two poses inside the workspace, in turns; the arm's state on the way and at the end "
         "is read."
@@ -225,7 +240,7 @@ JOINTS = Group(
     "single joints",
     (ARRIVES, *AFTER_CHANGE),
     _to_angles,
-    _has("joint target"),
+    has_role("joint target"),
     sends="A target for one joint after the other.",
     subject="the command that moves one joint",
 )
@@ -239,11 +254,12 @@ REPLAYS = Group(
     ),
     subject="each motion with a target that a query reports",
 )
-STOPPING = Group(
-    "stops",
-    (STOPS, MOVING, *AFTER_CHANGE),
-    _stops,
-    _has("stop"),
-    sends="A slow motion, and the stop on its way.",
-    subject="the command that stops the arm",
+LIMITS_KEPT = Group(
+    "limits kept",
+    (KEEPS,),
+    with_row(_limit, _keeps),
+    _limit,
+    frozenset({"motion"}),
+    sends="A limit near the first and the last joint, and a motion beyond it; then the old limit.",
+    subject="each command that sets a limit of the joints which a query reads",
 )

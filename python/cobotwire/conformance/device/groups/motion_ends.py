@@ -12,6 +12,7 @@ from cobotwire.conformance.device.mover import Mover, Pose, off_by
 from cobotwire.conformance.device.probe import Probe
 from cobotwire.conformance.device.read_back import settings_of
 from cobotwire.conformance.device.requests import request_of
+from cobotwire.conformance.device.selection import stored
 from cobotwire.conformance.suite import Group, TestCase
 from cobotwire.protocol.table import Command, Table
 from cobotwire.session.events import EventReceived
@@ -45,7 +46,7 @@ def _is_reported(table: Table, command: Command) -> bool:
 
 def _ends(probe: Probe) -> None:
     """Move there and back, and stop on the way there."""
-    mover, stop = Mover(probe), probe.device.command("stop")
+    mover, stop = Mover(probe.device), probe.device.command("stop")
     _interpolate(probe)
     poses = mover.pose(0), mover.pose(1)
     mover.go(poses[0])
@@ -65,18 +66,18 @@ def _interpolate(probe: Probe) -> None:
     """
     device = probe.device
     for command in device.table.commands:
-        fields = command.request[0].fields if command.safety == "setting" else ()
-        names = [name for field in fields for name in field.labels if name in INTERPOLATED]
-        if not names:
+        if "fresh_mode" not in stored(command):
             continue
-        mode = request_of(command, fields[0].choices[fields[0].labels.index(names[0])])
+        field = command.request[0].fields[0]
+        [name] = [name for name in field.labels if name in INTERPOLATED]
+        mode = request_of(command, field.choices[field.labels.index(name)])
         # Where no query reports the mode, the one that the edition names first is the default.
-        old, needed = request_of(command, fields[0].choices[0]), {"setting", "irreversible"}
+        old, needed = request_of(command, field.choices[0]), {"setting", "irreversible"}
         for setting in settings_of(device.table, command):
             old = setting.again(setting.queries[0], device.require(setting.queries[0]))
             needed = {"setting"} if old != mode else set()
         if missing := device.permissions.missing(frozenset(needed)):
-            raise NotSupported(f"the mode may not be {names[0]}; to set it needs {missing}")
+            raise NotSupported(f"the mode may not be {name}; to set it needs {missing}")
         if needed:
             device.restore_after_body[command.name] = partial(device.request, old)
             device.request(mode)

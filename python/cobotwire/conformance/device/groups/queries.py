@@ -72,7 +72,7 @@ def _query(probe: Probe) -> None:
         probe.expect(ONCE, not noisy, reason)
     if first.valid is not None and again.valid is not None:
         expect_repetition(probe, probe.command, first.valid, again.valid)
-    if command.name in probe.device.retried:
+    if command.name in probe.device.noticed.retried:
         probe.note(REPLIED, "A reply came, but only when the query was repeated.")
 
 

@@ -5,16 +5,17 @@ Reading a point removes it. Nothing moves.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from functools import partial
-from typing import Any
+from typing import NamedTuple
 
 from cobotwire.conformance.device.device import NotSupported
 from cobotwire.conformance.device.groups.changes import AFTER_CHANGE, request_change
-from cobotwire.conformance.device.probe import Probe
-from cobotwire.conformance.device.requests import as_row, flag_text, request_of, revealing, units
+from cobotwire.conformance.device.probe import Probe, with_row
+from cobotwire.conformance.device.requests import as_row, request_of, revealing
+from cobotwire.conformance.device.selection import does, first
 from cobotwire.conformance.suite import Group, TestCase
-from cobotwire.protocol.table import Command, Field, Table
+from cobotwire.protocol.effects import Lists
+from cobotwire.protocol.table import Command, Table
 
 IN_ORDER = TestCase(
     "points-in-order",
@@ -27,121 +28,71 @@ ADDED, MOST_KEPT = 3, 50
 EXACT = 1e-6
 
 
-def _adds_points(table: Table, command: Command) -> bool:
-    """Return whether a command adds a row that another one reads and removes, and one counts."""
-    return (
-        command.safety == "setting"
-        and not command.requires_reply
-        and _row(command.request[0].fields) is not None
-        and _taker(table, command) is not None
-        and _counter(table, command) is not None
+class _List(NamedTuple):
+    """The commands of a list: what reads and removes the first point, and what reports on it."""
+
+    take: Command
+    counter: Command
+    empty: Command | None
+
+
+def _list(table: Table, command: Command) -> _List | None:
+    """Return the commands of the list to which a command appends."""
+    appends = does(Lists, append=True)(table, command)
+    state = "" if appends is None else appends.state
+    take, counter, empty = (
+        first(table, does(Lists, state=state, **wanted))
+        for wanted in ({"take": "first"}, {"report": "count"}, {"report": "empty"})
     )
+    return None if take is None or counter is None else _List(take, counter, empty)
 
 
-def _row(fields: Sequence[Field]) -> Field | None:
-    """Return the only field, if it is a row of numbers."""
-    return fields[0] if len(fields) == 1 and fields[0].many else None
-
-
-def _bare(table: Table, command: Command, safety: str) -> list[Command]:
-    """Return the commands of the same family that take no arguments and reply with one field."""
-    return [
-        other
-        for other in table.commands
-        if other.family == command.family
-        and other.safety == safety
-        and other.requires_reply
-        and not other.request[0].fields
-        and other.reply
-        and len(other.reply[0].fields) == 1
-    ]
-
-
-def _taker(table: Table, command: Command) -> Command | None:
-    """Return the command that reads and removes a row of the same units."""
-    added = _row(command.request[0].fields)
-    for other in _bare(table, command, "setting"):
-        taken = _row(other.reply[0].fields)
-        if added and taken and units(added.cases[0].numbers) == units(taken.cases[0].numbers):
-            return other
-    return None
-
-
-def _counter(table: Table, command: Command) -> Command | None:
-    """Return the query that counts the points."""
-    for query in _bare(table, command, "query"):
-        [field] = query.reply[0].fields
-        if not field.many and not field.choices and not field.cases[0].numbers[0].unit:
-            return query
-    return None
-
-
-def _in_order(probe: Probe) -> None:
+def _in_order(probe: Probe, points: _List) -> None:
     """Take the points that are there, add some, read them, and add the first ones again."""
-    table, command = probe.device.table, probe.command
-    taker, counter = _taker(table, command), _counter(table, command)
-    assert taker is not None, "the group selects editions with it"
-    assert counter is not None, "the group selects editions with it"
-    own = _take_all(probe, taker, counter)
-    probe.device.restore_after_body[command.name] = partial(_restore, probe, taker, counter, own)
-    points = _points(command, taker)
-    _expect_count(probe, counter, 0)
-    for count, point in enumerate(points, 1):
-        request_change(probe, request_of(command, point))
-        _expect_count(probe, counter, count)
-    for taken, point in enumerate(points, 1):
-        came = _take(probe, taker)
-        same = all(abs(one - other) <= EXACT for one, other in zip(point, came))
-        reason = f"{taker.name}: expected {point}, which was added as number {taken}; came {came}"
-        probe.expect(IN_ORDER, same, reason)
-        _expect_count(probe, counter, len(points) - taken)
-
-
-def _points(command: Command, taker: Command) -> list[tuple[float, ...]]:
-    added, taken = command.request[0].fields[0], taker.reply[0].fields[0]
-    pairs = list(zip(added.cases[0].numbers, taken.cases[0].numbers))
-    samples = revealing([pairs], [(0,) * len(pairs)])
-    return [sample[0] for sample in samples[:ADDED]]
-
-
-def _expect_count(probe: Probe, counter: Command, count: int) -> None:
-    """Expect the number of points, and what other queries report about them."""
-    came = probe.device.require(counter.request_type()).result
-    probe.expect(IN_ORDER, came == count, f"{counter.name}: expected {count}; came {came}")
-    for query in _bare(probe.device.table, probe.command, "query"):
-        if len(query.reply[0].fields[0].choices) == 2:
-            filled = probe.device.is_set(query.request_type())
-            expected = f"{query.name}: expected {flag_text(query, count > 0)}, with {count} points"
-            reason = f"{expected}; came {flag_text(query, filled)}"
-            probe.expect(IN_ORDER, filled is (count > 0), reason)
-
-
-def _take_all(probe: Probe, taker: Command, counter: Command) -> list[tuple[float, ...]]:
-    """Return the points that are there, which no longer are.
-
-    Raises:
-        NotSupported: there are too many to add them again.
-    """
-    count = probe.device.require(counter.request_type()).result
+    device, command, take = probe.device, probe.command, points.take
+    count = device.require(points.counter.request_type()).result
     if count > MOST_KEPT:
         raise NotSupported(f"{count} points are recorded, which would be lost")
-    return [_take(probe, taker) for _ in range(count)]
+    own = [_take(probe, take) for _ in range(count)]
+    device.restore_after_body[command.name] = partial(_restore, probe, points, own)
+    numbers = (f.cases[0].numbers for f in (command.request[0].fields[0], take.reply[0].fields[0]))
+    pairs = list(zip(*numbers))
+    added = [sample[0] for sample in revealing([pairs], [(0,) * len(pairs)])[:ADDED]]
+    _expect_count(probe, points, 0)
+    for number, point in enumerate(added, 1):
+        request_change(probe, request_of(command, point))
+        _expect_count(probe, points, number)
+    for number, point in enumerate(added, 1):
+        came = _take(probe, take)
+        same = all(abs(one - other) <= EXACT for one, other in zip(point, came))
+        reason = f"{take.name}: expected {point}, which was added as number {number}; came {came}"
+        probe.expect(IN_ORDER, same, reason)
+        _expect_count(probe, points, len(added) - number)
 
 
-def _take(probe: Probe, taker: Command) -> tuple[float, ...]:
-    response = probe.device.request(taker.request_type())
+def _expect_count(probe: Probe, points: _List, count: int) -> None:
+    """Expect the number of points, and the report whether there are any."""
+    came = probe.device.require(points.counter.request_type()).result
+    probe.expect(IN_ORDER, came == count, f"{points.counter.name}: expected {count}; came {came}")
+    if points.empty is not None:
+        filled, when = points.empty.request_type(), f", with {count} points"
+        probe.expect_flag(IN_ORDER, filled, count > 0, when=when)
+
+
+def _take(probe: Probe, take: Command) -> tuple[float, ...]:
+    response = probe.device.request(take.request_type())
     if response.valid is None or response.valid.message is None:
         for reply in response.replies:
-            reason = f"{taker.name}: expected legal values; {reply.error}"
+            reason = f"{take.name}: expected legal values; {reply.error}"
             probe.expect(IN_ORDER, reply.error is None, reason)
-        raise NotSupported(f"{taker.name} reports nothing")
+        raise NotSupported(f"{take.name} reports nothing")
     return as_row(response.valid.message.result)
 
 
-def _restore(probe: Probe, taker: Command, counter: Command, own: list[Any]) -> None:
-    left = probe.device.read(counter.request_type())
+def _restore(probe: Probe, points: _List, own: list[tuple[float, ...]]) -> None:
+    left = probe.device.read(points.counter.request_type())
     for _ in range(0 if left is None else min(left.result, ADDED)):
-        probe.device.request(taker.request_type())
+        probe.device.request(points.take.request_type())
     for point in own:
         probe.device.request(request_of(probe.command, point))
 
@@ -149,8 +100,8 @@ def _restore(probe: Probe, taker: Command, counter: Command, own: list[Any]) -> 
 RECORDED = Group(
     "recorded points",
     (IN_ORDER, *AFTER_CHANGE),
-    _in_order,
-    _adds_points,
+    with_row(_list, _in_order),
+    _list,
     sends="Points that differ in each part, one by one; the number of points; each point.",
     subject="the command that adds a point, if another one reads it and one counts them",
 )

@@ -6,16 +6,16 @@ Nothing moves: only what the arm reports changes.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Sequence
 from functools import partial
-from typing import Any
+from typing import NamedTuple
 
 from cobotwire.conformance.device.device import NotSupported
-from cobotwire.conformance.device.probe import Probe
-from cobotwire.conformance.device.read_back import settings_of
-from cobotwire.conformance.device.requests import request_of, units
+from cobotwire.conformance.device.probe import Probe, with_row
+from cobotwire.conformance.device.read_back import Setting, restorable_spot, settings_of
+from cobotwire.conformance.device.requests import request_of
+from cobotwire.conformance.device.selection import first, stored
 from cobotwire.conformance.suite import Group, TestCase
-from cobotwire.protocol.messages import Reply
 from cobotwire.protocol.table import Command, Table
 
 SHIFTS = TestCase(
@@ -26,75 +26,53 @@ SHIFTS = TestCase(
 Vector = tuple[float, float, float]
 # How far the reference is set from zero, and by how much the shift may be wrong, in millimetres.
 SHIFT, NEAR = 40.0, 2.0
-TOOL, WORLD = ("FLANGE", "TOOL"), ("BASE", "WORLD")
 AXES = "xyz"
+# What stores a reference, and the setting by which the coordinates show it: its second choice.
+CHOSEN_BY = {"tool": "end_type", "world": "reference_frame"}
 
 
-def _is_reference(table: Table, command: Command) -> bool:
-    """Return whether a setting takes coordinates, and another setting makes the arm use it."""
-    source, fields = table.find_role("coordinates"), command.request[0].fields
-    if source is None or command.safety != "setting" or len(fields) != 1:
-        return False
-    like = units(source.reply[0].fields[0].cases[0].numbers)
-    row = units(fields[0].cases[0].numbers)
-    return row == like and bool(settings_of(table, command)) and any(_choosers(table))
+class _Reference(NamedTuple):
+    """The setting of a reference, and the setting that chooses whether the arm uses it."""
+
+    own: Setting
+    chooser: Setting
 
 
-def _choosers(table: Table) -> Iterator[Command]:
-    """Yield the settings that choose between flange and tool, or base and world."""
-    for command in table.commands:
-        fields = command.request[0].fields if command.request else ()
-        chooses = len(fields) == 1 and fields[0].labels in (TOOL, WORLD)
-        if command.safety == "setting" and chooses and settings_of(table, command):
-            yield command
+def _reference(table: Table, command: Command) -> _Reference | None:
+    """Return the settings of the reference that a command stores."""
+    [chosen] = [CHOSEN_BY[state] for state in stored(command) if state in CHOSEN_BY] or [""]
+    chooser = first(table, lambda _, other: stored(other) == (chosen,))
+    settings = [settings_of(table, each)[:1] for each in (command, chooser) if each is not None]
+    found = [setting for one in settings for setting in one if setting.command.safety == "setting"]
+    known = table.find_role("coordinates") is not None
+    return _Reference(*found) if len(found) == 2 and known else None
 
 
-def _shifts(probe: Probe) -> None:
+def _shifts(probe: Probe, reference: _Reference) -> None:
     """Set the reference along each axis, and compare the coordinates with and without it."""
-    table = probe.device.table
-    _keep(probe, probe.command)
-    choosers = list(_choosers(table))
-    for chooser in choosers:
-        _keep(probe, chooser)
-        probe.device.request(request_of(chooser, chooser.request[0].fields[0].choices[0]))
-    for chooser in choosers:
-        field = chooser.request[0].fields[0]
-        shifts = [_shift(probe, chooser, axis) for axis in range(3)]
-        probe.device.request(request_of(chooser, field.choices[0]))
-        if any(math.hypot(*shift) > NEAR for shift in shifts):
-            _judge(probe, shifts, field.labels == TOOL)
-            return
-    raise NotSupported("no setting makes the coordinates show the reference")
+    device, chooser = probe.device, reference.chooser
+    for setting in reference:
+        old = restorable_spot(device, setting, setting.queries[0]).old
+        device.restore_after_body[setting.command.name] = partial(device.request, old)
+    choices = chooser.variant.fields[0].choices
+    shifts = [_shift(probe, chooser.command, choices, axis) for axis in range(3)]
+    device.request(request_of(chooser.command, choices[0]))
+    if all(math.hypot(*shift) <= NEAR for shift in shifts):
+        raise NotSupported("no setting makes the coordinates show the reference")
+    _judge(probe, shifts, "tool" in stored(probe.command))
 
 
-def _keep(probe: Probe, command: Command) -> None:
-    """Plan to restore what a command sets.
-
-    Raises:
-        NotSupported: it cannot be read.
-    """
-    setting = settings_of(probe.device.table, command)[0]
-    query = setting.queries[0]
-    old = setting.again(query, probe.device.require(query))
-    probe.device.restore_after_body[command.name] = partial(probe.device.request, old)
-
-
-def _shift(probe: Probe, chooser: Command, axis: int) -> Vector:
+def _shift(probe: Probe, chooser: Command, choices: Sequence[int], axis: int) -> Vector:
     """Return by how much the coordinates change when a reference along an axis is used."""
-    rows = len(probe.command.request[0].fields[0].cases[0].numbers)
-    reference = tuple(SHIFT if at == axis else 0.0 for at in range(rows))
-    probe.device.request(request_of(probe.command, reference))
-    without, used = (_position(probe, chooser, choice) for choice in (0, 1))
-    x, y, z = (a - b for a, b in zip(used, without))
+    device, row = probe.device, probe.command.request[0].fields[0].cases[0].numbers
+    reference = tuple(SHIFT if at == axis else 0.0 for at in range(len(row)))
+    device.request(request_of(probe.command, reference))
+    source, positions = device.table.in_role("coordinates"), []
+    for choice in choices[:2]:
+        device.request(request_of(chooser, choice))
+        positions.append(device.require(source.request_type()).result[:3])
+    x, y, z = (used - without for without, used in zip(*positions))
     return x, y, z
-
-
-def _position(probe: Probe, chooser: Command, choice: int) -> tuple[float, ...]:
-    field = chooser.request[0].fields[0]
-    probe.device.request(request_of(chooser, field.choices[choice]))
-    source = probe.device.table.in_role("coordinates")
-    reply: Reply[Any] = probe.device.require(source.request_type())
-    return tuple(reply.result)[:3]
 
 
 def _judge(probe: Probe, shifts: list[Vector], tool: bool) -> None:
@@ -129,8 +107,8 @@ def _short(vector: Vector) -> str:
 REFERENCES = Group(
     "references",
     (SHIFTS,),
-    _shifts,
-    _is_reference,
+    with_row(_reference, _shifts),
+    _reference,
     sends="A reference of 40 mm along each axis; the coordinates are read with and without it.",
     subject="each setting that takes coordinates, if another one makes the arm use it",
 )

@@ -1,22 +1,32 @@
-"""What is set is read back, leaves its neighbours alone, and is restored afterwards."""
+"""What is set is read back, and changes nothing else; what is not allowed changes nothing."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
 from cobotwire.conformance.device.device import NotSupported
 from cobotwire.conformance.device.groups.changes import (
+    AFTER_CHANGE,
     AFTER_CHANGE_OR_REPLY,
     REPLIED,
     request_change,
 )
-from cobotwire.conformance.device.probe import Probe
-from cobotwire.conformance.device.read_back import Setting, settings_of
+from cobotwire.conformance.device.groups.malformed import (
+    MALFORMED,
+    OUT_OF_RANGE,
+    forbidden,
+    wrong_values,
+)
+from cobotwire.conformance.device.malformed_sender import KEPT
+from cobotwire.conformance.device.probe import Probe, with_row
+from cobotwire.conformance.device.read_back import Spot, read_spot, restorable_spot, settings_of
 from cobotwire.conformance.device.requests import arguments_of
+from cobotwire.conformance.device.selection import reported, reporters
+from cobotwire.conformance.hex_text import shown
+from cobotwire.conformance.places import places
 from cobotwire.conformance.suite import Group, TestCase
-from cobotwire.protocol.errors import UsageError
+from cobotwire.protocol.effects import Stores, effect_of
 from cobotwire.protocol.messages import Reply, Request
 from cobotwire.protocol.table import Command, Table
 
@@ -25,6 +35,11 @@ NEIGHBOURS = TestCase(
     "neighbours-stay", "Setting one joint, pin or register does not change the others."
 )
 RESTORED = TestCase("restored", "The value before a test can be set again, and is read back.")
+OTHERS = TestCase("others-stay", "A setting changes nothing but what it sets.")
+AMONG = TestCase("set-is-reported", "One of the numbers that the query reports is what was set.")
+
+# The values of a setting that is among other numbers, as shares of the range.
+SHARES = (0.3, 0.7)
 
 
 def _is_setting(table: Table, command: Command) -> bool:
@@ -32,55 +47,22 @@ def _is_setting(table: Table, command: Command) -> bool:
     return command.safety not in ("query", "motion") and bool(settings_of(table, command))
 
 
-@dataclass(frozen=True, slots=True)
-class _Spot:
-    """One joint, pin or register: what reads it, what was read before the test, and what sets it.
-
-    ``restorable`` is whether the command can set the old value again.
-    """
-
-    setting: Setting
-    query: Request[Any]
-    before: Reply[Any]
-    old: Request[Any]
-    restorable: bool = True
-
-    def __str__(self) -> str:
-        return f"{self.old.command}({arguments_of(self.query)})"
-
-
 def _set_and_read(probe: Probe) -> None:
     """Back up, set several values for each joint, pin or register, read all, restore."""
-    for setting in settings_of(probe.device.table, probe.command):
-        spots = [_spot(probe, setting, query) for query in setting.queries]
+    device, may_lose = probe.device, "irreversible" in probe.device.permissions.classes
+    for setting in settings_of(device.table, probe.command):
+        spots = [
+            restorable_spot(device, setting, query, or_lost=may_lose) for query in setting.queries
+        ]
         if len(spots) == 1:
             probe.drop(NEIGHBOURS)
-        restore = probe.device.restore_after_body
+        restore = device.restore_after_body
         for spot in spots:
-            if spot.restorable:
+            if not spot.obstacle:
                 restore[str(spot)] = partial(_set, probe, spot.old)
         for spot in spots:
             _try(probe, spot, spots)
             restore.pop(str(spot), None)
-
-
-def _spot(probe: Probe, setting: Setting, query: Request[Any]) -> _Spot:
-    """Read the value to restore.
-
-    Raises:
-        NotSupported: it cannot be read, or cannot be set again.
-    """
-    before = probe.device.read(query)
-    if before is None:
-        raise NotSupported(f"{query.command} reports nothing, so nothing can be read back")
-    old = setting.again(query, before)
-    try:
-        probe.device.requester.prepare(old)
-    except UsageError as error:
-        if "irreversible" not in probe.device.permissions.classes:
-            raise NotSupported(f"the present value could not be set again: {error}") from None
-        return _Spot(setting, query, before, old, restorable=False)
-    return _Spot(setting, query, before, old)
 
 
 def _set(probe: Probe, wanted: Request[Any]) -> bool:
@@ -92,26 +74,141 @@ def _set(probe: Probe, wanted: Request[Any]) -> bool:
     return any(not getattr(valid.message, name) for name in flags)
 
 
-def _try(probe: Probe, spot: _Spot, spots: list[_Spot]) -> None:
-    for index, wanted in enumerate(spot.setting.samples(spot.query, spot.before)):
+def _try(probe: Probe, spot: Spot, spots: list[Spot]) -> None:
+    for index, wanted in enumerate(spot.samples):
         failed = _set(probe, wanted)
         _expect(probe, READ_BACK, spot, wanted)
         reason = f"{spot} reports failure, but {wanted} is read back"
         probe.expect(REPLIED, not failed, reason)
         for other in spots if index == 0 else ():
             # What cannot be restored no longer has its old value.
-            if other is not spot and other.restorable:
+            if other is not spot and not other.obstacle:
                 _expect(probe, NEIGHBOURS, other, other.old, f"after {spot}: ")
-    if spot.restorable:
+    if not spot.obstacle:
         _set(probe, spot.old)
         _expect(probe, RESTORED, spot, spot.old)
 
 
-def _expect(
-    probe: Probe, case: TestCase, spot: _Spot, wanted: Request[Any], when: str = ""
-) -> None:
+def _expect(probe: Probe, case: TestCase, spot: Spot, wanted: Request[Any], when: str = "") -> None:
     wrong = spot.setting.differences(wanted, probe.device.read(spot.query))
     probe.expect(case, not wrong, f"{when}{spot}, {'; '.join(wrong)}")
+
+
+def _takes_forbidden_values(table: Table, command: Command) -> bool:
+    """Return whether a setting that a query reads back can be sent a value that is not allowed."""
+    return command.safety == "setting" and any(
+        any(map(forbidden, places(setting.variant))) for setting in settings_of(table, command)
+    )
+
+
+def _forbidden(probe: Probe) -> None:
+    """Set two values in turn; after each, send wrong values, and read that nothing changes.
+
+    With two values, what a device takes a wrong value for differs from one of them.
+    """
+    device = probe.device
+    for setting in settings_of(device.table, probe.command):
+        spot = restorable_spot(device, setting, setting.queries[0])
+        device.restore_after_body[probe.command.name] = partial(device.request, spot.old)
+        for present in spot.samples[:2]:
+            _send_wrong_values(probe, spot, present)
+        device.request(spot.old)
+
+
+def _send_wrong_values(probe: Probe, spot: Spot, present: Request[Any]) -> None:
+    device = probe.device
+    device.request(present)
+    encoded = device.requester.prepare(present)
+    for what, listed, data in wrong_values(device.table, spot.setting.variant, encoded.frame):
+        # Another constant may mean another command.
+        if device.requester.is_legal(data):
+            continue
+        response = device.requester.send_bytes(encoded, data, what, device.timing.silence)
+        after = device.request(spot.query)
+        # A late reply comes after the query.
+        silent = not (response.replies or response.unexpected or after.others)
+        came = response.summary if response.replies or response.unexpected else after.summary
+        probe.expect(OUT_OF_RANGE, silent, f"{what}: expected no reply; came {came}")
+        reply = after.valid and after.valid.message
+        wrong = spot.setting.differences(present, reply)
+        reason = f"{probe.command.name} with {what} ({shown(data)}) must change nothing"
+        # A number beyond its range may be taken for the nearest legal one.
+        limited = reply is not None and not listed
+        probe.expect(KEPT, limited or not wrong, f"{reason}; {'; '.join(wrong)}")
+        if wrong:
+            device.request(present)
+
+
+def _others_stay(probe: Probe) -> None:
+    """Give each setting a value that is not its default; change one after the other."""
+    device = probe.device
+    spots: dict[str, Spot] = {}
+    for command in device.table.commands:
+        # Of two settings that the same query reads, one is enough.
+        settings = settings_of(device.table, command) if command.safety == "setting" else []
+        for setting in settings[:1]:
+            spot = read_spot(device, setting, setting.queries[0])
+            if spot is not None and not spot.obstacle and spot.others:
+                spots.setdefault(spot.query.command, spot)
+    if len(spots) < 2:
+        raise NotSupported("fewer than two settings can be read back")
+    for name, spot in spots.items():
+        device.restore_after_body[name] = partial(device.request, spot.old)
+        device.request(spot.others[0])
+    before = {name: device.read(spot.query) for name, spot in spots.items()}
+    for name, spot in spots.items():
+        second = [*spot.others, spot.old][1]
+        device.request(second)
+        changed = [
+            f"{other.query.command}({arguments_of(other.query)}) from {_plain(before[each])} to "
+            f"{_plain(now)}"
+            for each, other in spots.items()
+            if each != name and before[each] is not None
+            if (now := device.read(other.query)) != before[each]
+        ]
+        call = f"{second.command}({arguments_of(second)})"
+        probe.expect(OTHERS, not changed, f"{call} also changes {'; '.join(changed)}")
+        # What has changed with it is set again.
+        for each in spots.values() if changed else (spot,):
+            device.request(each.others[0])
+
+
+def _plain(reply: Reply[Any] | None) -> str:
+    if reply is None:
+        return "no reply"
+    return ", ".join(f"{name} {value}" for name, value in reply.fields.items())
+
+
+def is_shown(table: Table, command: Command) -> Command | None:
+    """Return the query that reports what a setting stores among other numbers of its unit.
+
+    No source says which of them it is.
+    """
+    effect = effect_of(command) if command.safety == "setting" else None
+    states = set(effect.values.values()) if isinstance(effect, Stores) and effect.assumed else ()
+    found = (each.query for state in states for each in reporters(table, state))
+    return next((query for query in found if len(reported(query)) > 1), None)
+
+
+def _set_among(probe: Probe, query: Command) -> None:
+    """Set two values, and read after each; then restore what was read before."""
+    device, command = probe.device, probe.command
+    before = set(device.require(query.request_type()).fields.values())
+    if len(before) != 1:
+        raise NotSupported(f"{query.name} reports several numbers; which one is set is unknown")
+    device.restore_after_body[command.name] = partial(device.request, _to(command, *before))
+    number = command.request[0].fields[0].cases[0].numbers[0]
+    for share in SHARES:
+        raw = number.minimum + round(share * (number.maximum - number.minimum))
+        value = number.physical(raw)
+        request_change(probe, _to(command, value))
+        shown = device.require(query.request_type()).fields
+        reason = f"{command.name}({value:g}): expected {query.name} to report it; came {shown}"
+        probe.expect(AMONG, value in shown.values(), reason)
+
+
+def _to(command: Command, value: Any) -> Any:
+    return command.request_type.from_fields({command.request[0].fields[0].name: value})
 
 
 SETTINGS = Group(
@@ -124,4 +221,32 @@ SETTINGS = Group(
         "part; then the value before."
     ),
     subject="each setting that a query reads back",
+)
+FORBIDDEN_SETTINGS = Group(
+    "forbidden values of settings",
+    (OUT_OF_RANGE, KEPT),
+    _forbidden,
+    _takes_forbidden_values,
+    MALFORMED,
+    sends=(
+        "The setting with values next to the allowed ones, and the largest that the bytes can "
+        "hold; after each, the query that reads it."
+    ),
+    subject="each setting that a query reads back and that can be out of range",
+)
+SHOWN_AMONG = Group(
+    "set among others",
+    (AMONG, *AFTER_CHANGE),
+    with_row(is_shown, _set_among),
+    is_shown,
+    sends="Two values, and the query after each.",
+    subject="each setting whose query reports several numbers, without saying which one is set",
+)
+COUPLING = Group(
+    "settings among each other",
+    (OTHERS,),
+    _others_stay,
+    permission=frozenset({"setting"}),
+    sends="Two values for each setting, one after the other; all other settings are read.",
+    subject="the line as a whole",
 )

@@ -1,26 +1,40 @@
-"""Commands that switch what a query reports, and commands that no query reads back."""
+"""Commands whose effect is fixed, such as power on: the query reports it, of the right part."""
 
 from __future__ import annotations
 
 from functools import partial
+from typing import Any
 
-from cobotwire.conformance.device.device import NotSupported
-from cobotwire.conformance.device.groups.changes import AFTER_CHANGE_OR_REPLY, request_change
-from cobotwire.conformance.device.groups.gripping import opens
-from cobotwire.conformance.device.groups.motion import resume
+from cobotwire.conformance.device.device import Device, NotSupported
+from cobotwire.conformance.device.groups.changes import (
+    AFTER_CHANGE,
+    AFTER_CHANGE_OR_REPLY,
+    request_change,
+)
 from cobotwire.conformance.device.groups.queries import (
     REPEATS,
     SETTLES,
     expect_repetition,
     is_framed_query,
 )
-from cobotwire.conformance.device.groups.shown_among import is_shown
-from cobotwire.conformance.device.mover import give_power
-from cobotwire.conformance.device.probe import Probe
-from cobotwire.conformance.device.read_back import has_fixed_effect, settings_of
-from cobotwire.conformance.device.requests import gentle, harmless
-from cobotwire.conformance.samples import ordinary, physical_values
+from cobotwire.conformance.device.groups.settings import NEIGHBOURS
+from cobotwire.conformance.device.mover import Mover, give_power
+from cobotwire.conformance.device.probe import Probe, with_row
+from cobotwire.conformance.device.read_back import (
+    Fixed,
+    fixed_effect,
+    setter_of,
+    settings_of,
+)
+from cobotwire.conformance.device.requests import (
+    arguments_of,
+    harmless,
+    requests,
+)
+from cobotwire.conformance.device.selection import judged, reporters
 from cobotwire.conformance.suite import Group, TestCase
+from cobotwire.protocol.effects import Sets
+from cobotwire.protocol.messages import Request
 from cobotwire.protocol.table import Command, Table
 
 
@@ -41,21 +55,21 @@ SHOWS = 2.0
 POLL = 0.05
 
 
-def _is_switch(table: Table, command: Command) -> bool:
-    """Return whether a query reports the fixed effect of a command, and it can be reverted."""
-    return has_fixed_effect(command) and command.safety != "persistent write"
+def _switch_of(table: Table, command: Command) -> Fixed | None:
+    """Return the fixed effect of a command, if it can be reverted, and not for each part alone."""
+    fixed, part = fixed_effect(table, command), _part_of(table, command)
+    of_one = fixed and part and part.query.name == fixed.query.name
+    return None if command.safety == "persistent write" or of_one else fixed
 
 
-def _switch(probe: Probe) -> None:
+def _switch(probe: Probe, fixed: Fixed) -> None:
     """Set the opposite state, then the command's own, then restore the old one."""
-    command, device = probe.command, probe.device
-    assert command.read_by is not None
+    command, device, (query, _, wanted) = probe.command, probe.device, fixed
     if command.safety == "power":
         give_power(device)
-    query = device.table.command(command.read_by.query)
-    name, wanted = command.read_by.fields[0]
-    before = int(getattr(device.require(query.request_type()), name))
-    back = device.setter(query, 1 - int(wanted)) if wanted in (0, 1) else None
+    reading = fixed.for_part(harmless(command)[-1])
+    before = fixed.read(device, reading)
+    back = setter_of(device.table, query, 1 - wanted) if wanted in (0, 1) else None
     if back is None and before != wanted and "irreversible" not in device.permissions.classes:
         raise NotSupported("no command switches it back: that needs the permission irreversible")
     undo = back if before != wanted else command
@@ -64,13 +78,15 @@ def _switch(probe: Probe) -> None:
     if back is not None and before == wanted:
         _send(probe, back)
     acknowledged = _send(probe, command)
-    value = _read(probe, query, name)
+    value = _read(device, fixed, reading)
     if acknowledged:
         reason = f"{command.name} is acknowledged as done: expected {query.name} to report {wanted}"
         probe.expect(DONE, value == wanted, f"{reason} at once; came {value}")
     else:
         probe.drop(DONE)
-    value = value if value == wanted else _await(probe, query, name, int(wanted))
+    if value != wanted:
+        reads = partial(_read, device, fixed, reading)
+        value = device.poll(reads, lambda came: came == wanted, SHOWS, POLL)
     reason = f"{command.name}: expected {query.name} to report {wanted}; came {value}"
     probe.expect(EFFECT, value == wanted, reason)
     if command.safety != "power" or wanted:
@@ -79,10 +95,19 @@ def _switch(probe: Probe) -> None:
         _expect_steady_replies(probe)
 
 
+def _expect(
+    probe: Probe, case: TestCase, fixed: Fixed, query: Request[Any], right: int, call: str
+) -> None:
+    """Expect a query to report a state after a call."""
+    value = fixed.read(probe.device, query)
+    reason = f"after {call}: expected {query.command}({arguments_of(query)}) to report {right}"
+    probe.expect(case, value == right, f"{reason}; came {value}")
+
+
 def _expect_steady_replies(probe: Probe) -> None:
     """Send each plain query twice: what was true with power shows in one reply."""
     device = probe.device
-    device.connection.clock.sleep(SETTLES)
+    device.rest(SETTLES)
     for query in device.table.commands:
         if is_framed_query(device.table, query) and not query.request[0].fields:
             first = device.request(query.request_type()).valid
@@ -97,93 +122,118 @@ def _send(probe: Probe, command: Command) -> bool:
     return command.ack and all(came)
 
 
-def _read(probe: Probe, query: Command, name: str) -> int | None:
-    reply = probe.device.read(query.request_type())
-    return None if reply is None else int(getattr(reply, name))
+def _read(device: Device, fixed: Fixed, query: Request[Any]) -> int | None:
+    reply = device.read(query)
+    return None if reply is None else int(getattr(reply, fixed.field))
 
 
-def _await(probe: Probe, query: Command, name: str, wanted: int) -> int | None:
-    """Poll a query until it reports ``wanted`` or the time is over; return its last value."""
-    connection = probe.device.connection
-    end = connection.now + SHOWS
-    while True:
-        value = _read(probe, query, name)
-        if value == wanted or connection.now >= end:
-            return value
-        connection.clock.sleep(POLL)
+def _part_of(table: Table, command: Command) -> Fixed | None:
+    """Return the query that reports what a command gives one part, and the value."""
+    effect = judged(command)
+    if isinstance(effect, Sets) and effect.at and command.safety == "power":
+        for state, value in effect.values.items():
+            # Also an assumed query: otherwise nothing would show which part a command switches.
+            for found in reporters(table, state, assumed=True):
+                if found.at == effect.at and len(harmless(command)) > 1:
+                    return Fixed(found.query, found.field, int(value))
+    return None
 
 
-def _is_unread(table: Table, command: Command) -> bool:
-    """Return whether no query reads back what a command does, and no command restores it."""
-    return (
-        command.safety != "query"
-        and (
-            command.role in ("", "halt")
-            or (command.role == "gripper" and not opens(table, command))
-        )
-        and not _is_switch(table, command)
-        and not settings_of(table, command)
-        and not is_shown(table, command)
-        and not (command.read_by is not None and command.safety == "persistent write")
-    )
+def _switch_each(probe: Probe, fixed: Fixed) -> None:
+    """Set the opposite state for all parts, then the command's own for each part in turn."""
+    device, parts, wanted = probe.device, harmless(probe.command), fixed.value
+    every = fixed_effect(device.table, probe.command)
+    give_power(device)
+    back, on = (_counterpart(probe, fixed._replace(value=value)) for value in (1 - wanted, 1))
+    for part in parts:
+        device.restore_after_body[probe.command.name] = partial(_request_all, probe, on)
+        _request_all(probe, back)
+        request_change(probe, part)
+        call = f"{probe.command.name}({arguments_of(part)})"
+        for other in parts:
+            case, right = (EFFECT, wanted) if other == part else (NEIGHBOURS, 1 - wanted)
+            _expect(probe, case, fixed, fixed.for_part(other), right, call)
+        if not wanted and every is not None and every.query is not fixed.query:
+            query, call = every.query.request_type(), f"{call}, while the others are on"
+            _expect(probe, EFFECT, every, query, 0, call)
 
 
-def _send_unread(probe: Probe) -> None:
-    """Send the command once, with the mildest arguments, and check what comes."""
-    power = probe.command.safety == "power"
-    if power:
-        give_power(probe.device)
-    request_change(probe, gentle(probe.command))
-    powered = probe.device.command("powered")
-    on = probe.device.setter(powered, 1) if power and powered else None
-    if on is not None:
-        # It may have left the arm with power, but with joints that are not held.
-        probe.device.request(on.request_type())
-    stop = probe.device.command("stop")
-    if probe.command.safety == "motion" and stop is not None:
-        probe.device.request(stop.request_type())
-        resume(probe)
+def _counterpart(probe: Probe, fixed: Fixed) -> Command:
+    """Return the command that gives one part a value which a query reports."""
+    for command in probe.device.table.commands:
+        if _part_of(probe.device.table, command) == fixed:
+            return command
+    raise NotSupported("no command sets the opposite state")
 
 
-def _is_light(table: Table, command: Command) -> bool:
-    """Return whether a command only sets the colour of a light, which need not be restored."""
-    return command.role == "light"
+def _request_all(probe: Probe, command: Command) -> None:
+    for part in harmless(command):
+        probe.device.request(part)
 
 
-def _send_colours(probe: Probe) -> None:
-    """Send colours that differ in each part, the darkest last, and check what comes."""
-    variant = probe.command.request[0]
-    for turn in (0, 7):
-        values = physical_values(variant, ordinary(variant, turn=turn))
-        request_change(probe, probe.command.request_type.from_fields(values))
-    request_change(probe, gentle(probe.command))
+def _calibration(table: Table, command: Command) -> Fixed | None:
+    """Return the fixed effect of a command that outlives a power cycle."""
+    return fixed_effect(table, command) if command.safety == "persistent write" else None
+
+
+def _calibrate(probe: Probe, fixed: Fixed) -> None:
+    """Calibrate each part in turn, at a pose that is not zero; the other parts stay."""
+    device, query = probe.device, fixed.query
+    if not probe.command.request[-1].fields:
+        probe.drop(NEIGHBOURS)
+    if device.permissions.workspace:
+        mover = Mover(device)
+        mover.go(mover.pose(0))
+        _set_off(probe, mover, query)
+    for part in harmless(probe.command):
+        every = requests(query, query.request[-1])
+        before = {other: fixed.read(device, other) for other in every}
+        request_change(probe, part)
+        call = f"{probe.command.name}({arguments_of(part)})"
+        for other, value in before.items():
+            mine = other.fields == part.fields
+            case, right = (EFFECT, fixed.value) if mine else (NEIGHBOURS, value)
+            _expect(probe, case, fixed, other, right, call)
+
+
+def _set_off(probe: Probe, mover: Mover, query: Command) -> None:
+    """Move what is calibrated, such as a gripper, away from its zero, if a motion sets it."""
+    device, position = probe.device, query.request_type
+    for command in device.table.commands:
+        if command.safety == "motion" and not command.role and command.request[0].fields[1:]:
+            for motion in settings_of(device.table, command):
+                if motion.query is query and not motion.query_variant.fields:
+                    old = device.require(position())
+                    device.request(motion.samples(position(), old, mover.speed)[0])
+                    mover.settle(lambda: device.read(position()))
+                    return
 
 
 SWITCHES = Group(
     "switches",
     (EFFECT, DONE, *AFTER_CHANGE_OR_REPLY, REPEATS),
-    _switch,
-    _is_switch,
+    with_row(_switch_of, _switch),
+    _switch_of,
     sends=(
         "The command that sets the opposite state, then the command itself, then the one "
         "that restores the state. Without power, each query without arguments, twice."
     ),
     subject="each command with a fixed effect that a query reports",
 )
-UNREAD = Group(
-    "unread commands",
-    AFTER_CHANGE_OR_REPLY,
-    _send_unread,
-    _is_unread,
-    frozenset({"irreversible"}),
-    sends="The command once, with the arguments that change the least.",
-    subject="each command that no query reads back",
+HOLDING = Group(
+    "single parts",
+    (EFFECT, NEIGHBOURS, *AFTER_CHANGE),
+    with_row(_part_of, _switch_each),
+    _part_of,
+    sends="The opposite state for all parts, then the command for each part in turn.",
+    subject="each command that switches one part, if a query reports the state of each",
 )
-LIGHTS = Group(
-    "lights",
-    AFTER_CHANGE_OR_REPLY,
-    _send_colours,
-    _is_light,
-    sends="Colours that differ in each part, the darkest last.",
-    subject="each command with the role light",
+CALIBRATION = Group(
+    "calibrations",
+    (EFFECT, NEIGHBOURS, *AFTER_CHANGE_OR_REPLY),
+    with_row(_calibration, _calibrate),
+    _calibration,
+    frozenset({"irreversible"}),
+    sends="The calibration for each part, at a pose that is not zero.",
+    subject="each permanent command that gives a position a fixed number",
 )
