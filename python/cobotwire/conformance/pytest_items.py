@@ -15,8 +15,8 @@ from cobotwire.conformance.device import (
     parse_workspace,
     words,
 )
-from cobotwire.conformance.report import Result, Verdict
-from cobotwire.conformance.reports.evidence import evidence_lines
+from cobotwire.conformance.hex_text import evidence_lines
+from cobotwire.conformance.report import Cause, Result, Verdict
 from cobotwire.conformance.sources import spec_lines
 from cobotwire.protocol.printable import printable
 from cobotwire.transport import open_transport

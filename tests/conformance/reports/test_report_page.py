@@ -11,7 +11,7 @@ from cobotwire.conformance import Cause, Exchange, Report, Result, Verdict
 from cobotwire.conformance.provenance import identify
 from cobotwire.conformance.report import Environment
 from cobotwire.conformance.reports import from_json, to_html, to_json
-from cobotwire.conformance.reports.causes import group_by_cause
+from cobotwire.conformance.reports.grouped import by_cause
 from cobotwire.conformance.statement import statement_template
 from conformance.device.testing import prepared
 
@@ -95,12 +95,12 @@ def failing(count: int) -> Report:
 
 
 def test_failures_with_the_same_cause_are_one_group() -> None:
-    groups = group_by_cause(failing(12).failures)
-    assert [(group.case, len(group.results)) for group in groups] == [
+    groups = by_cause(failing(12).failures)
+    assert [(group[0].case, len(group)) for group in groups] == [
         ("query-replied", 12),
         ("reply-once", 1),
     ]
-    assert groups[0].commands == [f"get_{at}" for at in range(12)]
+    assert [result.command for result in groups[0]] == [f"get_{at}" for at in range(12)]
 
 
 def test_failures_come_before_the_rest() -> None:
@@ -147,12 +147,12 @@ def test_failures_of_a_codec_are_grouped_without_their_values() -> None:
         )
         for at, name in enumerate(["get_speed", "get_angles"])
     ]
-    [group] = group_by_cause(report.failures)
-    assert group.commands == ["get_speed", "get_angles"]
+    [group] = by_cause(report.failures)
+    assert [result.command for result in group] == ["get_speed", "get_angles"]
 
 
 @pytest.mark.parametrize("text", ["(" * 9000, "FE " * 9000, "[" * 4000 + "]" * 4000, "a/" * 9000])
 def test_long_reason_is_grouped(text: str) -> None:
     # Without a limit, some of these take minutes.
     results = [Result("x", "", Verdict.FAIL, text) for _ in range(50)]
-    assert len(group_by_cause(results)) == 1
+    assert len(by_cause(results)) == 1

@@ -12,8 +12,8 @@ from hypothesis import strategies as st
 
 from cobotwire.conformance import Cause, Exchange, Report, Result, Verdict
 from cobotwire.conformance.reports import compare, from_json, to_html, to_json, to_junit
-from cobotwire.conformance.reports.html_commands import OF_PASSES
-from cobotwire.conformance.reports.matrix import GRAVEST, matrix
+from cobotwire.conformance.reports.grouped import GRAVEST, matrix
+from cobotwire.conformance.reports.html_results import OF_PASSES
 from cobotwire.protocol.errors import UsageError
 from cobotwire.protocol.printable import printable
 

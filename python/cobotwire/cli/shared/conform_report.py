@@ -14,8 +14,8 @@ import click
 
 from cobotwire.capture.file_errors import unusable_file
 from cobotwire.conformance import Report
+from cobotwire.conformance.hex_text import exchanged
 from cobotwire.conformance.reports import to_html, to_json, to_junit
-from cobotwire.conformance.reports.evidence import shown
 from cobotwire.protocol.errors import CobotwireError
 from cobotwire.protocol.printable import printable
 
@@ -116,7 +116,7 @@ def _print_summary(report: Report, to_stderr: bool) -> None:
         for also in result.further:
             echo(f"         also, {printable(also)}")
         for exchange in result.evidence:
-            data = printable(shown(report.kind, exchange)[:SHOWN])
+            data = printable(exchanged(report.kind, exchange)[:SHOWN])
             echo(f"         {exchange.at:9.4f} {exchange.direction} {data}")
     counts = Counter(result.outcome for result in report.results)
     summary = ", ".join(f"{count} {outcome}" for outcome, count in counts.items())

@@ -5,26 +5,25 @@ from __future__ import annotations
 from base64 import b64encode
 from collections import Counter
 from collections.abc import Iterator, Sequence
+from functools import cache
 from hashlib import sha256
 from importlib.resources import files
 from xml.etree.ElementTree import Element
 
-from cobotwire.conformance.report import Report, Verdict
-from cobotwire.conformance.reports.causes import CauseGroup, group_by_cause
-from cobotwire.conformance.reports.element import element, page
-from cobotwire.conformance.reports.html_commands import by_command
-from cobotwire.conformance.reports.html_matrix import matrix_of
-from cobotwire.conformance.reports.html_parts import (
-    anchor,
+from cobotwire.conformance.catalogue.listing import SUITES
+from cobotwire.conformance.report import Kind, Report, Result, Verdict
+from cobotwire.conformance.reports.element import Child, element, page
+from cobotwire.conformance.reports.grouped import by_cause, title_of
+from cobotwire.conformance.reports.html_results import (
+    by_command,
+    chips,
     class_of,
     heading,
-    order_of,
+    link_to,
+    matrix_of,
     shortened,
     sign_of,
-    title_of,
-    words_of,
 )
-from cobotwire.conformance.reports.purposes import purposes
 from cobotwire.conformance.reports.times import times_plot
 from cobotwire.protocol.counted import counted
 
@@ -65,7 +64,6 @@ def _hash(text: str) -> str:
 
 def _head(report: Report, title: str) -> Iterator[Element]:
     yield element("h1", title)
-    counts = Counter((result.verdict, result.cause) for result in report.results)
     if not report.finished:
         why = f": {report.stopped}" if report.stopped else ""
         yield _banner("unstable", f"The run is incomplete{why}.")
@@ -75,11 +73,7 @@ def _head(report: Report, title: str) -> Iterator[Element]:
         yield _banner("pass", "It conforms as far as it was tested.")
     if report.untested:
         yield _banner("unstable", report.untested)
-    chips: list[Element | str] = []
-    for outcome in sorted(counts, key=order_of):
-        words = words_of(counts[outcome], outcome)
-        chips += [element("span", words, class_=f"chip {class_of(*outcome)}"), " "]
-    yield element("p", *chips)
+    yield element("p", *chips(report.results))
     facts = {
         "edition": report.edition,
         "firmware": (report.firmware or "not reported") if report.kind == "device" else "",
@@ -104,26 +98,32 @@ def _banner(kind: str, text: str) -> Element:
 
 
 def _navigation(titles: Sequence[Element]) -> Element:
-    links: list[Element | str] = []
+    links: list[Child] = []
     for title in titles:
         name = (title.text or "").partition(":")[0]
         links += [element("a", name, href=f"#{title.get('id')}"), " "]
     return element("nav", *links)
 
 
+@cache
+def _purposes(kind: Kind) -> dict[str, str]:
+    """Return the purpose of each test case for a kind of subject."""
+    return {case.id: case.purpose for suite in SUITES if suite.kind == kind for case in suite.cases}
+
+
 def _causes(report: Report) -> Iterator[Element]:
     """Yield failures and inconclusive test cases by cause, then what was not run."""
-    known = purposes(report.kind)
+    known = _purposes(report.kind)
     for verdict, title in (
         (Verdict.FAIL, "Failures"),
         (Verdict.INCONCLUSIVE, "Inconclusive"),
     ):
         found = [result for result in report.results if result.verdict is verdict]
-        groups = group_by_cause(found)
+        groups = by_cause(found)
         if groups:
             size = f"{counted(len(found), 'test case')}, {counted(len(groups), 'cause')}"
             yield heading(title.lower(), title, size)
-        yield from (_cause(group, known.get(group.case, "")) for group in groups)
+        yield from (_cause(group, known.get(group[0].case, "")) for group in groups)
     left = [result for result in report.results if result.verdict is Verdict.NOT_RUN]
     if left:
         yield heading("not-run", "Not run", counted(len(left), "test case"))
@@ -132,23 +132,19 @@ def _causes(report: Report) -> Iterator[Element]:
         yield element("ul", *lines)
 
 
-def _cause(group: CauseGroup, purpose: str) -> Element:
-    first = group.results[0]
-    count = f" ({len(group.results)})" if len(group.results) > 1 else ""
-    mark = class_of(first.verdict, first.cause)
-    sign = element("b", f"{sign_of(first.verdict, first.cause)} {group.case}{count}", class_=mark)
+def _cause(results: Sequence[Result], purpose: str) -> Element:
+    first = results[0]
+    count = f" ({len(results)})" if len(results) > 1 else ""
+    mark = class_of(first)
+    sign = element("b", f"{sign_of(first)} {first.case}{count}", class_=mark)
     head = element("p", sign, f" {purpose}")
-    places = [_place(result.command, result.reason) for result in group.results]
+    places = [element("li", link_to(r.command), f" {shortened(r.reason)}") for r in results]
     if len(places) <= UNFOLDED:
         return element("section", head, element("ul", *places), class_=mark)
-    names = element("summary", f"and {len(places) - 1} more: {_names(group.commands[1:])}")
+    commands = list(dict.fromkeys(result.command for result in results))[1:]
+    names = element("summary", f"and {len(places) - 1} more: {_names(commands)}")
     rest = element("details", names, element("ul", *places[1:]))
     return element("section", head, element("ul", places[0]), rest, class_=mark)
-
-
-def _place(command: str, reason: str) -> Element:
-    link = element("a", title_of(command), href=f"#{anchor(command)}")
-    return element("li", link, f" {shortened(reason)}")
 
 
 def _names(commands: Sequence[str]) -> str:
@@ -182,7 +178,7 @@ def _origin(report: Report) -> Iterator[Element]:
 
 def _cases(report: Report) -> Iterator[Element]:
     """Yield the purpose of each test case of the report."""
-    known = purposes(report.kind)
+    known = _purposes(report.kind)
     ids = dict.fromkeys(result.case for result in report.results)
     if any(id in known for id in ids):
         yield heading("cases", "Test cases")

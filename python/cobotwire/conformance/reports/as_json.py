@@ -3,46 +3,24 @@
 from __future__ import annotations
 
 import json
-from dataclasses import asdict, fields
+from dataclasses import fields, is_dataclass
+from enum import StrEnum
 from math import isfinite
-from typing import Any
+from typing import Any, Literal, get_args, get_origin, get_type_hints
 
-from cobotwire.conformance.report import Cause, Environment, Exchange, Report, Result, Verdict
+from cobotwire.conformance.report import Environment, Exchange, Report, Result
 from cobotwire.protocol.errors import UsageError
 
 FORMAT = "cobotwire-conformance"
 # Counts up when a reader of the old version could misread the new one.
 VERSION = 3
-PLAIN = {
-    "kind": str,
-    "edition": str,
-    "subject": str,
-    "firmware": str,
-    "started": str,
-    "finished": bool,
-    "reply_seconds": dict,
-    "deadline_seconds": dict,
-    "stopped": str,
-    "untested": str,
-    "options": dict,
-    "statement": str,
-    "catalogue": str,
-    "edition_digest": str,
-    "code_digest": str,
-}
+RECORDS = (Report, Result, Environment, Exchange)
 
 
 def to_json(report: Report) -> str:
     """Return a report as JSON text; bytes are hex, times are seconds."""
-    data = {
-        "format": FORMAT,
-        "version": VERSION,
-        "conforms": report.conforms,
-        **{name: getattr(report, name) for name in PLAIN},
-        "seconds": round(report.seconds, 3),
-        "environment": asdict(report.environment),
-        "results": [_result(result) for result in report.results],
-    }
+    head = {"format": FORMAT, "version": VERSION, "conforms": report.conforms}
+    data = {**head, **_plain(report), "seconds": round(report.seconds, 3)}
     return json.dumps(data, indent=1) + "\n"
 
 
@@ -58,71 +36,47 @@ def from_json(text: str) -> Report:
             given = f"{data['format']}, version {data['version']}"
             message = f"the report is in the format {given}; needed: {FORMAT}, version {VERSION}"
             raise UsageError("report", given, message=message)
-        results = [_read_result(item) for item in data["results"]]
-        plain = {name: _checked(data[name], kind) for name, kind in PLAIN.items()}
-        plain["reply_seconds"] = {
-            command: [_seconds(each) for each in seconds]
-            for command, seconds in plain["reply_seconds"].items()
-        }
-        plain["deadline_seconds"] = {
-            command: _seconds(each) for command, each in plain["deadline_seconds"].items()
-        }
-        for name, text in plain["options"].items():
-            plain["options"][name] = _checked(text, str)
-        plain["seconds"] = _seconds(data["seconds"])
-        return Report(**plain, environment=_environment(data["environment"]), results=results)
+        report: Report = _read(Report, data)
+        return report
     except (ArithmeticError, LookupError, RecursionError, TypeError, ValueError) as error:
         if isinstance(error, UsageError):
             raise
         raise UsageError("report", message=f"this is not a report in JSON: {error!r}") from error
 
 
-def _result(result: Result) -> dict[str, Any]:
-    return {
-        "case": result.case,
-        "command": result.command,
-        "verdict": result.verdict.value,
-        "cause": result.cause.value,
-        "reason": result.reason,
-        "source": result.source,
-        "further": list(result.further),
-        "group": result.group,
-        "evidence": [
-            {"at": round(e.at, 6), "direction": e.direction, "data": e.data.hex(), "note": e.note}
-            for e in result.evidence
-        ],
-    }
+def _plain(value: Any) -> Any:
+    """Return a record, or a value in one, as JSON values."""
+    if isinstance(value, Exchange):
+        return {**value._asdict(), "at": round(value.at, 6), "data": value.data.hex()}
+    if is_dataclass(value):
+        return {field.name: _plain(getattr(value, field.name)) for field in fields(value)}
+    return [_plain(each) for each in value] if isinstance(value, list | tuple) else value
 
 
-def _environment(data: Any) -> Environment:
-    names = [each.name for each in fields(Environment)]
-    return Environment(**{name: _checked(data[name], str) for name in names})
+def _read(kind: Any, value: Any) -> Any:
+    """Return a JSON value as a value of a type, checked in all its parts.
 
-
-def _read_result(item: dict[str, Any]) -> Result:
-    evidence = tuple(
-        Exchange(
-            _seconds(e["at"]),
-            _checked(e["direction"], str),
-            bytes.fromhex(e["data"]),
-            _checked(e["note"], str),
-        )
-        for e in item["evidence"]
-    )
-    verdict, cause = Verdict(item["verdict"]), Cause(item["cause"])
-    names = ("case", "command", "reason", "source")
-    case, command, reason, source = (_checked(item[name], str) for name in names)
-    further = tuple(_checked(each, str) for each in _checked(item["further"], list))
-    group = _checked(item["group"], str)
-    return Result(case, command, verdict, reason, evidence, source, cause, further, group)
-
-
-def _seconds(value: Any) -> float:
-    """Return a finite number; raise an exception for anything else."""
-    seconds = float(_checked(value, int | float))
-    if not isfinite(seconds):
-        raise ValueError(f"{seconds} is not a time")
-    return seconds
+    Raises:
+        LookupError, TypeError, ValueError: the value is not of that type.
+    """
+    outer, inner = get_origin(kind), get_args(kind)
+    if kind in RECORDS:
+        hints = get_type_hints(kind)
+        return kind(**{name: _read(hint, value[name]) for name, hint in hints.items()})
+    if outer in (list, tuple):
+        return outer(_read(inner[0], each) for each in _checked(value, list))
+    if outer is dict:
+        return {name: _read(inner[1], each) for name, each in _checked(value, dict).items()}
+    if kind is float:
+        seconds = float(_checked(value, int | float))
+        if not isfinite(seconds):
+            raise ValueError(f"{seconds} is not a time")
+        return seconds
+    if kind is bytes:
+        return bytes.fromhex(value)
+    if outer is None and issubclass(kind, StrEnum):
+        return kind(value)
+    return _checked(value, str if outer is Literal else kind)
 
 
 def _checked(value: Any, kind: Any) -> Any:

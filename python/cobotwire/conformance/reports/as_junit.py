@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from xml.etree import ElementTree
+from collections.abc import Iterator, Sequence
+from xml.etree.ElementTree import Element, indent, tostring
 
+from cobotwire.conformance.hex_text import evidence_lines
 from cobotwire.conformance.report import Report, Result, Verdict
-from cobotwire.conformance.reports.evidence import evidence_lines
-from cobotwire.conformance.reports.matrix import Cell, case_ids, matrix
+from cobotwire.conformance.reports.element import element
+from cobotwire.conformance.reports.grouped import columns, matrix, title_of
 from cobotwire.protocol.printable import printable
 
 SKIPPED = (Verdict.INCONCLUSIVE, Verdict.NOT_RUN)
@@ -15,64 +17,49 @@ SKIPPED = (Verdict.INCONCLUSIVE, Verdict.NOT_RUN)
 def to_junit(report: Report) -> str:
     """Return a report as JUnit XML. What is inconclusive or was not run counts as skipped."""
     cells = matrix(report)
-    root = ElementTree.Element("testsuites", name=f"cobotwire conform {report.kind}")
-    for case in case_ids(cells):
-        suite = [cell for (_, other), cell in cells.items() if other == case]
-        root.append(_suite(report, case, suite))
+    suites = [
+        _suite(report, case, [shown for (_, other), shown in cells.items() if other == case])
+        for case in columns(cells)
+    ]
     if not report.finished:
-        root.append(_unfinished(report))
-    ElementTree.indent(root)
-    text = ElementTree.tostring(root, encoding="unicode")
-    return f'<?xml version="1.0" encoding="utf-8"?>\n{text}\n'
+        name = f"{report.edition}.run"
+        error = element("error", message="the run was interrupted", type="interrupted")
+        entry = element("testcase", error, classname=name, name="run")
+        counts = {"tests": 1, "failures": 0, "errors": 1, "skipped": 0}
+        suites.append(element("testsuite", entry, name=name, **counts))
+    root = element("testsuites", *suites, name=f"cobotwire conform {report.kind}")
+    indent(root)
+    return f'<?xml version="1.0" encoding="utf-8"?>\n{tostring(root, encoding="unicode")}\n'
 
 
-def _suite(report: Report, case: str, cells: list[Cell]) -> ElementTree.Element:
-    verdicts = [cell.verdict for cell in cells]
-    suite = ElementTree.Element(
+def _suite(report: Report, case: str, found: Sequence[Result]) -> Element:
+    names = ("kind", "subject", "edition", "firmware", "untested")
+    facts = (element("property", name=name, value=getattr(report, name)) for name in names)
+    name = f"{report.edition}.{case}"
+    entries = (
+        element("testcase", *_outcome(report, each), classname=name, name=title_of(each.command))
+        for each in found
+    )
+    return element(
         "testsuite",
-        name=printable(f"{report.edition}.{case}"),
-        tests=str(len(cells)),
-        failures=str(verdicts.count(Verdict.FAIL)),
-        errors="0",
-        skipped=str(sum(verdict in SKIPPED for verdict in verdicts)),
-        timestamp=printable(report.started),
+        element("properties", *facts),
+        *entries,
+        name=name,
+        tests=len(found),
+        failures=sum(each.verdict is Verdict.FAIL for each in found),
+        errors=0,
+        skipped=sum(each.verdict in SKIPPED for each in found),
+        timestamp=report.started,
     )
-    properties = ElementTree.SubElement(suite, "properties")
-    for name in ("kind", "subject", "edition", "firmware", "untested"):
-        value = printable(getattr(report, name))
-        ElementTree.SubElement(properties, "property", name=name, value=value)
-    for cell in cells:
-        suite.append(_entry(report, cell))
-    return suite
 
 
-def _entry(report: Report, cell: Cell) -> ElementTree.Element:
-    name = printable(cell.command or "the line")
-    place = printable(f"{report.edition}.{cell.case}")
-    entry = ElementTree.Element("testcase", classname=place, name=name)
-    shown = cell.gravest
+def _outcome(report: Report, shown: Result) -> Iterator[Element]:
     if shown.verdict is Verdict.FAIL:
-        failure = ElementTree.SubElement(entry, "failure", message=printable(shown.reason))
-        failure.set("type", shown.outcome)
-        failure.text = _in_full(report, shown)
+        source = [f"required by {shown.source}"] if shown.source else []
+        lines = [shown.reason, *source, *evidence_lines(report.kind, shown)]
+        failure = element("failure", message=shown.reason, type=shown.outcome)
+        # XML cannot express control characters at all.
+        failure.text = "\n".join(map(printable, lines))
+        yield failure
     elif shown.verdict in SKIPPED:
-        ElementTree.SubElement(entry, "skipped", message=printable(shown.reason))
-    return entry
-
-
-def _in_full(report: Report, result: Result) -> str:
-    source = [f"required by {result.source}"] if result.source else []
-    lines = [result.reason, *source, *evidence_lines(report.kind, result)]
-    # XML cannot express control characters at all.
-    return "\n".join(map(printable, lines))
-
-
-def _unfinished(report: Report) -> ElementTree.Element:
-    name = printable(f"{report.edition}.run")
-    suite = ElementTree.Element(
-        "testsuite", name=name, tests="1", failures="0", errors="1", skipped="0"
-    )
-    entry = ElementTree.SubElement(suite, "testcase", classname=name, name="run")
-    message = "the run was interrupted"
-    ElementTree.SubElement(entry, "error", message=message, type="interrupted")
-    return suite
+        yield element("skipped", message=shown.reason)

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from statistics import median
 from typing import Literal
 
-from cobotwire.conformance.report import Report, Verdict
-from cobotwire.conformance.reports.matrix import Cell, Place, matrix
+from cobotwire.conformance.report import Report, Result, Verdict
+from cobotwire.conformance.reports.grouped import Place, matrix
 from cobotwire.protocol.errors import UsageError
 
 Kind = Literal["worse", "better", "other", "added", "removed"]
@@ -70,17 +70,17 @@ def compare(before: Report, after: Report) -> Comparison:
     return Comparison(tuple(filter(None, found)), tuple(_times(before, after)))
 
 
-def _change(place: Place, old: Cell | None, new: Cell | None) -> Change | None:
+def _change(place: Place, old: Result | None, new: Result | None) -> Change | None:
     before = None if old is None else old.outcome
     after = None if new is None else new.outcome
     if before == after:
         return None
     shown = new or old
-    assert shown is not None, "a place has a cell in one of the two"
-    return Change(_kind(old, new), *place, before, after, shown.gravest.reason)
+    assert shown is not None, "a place has a result in one of the two"
+    return Change(_kind(old, new), *place, before, after, shown.reason)
 
 
-def _kind(old: Cell | None, new: Cell | None) -> Kind:
+def _kind(old: Result | None, new: Result | None) -> Kind:
     before = None if old is None else old.verdict
     after = None if new is None else new.verdict
     if after is Verdict.FAIL:
