@@ -241,16 +241,15 @@ def test_full_standard_error_does_not_stop_a_command(
 ) -> None:
     script = tmp_path / "loud.py"
     script.write_text(
-        "import sys\n"
+        "import json, sys\n"
         "from cobotwire.codec.reference import ReferenceCodec\n"
-        "from cobotwire.conformance.codec.adapter.loop import serve\n"
         "from cobotwire.conformance.codec.questions.our_codec import OurCodec\n"
         "from cobotwire.editions.mycobot import TABLE\n"
         "ours = OurCodec(ReferenceCodec(TABLE))\n"
-        "def loud(question):\n"
+        "for line in sys.stdin:\n"
+        "    question = json.loads(line)\n"
         "    sys.stderr.write('hm ' * 2000)\n"
-        "    return ours.ask(question)\n"
-        "serve(loud, sys.stdin, sys.stdout)\n"
+        "    print(json.dumps({'id': question['id'], **ours.ask(question)}), flush=True)\n"
     )
     with Program([sys.executable, str(script)]) as program:
         assert Run(TABLE, program).ask_all(questions[:60]).conforms

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import contextlib
 import json
-import os
-import selectors
 import subprocess
 import tempfile
 import time
@@ -14,6 +12,7 @@ from types import TracebackType
 from typing import Any, Protocol, Self
 
 from cobotwire.conformance.codec.questions.question import Json
+from cobotwire.conformance.device.program_transport import DescriptorEnd
 from cobotwire.conformance.last_words import ending
 from cobotwire.protocol.errors import CobotwireError, LinkError
 
@@ -93,14 +92,12 @@ class Program:
         process = self._process or self._start()
         self._count += 1
         line = json.dumps({"id": self._count, **question}, separators=(",", ":")) + "\n"
+        seconds = self._timeout * (STARTING if question["do"] == "hello" else 1)
         try:
-            seconds = self._timeout * (STARTING if question["do"] == "hello" else 1)
-            self._write(process, line.encode(), seconds)
-            answer = self._parse(self._line(process, seconds))
+            return self._parse(self._exchange(process, line.encode(), seconds))
         except NoAnswer:
             self.stop()
             raise
-        return answer
 
     def stop(self) -> None:
         """End the command; the next question starts it again."""
@@ -108,9 +105,10 @@ class Program:
         if process is None:
             return
         for stream in (process.stdin, process.stdout):
-            if stream is not None:
-                # An error is ignored: the command need not read the rest of its input.
-                stream.close() if stream is process.stdout else _close_quietly(stream)
+            # An error is ignored: the command need not read the rest of its input.
+            with contextlib.suppress(BrokenPipeError):
+                if stream is not None:
+                    stream.close()
         try:
             process.wait(0.5)
         except subprocess.TimeoutExpired:
@@ -128,44 +126,29 @@ class Program:
             )
         except OSError as error:
             raise LinkError(" ".join(self._command), error.strerror or str(error)) from error
-        assert process.stdin is not None
-        assert process.stdout is not None
-        for stream in (process.stdin, process.stdout):
-            os.set_blocking(stream.fileno(), False)
         self._process = process
         return process
 
-    def _write(self, process: subprocess.Popen[bytes], data: bytes, seconds: float) -> None:
+    def _exchange(self, process: subprocess.Popen[bytes], line: bytes, seconds: float) -> bytes:
+        """Send a line, and return the next line of the answers."""
         assert process.stdin is not None
-        deadline = time.monotonic() + seconds
-        while data:
-            self._wait_for(process.stdin, selectors.EVENT_WRITE, deadline, seconds)
-            try:
-                data = data[os.write(process.stdin.fileno(), data) :]
-            except BrokenPipeError:
-                raise self._gone(process) from None
-            except BlockingIOError:
-                continue
-
-    def _line(self, process: subprocess.Popen[bytes], seconds: float) -> bytes:
         assert process.stdout is not None
         deadline = time.monotonic() + seconds
-        while b"\n" not in self._output:
-            self._wait_for(process.stdout, selectors.EVENT_READ, deadline, seconds)
-            chunk = process.stdout.read(65536)
-            if chunk == b"":
-                raise self._gone(process)
-            self._output += chunk or b""
-            if len(self._output) > LONGEST_LINE:
-                raise NoAnswer("babbling", f"a line of more than {LONGEST_LINE} bytes")
-        line, _, self._output = self._output.partition(b"\n")
-        return line
-
-    def _wait_for(self, stream: Any, event: int, deadline: float, given: float) -> None:
-        with selectors.DefaultSelector() as selector:
-            selector.register(stream, event)
-            if not selector.select(max(0.0, deadline - time.monotonic())):
-                raise NoAnswer("silent", f"no answer within {given:g} s")
+        try:
+            DescriptorEnd(process.stdin.fileno(), "input").write(line)
+            output = DescriptorEnd(process.stdout.fileno(), "output")
+            while b"\n" not in self._output:
+                left = deadline - time.monotonic()
+                data = output.read(max(0.0, left))
+                if not data and left <= 0:
+                    raise NoAnswer("silent", f"no answer within {seconds:g} s")
+                self._output += data
+                if len(self._output) > LONGEST_LINE:
+                    raise NoAnswer("babbling", f"a line of more than {LONGEST_LINE} bytes")
+        except LinkError:
+            raise self._gone(process) from None
+        answer, _, self._output = self._output.partition(b"\n")
+        return answer
 
     def _parse(self, line: bytes) -> Json:
         try:
@@ -201,8 +184,3 @@ def _is_deeper(value: Any, levels: int) -> bool:
         if not inner:
             return False
     return True
-
-
-def _close_quietly(stream: Any) -> None:
-    with contextlib.suppress(BrokenPipeError):
-        stream.close()

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import suppress
+from functools import partial
 from typing import NamedTuple
 
 from cobotwire.codec.interface import Codec
@@ -13,6 +14,10 @@ from cobotwire.conformance.samples.physical import between_steps, named_values, 
 from cobotwire.conformance.samples.raw import Sample, illegal_samples, ordinary, samples
 from cobotwire.conformance.suite import Group, TestCase
 from cobotwire.protocol.table import Command, Direction, Table, Variant
+
+# Derive samples, and physical values with the names of questions, from a variant.
+SamplesOf = Callable[[Variant], Iterator[Sample]]
+ValuesOf = Callable[[Variant], Iterator[tuple[str, Json]]]
 
 DIRECTIONS: tuple[Direction, ...] = ("request", "reply")
 SOURCE = "docs/codec-protocol.md"
@@ -65,29 +70,15 @@ def ordinary_frame(table: Table, variant: CommandVariant, turn: int = 0) -> byte
     return frame_of(table, variant.command.id, data, variant.direction)
 
 
-def _encoding(codec: Codec) -> Iterator[Question]:
-    """Yield questions with ordinary values, corner values and values between two steps."""
+def _encoding(samples_of: SamplesOf, values_of: ValuesOf, codec: Codec) -> Iterator[Question]:
+    """Yield questions that encode samples, unless their bytes are no text, and other values."""
     for variant in variants_of(codec.table):
-        for sample in samples(variant.variant):
-            yield from _encode_sample(codec, variant, sample)
-        for name, values in between_steps(variant.variant):
+        for sample in samples_of(variant.variant):
+            with suppress(UnicodeDecodeError):
+                values = named_values(variant.variant, sample.raw_values)
+                yield _encode(codec, variant, sample.name, values)
+        for name, values in values_of(variant.variant):
             yield _encode(codec, variant, name, values)
-
-
-def _rejected_values(codec: Codec) -> Iterator[Question]:
-    """Yield values that must be rejected, though the wire could carry most of them."""
-    for variant in variants_of(codec.table):
-        for sample in illegal_samples(variant.variant):
-            yield from _encode_sample(codec, variant, sample)
-        for name, values in wrong_counts(variant.variant):
-            yield _encode(codec, variant, name, values)
-
-
-def _encode_sample(codec: Codec, variant: CommandVariant, sample: Sample) -> Iterator[Question]:
-    """Yield the question that encodes a sample; none if its bytes are no text."""
-    with suppress(UnicodeDecodeError):
-        values = named_values(variant.variant, sample.raw_values)
-        yield _encode(codec, variant, sample.name, values)
 
 
 def _encode(codec: Codec, variant: CommandVariant, name: str, values: Json) -> Question:
@@ -98,27 +89,14 @@ def _encode(codec: Codec, variant: CommandVariant, name: str, values: Json) -> Q
     return Question(f"{case.id}/{variant.label}/{name}", case, command, ask, expect)
 
 
-def _decoding(codec: Codec) -> Iterator[Question]:
-    """Yield legal frames with ordinary values and with their corners."""
+def _decoding(samples_of: SamplesOf, codec: Codec) -> Iterator[Question]:
+    """Yield questions that decode the frames of samples."""
     for variant in variants_of(codec.table):
-        for sample in samples(variant.variant):
-            yield _of_sample(codec, variant, sample)
-
-
-def _rejected_numbers(codec: Codec) -> Iterator[Question]:
-    """Yield frames that hold a number which the edition does not allow."""
-    for variant in variants_of(codec.table):
-        for sample in illegal_samples(variant.variant):
-            yield _of_sample(codec, variant, sample)
-
-
-def _of_sample(codec: Codec, variant: CommandVariant, sample: Sample) -> Question:
-    data = frame_of(
-        codec.table, variant.command.id, variant.variant.pack(sample.raw_values), variant.direction
-    )
-    return decode(
-        codec, variant.direction, variant.command.name, f"{variant.label}/{sample.name}", data
-    )
+        command, direction = variant.command, variant.direction
+        for sample in samples_of(variant.variant):
+            data = variant.variant.pack(sample.raw_values)
+            frame = frame_of(codec.table, command.id, data, direction)
+            yield decode(codec, direction, command.name, f"{variant.label}/{sample.name}", frame)
 
 
 def decode(codec: Codec, direction: Direction, of: str, name: str, data: bytes) -> Question:
@@ -134,28 +112,28 @@ def decode(codec: Codec, direction: Direction, of: str, name: str, data: bytes) 
 ENCODING = Group(
     "encoding",
     (ENCODE_BYTES, ENCODE_REJECTS),
-    _encoding,
+    partial(_encoding, samples, between_steps),
     sends="Ordinary values, corner values, and values between two steps, to be encoded.",
     subject="each variant of each message",
 )
 REJECTED_VALUES = Group(
     "rejected values",
     (ENCODE_REJECTS, ENCODE_BYTES),
-    _rejected_values,
+    partial(_encoding, illegal_samples, wrong_counts),
     sends="Values that are not allowed, and rows with too few and too many numbers, to be encoded.",
     subject="each variant of each message",
 )
 DECODING = Group(
     "decoding",
     (DECODE_VALUES,),
-    _decoding,
+    partial(_decoding, samples),
     sends="Legal frames, to be decoded.",
     subject="each variant of each message",
 )
 REJECTED_NUMBERS = Group(
     "rejected numbers",
     (DECODE_REJECTS, REJECTION_REASON),
-    _rejected_numbers,
+    partial(_decoding, illegal_samples),
     sends="Frames with numbers that are not allowed, to be decoded.",
     subject="each variant of each message",
 )
