@@ -5,7 +5,7 @@ A framer refutes a broken frame byte by byte, so its bytes arrive as several pie
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 
 from cobotwire.codec.interface import Noise
@@ -18,29 +18,22 @@ from cobotwire.simulator.peer import IDLE_SECONDS
 MOST = 40
 
 
-def joined(pieces: Sequence[Received]) -> Iterator[Received]:
-    """Yield the broken frames and the stray bytes that consecutive pieces of noise make up."""
-    whole: Received | None = None
+def joined(pieces: Sequence[Received]) -> list[Received]:
+    """Return the broken frames and the stray bytes that consecutive pieces of noise make up.
+
+    Noise belongs to the frame before it if it begins none, and comes at once.
+    """
+    found: list[Received] = []
     for piece in pieces:
-        if whole is not None and _continues(piece, whole):
-            whole = _longer(whole, piece.data)
-            continue
-        if whole is not None:
-            yield whole
-        whole = piece
-    if whole is not None:
-        yield whole
-
-
-def _continues(piece: Received, whole: Received) -> bool:
-    """Return whether noise belongs to the frame before it: it begins none, and comes at once."""
-    begins = piece.noise is None or piece.noise.reason != "no-header"
-    return not begins and piece.at - whole.at < IDLE_SECONDS
-
-
-def _longer(whole: Received, more: bytes) -> Received:
-    assert isinstance(whole.event, Noise), "only noise is joined"
-    return replace(whole, event=whole.event._replace(data=whole.event.data + more))
+        whole = found[-1] if found else piece
+        assert whole.noise is not None, "only noise is joined"
+        begins = piece is whole or piece.noise is None or piece.noise.reason != "no-header"
+        if begins or piece.at - whole.at >= IDLE_SECONDS:
+            found.append(piece)
+        else:
+            longer = whole.noise._replace(data=whole.data + piece.data)
+            found[-1] = replace(whole, event=longer)
+    return found
 
 
 def meant(table: Table, data: bytes) -> list[Command]:

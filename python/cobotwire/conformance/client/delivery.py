@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 
 from cobotwire.codec.interface import Codec
 from cobotwire.conformance.client.history import REMEMBERED, Received
@@ -49,22 +50,16 @@ def _late(every: int, first: int) -> tuple[Fault, ...]:
 
 
 # The faults of replies by name. ``every`` and ``first`` select the replies.
-FAULTS: Mapping[str, Callable[[int, int], Fault | tuple[Fault, ...]]] = {
-    "lost": lambda every, first: Lost(every=every, first=first),
+FAULTS: Mapping[str, Callable[..., Fault | tuple[Fault, ...]]] = {
+    "lost": Lost,
     "late": _late,
-    "split": lambda every, first: Split(every=every, first=first, seconds=PAUSE_SECONDS),
-    "merged": lambda every, first: Merged(every=every, first=first, at_most_seconds=A_DAY),
-    "noise": lambda every, first: ServoLeak(every=every, first=first, packets=("status",)),
-    "text": lambda every, first: CommandError(
-        every=every, first=first, only="replies", seconds=SOON_SECONDS
-    ),
-    "twice": lambda every, first: Duplicated(every=every, first=first),
-    "event": lambda every, first: UnrequestedEvent(
-        every=every, first=first, only="replies", seconds=SOON_SECONDS
-    ),
-    "address": lambda every, first: OtherAddress(
-        every=every, first=first, only="replies", seconds=SOON_SECONDS
-    ),
+    "split": partial(Split, seconds=PAUSE_SECONDS),
+    "merged": partial(Merged, at_most_seconds=A_DAY),
+    "noise": partial(ServoLeak, packets=("status",)),
+    "text": partial(CommandError, only="replies", seconds=SOON_SECONDS),
+    "twice": Duplicated,
+    "event": partial(UnrequestedEvent, only="replies", seconds=SOON_SECONDS),
+    "address": partial(OtherAddress, only="replies", seconds=SOON_SECONDS),
 }
 
 
@@ -96,7 +91,7 @@ def possible_faults(table: Table) -> list[str]:
 
 def _made(name: str, every: int, first: int) -> tuple[Fault, ...]:
     """Return the faults of a name."""
-    made = FAULTS[name](every, first)
+    made = FAULTS[name](every=every, first=first)
     return (made,) if isinstance(made, Fault) else made
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 
-from cobotwire.conformance.client.groups import frames, resending, timing, values
+from cobotwire.conformance.client.groups import frames, requests
 from cobotwire.conformance.client.history import History, Received
 from cobotwire.conformance.client.script import SCRIPT
 from cobotwire.conformance.suite import Group, Suite
@@ -18,10 +18,10 @@ WITHOUT_SCRIPT: tuple[Group[Check], ...] = (
     frames.FRAMES,
     frames.INTERLEAVED_WRITES,
     frames.TEXTS,
-    resending.RESENDING,
-    resending.POWER,
-    timing.WAITING,
-    timing.LATE_REPLIES,
-    values.VALUES,
+    requests.RESENDING,
+    requests.POWER,
+    requests.WAITING,
+    requests.LATE_REPLIES,
+    frames.VALUES,
 )
 SUITE: Suite[Check | None] = Suite("client", (*WITHOUT_SCRIPT, SCRIPT))

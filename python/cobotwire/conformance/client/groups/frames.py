@@ -1,4 +1,4 @@
-"""A client sends whole, legal frames, one after the other, and nothing else."""
+"""A client sends whole frames with legal values, one after the other, and nothing else."""
 
 from __future__ import annotations
 
@@ -7,9 +7,11 @@ from collections.abc import Iterator, Mapping
 from cobotwire.codec.interface import Codec, NoiseReason
 from cobotwire.conformance.client.broken_frames import described, meant
 from cobotwire.conformance.client.history import History, Received
+from cobotwire.conformance.places import places
 from cobotwire.conformance.suite import Group, TestCase
 from cobotwire.conformance.tally import Observation
 from cobotwire.protocol.errors import ProtocolError
+from cobotwire.protocol.table import Field, Table
 
 FRAMING = "docs/framing.md"
 
@@ -25,6 +27,9 @@ INTERLEAVED = TestCase(
 TEXT_FOLLOWS = TestCase(
     "text-follows", "The text of a request follows it at once.", "spec: request text"
 )
+TABLE = "the edition's table"
+RANGE = TestCase("value-range", "A number is within the range of its field.", TABLE)
+LISTED = TestCase("value-listed", "A value of a closed list is one of the list.", TABLE)
 
 # For each reason of noise: the test case that the bytes fail.
 BY_REASON: Mapping[NoiseReason, TestCase] = {
@@ -114,6 +119,28 @@ def _texts(history: History, now: Received) -> Iterator[Observation]:
         yield missing_text(due)
 
 
+def _values(history: History, now: Received) -> Iterator[Observation]:
+    """Check a frame that is legal except for a value; a wrong scale often shows here."""
+    if now.error is not None:
+        field = _field_at(history.codec.table, now.data, now.error.offset)
+        listed = field is not None and bool(field.choices)
+        yield Observation(LISTED if listed else RANGE, str(now.error))
+    elif now.is_frame:
+        yield from (Observation(RANGE), Observation(LISTED))
+
+
+def _field_at(table: Table, data: bytes, offset: int) -> Field | None:
+    """Return the field at an offset of a frame."""
+    frame = table.frame
+    size = len(frame.data(data))
+    for command in table.commands:
+        for variant in command.request if command.id == frame.read_id(data) else ():
+            for place in places(variant) if variant.size == size else ():
+                if 0 <= offset - frame.data_at - place.start < place.number.width:
+                    return place.field
+    return None
+
+
 FRAMES = Group(
     "frames",
     (LENGTH, ID, FOOTER, ADDRESS, WHOLE, STRAY),
@@ -124,3 +151,4 @@ INTERLEAVED_WRITES = Group(
     "interleaved writes", (INTERLEAVED,), _interleaving, subject="everything that the client sends"
 )
 TEXTS = Group("texts", (TEXT_FOLLOWS,), _texts, subject="each request that a text follows")
+VALUES = Group("values", (RANGE, LISTED), _values, subject="each legal frame")
