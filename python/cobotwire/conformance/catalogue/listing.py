@@ -46,23 +46,13 @@ def selected(table: Table) -> Iterator[Selected]:
 
 def digest() -> str:
     """Return the digest of the catalogue: it changes with every word of every test case."""
-    listed = [
-        [
-            suite.kind,
-            [
-                [
-                    group.name,
-                    sorted(group.permission),
-                    group.sends,
-                    group.subject,
-                    [[case.id, case.purpose, case.source] for case in group.cases],
-                ]
-                for group in suite.groups
-            ],
-        ]
-        for suite in SUITES
-    ]
+    listed = [[suite.kind, [_listed(group) for group in suite.groups]] for suite in SUITES]
     return sha256(json.dumps(listed).encode()).hexdigest()[:SHOWN]
+
+
+def _listed(group: Group[Any]) -> list[object]:
+    cases = [[case.id, case.purpose, case.source] for case in group.cases]
+    return [group.name, sorted(group.permission), group.sends, group.subject, cases]
 
 
 def outdated() -> str:

@@ -123,16 +123,10 @@ def _stream(
         return
     assert isinstance(given, list), "checked before"
     yield Observation(STREAM_FRAMES, _differ(_frames(right), _frames(given)))
-    if len(right) == len(given):
-        late = next((i for i, pair in enumerate(zip(right, given)) if _late(*pair)), None)
-        detail = (
-            ""
-            if late is None
-            else f"chunk {late}: " + _differ(_frames([right[late]]), _frames([given[late]]))
-        )
-        yield Observation(STREAM_CHUNKS, detail)
-    else:
-        yield Observation(STREAM_CHUNKS, f"{len(right)} chunks, but {len(given)} lists of events")
+    differ = (_differ(_frames([a]), _frames([b])) for a, b in zip(right, given))
+    late = next((f"chunk {at}: {detail}" for at, detail in enumerate(differ) if detail), "")
+    counts = f"{len(right)} chunks, but {len(given)} lists of events"
+    yield Observation(STREAM_CHUNKS, late if len(right) == len(given) else counts)
     if "noise" in can:
         yield Observation(STREAM_NOISE, _differ(_noise(right, False), _noise(given, False)))
         if "reasons" in can:
@@ -145,10 +139,6 @@ def _is_stream(given: Any) -> bool:
         and all(isinstance(e, dict) and isinstance(e.get("offset"), int) for e in chunk)
         for chunk in given
     )
-
-
-def _late(right: list[Json], given: list[Json]) -> bool:
-    return _frames([right]) != _frames([given])
 
 
 def _frames(chunks: Sequence[list[Json]]) -> list[str]:

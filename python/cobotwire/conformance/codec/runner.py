@@ -42,12 +42,13 @@ def greet(implementation: Implementation, table: Table) -> Greeting:
     if "error" in hello:
         message = f"the implementation rejected the greeting: {hello['error']}"
         raise UsageError("implementation", message=message)
-    if hello.get("protocol") != PROTOCOL:
-        message = f"the implementation speaks protocol {hello.get('protocol')!r}, not {PROTOCOL}"
-        raise UsageError("implementation", message=message)
-    if hello.get("edition") != table.edition:
-        message = f"the implementation has edition {hello.get('edition')!r}, not {table.edition}"
-        raise UsageError("implementation", message=message)
+    for key, words, right in (
+        ("protocol", "speaks protocol", PROTOCOL),
+        ("edition", "has edition", table.edition),
+    ):
+        if hello.get(key) != right:
+            message = f"the implementation {words} {hello.get(key)!r}, not {right}"
+            raise UsageError("implementation", message=message)
     can = hello.get("can")
     if not isinstance(can, list) or not all(isinstance(word, str) for word in can):
         message = f"the implementation lists {can!r} under can, not words: docs/codec-protocol.md"

@@ -10,7 +10,6 @@ from cobotwire.conformance.codec.questions.frames import (
     DECODE_VALUES,
     DIRECTIONS,
     REJECTION_REASON,
-    CommandVariant,
     decode,
     frame_of,
     ordinary_frame,
@@ -47,13 +46,9 @@ def damages(table: Table, whole: bytes) -> Iterator[tuple[str, bytes]]:
     yield "twice", whole + whole
     yield "byte-in-front", b"\x00" + whole
     yield "header-byte-in-front", whole[:1] + whole
-    other = _other_byte(frame.addresses)
-    if frame.address_at is not None and other is not None:
+    others = (byte for byte in range(256) if byte not in frame.addresses)
+    if frame.address_at is not None and (other := next(others, None)) is not None:
         yield "address", _with(whole, frame.address_at, other)
-
-
-def _other_byte(taken: tuple[int, ...]) -> int | None:
-    return next((byte for byte in range(256) if byte not in taken), None)
 
 
 def _with(data: bytes, index: int, byte: int) -> bytes:
@@ -81,14 +76,11 @@ def _other_commands(codec: Codec) -> Iterator[Question]:
     """Yield each message under the name of a command with another id: it must be rejected."""
     variants = list(variants_of(codec.table))
     for variant in variants:
-        other = next(o for o in variants if _has_other_id(variant, o))
+        direction, id = variant.direction, variant.command.id
+        other = next(o for o in variants if o.direction == direction and o.command.id != id)
         data = ordinary_frame(codec.table, variant)
-        place = f"{variant.label}/as-{other.command.name}"
-        yield decode(codec, variant.direction, other.command.name, place, data)
-
-
-def _has_other_id(variant: CommandVariant, other: CommandVariant) -> bool:
-    return other.direction == variant.direction and other.command.id != variant.command.id
+        name = other.command.name
+        yield decode(codec, direction, name, f"{variant.label}/as-{name}", data)
 
 
 REJECTS = (DECODE_REJECTS, REJECTION_REASON)
