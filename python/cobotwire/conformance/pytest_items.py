@@ -7,14 +7,7 @@ from collections.abc import Callable, Iterator
 import pytest
 
 from cobotwire import editions
-from cobotwire.conformance.device import (
-    DeviceConnection,
-    Permissions,
-    Step,
-    Tester,
-    parse_workspace,
-    words,
-)
+from cobotwire.conformance.device import DeviceConnection, RunOptions, Step
 from cobotwire.conformance.hex_text import evidence_lines
 from cobotwire.conformance.report import Cause, Result, Verdict
 from cobotwire.conformance.sources import spec_lines
@@ -28,20 +21,15 @@ class DeviceUnderTest:
     def __init__(self, config: pytest.Config) -> None:
         edition = config.getoption("--conform-edition") or editions.DEFAULT
         table = editions.load(edition).TABLE
-        space = config.getoption("--conform-workspace")
-        permissions = Permissions.of(
-            words(config.getoption("--conform-allow")),
-            joints=table.joints,
+        options = RunOptions(
+            allow=config.getoption("--conform-allow"),
             max_speed=config.getoption("--conform-max-speed"),
-            workspace=None if space is None else parse_workspace(space, table.joints),
+            workspace=config.getoption("--conform-workspace"),
         )
+        options.validate(table)
         self._transport = open_transport(config.getoption("--conform-device"), table.baudrate)
-        self._tester = Tester(
-            DeviceConnection(self._transport),
-            table,
-            permissions=permissions,
-            sources=spec_lines(edition),
-        )
+        connection = DeviceConnection(self._transport)
+        self._tester = options.tester(connection, table, spec_lines(edition))
         self._results: dict[int, dict[str, Result]] = {}
 
     def items(self, session: pytest.Session) -> Iterator[pytest.Item]:

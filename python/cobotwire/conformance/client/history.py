@@ -54,11 +54,6 @@ class Received:
         return isinstance(self.event, RequestReceived | MalformedRequest)
 
     @property
-    def is_text(self) -> bool:
-        """Whether it is the text after a request."""
-        return isinstance(self.event, TextReceived)
-
-    @property
     def command(self) -> Command | None:
         """The command of a legal request."""
         return self.event.message.command if isinstance(self.event, RequestReceived) else None
@@ -123,7 +118,7 @@ class History:
     def missing_text(self) -> Received | None:
         """Return the newest request if its text has not come yet; else None."""
         for entry in reversed(self.entries):
-            if entry.is_text:
+            if isinstance(entry.event, TextReceived):
                 return None
             if entry.command is not None:
                 return entry if entry.command.request_text is not None else None
