@@ -160,6 +160,22 @@ def test_wrong_value_fails_with_its_field_and_both_values(questions: list[Questi
     assert [exchange.direction for exchange in failure.evidence] == ["sent", "received"]
 
 
+def test_frame_that_is_reported_a_chunk_late_fails_the_test_case_of_chunks(
+    questions: list[Question],
+) -> None:
+    def late(answer: Json) -> Json:
+        if len(answer.get("events", [])) < 2:
+            return answer
+        *first, before, last = answer["events"]
+        return {"events": [[], *first, before + last]}
+
+    report = Run(TABLE, _Changed(late)).ask_all(questions)
+    [failure] = report.failures
+    assert failure.case == "stream-chunks"
+    assert "chunk 0: expected " in failure.reason
+    assert ", got nothing more" in failure.reason
+
+
 def test_answer_may_omit_an_echo_but_no_other_field() -> None:
     def without(name: str) -> Callable[[Json], Json]:
         return lambda answer: (

@@ -98,6 +98,13 @@ def test_report_survives_json(report: Report) -> None:
     assert from_json(to_json(report)) == report
 
 
+@pytest.mark.parametrize("time", ["NaN", "Infinity"])
+def test_report_with_a_time_that_is_not_finite_is_rejected(time: str) -> None:
+    text = to_json(Report("device", "mycobot280", "arm"))
+    with pytest.raises(UsageError, match="is not a time"):
+        from_json(text.replace('"seconds": 0.0', f'"seconds": {time}'))
+
+
 @pytest.mark.parametrize("text", ["", "{}", "[]", '{"format": "other", "version": 1}', "nonsense"])
 def test_text_that_is_not_a_report_is_rejected(text: str) -> None:
     with pytest.raises(UsageError, match="report"):

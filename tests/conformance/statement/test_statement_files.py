@@ -76,6 +76,7 @@ MISTAKES = {
     ),
     "no edition": ("statement: 1\n", "arm.yaml:1:1: the key edition is missing"),
     "later version": ("statement: 2\nedition: mycobot280\n", "statement is 2; allowed: 1"),
+    "no version": ("statement: true\nedition: mycobot280\n", "statement is true; allowed: 1"),
     "family": (
         HEAD + "fitted: {griper: true}",
         "arm.yaml:3:10: fitted has no key griper; did you mean gripper?",
