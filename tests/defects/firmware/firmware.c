@@ -131,6 +131,11 @@ static void send_bytes(const void *data, size_t size)
         }
     }
 #else
+#ifdef DEFECT_NUL_BEFORE_EACH_REPLY
+    if (write(line, "", 1) < 0) {
+        exit(1);
+    }
+#endif
     if (write(line, data, size) < 0) {
         exit(1);
     }
