@@ -9,7 +9,7 @@ import pytest
 from cobotwire import editions
 from cobotwire.conformance.device import DeviceConnection, RunOptions, Step
 from cobotwire.conformance.hex_text import evidence_lines
-from cobotwire.conformance.report import Cause, Result, Verdict
+from cobotwire.conformance.report import Result, Verdict
 from cobotwire.conformance.sources import spec_lines
 from cobotwire.protocol.printable import printable
 from cobotwire.transport import open_transport
