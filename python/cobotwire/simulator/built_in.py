@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Mapping
-from typing import Any
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any, NamedTuple
 
 from cobotwire.protocol.fields import Field
 from cobotwire.protocol.roles import ANGLES, as_reached_query
@@ -16,7 +16,55 @@ from cobotwire.simulator.state import ArmState
 # Turns a minute of one degree a second.
 TURNS_A_MINUTE = 60 / 360
 
-Read = Callable[[ArmState, float, Command, Field, "int | None", Mapping[str, Any]], Any]
+
+class Reported(NamedTuple):
+    """A field of a reply that reports a state.
+
+    Attributes:
+        arm: the arm.
+        now: the time.
+        command: the query.
+        field: the field.
+        which: the joint or axis, counted from 1; None: all of them.
+        given: the arguments.
+    """
+
+    arm: ArmState
+    now: float
+    command: Command
+    field: Field
+    which: int | None
+    given: Mapping[str, Any]
+
+    @property
+    def unit(self) -> str:
+        """The unit of the field."""
+        return unit_of(self.field)
+
+    def one_of(self, values: Sequence[Any]) -> Any:
+        """Return the value of the which; without one, all values.
+
+        Raises:
+            Unanswerable: there is no such value.
+        """
+        if self.which is None:
+            return tuple(values)
+        if self.which > len(values):
+            raise Unanswerable(f"no source says what is reported for joint {self.which}")
+        return values[self.which - 1]
+
+    def place(self, coords: tuple[float, ...] | None) -> Any:
+        """Return coordinates of the end.
+
+        Raises:
+            Unanswerable: the arm has no geometry, or none for this field.
+        """
+        known = self.which is not None or places_of(self.field.cases[0].numbers) is not None
+        if coords is None or not known:
+            raise Unanswerable
+        return self.one_of(coords)
+
+
 Write = Callable[[ArmState, float, Any, "int | None"], None]
 
 
@@ -25,85 +73,44 @@ def unit_of(field: Field) -> str:
     return field.cases[0].numbers[0].unit
 
 
-def _angles(
-    arm: ArmState, now: float, command: Command, field: Field, joint: int | None, given: Any
-) -> Any:
-    if unit_of(field) == "tick":
-        if joint is not None:
-            return arm.encoder(joint - 1, now)
-        return tuple(arm.encoder(each, now) for each in range(arm.joints))
-    return _one(_in_unit(field, arm.reported_angles(arm.angles.position(now))), joint)
+def _angles(shown: Reported) -> Any:
+    arm, now = shown.arm, shown.now
+    if shown.unit != "tick":
+        return _in_unit(shown, arm.angles.position(now))
+    if shown.which is not None:
+        return arm.encoder(shown.which - 1, now)
+    return tuple(arm.encoder(each, now) for each in range(arm.joints))
 
 
-def _planned_angles(
-    arm: ArmState, now: float, command: Command, field: Field, joint: int | None, given: Any
-) -> Any:
-    return _one(_in_unit(field, arm.reported_angles(arm.angles.target(now))), joint)
+def _in_unit(shown: Reported, angles: tuple[float, ...]) -> Any:
+    degrees = shown.arm.reported_angles(angles)
+    return shown.one_of([*map(math.radians, degrees)] if shown.unit == "radian" else degrees)
 
 
-def _in_unit(field: Field, degrees: Iterable[float]) -> tuple[float, ...]:
-    radians = unit_of(field) == "radian"
-    return tuple(map(math.radians, degrees)) if radians else tuple(degrees)
+def _opening(shown: Reported) -> int:
+    arm, now = shown.arm, shown.now
+    return (
+        arm.encoder(arm.joints, now)
+        if shown.unit == "tick"
+        else round(arm.gripper.position(now)[0])
+    )
 
 
-def _one(row: tuple[Any, ...], joint: int | None) -> Any:
-    """Return the value of a joint, counted from 1; without a joint, the row."""
-    if joint is None:
-        return row
-    if joint > len(row):
-        raise Unanswerable(f"no source says what is reported for joint {joint}")
-    return row[joint - 1]
+def _speeds(shown: Reported) -> Any:
+    arm, now = shown.arm, shown.now
+    if shown.unit == "revolution_per_minute":
+        return shown.one_of([round(each * TURNS_A_MINUTE, 2) for each in arm.angles.speed(now)])
+    return shown.one_of(arm.servo_speeds(now))
 
 
-def _coords(
-    arm: ArmState, now: float, command: Command, field: Field, joint: int | None, given: Any
-) -> Any:
-    coords = _answered(arm.reported_coords(arm.standing(now)), field, joint)
-    return _one(coords, joint)
-
-
-def _base_coords(
-    arm: ArmState, now: float, command: Command, field: Field, joint: int | None, given: Any
-) -> Any:
-    return _answered(arm.reported_coords(arm.standing(now), base=True), field)
-
-
-def _planned_coords(
-    arm: ArmState, now: float, command: Command, field: Field, joint: int | None, given: Any
-) -> Any:
-    return _answered(arm.reported_coords(arm.angles.target(now), base=True), field)
-
-
-def _answered(
-    coords: tuple[float, ...] | None, field: Field, axis: int | None = None
-) -> tuple[float, ...]:
-    if coords is None or (axis is None and places_of(field.cases[0].numbers) is None):
-        raise Unanswerable
-    return coords
-
-
-def _opening(
-    arm: ArmState, now: float, command: Command, field: Field, joint: int | None, given: Any
-) -> Any:
-    if unit_of(field) == "tick":
-        return arm.encoder(arm.joints, now)
-    return round(arm.gripper.position(now)[0])
-
-
-def _speeds(
-    arm: ArmState, now: float, command: Command, field: Field, joint: int | None, given: Any
-) -> Any:
-    if unit_of(field) == "revolution_per_minute":
-        return _one(tuple(round(v * TURNS_A_MINUTE, 2) for v in arm.angles.speed(now)), joint)
-    return _one(arm.servo_speeds(now), joint)
-
-
-def _reached(
-    arm: ArmState, now: float, command: Command, field: Field, joint: int | None, given: Any
-) -> bool:
-    query = as_reached_query(command)
-    target, standing, (degrees, millimetres) = given[query.row], arm.standing(now), arm.near
-    kind = given[query.kind] if query.kind else next(iter(query.kinds.values()))
+def _reached(shown: Reported) -> bool:
+    arm, query = shown.arm, as_reached_query(shown.command)
+    target, standing, (degrees, millimetres) = (
+        shown.given[query.row],
+        arm.standing(shown.now),
+        arm.near,
+    )
+    kind = shown.given[query.kind] if query.kind else next(iter(query.kinds.values()))
     if kind == query.kinds.get(ANGLES):
         return all(abs(have - wish) <= degrees for have, wish in zip(standing, target))
     end = arm.end(standing)
@@ -114,48 +121,39 @@ def _reached(
     return way <= millimetres and turn <= degrees + arm.joints * arm.tick_degrees / 2
 
 
-def _held(
-    arm: ArmState, now: float, command: Command, field: Field, joint: int | None, given: Any
-) -> Any:
-    if joint is not None:
-        # The number after the last joint is the gripper's servo, which is always connected.
-        return joint > arm.joints or arm.enabled[joint - 1]
-    return tuple(arm.enabled) if field.many else all(arm.enabled)
+def _held(shown: Reported) -> Any:
+    if shown.which is None and not shown.field.many:
+        return all(shown.arm.enabled)
+    # The number after the last joint is the gripper's servo, which is always connected.
+    return shown.one_of([*shown.arm.enabled, *([True] if shown.which else [])])
 
 
-def _plain(read: Callable[[ArmState, float], Any]) -> Read:
-    """Return the reader of a state that has one value, or one for each joint."""
-
-    def reader(
-        arm: ArmState, now: float, command: Command, field: Field, joint: int | None, given: Any
-    ) -> Any:
-        value = read(arm, now)
-        return _one(tuple(value), joint) if isinstance(value, list) else value
-
-    return reader
+def _attribute(name: str) -> Callable[[Reported], Any]:
+    return lambda shown: getattr(shown.arm, name)
 
 
-READERS: dict[str, Read] = {
+# What the state of the arm holds as it is reported.
+SIMPLE = ("powered", "free", "paused", "connected", "error", "starts")
+READERS: dict[str, Callable[[Reported], Any]] = {
     "angles": _angles,
-    "planned_angles": _planned_angles,
-    "coords": _coords,
-    "base_coords": _base_coords,
-    "planned_coords": _planned_coords,
+    "planned_angles": lambda shown: _in_unit(shown, shown.arm.angles.target(shown.now)),
+    "coords": lambda shown: shown.place(shown.arm.reported_coords(shown.arm.standing(shown.now))),
+    "base_coords": lambda shown: shown.place(
+        shown.arm.reported_coords(shown.arm.standing(shown.now), base=True)
+    ),
+    "planned_coords": lambda shown: shown.place(
+        shown.arm.reported_coords(shown.arm.angles.target(shown.now), base=True)
+    ),
     "opening": _opening,
     "speeds": _speeds,
     "reached": _reached,
     "held": _held,
     # A braking arm still moves; one that is led by hand does not move by itself.
-    "moving": _plain(lambda arm, now: arm.angles.moving(now) and not arm.released),
-    "gripper_moving": _plain(lambda arm, now: arm.gripper.moving(now)),
-    "powered": _plain(lambda arm, now: arm.powered),
-    "free": _plain(lambda arm, now: arm.free),
-    "paused": _plain(lambda arm, now: arm.paused),
-    "connected": _plain(lambda arm, now: arm.connected),
-    "error": _plain(lambda arm, now: arm.error),
-    "lowest": _plain(lambda arm, now: arm.minimum),
-    "highest": _plain(lambda arm, now: arm.maximum),
-    "starts": _plain(lambda arm, now: arm.starts),
+    "moving": lambda shown: shown.arm.angles.moving(shown.now) and not shown.arm.released,
+    "gripper_moving": lambda shown: shown.arm.gripper.moving(shown.now),
+    "lowest": lambda shown: shown.one_of(shown.arm.minimum),
+    "highest": lambda shown: shown.one_of(shown.arm.maximum),
+    **{name: _attribute(name) for name in SIMPLE},
 }
 
 

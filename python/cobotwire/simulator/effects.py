@@ -28,7 +28,7 @@ from cobotwire.protocol.effects import (
 )
 from cobotwire.protocol.fields import Field, named_fields
 from cobotwire.protocol.table import Command, Table
-from cobotwire.simulator.built_in import READERS, WRITERS, after_writing
+from cobotwire.simulator.built_in import READERS, WRITERS, Reported, after_writing
 from cobotwire.simulator.kinematics import Effort
 from cobotwire.simulator.moves import move
 from cobotwire.simulator.replies import Unanswerable
@@ -129,7 +129,8 @@ def _read(asked: Asked, name: str, state: str, at: Sequence[str]) -> Any:
     if state in READERS:
         index = asked.fields[at[0]] if at else None
         assert field is not None, "a built-in state is no text"
-        return READERS[state](asked.arm, asked.now, asked.command, field, index, asked.fields)
+        arm, now, command, fields = asked.arm, asked.now, asked.command, asked.fields
+        return READERS[state](Reported(arm, now, command, field, index, fields))
     declared = states_of(asked.table)[state]
     if not declared.each:
         return asked.arm.kept[state]
