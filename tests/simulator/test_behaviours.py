@@ -1,4 +1,4 @@
-"""Devices of other packages: their behaviours, and what is remembered without any."""
+"""Devices of other packages: their behaviours, and what they do without any."""
 
 from __future__ import annotations
 

@@ -40,12 +40,15 @@ types:
     number: {{wire: byte, range: [0, 9], doc: A number.}}
   texts:
     name: {{size: 3, doc: A name.}}
+state:
+  number: {{type: number}}
 commands:
   set_number:
-    {{id: 1, title: Set, doc: Sets., safety: setting, read_by: get_number,
+    {{id: 1, title: Set, doc: Sets., safety: setting, effect: {{stores: number}},
      request: [{{name: number, type: number}}]}}
   get_number:
-    {{id: 2, title: Get, doc: Gets., safety: query, reply: [{{name: number, type: number}}]}}
+    {{id: 2, title: Get, doc: Gets., safety: query, effect: {{reports: number}},
+     reply: [{{name: number, type: number}}]}}
   get_name: {{id: 3, title: Get, doc: Gets., safety: query, reply: [{{name: name, type: name}}]}}
   get_register:
     {{id: 5, title: Get, doc: Gets., safety: query, request: [{{name: register, type: number}}],
