@@ -115,7 +115,7 @@ def _type(field: Field, values: Mapping[str, object]) -> Type:
     """Return the type of a field in a message with these values."""
     if not field.selector:
         return field.type
-    picked = str(values[field.selector])
+    picked = str(values.get(field.selector))
     return next((type for member, type in field.cases if member.name == picked), field.type)
 
 
