@@ -72,18 +72,19 @@ class Altered:
 
 # An interrupted run does not restore the power, since an arm without power would fall.
 HELD = ("powered",)
-# State that is not a setting (the arm's position, history and build), and the colour of the light,
-# which no query reports.
-NOT_SET = (
-    *("angles", "gripper", "enabled", "connected", "error", "remarks", "geometry", "record_at"),
-    "colour",
-)
+# State that is not a setting: the arm's position, history and build.
+NOT_SET = ("angles", "gripper", "enabled", "connected", "error", "remarks", "geometry", "record_at")
+# The colour of the light, which no query reports.
+NOT_REPORTED = ("red", "green", "blue")
 
 
 def settings_of(arm: SimulatedArm, *, but: tuple[str, ...] = ()) -> dict[str, object]:
     """Return a copy of everything that can be set, except ``but``, by name."""
-    state = vars(arm.state).copy()
+    state = {name: v for name, v in vars(arm.state).items() if name not in (*NOT_SET, *but)}
+    kept = {name: v for name, v in arm.state.kept.items() if name not in NOT_REPORTED}
     # A low pin is equivalent to a pin that was never set.
-    for name in ("pins", "basic_pins"):
-        state[name] = sorted(pin for pin, high in state[name].items() if high)
-    return deepcopy({name: state[name] for name in state if name not in (*NOT_SET, *but)})
+    state["kept"] = {
+        name: {index: v for index, v in value.items() if v} if isinstance(value, dict) else value
+        for name, value in kept.items()
+    }
+    return deepcopy(state)

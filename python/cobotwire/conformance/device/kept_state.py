@@ -22,7 +22,7 @@ from cobotwire.conformance.device.read_back import (
     read_spot,
     settings_of,
 )
-from cobotwire.conformance.device.requests import arguments_of, gentle
+from cobotwire.conformance.device.requests import arguments_of, gentle, values_text
 from cobotwire.conformance.hex_text import shown
 from cobotwire.protocol.messages import Reply, Request
 from cobotwire.protocol.table import Command, Table
@@ -162,7 +162,7 @@ class KeptState:
         sent, spot.since = spot.since, []
         if now is None or now == spot.value:
             return ""
-        change = f"expected {spot} to stay {_plain(spot.value)}; came {_plain(now)}"
+        change = f"expected {spot} to stay {values_text(spot.value)}; came {values_text(now)}"
         cause = self._find(spot, sent) if self._searches < SEARCHES else None
         self._searches += 1
         self._set_again(spot)
@@ -191,10 +191,6 @@ class KeptState:
             # It is reported once; what comes later is compared with the new value.
             spot.value = now
         return False
-
-
-def _plain(reply: Reply[Any]) -> str:
-    return ", ".join(f"{name} {value}" for name, value in reply.fields.items())
 
 
 def _queries(table: Table) -> list[list[tuple[Setting | None, Request[Any]]]]:

@@ -9,7 +9,6 @@ from typing import Any
 from cobotwire.conformance.device.device import Device, NotSupported
 from cobotwire.conformance.device.permissions import Range
 from cobotwire.conformance.device.read_back import setter_of
-from cobotwire.conformance.device.response import ReceivedReply
 from cobotwire.protocol.messages import Request
 from cobotwire.protocol.roles import row_index, targets_request
 from cobotwire.protocol.table import Command, Role, Table
@@ -121,8 +120,17 @@ class Mover:
         """Let time pass without a request."""
         self.device.rest(seconds)
 
+    def place(self) -> Pose | None:
+        """Return the joints' angles, in degrees; None if no valid reply comes."""
+        reply = self.device.read(self.joints.request_type())
+        return None if reply is None else tuple(reply.result)
+
     def angles(self) -> Pose:
-        """Return the joints' angles, in degrees."""
+        """Return the joints' angles, in degrees.
+
+        Raises:
+            NotSupported: no valid reply comes.
+        """
         return tuple(self.device.require(self.joints.request_type()).result)
 
     def differences(self, wanted: Pose) -> list[str]:
@@ -134,7 +142,8 @@ class Mover:
         response = self.device.request(self.joints.request_type())
         if response.valid is None and response.replies:
             return [f"{self.joints.name}: expected legal values; {response.replies[0].error}"]
-        pose = self.angles() if response.valid is None else _pose(response.valid)
+        message = response.valid and response.valid.message
+        pose = tuple(message.result) if message else self.angles()
         wrong = off_by(pose, wanted, self.tolerance)
         again = self.angles() if wrong else pose
         if wrong and not off_by(again, wanted, self.tolerance):
@@ -157,11 +166,6 @@ class Mover:
         inside = all(low <= angle <= high for angle, (low, high) in zip(pose, ranges))
         if inside and "pose" not in self.device.restore_at_end:
             self.device.restore_at_end["pose"] = lambda: self.go(pose)
-
-
-def _pose(reply: ReceivedReply) -> Pose:
-    assert reply.message is not None, "a valid reply has a message"
-    return tuple(reply.message.result)
 
 
 def off_by(pose: Pose, wanted: Pose, tolerance: float, why: str = "sent to") -> list[str]:

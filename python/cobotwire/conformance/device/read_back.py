@@ -14,10 +14,12 @@ from cobotwire.conformance.device.requests import (
     limits_of,
     requests,
 )
+from cobotwire.conformance.device.selection import judged, reporter
 from cobotwire.conformance.mistakes import Pair, likely_mistake
 from cobotwire.conformance.places import numbers_of
 from cobotwire.conformance.samples.physical import setting_values, takes_whole
 from cobotwire.conformance.samples.raw import Limits
+from cobotwire.protocol.effects import Cases, Stores
 from cobotwire.protocol.fields import named_fields
 from cobotwire.protocol.messages import Reply, Request
 from cobotwire.protocol.table import Command, Field, Number, Table, Variant
@@ -31,7 +33,9 @@ class Setting:
     """One variant of a command, and the variant of the query that reports what it has set.
 
     ``pairs`` are the reply's fields with the arguments that they report. The query's arguments, if
-    it has any, choose what is read, such as a joint; the setting has them too.
+    it has any, choose what is read, such as a joint; the setting has them too. If the query reports
+    several numbers, ``part`` has the argument that names the one which is set, and ``place`` is its
+    index in the row, if they are a row.
     """
 
     command: Command
@@ -39,6 +43,8 @@ class Setting:
     query: Command
     query_variant: Variant
     pairs: tuple[tuple[str, str], ...]
+    part: tuple[tuple[str, int], ...] = ()
+    place: int | None = None
 
     @property
     def queries(self) -> list[Request[Any]]:
@@ -79,8 +85,8 @@ class Setting:
 
     def _reported(self, reply: Reply[Any]) -> dict[str, Any]:
         """Return what a reply reports, by argument and in the units of the wire."""
-        fields = reply.fields
-        return {argument: fields[name] for name, argument in self.pairs}
+        fields = {argument: reply.fields[name] for name, argument in self.pairs}
+        return {name: v if self.place is None else v[self.place] for name, v in fields.items()}
 
     def _request(self, query: Request[Any], values: Mapping[str, Any], speed: int) -> Request[Any]:
         """Return the request that sets ``values`` of what ``query`` reads.
@@ -89,7 +95,7 @@ class Setting:
         """
         speeds = {f.name: speed for f in self.variant.fields if _is_speed(f) and not f.many}
         return self.command.request_type.from_fields(
-            {**gentle_values(self.variant), **speeds, **query.fields, **values}
+            {**gentle_values(self.variant), **speeds, **query.fields, **dict(self.part), **values}
         )
 
     def differences(
@@ -139,7 +145,8 @@ class Setting:
             if field.name == reported
         ]
         # A reply may have a narrow and a wide variant; the arm uses the one with enough room.
-        return max(rows, key=lambda numbers: numbers[0].maximum)
+        row = max(rows, key=lambda numbers: numbers[0].maximum)
+        return row if self.place is None else row[self.place : self.place + 1]
 
 
 @dataclass(frozen=True, slots=True)
@@ -156,7 +163,15 @@ class Spot:
     obstacle: str = ""
 
     def __str__(self) -> str:
-        return f"{self.old.command}({arguments_of(self.query)})"
+        part = ", ".join(f"{name}={value}" for name, value in self.setting.part)
+        return f"{self.old.command}({part or arguments_of(self.query)})"
+
+    @property
+    def index(self) -> tuple[Any, ...]:
+        """What tells it from its neighbours: others with it set the same in another encoding."""
+        effect = judged(self.setting.command)
+        at = effect.at if isinstance(effect, Stores) else ()
+        return tuple(self.old.fields[name] for name in at) or (self.query, self.setting.part)
 
     @property
     def samples(self) -> list[Request[Any]]:
@@ -197,7 +212,9 @@ def restorable_spot(
 def settings_of(table: Table, command: Command) -> list[Setting]:
     """Return the variants of a command that a query reads back; none if its effect is fixed."""
     back = command.read_by
-    if back is None or fixed_effect(table, command):
+    if back is None:
+        return list(_parts(table, command))
+    if fixed_effect(table, command):
         return []
     query = next((each for each in table.commands if each.name == back.query), None)
     found: list[Setting] = []
@@ -209,6 +226,30 @@ def settings_of(table: Table, command: Command) -> list[Setting]:
         if query_variant is not None and pairs:
             found.append(Setting(command, variant, query, query_variant, pairs))
     return found
+
+
+def _parts(table: Table, command: Command) -> Iterator[Setting]:
+    """Yield the settings of a command that sets one of several numbers, which a query reports.
+
+    An argument names one number of a row, or is the selector of what is stored.
+    """
+    effect, variant = judged(command), command.request[0]
+    if isinstance(effect, Cases):
+        for raw, case in effect.cases.items():
+            for argument, state in case.values.items() if isinstance(case, Stores) else ():
+                if found := reporter(table, state):
+                    query, part = found.query, ((effect.selector, raw),)
+                    pairs = ((found.field, argument),)
+                    yield Setting(command, variant, query, query.request[0], pairs, part)
+    if isinstance(effect, Stores) and len(effect.values) == len(effect.at) == 1:
+        [(argument, state)], [at] = effect.values.items(), effect.at
+        if found := reporter(table, state):
+            most = named_fields((variant,))[at][0].cases[0].numbers[0].maximum
+            row = named_fields(found.query.reply)[found.field][0].cases[0].numbers
+            for place in range(min(len(row), most)):
+                query, part = found.query, ((at, place + 1),)
+                pairs = ((found.field, argument),)
+                yield Setting(command, variant, query, query.request[0], pairs, part, place)
 
 
 def _of_corner_sizes(variants: tuple[Variant, ...]) -> Iterator[Variant]:

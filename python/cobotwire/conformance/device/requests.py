@@ -10,7 +10,7 @@ from cobotwire.conformance.samples.physical import revealing as revealing
 from cobotwire.conformance.samples.raw import Known as Known
 from cobotwire.conformance.samples.raw import Limits, harmless_values, plainest
 from cobotwire.conformance.samples.raw import units as units
-from cobotwire.protocol.messages import Request
+from cobotwire.protocol.messages import Reply, Request
 from cobotwire.protocol.table import Command, Variant
 
 
@@ -32,6 +32,13 @@ def _typed(command: Command, fields: Mapping[str, Any]) -> Request[Any]:
     return command.request_type.from_fields(
         {name: tuple(v) if isinstance(v, list) else v for name, v in fields.items()}
     )
+
+
+def values_text(reply: Reply[Any] | None) -> str:
+    """Return the values of a reply as a person writes them: ``joint 1, angle 20.0``."""
+    if reply is None:
+        return "no reply"
+    return ", ".join(f"{name} {value}" for name, value in reply.fields.items())
 
 
 def flag_text(query: Command, value: bool | None) -> str:

@@ -17,7 +17,7 @@ from cobotwire.conformance.device.groups.motion import (
 )
 from cobotwire.conformance.device.mover import Mover, Pose
 from cobotwire.conformance.device.probe import Probe, with_row
-from cobotwire.conformance.device.read_back import Setting, settings_of
+from cobotwire.conformance.device.read_back import settings_of
 from cobotwire.conformance.device.requests import as_row
 from cobotwire.conformance.device.selection import does, reporter, reporters
 from cobotwire.conformance.suite import Group
@@ -41,15 +41,21 @@ def _moving(table: Table, command: Command) -> Command | None:
 def _reports_moving(probe: Probe, moving: Command) -> None:
     """Expect the query to report motion on the way, and no motion at the target."""
     mover, motion = Mover(probe.device), settings_of(probe.device.table, probe.command)[-1]
-    position = motion.query.request_type()
-    reported, argument = motion.pairs[0]
-    observed = []
+    position, (reported, argument) = motion.query.request_type(), motion.pairs[0]
+    old = probe.device.require(position)
+    here, observed = as_row(old.fields[reported]), []
 
-    def place() -> Pose:
-        return as_row(probe.device.require(position).fields[reported])
+    def distance(target: Request[Any]) -> float:
+        pairs = zip(as_row(target.fields[argument]), here)
+        return max(abs(float(one) - float(other)) for one, other in pairs)
 
-    for target in _ends(probe, motion, position, min(SLOW, mover.speed)):
-        start, end = place(), as_row(target.fields[argument])
+    def place() -> Pose | None:
+        reply = probe.device.read(position)
+        return None if reply is None else as_row(reply.fields[reported])
+
+    between = motion.samples(position, old, min(SLOW, mover.speed))[:2]
+    for target in sorted(between, key=distance, reverse=True):
+        start, end = place() or here, as_row(target.fields[argument])
         probe.device.request(target)
         way = Motion(place, start, end, NEAR["percent"])
         observed.append(expect_on_the_way(probe, moving, way))
@@ -57,18 +63,6 @@ def _reports_moving(probe: Probe, moving: Command) -> None:
         expect_rest(probe, moving)
     if not any(observed):
         probe.not_timed(MOVING, ARRIVED)
-
-
-def _ends(probe: Probe, motion: Setting, position: Request[Any], speed: int) -> list[Request[Any]]:
-    """Return requests for two values apart from each other, the one further away first."""
-    old = probe.device.require(position)
-    reported, argument = motion.pairs[0]
-
-    def distance(sample: Request[Any]) -> float:
-        pairs = zip(as_row(sample.fields[argument]), as_row(old.fields[reported]))
-        return max(abs(float(one) - float(other)) for one, other in pairs)
-
-    return sorted(motion.samples(position, old, speed)[:2], key=distance, reverse=True)
 
 
 def opens(table: Table, command: Command) -> Cases | None:

@@ -51,7 +51,7 @@ def _to_poses(probe: Probe) -> None:
         pose, other = mover.pose(which), mover.pose(1 - which)
         mover.go(other)
         request_change(probe, request_of(probe.command, pose, mover.speed))
-        motion = Motion(mover.angles, other, pose, mover.tolerance)
+        motion = Motion(mover.place, other, pose, mover.tolerance)
         observed.append(expect_on_the_way(probe, moving, motion))
         mover.wait()
         wrong = mover.differences(pose)
@@ -131,10 +131,11 @@ def resume(probe: Probe) -> None:
 class Motion(NamedTuple):
     """A motion that has just been requested: what reads its place, where from and where to.
 
-    ``near`` is how far from a place its readings may be.
+    ``place`` returns None if the reply is not legal; ``near`` is how far from a place its readings
+    may be.
     """
 
-    place: Callable[[], Pose]
+    place: Callable[[], Pose | None]
     start: Pose
     target: Pose
     near: float
@@ -152,7 +153,7 @@ def expect_on_the_way(probe: Probe, query: Command | None, motion: Motion) -> bo
     while query is not None and device.connection.now < until:
         sent_at, reported = device.connection.now, device.is_set(query.request_type())
         place = motion.place()
-        if not off_by(place, motion.target, motion.near):
+        if place is None or not off_by(place, motion.target, motion.near):
             break
         if left_at is None:
             left_at = device.connection.now if off_by(place, motion.start, motion.near) else None

@@ -81,7 +81,7 @@ def _set_off(mover: Mover) -> Motion:
     start, target = mover.pose(0), mover.pose(1)
     mover.go(start)
     mover.device.request(mover.to(target, 1))
-    return Motion(mover.angles, start, target, mover.tolerance)
+    return Motion(mover.place, start, target, mover.tolerance)
 
 
 def _stays_on_the_way(probe: Probe, mover: Mover, case: TestCase) -> bool:

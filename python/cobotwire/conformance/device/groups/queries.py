@@ -112,12 +112,18 @@ def _query_with_power(probe: Probe) -> None:
     give_power(device)
     if was_off and POWER in device.restore_at_end:
         device.connection.clock.sleep(SETTLES)
-    query = _every(probe)[-1]
-    first = device.request(query).valid
-    again = None if first is None else device.request(query).valid
-    if first is None or again is None:
+    if not request_twice(probe, _every(probe)[-1]):
         raise NotSupported(f"{probe.command.name} reports nothing")
-    expect_repetition(probe, probe.command, first, again)
+
+
+def request_twice(probe: Probe, query: Request[Any]) -> bool:
+    """Compare the replies to a query and its repetition; return whether both are valid."""
+    first = probe.device.request(query).valid
+    again = first and probe.device.request(query).valid
+    if first is None or again is None:
+        return False
+    expect_repetition(probe, probe.device.table.command(query.command), first, again)
+    return True
 
 
 def sample_of(device: Device, command: Command) -> Request[Any]:

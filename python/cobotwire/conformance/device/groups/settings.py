@@ -21,13 +21,13 @@ from cobotwire.conformance.device.groups.malformed import (
 from cobotwire.conformance.device.malformed_sender import KEPT
 from cobotwire.conformance.device.probe import Probe, with_row
 from cobotwire.conformance.device.read_back import Spot, read_spot, restorable_spot, settings_of
-from cobotwire.conformance.device.requests import arguments_of
+from cobotwire.conformance.device.requests import arguments_of, values_text
 from cobotwire.conformance.device.selection import reported, reporters
 from cobotwire.conformance.hex_text import shown
 from cobotwire.conformance.places import places
 from cobotwire.conformance.suite import Group, TestCase
 from cobotwire.protocol.effects import Stores, effect_of
-from cobotwire.protocol.messages import Reply, Request
+from cobotwire.protocol.messages import Request
 from cobotwire.protocol.table import Command, Table
 
 READ_BACK = TestCase("read-back", "What was set is what is read.")
@@ -50,9 +50,14 @@ def _is_setting(table: Table, command: Command) -> bool:
 def _set_and_read(probe: Probe) -> None:
     """Back up, set several values for each joint, pin or register, read all, restore."""
     device, may_lose = probe.device, "irreversible" in probe.device.permissions.classes
-    for setting in settings_of(device.table, probe.command):
+    settings = settings_of(device.table, probe.command)
+    # The parts of a row are neighbours; variants set the same.
+    sets = [settings] if settings[0].part else [[setting] for setting in settings]
+    for together in sets:
         spots = [
-            restorable_spot(device, setting, query, or_lost=may_lose) for query in setting.queries
+            restorable_spot(device, setting, query, or_lost=may_lose)
+            for setting in together
+            for query in setting.queries
         ]
         if len(spots) == 1:
             probe.drop(NEIGHBOURS)
@@ -82,7 +87,7 @@ def _try(probe: Probe, spot: Spot, spots: list[Spot]) -> None:
         probe.expect(REPLIED, not failed, reason)
         for other in spots if index == 0 else ():
             # What cannot be restored no longer has its old value.
-            if other is not spot and not other.obstacle:
+            if other.index != spot.index and not other.obstacle:
                 _expect(probe, NEIGHBOURS, other, other.old, f"after {spot}: ")
     if not spot.obstacle:
         _set(probe, spot.old)
@@ -108,6 +113,9 @@ def _forbidden(probe: Probe) -> None:
     """
     device = probe.device
     for setting in settings_of(device.table, probe.command):
+        if setting.place:
+            # What holds for the first part holds for the others.
+            continue
         spot = restorable_spot(device, setting, setting.queries[0])
         device.restore_after_body[probe.command.name] = partial(device.request, spot.old)
         for present in spot.samples[:2]:
@@ -160,8 +168,8 @@ def _others_stay(probe: Probe) -> None:
         second = [*spot.others, spot.old][1]
         device.request(second)
         changed = [
-            f"{other.query.command}({arguments_of(other.query)}) from {_plain(before[each])} to "
-            f"{_plain(now)}"
+            f"{other.query.command}({arguments_of(other.query)}) from "
+            f"{values_text(before[each])} to {values_text(now)}"
             for each, other in spots.items()
             if each != name and before[each] is not None
             if (now := device.read(other.query)) != before[each]
@@ -171,12 +179,6 @@ def _others_stay(probe: Probe) -> None:
         # What has changed with it is set again.
         for each in spots.values() if changed else (spot,):
             device.request(each.others[0])
-
-
-def _plain(reply: Reply[Any] | None) -> str:
-    if reply is None:
-        return "no reply"
-    return ", ".join(f"{name} {value}" for name, value in reply.fields.items())
 
 
 def is_shown(table: Table, command: Command) -> Command | None:

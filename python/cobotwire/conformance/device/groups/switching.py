@@ -14,8 +14,8 @@ from cobotwire.conformance.device.groups.changes import (
 from cobotwire.conformance.device.groups.queries import (
     REPEATS,
     SETTLES,
-    expect_repetition,
     is_framed_query,
+    request_twice,
 )
 from cobotwire.conformance.device.groups.settings import NEIGHBOURS
 from cobotwire.conformance.device.mover import Mover, give_power
@@ -110,10 +110,7 @@ def _expect_steady_replies(probe: Probe) -> None:
     device.rest(SETTLES)
     for query in device.table.commands:
         if is_framed_query(device.table, query) and not query.request[0].fields:
-            first = device.request(query.request_type()).valid
-            again = first and device.request(query.request_type()).valid
-            if first is not None and again is not None:
-                expect_repetition(probe, query, first, again)
+            request_twice(probe, query.request_type())
 
 
 def _send(probe: Probe, command: Command) -> bool:
