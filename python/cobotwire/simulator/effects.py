@@ -23,6 +23,7 @@ from cobotwire.protocol.effects import (
     Stores,
     Unknown,
     Zeroes,
+    each_case,
     effect_of,
     states_of,
 )
@@ -107,8 +108,10 @@ def _keep_or_recall(asked: Asked, effect: Effect) -> dict[str, Any]:
 
 def begin(table: Table, arm: ArmState) -> None:
     """Give every state its value at the start."""
+    effects = (effect for command in table.commands for effect in each_case(effect_of(command)))
+    lists = {effect.state for effect in effects if isinstance(effect, Lists)}
     for name, state in states_of(table).items():
-        arm.kept[name] = {} if state.each else state.initial
+        arm.kept[name] = [] if name in lists else {} if state.each else state.initial
     if REGISTERS in arm.kept:
         # One servo more than joints: newer firmware counts the gripper's servo as the last.
         arm.kept[REGISTERS] = {
@@ -223,10 +226,7 @@ def _does(asked: Asked, effect: Does) -> None:
 
 
 def _lists(asked: Asked, effect: Lists) -> dict[str, Any] | None:
-    kept = asked.arm.kept
-    if not isinstance(kept.get(effect.state), list):
-        kept[effect.state] = []
-    values: list[Any] = kept[effect.state]
+    values: list[Any] = asked.arm.kept[effect.state]
     if effect.append:
         if len(values) < MOST_VALUES:
             given = asked.fields[effect.append]

@@ -121,9 +121,7 @@ class ArmState:
     @property
     def points(self) -> list[Any]:
         """The recorded points: each has the encoder and the speed of each joint in turn."""
-        if not isinstance(self.kept.get("points"), list):
-            self.kept["points"] = []
-        points: list[Any] = self.kept["points"]
+        points: list[Any] = self.kept.setdefault("points", [])
         return points
 
     @property

@@ -52,7 +52,7 @@ def test_run_restores_what_it_changes(edition: str) -> None:
 
 # A change of each kind of value: plain, in a row, in a dict of a list, in a dict of a dict.
 CHANGES: list[Callable[[ArmState], object]] = [
-    lambda state: state.kept.update(speed=state.kept["speed"] + 1),
+    lambda state: state.kept.update(fresh_mode=1 - state.kept["fresh_mode"]),
     lambda state: state.kept.update(tool=(*state.kept["tool"][:5], 0.1)),
     lambda state: state.minimum.append(state.minimum.pop() + 0.1),
     lambda state: state.kept["registers"].update({(4, 21): 11}),
