@@ -89,7 +89,7 @@ def test_reference_reads_back_as_sent_also_where_a_tenth_arrives(
         getattr(found.peer, f"set_{which}_reference")(reference)
         assert getattr(found.peer, f"get_{which}_reference")() == reference
         arrived = [*(factor * each for each in reference[:3]), *reference[3:]]
-        assert getattr(found.arm.state, which) == pytest.approx(arrived)
+        assert found.arm.state.kept[which] == pytest.approx(arrived)
 
 
 def test_joint_limit_arrives_ten_times_too_small_and_reads_back_too_small() -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import shutil
 import subprocess
 import xml.etree.ElementTree as ET
@@ -147,7 +148,8 @@ def _fill(item: Item, parent: ET.Element, edition: str) -> None:
 
 def _groups(element: ET.Element) -> bool:
     """Return whether an element only groups others; a list may have none."""
-    name = element.get("name", "").removesuffix("_group")
+    # A name that stands for values of several sorts ends with the sort.
+    name = re.sub(r"_(group|number|bytes|text)$", "", element.get("name", ""))
     inner = any(each.get("name", "").startswith(f"{name}.") for each in element.iter())
     return inner or name == TEXT or element.get("showname", "").endswith(": nothing")
 
