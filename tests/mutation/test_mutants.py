@@ -67,6 +67,24 @@ def test_setting_that_is_lost_after_malformed_bytes_is_named(after: str) -> None
     assert "get_speed() to stay" in outcome.killed_by
 
 
+# Numbers of a row that are set one by one, of a selector, and joints that are held one by one.
+@pytest.mark.parametrize(
+    ("mutant", "killer"),
+    [
+        (
+            "order: get_collision_threshold.thresholds: last element first",
+            "set_collision_threshold",
+        ),
+        ("wrong part: set_model_direction.joint: the next part instead", "set_model_direction"),
+        ("stored wrong: set_limit_switch.on: as the next legal value", "set_limit_switch"),
+        ("wrong part: focus_servo.joint: the next part instead", "focus_servo"),
+    ],
+)
+def test_wrong_part_of_what_a_command_sets_is_named(mutant: str, killer: str) -> None:
+    outcome = made(Key("device", "mercury_a1")).judge(mutant)
+    assert outcome.killed_by.startswith(killer)
+
+
 # Of unknown geometry; with a check value, events and fields of bytes; with addresses.
 @pytest.mark.parametrize("edition", ["mypalletizer260", "mercury_a1", "mybuddy"])
 def test_wrong_frame_of_another_edition_is_killed_or_excused(edition: str) -> None:
