@@ -4,17 +4,18 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
-from cobotwire.conformance.device.device import NotSupported
+from cobotwire.conformance.device.device import Device, NotSupported
 from cobotwire.conformance.device.mover import POSES, Mover, angle_tolerance
-from cobotwire.conformance.device.probe import Probe
-from cobotwire.conformance.device.requests import as_row, request_of, units
+from cobotwire.conformance.device.probe import Probe, with_row
+from cobotwire.conformance.device.requests import as_row, request_of
 from cobotwire.conformance.device.same_pose import is_same_pose
 from cobotwire.conformance.device.selection import does
 from cobotwire.conformance.mistakes import ANOTHER_ORDER, Pair, likely_mistake
 from cobotwire.conformance.places import places
 from cobotwire.conformance.suite import Group, TestCase
 from cobotwire.protocol.effects import Computes
-from cobotwire.protocol.table import Command, Number, Table
+from cobotwire.protocol.messages import Request
+from cobotwire.protocol.table import Command, Number, Role, Table
 
 AGREES = TestCase("agrees", "While the arm rests, queries of the same quantity agree.")
 
@@ -47,19 +48,21 @@ def _agree(probe: Probe) -> None:
         mover.go(mover.pose(0))
     for name in probe.command.agrees_with:
         other = probe.device.table.command(name)
-        theirs = _reading(probe, other)
+        theirs = _reading(probe, other.request_type())
         if probe.command.request[0].fields:
             theirs = theirs[: probe.device.table.joints]
-            parts = enumerate(theirs, 1)
-            mine = [_matching(_reading(probe, probe.command, part), [one]) for part, one in parts]
+            queries = [request_of(probe.command, part) for part in range(1, len(theirs) + 1)]
+            mine = [_matching(_reading(probe, q), [one]) for q, one in zip(queries, theirs)]
             pairs = [(found[0], one) for found, one in zip(mine, theirs) if found]
         else:
-            pairs = list(zip(_matching(_reading(probe, probe.command), theirs), theirs))
+            pairs = list(
+                zip(_matching(_reading(probe, probe.command.request_type()), theirs), theirs)
+            )
         if pairs:
             _compare(probe, other, pairs)
 
 
-def _reading(probe: Probe, query: Command, *values: Any) -> list[_Part]:
+def _reading(probe: Probe, query: Request[Any]) -> list[_Part]:
     """Return the numbers of a query's reply, but not those that repeat its arguments.
 
     A reply with values that are not allowed agrees with nothing.
@@ -67,16 +70,16 @@ def _reading(probe: Probe, query: Command, *values: Any) -> list[_Part]:
     Raises:
         NotSupported: no valid reply comes.
     """
-    response = probe.device.request(request_of(query, *values))
+    response = probe.device.request(query)
     valid = response.valid
     if valid is None and response.replies:
         call = probe.device.requester.describe(response.request)
         error = response.replies[0].error
         probe.expect(AGREES, False, f"{call}: expected legal values; {error or response.summary}")
     if valid is None or valid.decoded is None:
-        raise NotSupported(f"{query.name} reports nothing")
+        raise NotSupported(f"{query.command} reports nothing")
     fields = valid.decoded.fields
-    of = f"({', '.join(map(str, values))})" if values else ""
+    of = f"({', '.join(map(str, query.values))})" if query.values else ""
     return [
         _Part(place.name + of, place.number, as_row(fields[place.field.name])[place.element])
         for place in places(valid.decoded.variant)
@@ -139,31 +142,42 @@ def _matching(mine: list[_Part], theirs: list[_Part]) -> list[_Part]:
 # The tolerance between calculated and reported rows, by unit: joints rest on ticks. Angles that
 # differ by more may still be the same pose.
 CALCULATED = {"degree": 3.0, "millimetre": 2.5}
+# The roles of the queries that report what is calculated.
+PLACES: dict[str, Role] = {"angles": "joints", "coords": "coordinates"}
+COMPUTES = does(Computes)
 
 
-def _calculate(probe: Probe) -> None:
+def _calculate(probe: Probe, computes: Computes) -> None:
     """Calculate with the arm's position: the result must be the arm's position."""
-    mover = Mover(probe.device) if probe.device.permissions.workspace else None
+    device = probe.device
+    mover = Mover(device) if device.permissions.workspace else None
     for which in range(len(POSES)) if mover else (0,):
         if mover:
             mover.go(mover.pose(which))
-        known = probe.device.known()
-        given = [field.cases[0].numbers for field in probe.command.request[0].fields]
-        if not all(known.get(units(numbers)) for numbers in given):
+        known = {name: _position(device, role) for name, role in PLACES.items()}
+        given = {computes.source: known["coords" if computes.what == "angles" else "angles"]}
+        if computes.near:
+            given[computes.near] = known["angles"]
+        right = known[computes.what]
+        if not right or not all(given.values()):
             raise NotSupported("no query reports where the arm is")
-        mine = _reading(probe, probe.command, *(known[units(numbers)] for numbers in given))
-        reported = known.get(tuple(part.unit for part in mine))
-        if not reported:
-            raise NotSupported("no query reports what it calculates")
+        mine = _reading(probe, probe.command.request_type.from_fields(given))
         wrong = [
             f"{part.name} is {part.value} {part.unit}, but the arm is at {actual}"
-            for part, actual in zip(mine, reported)
+            for part, actual in zip(mine, right)
             if abs(part.value - actual) > CALCULATED[part.unit]
         ]
-        values, is_end = [part.value for part in mine], mine[0].unit == "millimetre"
-        if wrong and not is_end and is_same_pose(probe.device.table, values, reported):
+        values = [part.value for part in mine]
+        if wrong and computes.what == "angles" and is_same_pose(device.table, values, right):
             continue
         probe.expect(AGREES, not wrong, f"{probe.command.name}: {'; '.join(wrong)}")
+
+
+def _position(device: Device, role: Role) -> tuple[float, ...]:
+    """Return the row that the query in a role reports; empty if none comes."""
+    query = device.command(role)
+    reply = None if query is None else device.read(query.request_type())
+    return () if reply is None else tuple(reply.result)
 
 
 AGREEMENT = Group(
@@ -177,8 +191,8 @@ AGREEMENT = Group(
 CALCULATION = Group(
     "calculation",
     (AGREES,),
-    _calculate,
-    does(Computes),
+    with_row(COMPUTES, _calculate),
+    COMPUTES,
     sends=(
         "The calculation with the position that the arm reports, at several poses if motion "
         "is permitted."

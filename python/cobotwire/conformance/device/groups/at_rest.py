@@ -6,15 +6,15 @@ from collections.abc import Sequence
 
 from cobotwire.conformance.device.device import NotSupported
 from cobotwire.conformance.device.groups.motion import REACHED
-from cobotwire.conformance.device.probe import Probe
+from cobotwire.conformance.device.probe import Probe, with_row
 from cobotwire.conformance.device.requests import request_of, units
 from cobotwire.conformance.device.selection import reported, reporters
 from cobotwire.conformance.mistakes import Pair, likely_mistake
 from cobotwire.conformance.suite import Group, TestCase
-from cobotwire.protocol.roles import ANGLES, COORDS, KINDS, ReachedQuery, as_reached_query
+from cobotwire.protocol.roles import ANGLES, COORDS, KINDS, as_reached_query
 from cobotwire.protocol.table import Command, Table
 from cobotwire.simulator.kinematics.forward import coords_of
-from cobotwire.simulator.kinematics.geometry import geometry_of
+from cobotwire.simulator.kinematics.geometry import Geometry, geometry_of
 from cobotwire.simulator.kinematics.pose import Pose
 
 GEOMETRY = TestCase(
@@ -24,7 +24,7 @@ LIMITS = TestCase("limits", "The joints' limits have the scale of those that the
 
 COORDINATES = (*3 * ("millimetre",), *3 * ("degree",))
 # The links of an arm differ a little from those that the edition states.
-NEAR_MILLIMETRES, NEAR_DEGREES = 15.0, 5.0
+NEAR = {"millimetre": 15.0, "degree": 5.0}
 # Far from the present value, in the units of angles and of coordinates.
 FAR = {"degree": 25.0, "millimetre": 60.0}
 LIMIT_STATES = {"lowest", "highest"}
@@ -32,25 +32,21 @@ LIMIT_STATES = {"lowest", "highest"}
 FACTORS = (0.01, 0.1, 10.0, 100.0)
 
 
-def _has_geometry(table: Table, command: Command) -> bool:
-    """Return whether a query reports coordinates that the edition's links determine."""
-    joints = table.find_role("joints")
-    return (
-        command.role == "coordinates"
-        and joints is not None
-        and geometry_of(table) is not None
-        and units(command.reply[0].fields[0].cases[0].numbers) == COORDINATES
-    )
+def _stated_geometry(table: Table, command: Command) -> Geometry | None:
+    """Return the links of the edition, if they determine the coordinates that a query reports."""
+    if command.role != "coordinates" or table.find_role("joints") is None:
+        return None
+    row = units(command.reply[0].fields[0].cases[0].numbers)
+    return geometry_of(table) if row == COORDINATES else None
 
 
-def _geometry(probe: Probe) -> None:
+def _geometry(probe: Probe, geometry: Geometry) -> None:
     """Compare the coordinates with those of the angles."""
-    device, table = probe.device, probe.device.table
-    geometry, joints = geometry_of(table), table.in_role("joints")
-    assert geometry is not None, "the group selects editions with a geometry"
+    device, field = probe.device, probe.command.reply[0].fields[0]
+    joints = device.table.in_role("joints")
     for state, label in (("reference_frame", "the base"), ("end_type", "the flange")):
         # The first choice is the default.
-        for query in (each.query for each in reporters(table, state)):
+        for query in (each.query for each in reporters(device.table, state)):
             reply = device.read(query.request_type())
             if reply is not None and any(reply.fields.values()):
                 raise NotSupported(f"the coordinates are not those of {label}: see {query.name}")
@@ -62,25 +58,14 @@ def _geometry(probe: Probe) -> None:
         f"{joints.name} reports {_short(angles)}, so the end is at {_short(right)}; "
         f"{probe.command.name} reports {_short(reported)}"
     )
-    if mistake := likely_mistake(_pairs(probe.command, right, reported)):
-        reason += f": if {joints.name} is right, {probe.command.name} has {mistake}"
-    probe.expect(GEOMETRY, apart <= NEAR_MILLIMETRES and turned <= NEAR_DEGREES, reason)
-
-
-def _pairs(query: Command, right: Sequence[float], came: Sequence[float]) -> list[Pair]:
-    """Return the calculated coordinates with those that a query reports."""
-    field = query.reply[0].fields[0]
-    near = {"millimetre": NEAR_MILLIMETRES, "degree": NEAR_DEGREES}
-    return [
-        Pair(
-            f"{field.name}.{number.name}",
-            a,
-            b,
-            near[number.unit],
-            number,
-        )
-        for number, a, b in zip(field.cases[0].numbers, right, came)
+    pairs = [
+        Pair(f"{field.name}.{number.name}", a, b, NEAR[number.unit], number)
+        for number, a, b in zip(field.cases[0].numbers, right, reported)
     ]
+    if mistake := likely_mistake(pairs):
+        reason += f": if {joints.name} is right, {probe.command.name} has {mistake}"
+    near = apart <= NEAR["millimetre"] and turned <= NEAR["degree"]
+    probe.expect(GEOMETRY, near, reason)
 
 
 def _is_reached_query(table: Table, command: Command) -> bool:
@@ -92,12 +77,10 @@ def _is_reached_query(table: Table, command: Command) -> bool:
 
 def _angle(table: Table) -> Command | None:
     """Return the query of one joint's angle, in degrees."""
-    queries = (each.query for each in reporters(table, "angles") if each.at)
-    return next((query for query in queries if query.reply_type and _unit(query) == "degree"), None)
-
-
-def _unit(query: Command) -> str:
-    return query.reply[0].fields[-1].cases[0].numbers[0].unit
+    for query in (each.query for each in reporters(table, "angles") if each.at):
+        if query.reply[0].fields[-1].cases[0].numbers[0].unit == "degree":
+            return query
+    return None
 
 
 def _reached_by_one(probe: Probe) -> None:
@@ -122,19 +105,13 @@ def _reached(probe: Probe) -> None:
         reply = None if source is None else probe.device.read(source.request_type())
         if source is None or reply is None:
             continue
-        here = tuple(reply.result)
-        parts = source.reply[0].fields[0].cases[0].numbers
-        _expect(probe, query, kind, here, True)
-        for at, number in enumerate(parts):
+        here, targets = tuple(reply.result), [(tuple(reply.result), True)]
+        for at, number in enumerate(source.reply[0].fields[0].cases[0].numbers):
             away = FAR[number.unit] if here[at] <= 0 else -FAR[number.unit]
-            _expect(probe, query, kind, (*here[:at], here[at] + away, *here[at + 1 :]), False)
-
-
-def _expect(
-    probe: Probe, query: ReachedQuery, kind: str, target: Sequence[float], there: bool
-) -> None:
-    call = f"at rest, {probe.command.name}({_short(target)}, {kind})"
-    probe.expect_flag(REACHED, query.request(target, kind), there, call)
+            targets.append(((*here[:at], here[at] + away, *here[at + 1 :]), False))
+        for target, there in targets:
+            call = f"at rest, {probe.command.name}({_short(target)}, {kind})"
+            probe.expect_flag(REACHED, query.request(target, kind), there, call)
 
 
 def _reports_limits(table: Table, command: Command) -> bool:
@@ -164,8 +141,8 @@ def _short(numbers: Sequence[float]) -> str:
 GEOMETRIES = Group(
     "geometry",
     (GEOMETRY,),
-    _geometry,
-    _has_geometry,
+    with_row(_stated_geometry, _geometry),
+    _stated_geometry,
     sends="The queries of the joints, the coordinates and the frames.",
     subject="the query of the coordinates, if the edition states the links of the arm",
 )
