@@ -11,14 +11,14 @@ from itertools import pairwise
 from random import Random
 
 from cobotwire.conformance.device.device import NotSupported
-from cobotwire.conformance.device.groups.queries import is_query, sample_of
+from cobotwire.conformance.device.groups.queries import is_framed_query, sample_of
 from cobotwire.conformance.device.malformed_sender import (
     KEPT,
     RECOVERS,
     MalformedSender,
     expect_one_reply,
 )
-from cobotwire.conformance.device.probe import Probe
+from cobotwire.conformance.device.probe import Probe, with_row
 from cobotwire.conformance.hex_text import shown
 from cobotwire.conformance.places import Place, places
 from cobotwire.conformance.suite import Group, TestCase
@@ -40,13 +40,13 @@ OUT_OF_RANGE = TestCase("out-of-range", "A request with a value that is not allo
 UNKNOWN_ID = TestCase("unknown-id", "A request with an id that the edition lacks is ignored.")
 NOISE_BEFORE = TestCase("noise-before", "A request after noise is replied to.")
 TOGETHER = TestCase("two-in-one-write", "Requests in one write are all replied to, in order.")
+IN_ORDER = TestCase(
+    "replies-in-order",
+    "Requests of different commands in one write are replied to in their order.",
+)
 PIECES = TestCase(
     "request-in-pieces", "A request in pieces with pauses is replied to like a whole one."
 )
-
-
-def _is_framed_query(table: Table, command: Command) -> bool:
-    return is_query(table, command) and bool(command.reply)
 
 
 def _damaged(probe: Probe) -> None:
@@ -81,7 +81,7 @@ def _damages(frame: FrameFormat, data: bytes) -> Iterator[tuple[TestCase, str, b
 
 def _can_be_out_of_range(table: Table, command: Command) -> bool:
     """Return whether bytes can express arguments that the edition does not allow."""
-    return _is_framed_query(table, command) and any(map(forbidden, places(command.request[0])))
+    return is_framed_query(table, command) and any(map(forbidden, places(command.request[0])))
 
 
 def _out_of_range(probe: Probe) -> None:
@@ -185,10 +185,51 @@ def _together(probe: Probe, request: EncodedRequest) -> None:
         probe.expect(TOGETHER, complete, reason)
 
 
+def _other(table: Table, command: Command) -> Command | None:
+    """Return another query without arguments, which is not slow and which the device has.
+
+    None: there is none, or replies do not name the command.
+    """
+    if not table.frame.reply_has_id or not is_framed_query(table, command):
+        return None
+    plain = (c for c in table.commands if is_framed_query(table, c) and not c.request[0].fields)
+    others = [query for query in plain if query.id != command.id]
+    return min(others, key=lambda query: query.deadline_ms, default=None)
+
+
+def _ordered(probe: Probe, other: Command) -> None:
+    """Send the query before another one, and after it."""
+    device = probe.device
+    first = sample_of(device, probe.command)
+    # A query that has no reply fails elsewhere.
+    device.require(first)
+    mine, theirs = (device.requester.prepare(r) for r in (first, other.request_type()))
+    for pair in ((mine, theirs), (theirs, mine)):
+        names = " and ".join(each.command.name for each in pair)
+        start = device.connection.mark
+        data = pair[0].frame + pair[1].frame
+        response = device.count(device.requester.send_instead(mine, data, names))
+        if not response.replies or not response.others:
+            deadline = max(mine.command.deadline_ms, theirs.command.deadline_ms) / 1000
+            device.requester.listen(response, deadline)
+        came = device.connection.received_since(start)
+        right = [each.command.id for each in pair]
+        frames = [reply.data for reply in response.replies] + [f.data for f in response.others]
+        frames.sort(key=came.find)
+        ids = [device.table.frame.read_id(frame) for frame in frames]
+        reason = f"{names} in one write: expected a reply to each, in this order; came "
+        reason += "; ".join(map(shown, frames)) or "nothing"
+        if ids == right[::-1]:
+            reason += ": in the other order"
+        elif ids == right[:1]:
+            reason += f": {pair[1].command.name} had no reply"
+        probe.expect(IN_ORDER, ids == right, reason)
+
+
 def _unknown_ids(probe: Probe) -> None:
     """Send ids that the edition lacks, with and without data."""
     table = probe.device.edition
-    queries = (c for c in probe.device.table.commands if _is_framed_query(table, c))
+    queries = (c for c in probe.device.table.commands if is_framed_query(table, c))
     carrier = next(query for query in queries if not query.request[0].fields)
     request = probe.device.requester.prepare(carrier.request_type())
     sender = MalformedSender(probe, request)
@@ -210,7 +251,7 @@ DAMAGED = Group(
     "damaged requests",
     (WRONG_LENGTH, WRONG_FOOTER, CUT, RECOVERS, KEPT),
     _damaged,
-    _is_framed_query,
+    is_framed_query,
     MALFORMED,
     sends=(
         "The query with LEN one too large and too small, a data byte too many, a wrong "
@@ -234,13 +275,22 @@ CROWDED = Group(
     "crowded requests",
     (PIECES, TOGETHER, NOISE_BEFORE, KEPT),
     _crowded,
-    _is_framed_query,
+    is_framed_query,
     MALFORMED,
     sends=(
         "The query one byte at a time; twice and three times in one write; after packets of the "
         "servo bus, text and bytes of a header."
     ),
     subject="each query with a framed reply",
+)
+ORDERED = Group(
+    "requests of two commands",
+    (IN_ORDER,),
+    with_row(_other, _ordered),
+    _other,
+    MALFORMED,
+    sends="The query and another one in one write, in both orders.",
+    subject="each query with a framed reply that has an id",
 )
 UNKNOWN_IDS = Group(
     "unknown ids",
