@@ -11,7 +11,7 @@ from cobotwire.conformance.device.kept_state import KeptState
 from cobotwire.conformance.device.permissions import class_of
 from cobotwire.conformance.device.requests import flag_text
 from cobotwire.conformance.report import Cause, Result
-from cobotwire.conformance.suite import Group, TestCase
+from cobotwire.conformance.suite import Group, Selects, TestCase
 from cobotwire.conformance.tally import Evidence, Tally
 from cobotwire.protocol.messages import Request
 from cobotwire.protocol.table import Command, Table
@@ -108,8 +108,10 @@ Row = TypeVar("Row")
 RowBody = Callable[[Probe, Row], None]
 
 
-def with_row(find: Callable[[Table, Command], Row | None], body: RowBody[Row]) -> Body:
-    """Return a body that is given the row which ``find`` has for the command, and selects it by."""
+def for_rows(
+    find: Callable[[Table, Command], Row | None], body: RowBody[Row]
+) -> tuple[Body, Selects]:
+    """Return a body, and what selects its commands: those for which ``find`` has a row."""
 
     def run(probe: Probe) -> None:
         row = find(probe.device.table, probe.command)
@@ -117,7 +119,7 @@ def with_row(find: Callable[[Table, Command], Row | None], body: RowBody[Row]) -
             raise NotSupported("the device lacks a command without which this cannot be observed")
         body(probe, row)
 
-    return run
+    return run, find
 
 
 def needed(group: Group[Body], command: Command | None) -> frozenset[str]:

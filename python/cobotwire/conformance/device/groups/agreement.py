@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 
 from cobotwire.conformance.device.device import Device, NotSupported
 from cobotwire.conformance.device.mover import POSES, Mover, angle_tolerance
-from cobotwire.conformance.device.probe import Probe, with_row
+from cobotwire.conformance.device.probe import Probe, for_rows
 from cobotwire.conformance.device.requests import as_row, request_of
 from cobotwire.conformance.device.same_pose import is_same_pose
 from cobotwire.conformance.device.selection import does
@@ -191,8 +191,7 @@ AGREEMENT = Group(
 CALCULATION = Group(
     "calculation",
     (AGREES,),
-    with_row(COMPUTES, _calculate),
-    COMPUTES,
+    *for_rows(COMPUTES, _calculate),
     sends=(
         "The calculation with the position that the arm reports, at several poses if motion "
         "is permitted."

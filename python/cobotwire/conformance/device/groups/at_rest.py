@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from cobotwire.conformance.device.device import NotSupported
 from cobotwire.conformance.device.groups.motion import REACHED
-from cobotwire.conformance.device.probe import Probe, with_row
+from cobotwire.conformance.device.probe import Probe, for_rows
 from cobotwire.conformance.device.requests import request_of, units
 from cobotwire.conformance.device.selection import reported, reporters
 from cobotwire.conformance.mistakes import Pair, likely_mistake
@@ -141,8 +141,7 @@ def _short(numbers: Sequence[float]) -> str:
 GEOMETRIES = Group(
     "geometry",
     (GEOMETRY,),
-    with_row(_stated_geometry, _geometry),
-    _stated_geometry,
+    *for_rows(_stated_geometry, _geometry),
     sends="The queries of the joints, the coordinates and the frames.",
     subject="the query of the coordinates, if the edition states the links of the arm",
 )

@@ -16,7 +16,7 @@ from cobotwire.conformance.device.groups.motion import (
     is_replayed,
 )
 from cobotwire.conformance.device.mover import Mover, Pose
-from cobotwire.conformance.device.probe import Probe, with_row
+from cobotwire.conformance.device.probe import Probe, for_rows
 from cobotwire.conformance.device.read_back import settings_of
 from cobotwire.conformance.device.requests import as_row
 from cobotwire.conformance.device.selection import does, reporter, reporters
@@ -100,16 +100,14 @@ def _open_and_close(probe: Probe, cases: Cases) -> None:
 GRIPPER_MOVES = Group(
     "gripper moves",
     (MOVING,),
-    with_row(_moving, _reports_moving),
-    _moving,
+    *for_rows(_moving, _reports_moving),
     sends="Two positions of the gripper; whether it moves is read on the way and at the end.",
     subject="each motion of a gripper that a query reports as moving",
 )
 GRIPPER_OPENS = Group(
     "gripper opens",
     (ARRIVES, *AFTER_CHANGE),
-    with_row(opens, _open_and_close),
-    opens,
+    *for_rows(opens, _open_and_close),
     sends="Open and close, twice; the opening is read after each.",
     subject="each command that opens and closes a gripper",
 )

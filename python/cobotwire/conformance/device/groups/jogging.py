@@ -10,7 +10,7 @@ from cobotwire.conformance.device.device import NotSupported
 from cobotwire.conformance.device.groups.changes import AFTER_CHANGE, request_change
 from cobotwire.conformance.device.groups.motion import ARRIVES, STOPS, UNDER_WAY, resume
 from cobotwire.conformance.device.mover import POLL, POSES, Mover
-from cobotwire.conformance.device.probe import Probe, with_row
+from cobotwire.conformance.device.probe import Probe, for_rows
 from cobotwire.conformance.device.selection import does, first
 from cobotwire.conformance.suite import Group
 from cobotwire.protocol.effects import Does, Moves
@@ -213,24 +213,21 @@ def _not_so(parts: _Parts, at: int | None, direction: int, moved: Sequence[float
 COORDINATES = Group(
     "single coordinates",
     (ARRIVES, *AFTER_CHANGE),
-    with_row(TO_COORDINATE, _nearby),
-    TO_COORDINATE,
+    *for_rows(TO_COORDINATE, _nearby),
     sends="A target a short distance up and down along or about each axis.",
     subject="the command that moves the end to one coordinate",
 )
 STEPS = Group(
     "steps",
     (ARRIVES, *AFTER_CHANGE),
-    with_row(STEPPING, _nearby),
-    STEPPING,
+    *for_rows(STEPPING, _nearby),
     sends="A step up and down for each joint or axis.",
     subject="each motion by a distance",
 )
 JOGS = Group(
     "jogs",
     (ARRIVES, STOPS, *AFTER_CHANGE),
-    with_row(JOGGING, _jogs),
-    JOGGING,
+    *for_rows(JOGGING, _jogs),
     sends="A short jog in both directions for each joint or axis, and a stop.",
     subject="each motion in a direction",
 )

@@ -18,7 +18,7 @@ from cobotwire.conformance.device.malformed_sender import (
     MalformedSender,
     expect_one_reply,
 )
-from cobotwire.conformance.device.probe import Probe, with_row
+from cobotwire.conformance.device.probe import Probe, for_rows
 from cobotwire.conformance.hex_text import shown
 from cobotwire.conformance.places import Place, places
 from cobotwire.conformance.suite import Group, TestCase
@@ -286,8 +286,7 @@ CROWDED = Group(
 ORDERED = Group(
     "requests of two commands",
     (IN_ORDER,),
-    with_row(_other, _ordered),
-    _other,
+    *for_rows(_other, _ordered),
     MALFORMED,
     sends="The query and another one in one write, in both orders.",
     subject="each query with a framed reply that has an id",

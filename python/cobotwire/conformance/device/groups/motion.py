@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 
 from cobotwire.conformance.device.groups.changes import AFTER_CHANGE, request_change
 from cobotwire.conformance.device.mover import Mover, Pose, off_by
-from cobotwire.conformance.device.probe import Probe, with_row
+from cobotwire.conformance.device.probe import Probe, for_rows
 from cobotwire.conformance.device.read_back import (
     Setting,
     Spot,
@@ -258,8 +258,7 @@ REPLAYS = Group(
 LIMITS_KEPT = Group(
     "limits kept",
     (KEEPS,),
-    with_row(_limit, _keeps),
-    _limit,
+    *for_rows(_limit, _keeps),
     frozenset({"motion"}),
     sends="A limit near the first and the last joint, and a motion beyond it; then the old limit.",
     subject="each command that sets a limit of the joints which a query reads",

@@ -21,7 +21,7 @@ from cobotwire.conformance.device.groups.motion import (
 )
 from cobotwire.conformance.device.groups.switching import EFFECT
 from cobotwire.conformance.device.mover import POLL, Mover, Pose, off_by
-from cobotwire.conformance.device.probe import Probe, with_row
+from cobotwire.conformance.device.probe import Probe, for_rows
 from cobotwire.conformance.device.requests import request_of
 from cobotwire.conformance.device.selection import does, first, has_role, stored
 from cobotwire.conformance.suite import Group, TestCase
@@ -314,8 +314,7 @@ STOPPING = Group(
 PAUSING = Group(
     "pauses",
     (PAUSES, ARRIVES, *AFTER_CHANGE),
-    with_row(_resuming, _pause),
-    _resuming,
+    *for_rows(_resuming, _pause),
     sends="A slow motion, the pause on its way, and the command that resumes.",
     subject="the command that pauses, if another one resumes",
 )
@@ -330,8 +329,7 @@ SPEEDS = Group(
 REPORTED_SPEEDS = Group(
     "reported speeds",
     (REPORTED,),
-    with_row(_speeds, _reported),
-    _speeds,
+    *for_rows(_speeds, _reported),
     frozenset({"motion"}),
     sends="The query on the way of three slow motions of some of the joints, and at rest.",
     subject="each query of the joints' speeds, if the edition says how large their unit is",

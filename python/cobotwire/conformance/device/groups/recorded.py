@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 from cobotwire.conformance.device.device import NotSupported
 from cobotwire.conformance.device.groups.changes import AFTER_CHANGE, request_change
-from cobotwire.conformance.device.probe import Probe, with_row
+from cobotwire.conformance.device.probe import Probe, for_rows
 from cobotwire.conformance.device.requests import as_row, request_of, revealing
 from cobotwire.conformance.device.selection import does, first
 from cobotwire.conformance.suite import Group, TestCase
@@ -100,8 +100,7 @@ def _restore(probe: Probe, points: _List, own: list[tuple[float, ...]]) -> None:
 RECORDED = Group(
     "recorded points",
     (IN_ORDER, *AFTER_CHANGE),
-    with_row(_list, _in_order),
-    _list,
+    *for_rows(_list, _in_order),
     sends="Points that differ in each part, one by one; the number of points; each point.",
     subject="the command that adds a point, if another one reads it and one counts them",
 )

@@ -11,7 +11,7 @@ from functools import partial
 from typing import NamedTuple
 
 from cobotwire.conformance.device.device import NotSupported
-from cobotwire.conformance.device.probe import Probe, with_row
+from cobotwire.conformance.device.probe import Probe, for_rows
 from cobotwire.conformance.device.read_back import Setting, restorable_spot, settings_of
 from cobotwire.conformance.device.requests import request_of
 from cobotwire.conformance.device.selection import first, stored
@@ -107,8 +107,7 @@ def _short(vector: Vector) -> str:
 REFERENCES = Group(
     "references",
     (SHIFTS,),
-    with_row(_reference, _shifts),
-    _reference,
+    *for_rows(_reference, _shifts),
     sends="A reference of 40 mm along each axis; the coordinates are read with and without it.",
     subject="each setting that takes coordinates, if another one makes the arm use it",
 )

@@ -19,7 +19,7 @@ from cobotwire.conformance.device.groups.malformed import (
     wrong_values,
 )
 from cobotwire.conformance.device.malformed_sender import KEPT
-from cobotwire.conformance.device.probe import Probe, with_row
+from cobotwire.conformance.device.probe import Probe, for_rows
 from cobotwire.conformance.device.read_back import Spot, read_spot, restorable_spot, settings_of
 from cobotwire.conformance.device.requests import arguments_of, values_text
 from cobotwire.conformance.device.selection import reported, reporters
@@ -239,8 +239,7 @@ FORBIDDEN_SETTINGS = Group(
 SHOWN_AMONG = Group(
     "set among others",
     (AMONG, *AFTER_CHANGE),
-    with_row(is_shown, _set_among),
-    is_shown,
+    *for_rows(is_shown, _set_among),
     sends="Two values, and the query after each.",
     subject="each setting whose query reports several numbers, without saying which one is set",
 )

@@ -19,7 +19,7 @@ from cobotwire.conformance.device.groups.queries import (
 )
 from cobotwire.conformance.device.groups.settings import NEIGHBOURS
 from cobotwire.conformance.device.mover import Mover, give_power
-from cobotwire.conformance.device.probe import Probe, with_row
+from cobotwire.conformance.device.probe import Probe, for_rows
 from cobotwire.conformance.device.read_back import (
     Fixed,
     fixed_effect,
@@ -209,8 +209,7 @@ def _set_off(probe: Probe, mover: Mover, query: Command) -> None:
 SWITCHES = Group(
     "switches",
     (EFFECT, DONE, *AFTER_CHANGE_OR_REPLY, REPEATS),
-    with_row(_switch_of, _switch),
-    _switch_of,
+    *for_rows(_switch_of, _switch),
     sends=(
         "The command that sets the opposite state, then the command itself, then the one "
         "that restores the state. Without power, each query without arguments, twice."
@@ -220,16 +219,14 @@ SWITCHES = Group(
 HOLDING = Group(
     "single parts",
     (EFFECT, NEIGHBOURS, *AFTER_CHANGE),
-    with_row(_part_of, _switch_each),
-    _part_of,
+    *for_rows(_part_of, _switch_each),
     sends="The opposite state for all parts, then the command for each part in turn.",
     subject="each command that switches one part, if a query reports the state of each",
 )
 CALIBRATION = Group(
     "calibrations",
     (EFFECT, NEIGHBOURS, *AFTER_CHANGE_OR_REPLY),
-    with_row(_calibration, _calibrate),
-    _calibration,
+    *for_rows(_calibration, _calibrate),
     frozenset({"irreversible"}),
     sends="The calibration for each part, at a pose that is not zero.",
     subject="each permanent command that gives a position a fixed number",
