@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Container, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
 
 from cobotwire import codec as codecs
@@ -15,13 +15,12 @@ from cobotwire.conformance.device.device import (
 )
 from cobotwire.conformance.device.permissions import Permissions
 from cobotwire.conformance.device.plan import Plan, Step
-from cobotwire.conformance.device.probe import Body, Probe, Run, needed
+from cobotwire.conformance.device.probe import Probe, Run, needed
 from cobotwire.conformance.device.read_as import sent_last
 from cobotwire.conformance.device.requester import Timing
 from cobotwire.conformance.device.suite import SUITE
 from cobotwire.conformance.report import Cause, Report, Result, Verdict
 from cobotwire.conformance.statement import Statement
-from cobotwire.conformance.suite import Group
 from cobotwire.conformance.tally import Tally, merged
 from cobotwire.protocol.addresses import find_address
 from cobotwire.protocol.errors import LinkError, UsageError
@@ -119,11 +118,6 @@ class Tester:
                 if not command.event and group.selects(self.table, command):
                     yield Step(group, command)
 
-    def _selects(self, group: Group[Body], command: Command) -> bool:
-        """Return whether a group can test a command by the commands that the device has."""
-        own, selects = self._own(command), group.selects
-        return own is not None and selects is not None and bool(selects(self.device.table, own))
-
     def _own(self, command: Command) -> Command | None:
         """Return a command that refers to none that the device lacks; None if it lacks this one."""
         return next((c for c in self.device.table.commands if c.name == command.name), None)
@@ -213,11 +207,13 @@ class Tester:
         """Return why the statement deselects a step; empty: it does not."""
         if step.command is None or step.group.declared:
             return ""
-        reason = self._statement.deselected(step.command)
-        if reason or self._selects(step.group, step.command):
+        reason, own = self._statement.deselected(step.command), self._own(step.command)
+        if reason:
             return reason
-        if self._own(step.command) is None:
+        if own is None:
             return f"The device lacks {step.command.name}, which is optional."
+        if step.group.selects and step.group.selects(self.device.table, own):
+            return ""
         return "The device lacks another command, without which this cannot be observed."
 
     def _probe(self, step: Step) -> Probe:
@@ -242,12 +238,29 @@ class Tester:
             raise
         finally:
             self.device.restore_after_body.run()
-        found = [
-            _excused(result, self.device.noticed.reply_seconds, self._optional, self._lacking)
-            for result in probe.results(unsupported)
-        ]
+        found = [self._excused(result) for result in probe.results(unsupported)]
         # What passed until the device fell silent may not have been observed to its end.
-        return [_cut_short(result, self._ended) for result in found] if self._ended else found
+        return [self._cut_short(result) for result in found] if self._ended else found
+
+    def _excused(self, result: Result) -> Result:
+        """Turn a failure by silence into not supported, if the device may lack the command."""
+        if result.verdict is not Verdict.FAIL:
+            return result
+        silent = any(words in result.reason for words in SILENCE)
+        stated = self._lacking.get(result.command, "") if silent else ""
+        never = not self.device.noticed.reply_seconds.get(result.command)
+        if not stated and not (never and result.command in self._optional):
+            return result
+        reason = f"The device states: {stated}." if stated else result.reason
+        cause = Cause.NOT_SUPPORTED
+        return replace(result, verdict=cause.verdict, cause=cause, reason=reason)
+
+    def _cut_short(self, result: Result) -> Result:
+        """Return a failure as it is, and anything else as not run."""
+        if result.verdict is Verdict.FAIL:
+            return result
+        cause, reason = Cause.RUN_ENDED, f"{self._ended}."
+        return replace(result, verdict=cause.verdict, cause=cause, reason=reason, evidence=())
 
     def _halt(self) -> None:
         """Stop the arm. An arm that has not come to rest is not sent back, and keeps its power."""
@@ -276,37 +289,3 @@ class Tester:
         reply = None if query is None else self.device.read(query.request_type())
         if reply is not None:
             self.report.firmware = str(reply.result)
-
-
-def _excused(
-    result: Result,
-    reply_seconds: Mapping[str, list[float]],
-    optional: Container[str],
-    lacking: Mapping[str, str],
-) -> Result:
-    """Turn a failure by silence into not supported, if the device may lack the command.
-
-    Args:
-        result: the result.
-        reply_seconds: the times of all valid replies, by command.
-        optional: the commands that the device may lack altogether.
-        lacking: what the device states that it does not support: by command, the reason.
-    """
-    if result.verdict is not Verdict.FAIL:
-        return result
-    silent = any(words in result.reason for words in SILENCE)
-    stated = lacking.get(result.command, "") if silent else ""
-    never = not reply_seconds.get(result.command)
-    if not stated and not (never and result.command in optional):
-        return result
-    reason = f"The device states: {stated}." if stated else result.reason
-    return replace(result, verdict=Verdict.INCONCLUSIVE, cause=Cause.NOT_SUPPORTED, reason=reason)
-
-
-def _cut_short(result: Result, why: str) -> Result:
-    """Return a failure as it is, and anything else as not run."""
-    if result.verdict is Verdict.FAIL:
-        return result
-    return replace(
-        result, verdict=Verdict.NOT_RUN, cause=Cause.RUN_ENDED, reason=f"{why}.", evidence=()
-    )
