@@ -213,7 +213,7 @@ def settings_of(table: Table, command: Command) -> list[Setting]:
     """Return the variants of a command that a query reads back; none if its effect is fixed."""
     back = command.read_by
     if back is None:
-        return list(_parts(table, command))
+        return list(_parts(table, command)) if command.request else []
     if fixed_effect(table, command):
         return []
     query = next((each for each in table.commands if each.name == back.query), None)
