@@ -42,10 +42,6 @@ REASONS = (
         "tests/peers compares the text with the maker's library, which these statements do not run",
     ),
     (
-        r"change_commands\.set .*mycobot280/changes\.yaml: changes\.13\.set: left out",
-        "it holds samples and prose only",
-    ),
-    (
         r"\S*\.silence_ms .*",
         "field notes report pauses of 100 ms; how much longer to wait is this project's own choice",
     ),

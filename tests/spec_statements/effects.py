@@ -188,6 +188,17 @@ def states(edition: Edition) -> Iterator[str]:
                 yield f"{name} is unlike {field} of {command.name}"
 
 
+def speeds(edition: Edition) -> Iterator[str]:
+    """Report motions that take no notice of the speed in their request."""
+    for command in edition.commands:
+        arguments = {field.name for variant in command.requests for field in variant}
+        effect = command.effect
+        moves = effect is not None and effect.verb == "moves"
+        heeded = effect is not None and effect.option("speed") == "speed"
+        if moves and "speed" in arguments and not heeded:
+            yield f"{command.name} does not move at the speed that is given"
+
+
 def switches(edition: Edition) -> Iterator[str]:
     """Report state that is set to true or false and is no flag."""
     flags = {state.name for state in edition.states if state.type and state.type.kind == "flag"}
@@ -214,4 +225,4 @@ def _alike(kept: Type | None, type: Type | None, left: list[Type | None]) -> boo
     return [part for _, part in type.parts] == [kept] * int(bounds[1] - bounds[0] + 1)
 
 
-RULES = (effects, states, switches)
+RULES = (effects, states, speeds, switches)
