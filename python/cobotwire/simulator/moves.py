@@ -57,7 +57,8 @@ def move(arm: ArmState, now: float, command: Command, effect: Moves, fields: Fie
 def _speed(arm: ArmState, effect: Moves, fields: Fields) -> int:
     given = fields.get(effect.speed)
     if given is None:
-        return round(float(arm.kept.get("speed", USUAL_SPEED)))
+        # A speed that nothing has set yet is no reason to stand still.
+        return round(float(arm.kept.get("speed") or USUAL_SPEED))
     if isinstance(given, tuple | list):
         # Speeds of single servos: the arm moves with one, unless all are 0.
         return USUAL_SPEED if any(given) else 0
