@@ -88,34 +88,24 @@ def _reading(probe: Probe, query: Request[Any]) -> list[_Part]:
 
 
 def _compare(probe: Probe, other: Command, pairs: list[tuple[_Part, _Part]]) -> None:
-    """Compare two readings, part by part."""
-    encoders = probe.device.table.robot.encoders
-    # Without a statement about encoders, nothing says what a tick is.
-    known = [pair for pair in pairs if encoders is not None or _same_unit(*pair)]
-    compared = [_compared(probe.device.table, *pair) for pair in known]
-    wrong = [
-        f"{one.name} is {one.value} {one.unit}, but {other.name} reports {two.name} = {two.value} "
-        f"{two.unit}"
-        for (one, two), pair in zip(known, compared)
-        if pair.wrong
-    ]
+    """Compare two readings, part by part, in the same unit and as if the first one were right."""
+    table, compared, wrong = probe.device.table, list[Pair](), list[str]()
+    encoders, near = table.robot.encoders, {**APART, "degree": angle_tolerance(table) + 0.001}
+    for one, two in pairs:
+        pair = Pair(two.name, one.value, two.value, near.get(two.unit, 0.0), two.number)
+        if one.unit == "tick" and two.unit == "degree":
+            # Without a statement about encoders, nothing says what a tick is.
+            if encoders is None:
+                continue
+            # The direction of an encoder may be unknown.
+            degrees = abs(one.value - encoders.zero) * encoders.degrees
+            pair = Pair(two.name, degrees, abs(two.value), near["degree"])
+        compared.append(pair)
+        if pair.wrong:
+            theirs = f"{other.name} reports {two.name} = {two.value} {two.unit}"
+            wrong.append(f"{one.name} is {one.value} {one.unit}, but {theirs}")
     reason = f"{probe.command.name}: {'; '.join(wrong)}{_likely(probe.command, other, compared)}"
     probe.expect(AGREES, not wrong, reason)
-
-
-def _compared(table: Table, one: _Part, two: _Part) -> Pair:
-    """Return two readings of a part in the same unit, as if the first one were right."""
-    tolerances = {**APART, "degree": angle_tolerance(table) + 0.001}
-    near, encoders = tolerances.get(two.unit, 0.0), table.robot.encoders
-    if encoders is None or _same_unit(one, two):
-        return Pair(two.name, one.value, two.value, near, two.number)
-    # The direction of an encoder may be unknown.
-    degrees = abs(one.value - encoders.zero) * encoders.degrees
-    return Pair(two.name, degrees, abs(two.value), near)
-
-
-def _same_unit(one: _Part, two: _Part) -> bool:
-    return not (one.unit == "tick" and two.unit == "degree")
 
 
 def _likely(mine: Command, other: Command, compared: list[Pair]) -> str:
