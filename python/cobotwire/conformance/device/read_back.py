@@ -233,8 +233,6 @@ def _parts(table: Table, command: Command) -> Iterator[Setting]:
 
     An argument names one number of a row, or is the selector of what is stored.
     """
-    if not command.request:
-        return
     effect, variant = judged(command), command.request[0]
     if isinstance(effect, Cases):
         for raw, case in effect.cases.items():
