@@ -16,15 +16,13 @@ from cobotwire.simulator.arm_connection import ArmConnection, Done, EventListene
 from cobotwire.simulator.behaviour import Behaviour, own
 from cobotwire.simulator.behaviour.external import installed
 from cobotwire.simulator.devices import new_state
-from cobotwire.simulator.effects import Asked, perform
+from cobotwire.simulator.effects import EVERY_JOINT, Asked, perform
 from cobotwire.simulator.events import Events
 from cobotwire.simulator.kinematics import Geometry, geometry_of
 from cobotwire.simulator.motion.hand import checked
 from cobotwire.simulator.state import ArmState
 
 NOTES_KEPT = 1000
-# This number of a joint stands for all joints.
-EVERY_JOINT = 254
 
 Clock = Callable[[], float]
 

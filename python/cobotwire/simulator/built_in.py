@@ -42,14 +42,14 @@ class Reported(NamedTuple):
         return unit_of(self.field)
 
     def one_of(self, values: Sequence[Any]) -> Any:
-        """Return the value of the which; without one, all values.
+        """Return the value of the joint or axis; if none is chosen, all values.
 
         Raises:
             Unanswerable: there is no such value.
         """
         if self.which is None:
             return tuple(values)
-        if self.which > len(values):
+        if not 0 < self.which <= len(values):
             raise Unanswerable(f"no source says what is reported for joint {self.which}")
         return values[self.which - 1]
 
@@ -77,9 +77,9 @@ def _angles(shown: Reported) -> Any:
     arm, now = shown.arm, shown.now
     if shown.unit != "tick":
         return _in_unit(shown, arm.angles.position(now))
-    if shown.which is not None:
-        return arm.encoder(shown.which - 1, now)
-    return tuple(arm.encoder(each, now) for each in range(arm.joints))
+    # The servo after the last joint is the gripper's.
+    each = range(arm.joints if shown.which is None else arm.joints + 1)
+    return shown.one_of([arm.encoder(joint, now) for joint in each])
 
 
 def _in_unit(shown: Reported, angles: tuple[float, ...]) -> Any:
@@ -158,8 +158,8 @@ READERS: dict[str, Callable[[Reported], Any]] = {
 
 
 def _hold(arm: ArmState, now: float, value: Any, joint: int | None) -> None:
-    # A number that no joint has means every joint, but the next one is the gripper's servo.
-    if joint == arm.joints + 1:
+    # A number above all joints means every joint, but the next one is the gripper's servo.
+    if joint in (0, arm.joints + 1):
         return
     every = joint is None or joint > arm.joints
     for at in range(arm.joints) if joint is None or every else [joint - 1]:
@@ -168,6 +168,8 @@ def _hold(arm: ArmState, now: float, value: Any, joint: int | None) -> None:
 
 def _limit(limits: list[float], joints: int, value: Any, joint: int | None) -> None:
     row = value if isinstance(value, tuple | list) else (value,) * joints
+    if joint is not None and not 0 < joint <= joints:
+        raise Unanswerable(f"the arm has no joint {joint}")
     for at in range(joints) if joint is None else [joint - 1]:
         limits[at] = row[at]
 

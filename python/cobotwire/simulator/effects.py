@@ -7,7 +7,7 @@ that the edition gives it; of a state with a value for each index, a mapping fro
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any, NamedTuple
 
 from cobotwire.protocol.effects import (
@@ -38,6 +38,9 @@ from cobotwire.simulator.targets import is_there, solve
 
 # No source says how many values a list holds at most; their number is a byte.
 MOST_VALUES = 255
+
+# This number of a joint stands for all joints.
+EVERY_JOINT = 254
 
 # The state that begins as the edition's `servos` say.
 REGISTERS = "registers"
@@ -88,7 +91,7 @@ def perform(asked: Asked, *, elsewhere: bool = False) -> dict[str, Any]:
 
 def _keep_or_recall(asked: Asked, effect: Effect) -> dict[str, Any]:
     """Keep what a request sets for a joint that the arm lacks, or report it; at first zero."""
-    kept: dict[str, dict[Any, Any]] = asked.arm.kept.setdefault("elsewhere", {})
+    kept = asked.arm.elsewhere
     at = getattr(effect, "at", ())
     index = _index(asked, at)
     if isinstance(effect, Reports):
@@ -112,7 +115,7 @@ def begin(table: Table, arm: ArmState) -> None:
     lists = {effect.state for effect in effects if isinstance(effect, Lists)}
     for name, state in states_of(table).items():
         arm.kept[name] = [] if name in lists else {} if state.each else state.initial
-    if REGISTERS in arm.kept:
+    if isinstance(arm.kept.get(REGISTERS), dict) and arm.servos.registers:
         # One servo more than joints: newer firmware counts the gripper's servo as the last.
         arm.kept[REGISTERS] = {
             (servo, register): value
@@ -137,12 +140,12 @@ def _read(asked: Asked, name: str, state: str, at: Sequence[str]) -> Any:
     declared = states_of(asked.table)[state]
     if not declared.each:
         return asked.arm.kept[state]
-    values, index = asked.arm.kept.get(state, {}), _index(asked, at)
+    index = _index(asked, at)
     if len(index) == len(declared.each):
-        return values.get(index, declared.initial)
+        return _kept(asked.arm, declared, index)
     assert field is not None, "a text has no index"
     count = len(field.cases[0].numbers) if field.many else asked.arm.joints
-    row = tuple(values.get((*index, n), declared.initial) for n in range(1, count + 1))
+    row = tuple(_kept(asked.arm, declared, (*index, n)) for n in range(1, count + 1))
     return row if field.many else all(row)
 
 
@@ -168,15 +171,7 @@ def _write(asked: Asked, given: Mapping[str, Any], at: Sequence[str]) -> None:
     for state, value in given.items():
         if state in built_in:
             continue
-        if isinstance(value, list):
-            value = tuple(value)
-        if not declared[state].each:
-            arm.kept[state] = value
-        elif len(index) == len(declared[state].each):
-            arm.kept.setdefault(state, {})[index] = value
-        else:
-            row = _for_all(arm, declared[state], value)
-            arm.kept.setdefault(state, {}).update({(*index, n): each for n, each in row})
+        _keep(arm, declared[state], index, tuple(value) if isinstance(value, list) else value)
     if built_in:
         led = arm.released
         # Without power nothing is held, so that power is switched first.
@@ -185,10 +180,28 @@ def _write(asked: Asked, given: Mapping[str, Any], at: Sequence[str]) -> None:
         after_writing(arm, asked.now, built_in, led=led)
 
 
-def _for_all(arm: ArmState, state: State, value: Any) -> Iterator[tuple[int, Any]]:
-    """Return each last index with its value: of a row each one its own."""
-    single = state.kind != "value" and isinstance(value, tuple)
-    return enumerate(value if single else (value,) * arm.joints, 1)
+def _keep(arm: ArmState, state: State, index: tuple[int, ...], value: Any) -> None:
+    """Keep a value for an index; without the last index, a row, or one value for every index."""
+    if not state.each:
+        arm.kept[state.name] = value
+        return
+    if index[-1:] == (EVERY_JOINT,) and state.each[len(index) - 1] == "joint":
+        index = index[:-1]
+    kept: dict[tuple[int, ...], Any] = arm.kept[state.name]
+    if len(index) == len(state.each):
+        kept[index] = value
+    elif state.kind != "value" and isinstance(value, tuple):
+        kept.update({(*index, n): each for n, each in enumerate(value, 1)})
+    else:
+        # The value of every index stands under the indices before the last one.
+        others = {key: each for key, each in kept.items() if key[: len(index)] != index}
+        arm.kept[state.name] = others | {index: value}
+
+
+def _kept(arm: ArmState, state: State, index: tuple[int, ...]) -> Any:
+    """Return the value of an index."""
+    values: dict[tuple[int, ...], Any] = arm.kept[state.name]
+    return values.get(index, values.get(index[:-1], state.initial))
 
 
 def _moves(asked: Asked, effect: Moves) -> None:

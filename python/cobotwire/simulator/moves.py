@@ -13,6 +13,7 @@ from cobotwire.simulator.built_in import unit_of
 from cobotwire.simulator.coordinates import places_of, pose_with
 from cobotwire.simulator.kinematics import Pose
 from cobotwire.simulator.kinematics.pose import turned_about
+from cobotwire.simulator.replies import Unanswerable
 from cobotwire.simulator.state import ArmState
 from cobotwire.simulator.targets import (
     STEP_DEGREES,
@@ -58,7 +59,9 @@ def _speed(arm: ArmState, effect: Moves, fields: Fields) -> int:
     given = fields.get(effect.speed)
     if given is None:
         # A speed that nothing has set yet is no reason to stand still.
-        return round(float(arm.kept.get("speed") or USUAL_SPEED))
+        usual = arm.kept.get("speed")
+        known = isinstance(usual, int | float) and usual
+        return round(usual) if known else USUAL_SPEED
     if isinstance(given, tuple | list):
         # Speeds of single servos: the arm moves with one, unless all are 0.
         return USUAL_SPEED if any(given) else 0
@@ -94,12 +97,17 @@ def _move_joint(
     arm: ArmState, now: float, command: Command, effect: Moves, fields: Fields, speed: int
 ) -> None:
     joint = fields[effect.at[0]]
+    name = effect.by or effect.to
+    field = _argument(command, name)
+    ticks = field is not None and unit_of(field) == "tick"
+    # Encoders count the gripper's servo as the last one.
+    if not 0 < joint <= arm.joints + ticks:
+        raise Unanswerable(f"the arm has no joint {joint}")
     if effect.until:
         _jog_joint(arm, now, joint, speed, forward=fields[effect.direction] == FORWARD)
         return
-    name = effect.by or effect.to
-    field, value = _argument(command, name), _value(name, fields)
-    if field is not None and unit_of(field) == "tick":
+    value = _value(name, fields)
+    if ticks:
         _move_servo(arm, now, joint, value, speed)
     elif effect.by:
         angle = arm.angles.target(now)[joint - 1] + _degrees(field, value)
@@ -141,7 +149,7 @@ def _move_end(
         return
     end = arm.end(arm.angles.target(now))
     if effect.about:
-        place = arm.coordinates[fields[effect.about] - 1]
+        place = _axis(arm, fields[effect.about])
         value = _value(effect.by or effect.to, fields)
         if effect.by:
             value += end.coords[place] if end else 0.0
@@ -158,6 +166,13 @@ def _move_end(
     # The same coordinates as reported are the same place, whatever the rounding.
     target = row if places == arm.coordinates else pose_with(row, places, end)
     go_to_coords(arm, target, speed, now, straight=straight)
+
+
+def _axis(arm: ArmState, number: int) -> int:
+    """Return which of x, y, z, rx, ry and rz the number of an axis stands for."""
+    if not 0 < number <= len(arm.coordinates):
+        raise Unanswerable(f"the end has no axis {number}")
+    return arm.coordinates[number - 1]
 
 
 def _is_straight(arm: ArmState, command: Command, fields: Fields) -> bool:
@@ -180,7 +195,7 @@ def _jog_end(
 
         step = STEP_DEGREES
     else:
-        place = arm.coordinates[axis - 1]
+        place = _axis(arm, axis)
         step = STEP_MILLIMETRES if place < 3 else STEP_DEGREES
 
         def way(here: Pose, far: float) -> Pose:

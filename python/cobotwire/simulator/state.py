@@ -56,6 +56,8 @@ class ArmState:
     # The state that the edition declares, by name, and what behaviours from outside keep. Of a
     # state with a value for each index, a mapping from the index.
     kept: dict[str, Any] = field(default_factory=dict)
+    # What is set for joints that the arm lacks, by the state and the index.
+    elsewhere: dict[str, dict[Any, Any]] = field(default_factory=dict)
     # The last error; 0: none.
     error: int = 0
     recording: bool = False
@@ -110,13 +112,17 @@ class ArmState:
     @property
     def tool(self) -> tuple[float, ...] | None:
         """The tool's pose on the flange, if it is the end; else None."""
-        return tuple(self.kept.get("tool", NO_POSE)) if self.kept.get("end_type", 0) else None
+        return self._pose("tool") if self.kept.get("end_type", 0) else None
 
     @property
     def world(self) -> tuple[float, ...] | None:
         """The base's pose in the world, if that is the frame of reference; else None."""
-        chosen = self.kept.get("reference_frame", 0)
-        return tuple(self.kept.get("world", NO_POSE)) if chosen else None
+        return self._pose("world") if self.kept.get("reference_frame", 0) else None
+
+    def _pose(self, name: str) -> tuple[float, ...]:
+        """Return a pose that is kept; an edition may use the name for something else."""
+        value = self.kept.get(name)
+        return value if isinstance(value, tuple) and len(value) == len(NO_POSE) else NO_POSE
 
     @property
     def points(self) -> list[Any]:

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from fractions import Fraction
+from typing import Any
 
 from cobotwire_codegen import language
 from cobotwire_codegen.build.parts import Parts
@@ -10,7 +12,10 @@ from cobotwire_codegen.build.types import Types
 from cobotwire_codegen.build.vectors import plain_value
 from cobotwire_codegen.errors import Place, Problem, nearest
 from cobotwire_codegen.language.effects import ByCase, Reports, State, Stores
-from cobotwire_codegen.load import Mapping, Node, Scalar
+from cobotwire_codegen.language.names import LOWER
+from cobotwire_codegen.language.records import Key, Named
+from cobotwire_codegen.language.shapes import Name, check_name
+from cobotwire_codegen.load import Mapping, Node, Scalar, Sequence
 from cobotwire_codegen.model import Command, Effect, Field
 from cobotwire_codegen.model import State as KeptState
 from cobotwire_codegen.model.commands import named_fields
@@ -51,9 +56,9 @@ def _state(
     reader = Reader(node, State, f"the state {name}", problems)
     of = reader.get(State.type)
     type = types.find(of, reader.place_of(State.type)) if of else None
-    start = reader.get(State.start)
-    each = reader.get(State.each)
-    return KeptState(place, name, type, each, None if start is None else plain_value(start))
+    return KeptState(
+        place, name, type, reader.get(State.each), _plain(reader, State.start, bool, tuple)
+    )
 
 
 def build_effect(node: Node | None, command: Command, problems: list[Problem]) -> Effect | None:
@@ -91,7 +96,7 @@ def _of_verb(verb: str, reader: Reader, command: Command, problems: list[Problem
     at = reader.get(keys["at"]) if "at" in keys else ()
     assumed = reader.get(keys["assumed"]) if "assumed" in keys else ""
     options = tuple(
-        (name, _value(reader.get(key)))
+        (name, _plain(reader, key))
         for name, key in keys.items()
         if name not in (verb, *_BESIDE, "cases") and reader.node(key) is not None
     )
@@ -112,8 +117,17 @@ def _of_verb(verb: str, reader: Reader, command: Command, problems: list[Problem
     return Effect(reader.place, verb, subject, (), at, options, (), assumed)
 
 
-def _value(read: object) -> object:
-    return plain_value(read) if isinstance(read, Scalar | Mapping) else read
+def _plain(reader: Reader, key: Key[Any], *others: type) -> object:
+    """Return the value of a key: a word or a number, or a value of the other types."""
+    read = reader.get(key)
+    if not isinstance(read, Scalar | Sequence | Mapping):
+        return read
+    value = plain_value(read)
+    if type(value) in (int, Fraction, str, *others):
+        return value
+    message = f"{key.name} of {reader.what} must be {key.shape.words}"
+    reader.problem("wrong-kind", message, read.place)
+    return None
 
 
 def _pairs(
@@ -121,12 +135,14 @@ def _pairs(
 ) -> tuple[tuple[str, object], ...]:
     """Return each field with its state; of a state alone, the only field that can be meant."""
     if isinstance(node, Mapping):
-        values = [(name, inner) for name, inner in node.entries.items()]
-        if all(isinstance(inner, Scalar) and isinstance(inner.value, str) for _, inner in values):
-            return tuple(
-                (name, str(inner.value)) for name, inner in values if isinstance(inner, Scalar)
-            )
+        values = Named(Name(LOWER), LOWER, ("empty-list", "name a state"))
+        named = values.read(node, f"{verb} of {reader.what}", reader.problem)
+        subject = f"a state in {verb} of {reader.what}"
+        return tuple(
+            (name, Name(LOWER).read(inner, subject, reader.problem)) for name, _, inner in named
+        )
     if isinstance(node, Scalar) and isinstance(node.value, str):
+        check_name(node.value, LOWER, node.place, reader.problem)
         fields = reported(command) if verb == "reports" else given(command)
         names = [name for name in fields if name not in at]
         if len(names) == 1:

@@ -97,7 +97,7 @@ def _written(effect: Effect) -> Iterator[_Written]:
             yield _Written("paused", "", _CONTROLLED[effect.what])
         case "list" if effect.option("clear"):
             yield _Written(effect.what, "", 0)
-        case "selector":
+        case "selector" if effect.cases:
             # What every case writes.
             first, *rest = (tuple(_written(inner)) for _, inner in effect.cases)
             yield from (each for each in first if all(each in other for other in rest))

@@ -15,18 +15,53 @@ from cobotwire_codegen.publish_effects import plain
 ARGUMENTS = ("by", "about", "direction", "speed", "append", "from", "near")
 
 
+# What decides a motion, by the part that moves; `speed` and `keeps` may be added.
+_MOTIONS = {
+    "joints": (("to",),),
+    "joint": (("at", "to"), ("at", "by"), ("at", "until", "direction")),
+    "end": (("to",), ("about", "to"), ("about", "by"), ("about", "until", "direction")),
+    "gripper": (("to",),),
+}
+_LIST = ("append", "take", "clear", "report")
+# The built-in state that is true or false, and that which has a value for each joint or axis.
+_SWITCHES = ("powered", "connected", "free", "held")
+_JOINT_ROWS = ("angles", "planned_angles", "speeds", "held", "lowest", "highest")
+_AXIS_ROWS = ("coords", "base_coords", "planned_coords")
+# Those of them that one value can stand for: whether all are held, or a limit of all.
+_ALL_AS_ONE = ("held", "lowest", "highest")
+
+
 def states_fit(edition: Edition) -> Iterator[Problem]:
-    """Report states that hide a built-in one, and starts that their type does not allow."""
+    """Report states that hide a built-in one, unknown indices, and starts of the wrong type."""
+    types = {type.name for type in edition.types}
     for state in edition.states:
+        for each in state.each:
+            if each not in types:
+                message = f"{state.name} is for each {each}, which is no type{nearest(each, types)}"
+                yield Problem(state.place, "unknown-type", message)
         if state.name in BUILT_IN:
             message = f"{state.name} is the arm's own state, which no edition declares"
             yield Problem(state.place, "bad-state", message)
         if state.start is None:
             continue
+        wrong = _wrong_value(state.name, state, state.start)
+        if wrong:
+            yield Problem(state.place, "bad-start-value", f"start of {state.name}: {wrong}")
+
+
+def _wrong_value(name: str, state: State | None, value: object) -> str:
+    """Return why a state, which is built in if it is None, cannot have a value; else nothing."""
+    if state is not None and state.type is not None:
         try:
-            plain(state.type, state.name, state.start)
+            plain(state.type, name, value)
         except ValueError as error:
-            yield Problem(state.place, "bad-start-value", f"start of {state.name}: {error}")
+            return str(error)
+        return ""
+    if state is not None:
+        return "" if isinstance(value, str) else f"{name} must be a text"
+    if name in _SWITCHES:
+        return "" if isinstance(value, bool) else f"{name} must be true or false"
+    return "" if type(value) in (int, Fraction) else f"{name} must be a number"
 
 
 def effects_fit(edition: Edition) -> Iterator[Problem]:
@@ -41,23 +76,84 @@ def effects_fit(edition: Edition) -> Iterator[Problem]:
 
 def _wrong(effect: Effect, command: Command, states: Mapping[str, State]) -> Iterator[str]:
     arguments, replied = given(command), reported(command)
-    wanted = [*effect.at, *(str(v) for k, v in effect.options if k in ARGUMENTS)]
     target = effect.option("to")
-    wanted += [target] if isinstance(target, str) else []
+    needed = [*effect.at, *(str(v) for k, v in effect.options if k in ARGUMENTS)]
+    needed += [target] if isinstance(target, str) else []
+    needed += [effect.what] if effect.verb == "selector" else []
     fields = [name for name, _ in effect.values]
-    wanted += fields if effect.verb == "stores" else []
-    wanted += [effect.what] if effect.verb == "selector" else []
-    for name in wanted:
+    for name in (*needed, *(fields if effect.verb == "stores" else ())):
         if name not in arguments:
             yield f"{command.name} has no argument {name}{nearest(name, arguments)}"
+        elif name in needed and name != effect.option("speed") and _may_be_absent(name, command):
+            yield f"{name} may be left out, so the effect cannot depend on it"
     for name in fields if effect.verb == "reports" else ():
         if name not in replied:
             yield f"the reply of {command.name} has no field {name}{nearest(name, replied)}"
+    if len(set(effect.at)) < len(effect.at):
+        yield "`at` names an argument twice"
+    yield from _wrong_keys(effect)
     yield from _unknown_states(effect, states)
-    if command.safety == "query" and effect.verb in ("stores", "sets", "moves", "zeroes", "does"):
+    changes = effect.verb in ("stores", "sets", "moves", "zeroes", "does")
+    if command.safety == "query" and (changes or any(map(effect.option, _LIST[:-1]))):
         yield f"a query changes nothing, so it cannot have the effect {effect.verb}"
+    yield from _wrong_cases(effect, arguments.get(effect.what))
     for _, inner in effect.cases:
         yield from _wrong(inner, command, states)
+
+
+def _may_be_absent(name: str, command: Command) -> bool:
+    """Return whether a variant of the request lacks an argument; a text has all of its own."""
+    return name not in command.text_arguments and any(
+        all(field.name != name for field in variant) for variant in command.requests
+    )
+
+
+def _wrong_keys(effect: Effect) -> Iterator[str]:
+    """Yield which keys of an effect are missing, or do not fit together."""
+    keys = {name for name, _ in effect.options} | ({"at"} if effect.at else set())
+    if effect.verb == "moves":
+        ways = _MOTIONS[effect.what]
+        if tuple(sorted(keys - {"speed", "keeps"})) not in map(tuple, map(sorted, ways)):
+            yield f"`moves: {effect.what}` needs {' or '.join(map(_listed, ways))}, and no more"
+        if "keeps" in keys and (effect.what != "end" or "until" not in keys):
+            yield "only `moves: end` with `until` has the key `keeps`"
+        if effect.what == "end" and "to" in keys and not isinstance(effect.option("to"), str):
+            yield "`to` of `moves: end` must be an argument"
+    elif effect.verb == "list":
+        if len(keys & set(_LIST)) != 1:
+            yield f"`list` needs exactly one of the keys {', '.join(_LIST)}"
+        if "empty" in keys and "take" not in keys:
+            yield "only `take` has the key `empty`"
+    one = effect.what == "joint" or (effect.verb == "does" and effect.what == "halt" and effect.at)
+    if effect.verb in ("moves", "zeroes", "does") and len(effect.at) != (1 if one else 0):
+        most = "one argument" if one else "no argument"
+        yield f"`at` of `{effect.verb}: {effect.what}` must name {most}"
+
+
+def _listed(keys: Sequence[str]) -> str:
+    return " with ".join(f"`{key}`" for key in keys)
+
+
+def _wrong_cases(effect: Effect, selector: Field | None) -> Iterator[str]:
+    """Yield which cases are no value of their selector, or stand for the same one."""
+    found: dict[int, str] = {}
+    if not effect.cases or selector is None:
+        return
+    if len(selector.type.parts) != 1:
+        yield f"{selector.name} has several numbers, so it selects no case"
+        return
+    members = {member.name: member.value for member in selector.type.members}
+    low, high = _ends(selector.type)
+    for case, _ in effect.cases:
+        if case not in members and not case.lstrip("-").isdecimal():
+            yield f"{selector.name} is never {case}{nearest(case, members)}"
+            continue
+        raw = members[case] if case in members else int(case)
+        if not low <= raw <= high or (members and raw not in members.values()):
+            yield f"{selector.name} is never {case}"
+        if raw in found:
+            yield f"the cases {found[raw]} and {case} are the same value of {selector.name}"
+        found[raw] = case
 
 
 def _unknown_states(effect: Effect, states: Mapping[str, State]) -> Iterator[str]:
@@ -67,12 +163,12 @@ def _unknown_states(effect: Effect, states: Mapping[str, State]) -> Iterator[str
             yield f"there is no state {name}{nearest(name, [*states, *BUILT_IN])}"
         elif name in BUILT_IN and name not in SETTABLE and effect.verb in ("stores", "sets"):
             yield f"{name} follows from motion: no command sets it directly"
-    for name, value in effect.values if effect.verb == "sets" else ():
-        state = states.get(name)
-        try:
-            plain(state.type if state else None, name, value)
-        except ValueError as error:
-            yield str(error)
+        elif name in BUILT_IN and effect.verb == "list":
+            yield f"{name} is not a list: declare a state for it"
+        elif effect.verb == "sets":
+            yield from filter(
+                None, [_wrong_value(name, states.get(name), dict(effect.values)[name])]
+            )
 
 
 def no_contradictions(edition: Edition) -> Iterator[Problem]:
@@ -143,19 +239,47 @@ def _misfits(
     types: Mapping[str, Type],
     chosen: str,
 ) -> Iterator[str]:
-    if effect is None or effect.verb not in ("reports", "stores"):
+    if effect is None or effect.verb not in ("reports", "stores", "sets"):
         return
     states = {state.name: state for state in edition.states}
     fields = reported(command) if effect.verb == "reports" else given(command)
-    for name, target in effect.values:
-        state = states.get(str(target))
+    for key, value in effect.values:
+        name = key if effect.verb == "sets" else str(value)
+        field, state = fields.get(key), states.get(name)
+        if effect.verb == "sets":
+            field = None
+        elif key not in fields:
+            continue
         if state is not None:
-            yield from _unlike(fields.get(name), state, effect.at)
-            yield from _beyond(effect.at, given(command), state, types, chosen)
+            if effect.verb != "sets":
+                yield from _unlike(field, state, effect.at, key)
+            yield from _beyond(effect, given(command), state, types, chosen)
+        elif name in BUILT_IN and not effect.by_role:
+            yield from _unlike_built_in(field, name, effect, edition.joints)
 
 
-def _unlike(field: Field | None, state: State, at: Sequence[str]) -> Iterator[str]:
+def _unlike_built_in(field: Field | None, name: str, effect: Effect, joints: int) -> Iterator[str]:
+    """Yield why a field cannot have the value of a built-in state."""
+    row = name in _JOINT_ROWS or name in _AXIS_ROWS
+    size = 0 if field is None else len(field.type.parts)
+    if len(effect.at) > (1 if row else 0):
+        yield f"{name} has {'one index' if row else 'no index'}, but `at` names {len(effect.at)}"
+    elif effect.verb != "sets" and field is None:
+        yield f"{name} is not a text"
+    elif field is not None and field.type.kind in ("value", "list"):
+        if effect.at or not row:
+            yield f"{field.name} is a row, but {name} is one value"
+        elif name in _JOINT_ROWS and size != joints:
+            yield f"{field.name} has {size} values, but the arm has {joints} joints"
+    elif field is not None and row and not effect.at and name not in _ALL_AS_ONE:
+        yield f"{field.name} is one value, but {name} is a row; `at` can choose a value of it"
+
+
+def _unlike(field: Field | None, state: State, at: Sequence[str], name: str) -> Iterator[str]:
     """Yield why a field and a state have not the same kind of value."""
+    if (field is None) != (state.type is None):
+        text, other = (name, state.name) if field is None else (state.name, name)
+        yield f"{text} is a text, but {other} is not"
     if field is None or state.type is None or field.selector:
         return
     row = len(at) == len(state.each) - 1
@@ -169,22 +293,28 @@ def _units(type: Type) -> list[str]:
 
 
 def _beyond(
-    at: Sequence[str],
+    effect: Effect,
     arguments: Mapping[str, Field | None],
     state: State,
     types: Mapping[str, Type],
     chosen: str,
 ) -> Iterator[str]:
     """Yield which index of a command a state does not have; a row runs along the last one."""
+    at = effect.at
     if len(state.each) - len(at) not in (0, 1):
-        yield f"{state.name} has {len(state.each)} indices, but `at` names {len(at)}"
+        count = f"{len(state.each)} {'index' if len(state.each) == 1 else 'indices'}"
+        yield f"{state.name} has {count}, but `at` names {len(at)}"
+        return
+    if effect.verb == "sets":
+        # A fixed value may also be set for every joint (254), or for one of another limb.
         return
     for name, each in zip(at, state.each):
         field, index = arguments.get(name), types.get(each)
-        if index is None:
-            yield f"{state.name} is for each {each}, which is no type{nearest(each, types)}"
-        elif field is not None and name != chosen and not _inside(field.type, index):
+        if index and field and name != chosen and not _inside(field.type, index):
             yield f"{name} goes beyond {each}, the index of {state.name}"
+    last = types.get(state.each[-1]) if len(at) < len(state.each) else None
+    if last and _ends(last)[0] != 1:
+        yield f"a row begins with index 1, but {last.name} with {_ends(last)[0]}"
 
 
 def _inside(type: Type, index: Type) -> bool:

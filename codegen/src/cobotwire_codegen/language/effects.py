@@ -21,7 +21,7 @@ class State(Record):
 
     type = optional(_TYPE, "The type of its value. Left out: a text.")
     each = optional(
-        Names(),
+        Names(LOWER),
         "There is a value for each index; the type of the index, or a list of types. `joint` "
         "stands for each joint of the arm.",
     )
@@ -42,7 +42,7 @@ class _Effect(Record):
 
 
 class _AtIndex(_Effect):
-    at = optional(Names(), _AT)
+    at = optional(Names(LOWER), _AT)
 
 
 class Reports(_AtIndex):
@@ -169,7 +169,10 @@ class ByCase(Record):
     """A command whose effect depends on an argument."""
 
     selector = required(Name(LOWER), "The argument that decides.")
-    cases = required(Named(EFFECT, CASE), "The effect for each value: a member's name or a number.")
+    cases = required(
+        Named(EFFECT, CASE, ("empty-list", "state the effect of a value")),
+        "The effect for each value: a member's name or a number.",
+    )
     EXAMPLE = """\
 selector: state
 cases:

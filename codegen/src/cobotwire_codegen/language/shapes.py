@@ -198,19 +198,25 @@ class Names(Shape[tuple[str, ...]]):
     blank = ()
     words = "a name or a list of names"
 
+    def __init__(self, pattern: str = "") -> None:
+        self.pattern = pattern
+
     def read(self, node: Node, subject: str, note: Note) -> tuple[str, ...]:
-        """Return the names."""
+        """Return the names; note a problem for each that does not match the pattern."""
         found = []
         for item in node.items if isinstance(node, Sequence) else (node,):
             if isinstance(item, Scalar) and isinstance(item.value, str):
                 found.append(item.value)
+                if self.pattern:
+                    check_name(item.value, self.pattern, item.place, note)
             else:
                 self._wrong(item, subject, note)
         return tuple(found)
 
     def schema(self) -> Schema:
         """Return one string, or an array of strings."""
-        one: Schema = {"type": "string"}
+        pattern = {"pattern": self.pattern} if self.pattern else {}
+        one: Schema = {"type": "string", **pattern}
         return either("array", {"items": one}, one)
 
 
