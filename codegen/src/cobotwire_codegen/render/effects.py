@@ -7,7 +7,46 @@ from collections.abc import Iterable, Iterator
 from cobotwire_codegen.language.words import CONTROLS
 from cobotwire_codegen.model import Command, Edition, Effect
 
-_PARTS = {"joints": "all joints", "joint": "a joint", "end": "the end", "gripper": "the gripper"}
+_PARTS = {"joints": "all joints", "joint": "one joint", "end": "the end", "gripper": "the gripper"}
+# The built-in state. Other state is called by its name.
+_BUILT_IN = {
+    "angles": "the angles of all joints",
+    "coords": "the coordinates of the end",
+    "base_coords": "the coordinates of the end in the frame of the base",
+    "planned_angles": "the angles at which the present motion ends",
+    "planned_coords": "the coordinates at which the present motion ends",
+    "opening": "the opening of the gripper",
+    "speeds": "how fast the joints turn",
+    "moving": "whether the arm moves",
+    "gripper_moving": "whether the gripper moves",
+    "reached": "whether the arm is at the target",
+    "powered": "whether the motors have power",
+    "held": "whether all joints have torque",
+    "free": "whether free mode is on",
+    "paused": "whether the motion is paused",
+    "connected": "whether the controller at the end of the arm is connected",
+    "error": "the number of the last error",
+    "lowest": "the smallest allowed angle of each joint",
+    "highest": "the largest allowed angle of each joint",
+    "starts": "how often the controller has started",
+}
+# The same of one joint or axis.
+_ONE = {
+    "angles": "the angle",
+    "coords": "the coordinate",
+    "base_coords": "the coordinate in the frame of the base",
+    "held": "whether there is torque",
+    "lowest": "the smallest allowed angle",
+    "highest": "the largest allowed angle",
+}
+# What can be switched on and off.
+_SWITCHED = {
+    "powered": "the power of the motors",
+    "held": "the torque of the joints",
+    "free": "free mode",
+    "connected": "the controller at the end of the arm",
+}
+_ONE_SWITCHED = {"held": "the torque"}
 
 
 def effect_in_words(edition: Edition, command: Command) -> str:
@@ -17,21 +56,21 @@ def effect_in_words(edition: Edition, command: Command) -> str:
         return ""
     words = [*_sentences(effect), *_others(edition, command, effect)]
     if effect.assumed:
-        words.append(f"No source states this effect: {_sentence(effect.assumed)}")
+        words.append(f"This effect is assumed. {_sentence(effect.assumed)}")
     return " ".join(words)
 
 
 def _sentences(effect: Effect) -> Iterator[str]:
     match effect.verb:
         case "reports":
-            yield f"It reports {_names(str(state) for _, state in effect.values)}{_of(effect)}."
+            yield f"It reports {_states(effect)}."
         case "stores":
-            yield f"It sets {_names(str(state) for _, state in effect.values)}{_of(effect)}."
+            yield f"It sets {_states(effect)}."
         case "sets":
-            shown = (f"{_name(name)} to {_value(value)}" for name, value in effect.values)
-            yield f"It sets {_listed(shown)}{_of(effect)}."
+            yield f"It {', and '.join(_fixed(effect))}{_chosen(effect.at)}."
         case "moves":
-            yield f"It moves {_PARTS[effect.what]}{_way(effect)}."
+            moves = "turns" if effect.option("keeps") else "moves"
+            yield f"It {moves} {_PARTS[effect.what]}{_way(effect)}."
         case "zeroes":
             yield f"The present position of {_PARTS[effect.what]} becomes its zero."
         case "does":
@@ -39,10 +78,9 @@ def _sentences(effect: Effect) -> Iterator[str]:
         case "list":
             yield _list(effect)
         case "computes":
-            yield f"It computes {_name(effect.what)}; nothing changes."
-        case "unknown":
-            yield f"No source says what it does: {_sentence(effect.what)}"
-        case "python":
+            source = effect.option("from")
+            yield f"It computes {_state(effect, effect.what)} from `{source}`; nothing changes."
+        case "unknown" | "python":
             yield _sentence(effect.what)
         case _:
             for case, inner in effect.cases:
@@ -50,32 +88,56 @@ def _sentences(effect: Effect) -> Iterator[str]:
                     yield f"`{effect.what}` {case}: {sentence[0].lower()}{sentence[1:]}"
 
 
+def _fixed(effect: Effect) -> Iterator[str]:
+    """Yield what a command sets to fixed values: what it switches on and off, and the rest."""
+    nouns = _SWITCHED | (_ONE_SWITCHED if effect.at else {})
+    for way, value in (("on", True), ("off", False)):
+        switched = [nouns[name] for name, each in effect.values if each is value and name in nouns]
+        if switched:
+            yield f"switches {way} {_listed(switched)}"
+    rest = [
+        f"{_state(effect, name)} to {_value(value)}{' percent' if name == 'opening' else ''}"
+        for name, value in effect.values
+        if name not in nouns
+    ]
+    if rest:
+        yield f"sets {_listed(rest)}"
+
+
 def _way(effect: Effect) -> str:
+    """Return to where, by how much or how long a part moves, and about which axis."""
+    about = effect.option("about")
+    axis = _chosen((str(about),)) if about else ""
     if effect.option("until"):
-        return " until it is stopped, or at a limit"
-    if effect.option("by"):
-        return " by a distance"
-    target = effect.option("to")
-    return " to a target" if isinstance(target, str) or target is None else f" to {_value(target)}"
+        return f"{axis} until a limit is reached or another command stops the motion"
+    for key in ("by", "to"):
+        target = effect.option(key)
+        if target is not None:
+            unit = " percent" if effect.what == "gripper" else ""
+            shown = f"`{target}`" if isinstance(target, str) else f"{target}{unit}"
+            return f" {key} {shown}{axis}"
+    return ""
 
 
 def _list(effect: Effect) -> str:
-    name = _name(effect.what)
+    name = _words(effect.what)
     if effect.option("append"):
-        return f"It adds a value to {name}."
+        return f"It adds `{effect.option('append')}` to the {name}."
     if effect.option("take"):
-        return f"It reports the first value of {name}, and removes it."
+        return f"It reports the first of the {name}, and removes it."
     if effect.option("clear"):
-        return f"It empties {name}."
-    return f"It reports how many values {name} has."
+        return f"It removes all {name}."
+    if effect.option("report") == "empty":
+        return f"It reports whether there are no {name}."
+    return f"It reports the number of {name}."
 
 
 def _others(edition: Edition, command: Command, effect: Effect) -> Iterator[str]:
     """Yield which query reports what the command sets, or which commands set what it reports."""
     if command.read_by is not None:
-        yield f"`{command.read_by.query}` reports it."
+        yield f"`{command.read_by.query}` reports the result."
     elif effect.verb in ("stores", "sets"):
-        yield "No query reports it."
+        yield "No query reports the result."
     if effect.verb in ("reports", "list") and command.safety == "query":
         setters = [
             f"`{c.name}`"
@@ -83,21 +145,27 @@ def _others(edition: Edition, command: Command, effect: Effect) -> Iterator[str]
             if c.read_by is not None and c.read_by.query == command.name
         ]
         if setters:
-            yield f"{_listed(setters)} {'sets' if len(setters) == 1 else 'set'} it."
+            yield f"{_listed(setters)} {'changes' if len(setters) == 1 else 'change'} this."
     if command.safety == "persistent write" and effect.verb in ("stores", "sets"):
-        yield "It survives a power cycle."
+        yield "The result survives a power cycle."
 
 
-def _of(effect: Effect) -> str:
-    return f" of one {_listed(_name(name) for name in effect.at)}" if effect.at else ""
+def _states(effect: Effect) -> str:
+    states = dict.fromkeys(_state(effect, str(state)) for _, state in effect.values)
+    return _listed(states) + _chosen(effect.at)
 
 
-def _name(state: str) -> str:
+def _state(effect: Effect, name: str) -> str:
+    return (_ONE if effect.at else {}).get(name) or _BUILT_IN.get(name) or f"the {_words(name)}"
+
+
+def _chosen(arguments: Iterable[str]) -> str:
+    shown = [f"`{name}`" for name in arguments]
+    return f" for the given {_listed(shown)}" if shown else ""
+
+
+def _words(state: str) -> str:
     return state.replace("_", " ")
-
-
-def _names(states: Iterable[str]) -> str:
-    return _listed(dict.fromkeys(map(_name, states)))
 
 
 def _listed(words: Iterable[str]) -> str:

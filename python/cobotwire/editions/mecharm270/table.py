@@ -3,4 +3,4 @@
 
 from cobotwire.protocol.loading import load_table
 
-TABLE = load_table(__package__, checksum="417039e6")
+TABLE = load_table(__package__, checksum="a634679f")

@@ -3,4 +3,4 @@
 
 from cobotwire.protocol.loading import load_table
 
-TABLE = load_table(__package__, checksum="2b13cdf1")
+TABLE = load_table(__package__, checksum="c365225f")

@@ -3,4 +3,4 @@
 
 from cobotwire.protocol.loading import load_table
 
-TABLE = load_table(__package__, checksum="e2ffdf2b")
+TABLE = load_table(__package__, checksum="058ae32f")

@@ -3,4 +3,4 @@
 
 from cobotwire.protocol.loading import load_table
 
-TABLE = load_table(__package__, checksum="5e314f2d")
+TABLE = load_table(__package__, checksum="6997b713")
