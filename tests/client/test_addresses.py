@@ -26,6 +26,10 @@ from trial_specs import HEAD, edition_of, package_of
 DUO = f"""
 {HEAD}
 joints: 2
+state:
+  red: {{type: colour}}
+  green: {{type: colour}}
+  blue: {{type: colour}}
 frame:
   frame:
     header: FE FE
@@ -52,12 +56,15 @@ types:
   values:
     angles: {{class: Angles, doc: The angles., items: {{j1: angle, j2: angle}}}}
 commands:
-  power_on: {{id: 0x10, title: Power on, doc: Powers the arm., safety: power}}
+  power_on:
+    {{id: 0x10, title: Power on, doc: Powers the arm., safety: power,
+     effect: {{sets: {{powered: true, held: true, free: false, connected: true}}}}}}
   set_color:
     id: 0x6A
     title: Set the colour
     doc: Sets the colour.
     safety: setting
+    effect: {{stores: {{red: red, green: green, blue: blue}}}}
     ack: true
     request:
       - {{name: red, type: colour}}

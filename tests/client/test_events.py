@@ -61,7 +61,9 @@ types:
   values:
     angles: {{class: Angles, doc: The angles., items: {{j1: angle, j2: angle, j3: angle}}}}
 commands:
-  power_on: {{id: 0x10, title: Power on, doc: Powers the arm., safety: power}}
+  power_on:
+    {{id: 0x10, title: Power on, doc: Powers the arm., safety: power,
+     effect: {{sets: {{powered: true, held: true, free: false, connected: true}}}}}}
   get_angles:
     {{id: 0x20, title: Angles, doc: Angles., safety: query, role: joints,
      reply: [{{name: angles, type: angles}}]}}

@@ -60,8 +60,7 @@ def _speed(arm: ArmState, effect: Moves, fields: Fields) -> int:
     if given is None:
         # A speed that nothing has set yet is no reason to stand still.
         usual = arm.kept.get("speed")
-        known = isinstance(usual, int | float) and usual
-        return round(usual) if known else USUAL_SPEED
+        return round(usual) if isinstance(usual, int | float) and usual else USUAL_SPEED
     if isinstance(given, tuple | list):
         # Speeds of single servos: the arm moves with one, unless all are 0.
         return USUAL_SPEED if any(given) else 0

@@ -147,7 +147,7 @@ def test_every_command_of_every_edition_can_be_explained() -> None:
 
 def test_explain_uses_the_given_edition() -> None:
     result = samples.run(samples.FOLDER, "explain", "set_light", "--edition", "lamp2.yaml")
-    assert "Against lamp: Changed set_light" in result.stdout
+    assert "Differs from lamp: Changed set_light" in result.stdout
     assert "it shone red" in result.stdout
 
 
