@@ -172,7 +172,10 @@ class ArmConnection:
         fields = completed(command, given, result)
         try:
             return self._session.encode_reply(command.name, fields, address)
-        except UsageError:
+        except UsageError as error:
+            if command.text is not None:
+                self._arm.note(command, f"no reply: {error}")
+                return refusal("the text has characters that a reply cannot have")
             # The wire has no value for a distant pose, or for some limits.
             self._arm.note(command, "replied with the nearest value that the wire can express")
             nearest = clamped(command, result, fields)

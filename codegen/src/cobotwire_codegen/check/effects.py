@@ -11,8 +11,8 @@ from cobotwire_codegen.language.words import BUILT_IN, SETTABLE
 from cobotwire_codegen.model import Command, Edition, Effect, Field, Quantity, State, Type
 from cobotwire_codegen.publish_effects import plain
 
-# The keys of an effect whose value is an argument.
-ARGUMENTS = ("by", "about", "direction", "speed", "append", "from", "near")
+# The keys of an effect whose value is an argument that every request has.
+ARGUMENTS = ("by", "about", "direction", "append", "from", "near")
 
 
 # What decides a motion, by the part that moves; `speed` and `keeps` may be added.
@@ -23,6 +23,9 @@ _MOTIONS = {
     "gripper": (("to",),),
 }
 _LIST = ("append", "take", "clear", "report")
+# The kinds of types of one number, and the keys whose argument has such a type.
+_NUMBERS = ("quantity", "enum", "flag")
+_SINGLE = ("by", "about", "direction")
 # The built-in state that is true or false, and that which has a value for each joint or axis.
 _SWITCHES = ("powered", "connected", "free", "held")
 _JOINT_ROWS = ("angles", "planned_angles", "speeds", "held", "lowest", "highest")
@@ -58,7 +61,8 @@ def _wrong_value(name: str, state: State | None, value: object) -> str:
             return str(error)
         return ""
     if state is not None:
-        return "" if isinstance(value, str) else f"{name} must be a text"
+        fits = isinstance(value, str) and value.isprintable()
+        return "" if fits else f"{name} must be a text of printable characters"
     if name in _SWITCHES:
         return "" if isinstance(value, bool) else f"{name} must be true or false"
     return "" if type(value) in (int, Fraction) else f"{name} must be a number"
@@ -69,7 +73,10 @@ def effects_fit(edition: Edition) -> Iterator[Problem]:
     states = {state.name: state for state in edition.states}
     for command in edition.commands:
         effect = command.effect
-        if effect is not None and not effect.by_role:
+        if effect is not None and command.event:
+            message = f"{command.name} is an event, which no request asks for, so it has no effect"
+            yield Problem(effect.place, "bad-effect", message)
+        elif effect is not None and not effect.by_role:
             for message in _wrong(effect, command, states):
                 yield Problem(effect.place, "bad-effect", f"{message} (effect of {command.name})")
 
@@ -81,10 +88,12 @@ def _wrong(effect: Effect, command: Command, states: Mapping[str, State]) -> Ite
     needed += [target] if isinstance(target, str) else []
     needed += [effect.what] if effect.verb == "selector" else []
     fields = [name for name, _ in effect.values]
-    for name in (*needed, *(fields if effect.verb == "stores" else ())):
+    others = [str(value) for key, value in effect.options if key == "speed"]
+    others += fields if effect.verb == "stores" else []
+    for name in (*needed, *others):
         if name not in arguments:
             yield f"{command.name} has no argument {name}{nearest(name, arguments)}"
-        elif name in needed and name != effect.option("speed") and _may_be_absent(name, command):
+        elif name in needed and _may_be_absent(name, command):
             yield f"{name} may be left out, so the effect cannot depend on it"
     for name in fields if effect.verb == "reports" else ():
         if name not in replied:
@@ -92,6 +101,7 @@ def _wrong(effect: Effect, command: Command, states: Mapping[str, State]) -> Ite
     if len(set(effect.at)) < len(effect.at):
         yield "`at` names an argument twice"
     yield from _wrong_keys(effect)
+    yield from _wrong_sizes(effect, command, arguments)
     yield from _unknown_states(effect, states)
     changes = effect.verb in ("stores", "sets", "moves", "zeroes", "does")
     if command.safety == "query" and (changes or any(map(effect.option, _LIST[:-1]))):
@@ -130,6 +140,27 @@ def _wrong_keys(effect: Effect) -> Iterator[str]:
         yield f"`at` of `{effect.verb}: {effect.what}` must name {most}"
 
 
+def _wrong_sizes(
+    effect: Effect, command: Command, arguments: Mapping[str, Field | None]
+) -> Iterator[str]:
+    """Yield which arguments are rows instead of single numbers, or the other way round."""
+    options = {key: name for key, name in effect.options if isinstance(name, str)}
+    rows = [options[key] for key in ("from", "near") if key in options]
+    single = [*effect.at, *(options[key] for key in _SINGLE if key in options)]
+    single += [effect.what] if effect.verb == "selector" else []
+    # All joints have a row of targets, or the same one.
+    if "to" in options and effect.what != "joints":
+        (rows if effect.what == "end" and "about" not in options else single).append(options["to"])
+    for name in (*rows, *single):
+        field, kinds = arguments.get(name), ("value",) if name in rows else _NUMBERS
+        if name in arguments and (field is None or field.type.kind not in kinds):
+            yield f"{name} must be {'a row' if name in rows else 'a single number'}"
+    if effect.verb == "computes":
+        last = list(reported(command).values())[-1:]
+        if not last or last[0] is None or last[0].type.kind != "value":
+            yield "the last field of the reply must be a row, which is computed"
+
+
 def _listed(keys: Sequence[str]) -> str:
     return " with ".join(f"`{key}`" for key in keys)
 
@@ -139,8 +170,7 @@ def _wrong_cases(effect: Effect, selector: Field | None) -> Iterator[str]:
     found: dict[int, str] = {}
     if not effect.cases or selector is None:
         return
-    if len(selector.type.parts) != 1:
-        yield f"{selector.name} has several numbers, so it selects no case"
+    if selector.type.kind not in _NUMBERS:
         return
     members = {member.name: member.value for member in selector.type.members}
     low, high = _ends(selector.type)
@@ -181,6 +211,12 @@ def no_contradictions(edition: Edition) -> Iterator[Problem]:
     ]
     given_values = {state for _, effect in effects for state in _changed(effect)}
     used = {name for command in edition.commands for name in states_named(command.effect)}
+    listed = {effect.what: command for command, effect in effects if effect.verb == "list"}
+    for command, effect in effects:
+        for name in (*_changed(effect), *_reported_states(effect)):
+            if effect.verb != "list" and name in listed:
+                message = f"{name} is a list for {listed[name].name}, but one value here"
+                yield Problem(effect.place, "bad-effect", f"{message} (effect of {command.name})")
     for state in edition.states:
         if state.name not in used:
             message = f"no command reports, stores or sets {state.name}"
@@ -239,9 +275,11 @@ def _misfits(
     types: Mapping[str, Type],
     chosen: str,
 ) -> Iterator[str]:
+    states = {state.name: state for state in edition.states}
+    if effect is not None and effect.verb == "list" and effect.what in states:
+        yield from _unlike_list(effect, command, states[effect.what])
     if effect is None or effect.verb not in ("reports", "stores", "sets"):
         return
-    states = {state.name: state for state in edition.states}
     fields = reported(command) if effect.verb == "reports" else given(command)
     for key, value in effect.values:
         name = key if effect.verb == "sets" else str(value)
@@ -256,6 +294,18 @@ def _misfits(
             yield from _beyond(effect, given(command), state, types, chosen)
         elif name in BUILT_IN and not effect.by_role:
             yield from _unlike_built_in(field, name, effect, edition.joints)
+
+
+def _unlike_list(effect: Effect, command: Command, state: State) -> Iterator[str]:
+    """Yield why a field cannot be a value of a list."""
+    if state.each:
+        yield f"{state.name} is a list, so it cannot have `each`"
+    added = given(command).get(str(effect.option("append")))
+    if added is not None:
+        yield from _unlike(added, state, (), added.name)
+    if effect.option("take"):
+        for name, field in list(reported(command).items())[-1:]:
+            yield from _unlike(field, state, (), name)
 
 
 def _unlike_built_in(field: Field | None, name: str, effect: Effect, joints: int) -> Iterator[str]:
