@@ -31,7 +31,7 @@ _SWITCHES = ("powered", "connected", "free", "held")
 _JOINT_ROWS = ("angles", "planned_angles", "speeds", "held", "lowest", "highest")
 _AXIS_ROWS = ("coords", "base_coords", "planned_coords")
 # Those of them that one value can stand for: whether all are held, or a limit of all.
-_ALL_AS_ONE = ("held", "lowest", "highest")
+_AS_ONE = {"reports": ("held",), "stores": ("held", "lowest", "highest")}
 
 
 def states_fit(edition: Edition) -> Iterator[Problem]:
@@ -292,6 +292,10 @@ def _misfits(
             if effect.verb != "sets":
                 yield from _unlike(field, state, effect.at, key)
             yield from _beyond(effect, given(command), state, types, chosen)
+        elif name == "reached" and not any(
+            field is not None and field.type.kind == "value" for field in given(command).values()
+        ):
+            yield f"reached needs an argument of {command.name} with a row of targets"
         elif name in BUILT_IN and not effect.by_role:
             yield from _unlike_built_in(field, name, effect, edition.joints)
 
@@ -321,7 +325,7 @@ def _unlike_built_in(field: Field | None, name: str, effect: Effect, joints: int
             yield f"{field.name} is a row, but {name} is one value"
         elif name in _JOINT_ROWS and size != joints:
             yield f"{field.name} has {size} values, but the arm has {joints} joints"
-    elif field is not None and row and not effect.at and name not in _ALL_AS_ONE:
+    elif field is not None and row and not effect.at and name not in _AS_ONE[effect.verb]:
         yield f"{field.name} is one value, but {name} is a row; `at` can choose a value of it"
 
 
