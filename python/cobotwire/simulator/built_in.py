@@ -110,6 +110,8 @@ def _reached(shown: Reported) -> bool:
         arm.standing(shown.now),
         arm.near,
     )
+    if not isinstance(target, tuple):
+        raise Unanswerable("no source says what the target is")
     kind = shown.given[query.kind] if query.kind else next(iter(query.kinds.values()))
     if kind == query.kinds.get(ANGLES):
         return all(abs(have - wish) <= degrees for have, wish in zip(standing, target))

@@ -292,10 +292,6 @@ def _misfits(
             if effect.verb != "sets":
                 yield from _unlike(field, state, effect.at, key)
             yield from _beyond(effect, given(command), state, types, chosen)
-        elif name == "reached" and not any(
-            field is not None and field.type.kind == "value" for field in given(command).values()
-        ):
-            yield f"reached needs an argument of {command.name} with a row of targets"
         elif name in BUILT_IN and not effect.by_role:
             yield from _unlike_built_in(field, name, effect, edition.joints)
 
