@@ -1,4 +1,4 @@
-"""A host that is late accuses no device: its clock is stepped, so the load of the machine is none.
+"""A host that is late accuses no device. The clock is stepped, so load does not matter.
 
 A stall is time that passes between a request and the next look at the port.
 """

@@ -52,7 +52,7 @@ class TwoArms:
         return sent
 
     def _size(self, data: bytes) -> int | None:
-        """Return the size of the frame at the start; 0 if there is none, None if it is cut off."""
+        """Return the size of the frame at the start: 0 without a frame, None if it is cut off."""
         if data[:2] != HEADER[: len(data)]:
             return 0
         if len(data) < 5:

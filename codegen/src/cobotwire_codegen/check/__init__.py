@@ -15,6 +15,7 @@ from cobotwire_codegen.check import (
     reserved,
     roles,
     samples,
+    states,
     types,
     variants,
 )
@@ -32,6 +33,7 @@ RULES: tuple[Rule, ...] = (
     *arguments.RULES,
     *samples.RULES,
     *roles.RULES,
+    *states.RULES,
     *effects.RULES,
     *evidence.RULES,
 )

@@ -188,7 +188,7 @@ def _together(probe: Probe, request: EncodedRequest) -> None:
 def _other(table: Table, command: Command) -> Command | None:
     """Return another query without arguments, which is not slow and which the device has.
 
-    None: there is none, or replies do not name the command.
+    None if the edition has no such query, or its replies do not name the command.
     """
     if not table.frame.reply_has_id or not is_framed_query(table, command):
         return None
