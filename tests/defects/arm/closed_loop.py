@@ -56,6 +56,8 @@ class ClosedLoopArm(Arm):
     def flush(self) -> bytes:
         """Return what is due by now."""
         if self.ends_at is not None and self.clock() >= self.ends_at:
+            # Also if a defect keeps the event back: nothing is due any more.
+            self.ends_at = None
             self.end(ARRIVED)
         return super().flush()
 
