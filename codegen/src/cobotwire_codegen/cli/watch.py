@@ -36,7 +36,8 @@ def watch(words: tuple[str, ...], root: str) -> None:
     _generate(words, root)
     folders = sorted(_folders(words, root))
     click.echo(f"watching {', '.join(map(str, folders))}; Ctrl-C ends")
-    with suppress(KeyboardInterrupt):
+    # While it generates, click turns Ctrl-C into Abort.
+    with suppress(KeyboardInterrupt, click.Abort):
         for changes in watchfiles.watch(*folders):
             names = sorted({Path(path).name for _, path in changes if path.endswith(".yaml")})
             if names:
