@@ -12,7 +12,6 @@ from defects.arm.arm import Arm
 from defects.arm.numbers import framed
 from defects.arm.spoilt import Defect, Right
 
-MOVES = (0x21, 0x22, 0x30, 0x31, 0x33, 0x3A, 0x3C)
 STOPS = (0x11, 0x13, 0x29, 0x34)
 ENDED, ARRIVED, STOPPED = 0x5B, 0, 11
 # Two replies to different requests come at least this long after each other, in seconds.
