@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
+import re
 from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass
 
 from field_notes.case import DONE, Case
 from field_notes.cases import GROUPS
-from field_notes.notes import NOTES
 from field_notes.play import RIGHT, WRONG, Outcome
 
 BEGIN, END = "<!-- begin: make table -->", "<!-- end: make table -->"
@@ -19,6 +19,8 @@ TITLES = {
     "layer": "cobotwire.pymycobot",
     "pymycobot": "pymycobot 4.0.7",
 }
+# Seconds; shorter runs are shown without a time.
+NOTICEABLE = 0.5
 KINDS = ("right", "honest error", "-1 or None", "crash", WRONG, "sent too often", "hang")
 
 
@@ -65,9 +67,14 @@ class Row:
         return any(self.frames.count(request) > 1 for request in self._one_way())
 
     def text(self, limit: float) -> str:
-        """Return the cell of the table."""
-        parts = [self._ends(), self._time(limit), self._requests()]
+        """Return the whole outcome."""
+        parts = [self._ends(), self.time(limit), self._requests()]
         return ", ".join(part for part in parts if part)
+
+    def briefly(self) -> str:
+        """Return the outcome without its time and without long values."""
+        ends = re.sub(r": \[.{20,}\]$", "", self._ends())
+        return ", ".join(part for part in (ends, self._requests()) if part)
 
     def _ends(self) -> str:
         described = Counter(self._described(outcome) for outcome in self.outcomes)
@@ -95,7 +102,8 @@ class Row:
             return f"**wrong, silently**{value}"
         return f"**{outcome.verdict}**" if kind == "crash" else outcome.verdict
 
-    def _time(self, limit: float) -> str:
+    def time(self, limit: float) -> str:
+        """Return the time of all calls; empty if chance decides on it."""
         if self.hung:
             return f"ended after {limit:.0f} s"
         if self._by_chance():
@@ -118,20 +126,13 @@ Results = Mapping[tuple[str, str, str], Row]
 
 
 def page(results: Results, clients: tuple[str, ...], limit: float) -> str:
-    """Return the generated part of the page."""
+    """Return the generated part of the page; the last of the clients is the peer."""
     parts = [BEGIN, _summary(results, clients)]
     for title, cases in GROUPS.items():
         parts.append(f"### {title}")
-        parts.append(
-            _table([case for case in cases if _has(results, case)], results, clients, limit)
-        )
-    parts.append(_quoted(results))
+        parts.append(_table(cases, results, clients, limit))
     parts.append(END)
     return "\n\n".join(parts) + "\n"
-
-
-def _has(results: Results, case: Case) -> bool:
-    return any(name == case.name for name, _, _ in results)
 
 
 def _summary(results: Results, clients: tuple[str, ...]) -> str:
@@ -153,22 +154,37 @@ def _summary(results: Results, clients: tuple[str, ...]) -> str:
 
 
 def _table(cases: list[Case], results: Results, clients: tuple[str, ...], limit: float) -> str:
-    lines = [
-        "| case | what the line does | line | " + " | ".join(TITLES[w] for w in clients) + " |"
-    ]
-    lines.append("|---|---|---|" + "---|" * len(clients))
+    """Return a table of our clients and the peer; a row has all cases that end alike."""
+    *ours, peer = clients
+    rows: dict[tuple[str, str], list[str]] = {}
     for case in cases:
-        for number, transport in enumerate(case.transports):
-            head = f"| {case.name} | {case.line} " if number == 0 else "| | "
-            cells = " | ".join(results[case.name, transport, who].text(limit) for who in clients)
-            lines.append(f"{head}| {TRANSPORTS[transport]} | {cells} |")
+        of_peer = {TRANSPORTS[each]: [results[case.name, each, peer]] for each in case.transports}
+        of_ours = {
+            TITLES[who]: [results[case.name, each, who] for each in case.transports] for who in ours
+        }
+        ends = (_cell(of_ours, limit, first=""), _cell(of_peer, limit, first="pty: "))
+        rows.setdefault(ends, []).append(f"{case.name} ({case.line})")
+    lines = [f"| case (what the line does) | cobotwire | {TITLES[peer]} |", "|---|---|---|"]
+    lines += [f"| {'; '.join(names)} | {ours} | {peer} |" for (ours, peer), names in rows.items()]
     return "\n".join(lines)
 
 
-def _quoted(results: Results) -> str:
-    lines = ["### Quotations from the notes", ""]
-    for key, piece in NOTES.items():
-        names = [case.name for cases in GROUPS.values() for case in cases if key in case.notes]
-        if names:
-            lines.append(f"- {piece}\n  *{'; '.join(names)}*")
-    return "\n".join(lines)
+def _cell(runs: Mapping[str, list[Row]], limit: float, first: str) -> str:
+    """Return how the runs ended; if not alike, after ``first`` the others with their labels."""
+    alike: dict[str, tuple[list[str], list[Row]]] = {}
+    for label, rows in runs.items():
+        for row in rows:
+            labels, found = alike.setdefault(row.briefly(), ([], []))
+            labels.append(label)
+            found.append(row)
+    texts = [f"{text}{_longest(rows, limit)}" for text, (_, rows) in alike.items()]
+    names = [", ".join(dict.fromkeys(labels)) for labels, _ in alike.values()]
+    others = [f"{name}: {text}" for name, text in zip(names[1:], texts[1:])]
+    return ". ".join([f"{first if others else ''}{texts[0]}", *others])
+
+
+def _longest(rows: list[Row], limit: float) -> str:
+    """Return the time of the longest run, if it is noticeable."""
+    longest = max(rows, key=lambda row: row.seconds)
+    time = longest.time(limit) if longest.seconds >= NOTICEABLE else ""
+    return f", {time}" if time else ""

@@ -81,7 +81,8 @@ def text(tallies: Sequence[Tally]) -> str:
 
 
 def markdown(tallies: Sequence[Tally]) -> str:
-    """Return the table for a page."""
-    headings, *cells = rows(tallies)
-    table = [headings, ["---", *["---:"] * len(COLUMNS)], *cells]
+    """Return the table for a page, without the columns that are 0."""
+    cells = [column for column in zip(*rows(tallies), strict=True) if column[-1] != "0"]
+    headings, *table = zip(*cells, strict=True)
+    table = [headings, ("---", *["---:"] * (len(cells) - 1)), *table]
     return "".join(f"| {' | '.join(row)} |\n" for row in table)

@@ -1,6 +1,6 @@
 """pymycobot, unmodified, runs a whole session over a pty and over TCP, with its own waiting.
 
-The session comes from bench/pymycobot_session.py; docs/simulation.md shows its table.
+The session comes from bench/pymycobot_session.py.
 """
 
 from __future__ import annotations

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from newcomer.website.planned import Expected, NotRun, Plan
+from newcomer.website.planned import Expected, Plan
 
 DEVICE = "cobotwire --edition mycobot280 conform device"
 PASSED = Expected(r"\d+ pass")
@@ -49,12 +49,5 @@ END
         "cobotwire --edition mycobot280 conform codec -- python -m"
         " cobotwire.conformance.codec.adapter native": Expected(r"\d+ pass"),
         "cobotwire conform compare monday.json tuesday.json": Expected(),
-        "cobotwire --edition mycobot280 sim --quiet": Expected(r"/dev/pts/\d+", served=True),
-        "socat TCP-LISTEN:9101,reuseaddr,fork,bind=127.0.0.1 FILE:/dev/pts/4,raw,echo=0": NotRun(
-            "it needs socat, and the number of a port that another terminal printed"
-        ),
-        "cobotwire --edition mycobot280 conform device socket://127.0.0.1:9101": NotRun(
-            "it needs the bridge of the command before it"
-        ),
     },
 )

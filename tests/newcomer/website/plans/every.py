@@ -14,7 +14,6 @@ PLANS: dict[str, Plan] = {
     "docs/studio.md": guides.STUDIO,
     "docs/pymycobot.md": guides.PYMYCOBOT,
     "docs/attack.md": guides.ATTACK,
-    "docs/bad-lines.md": guides.BAD_LINES,
     "docs/c.md": guides.C,
     "docs/targets.md": guides.TARGETS,
     "docs/captures.md": captures.CAPTURES,

@@ -43,9 +43,7 @@ SIMULATION = Plan(
         "cobotwire sim": SIM,
         "cobotwire sim --tcp 127.0.0.1:9000": Expected(r"socket://127\.0\.0\.1:9000", served=True),
         "cobotwire sim --speed 10 --json": Expected(r'\{.*"/dev/pts/\d+"', served=True),
-        "cobotwire sim --powered --no-acks": SIM,
         "cobotwire sim --led hand.txt": SIM,
-        "cobotwire sim --view arm.png": SIM,
         "cobotwire plot arm.pcapng -o arm.svg": Expected(),
         "cobotwire plot arm.pcapng --pose -o pose.png": Expected(),
         "cobotwire sim --list-scenarios": Expected(r"late-replies"),
@@ -82,7 +80,6 @@ PYMYCOBOT = Plan(
 
 CLONE = "it is for a clone, and takes minutes"
 ATTACK = Plan(commands={"make attack": NotRun(CLONE)})
-BAD_LINES = Plan(commands={"make table": NotRun(f"{CLONE}; it writes the table of the page")})
 C = Plan(
     commands={
         "arm-none-eabi-gcc -std=c99 -Os -mcpu=cortex-m0plus -mthumb -ffreestanding -fstack-usage"
