@@ -130,7 +130,7 @@ def page(results: Results, clients: tuple[str, ...], limit: float) -> str:
     parts = [BEGIN, _summary(results, clients)]
     for title, cases in GROUPS.items():
         parts.append(f"### {title}")
-        parts.append(_table(cases, results, clients, limit))
+        parts.append(_cases(cases, results, clients, limit))
     parts.append(END)
     return "\n\n".join(parts) + "\n"
 
@@ -153,23 +153,34 @@ def _summary(results: Results, clients: tuple[str, ...]) -> str:
     return "\n".join(lines)
 
 
-def _table(cases: list[Case], results: Results, clients: tuple[str, ...], limit: float) -> str:
-    """Return a table of our clients and the peer; a row has all cases that end alike."""
+def _cases(
+    cases: tuple[Case, ...], results: Results, clients: tuple[str, ...], limit: float
+) -> str:
+    """Return how our clients and the peer end; an entry has all cases that end alike."""
     *ours, peer = clients
-    rows: dict[tuple[str, str], list[str]] = {}
+    entries: dict[tuple[str, str], list[str]] = {}
     for case in cases:
         of_peer = {TRANSPORTS[each]: [results[case.name, each, peer]] for each in case.transports}
         of_ours = {
             TITLES[who]: [results[case.name, each, who] for each in case.transports] for who in ours
         }
-        ends = (_cell(of_ours, limit, first=""), _cell(of_peer, limit, first="pty: "))
-        rows.setdefault(ends, []).append(f"{case.name} ({case.line})")
-    lines = [f"| case (what the line does) | cobotwire | {TITLES[peer]} |", "|---|---|---|"]
-    lines += [f"| {'; '.join(names)} | {ours} | {peer} |" for (ours, peer), names in rows.items()]
+        ends = (_ends(of_ours, limit, first=""), _ends(of_peer, limit, first="pty: "))
+        entries.setdefault(ends, []).append(f"{case.name} ({case.line})")
+    lines = []
+    for (ours, theirs), names in entries.items():
+        lines.append(f"- {'; '.join(names)}")
+        lines += (
+            [f"  - both: {ours}"]
+            if ours == theirs
+            else [
+                f"  - cobotwire: {ours}",
+                f"  - pymycobot: {theirs}",
+            ]
+        )
     return "\n".join(lines)
 
 
-def _cell(runs: Mapping[str, list[Row]], limit: float, first: str) -> str:
+def _ends(runs: Mapping[str, list[Row]], limit: float, first: str) -> str:
     """Return how the runs ended; if not alike, after ``first`` the others with their labels."""
     alike: dict[str, tuple[list[str], list[Row]]] = {}
     for label, rows in runs.items():

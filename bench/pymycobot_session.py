@@ -1,7 +1,7 @@
 """Time each call of a whole session: pymycobot 4.0.7, unmodified, and our client.
 
-Each client drives its own simulated arm in real time, on a pty and over TCP. The output is a table. A
-motion takes as long as the arm needs; the clients differ in what they add.
+Each client drives its own simulated arm in real time, on a pty and over TCP. The output is a table.
+A motion takes as long as the arm needs; the clients differ in what they add.
 """
 
 from __future__ import annotations

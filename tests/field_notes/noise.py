@@ -60,7 +60,7 @@ CASES = (
     Case(
         "firmware text, again and again",
         ("text",),
-        "`cmd_len error` 20 times, 5 ms between them, then the reply",
+        "`cmd_len error` 20 times, 5 ms between them",
         (CommandError(only="requests", times=20, seconds=0.005),),
         requests=None,
     ),
@@ -80,13 +80,13 @@ CASES = (
     Case(
         "277 NULs before the reply",
         ("boot",),
-        "277 NULs, then the reply",
+        "as after a restart",
         (Inserted(data=b"\0", times=277),),
     ),
     Case(
         "boot output at another baud rate",
         ("boot",),
-        _hex(OTHER_BAUD) + ", then the reply",
+        _hex(OTHER_BAUD),
         (Inserted(data=OTHER_BAUD),),
     ),
     Case(

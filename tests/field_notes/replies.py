@@ -49,7 +49,7 @@ CASES = (
     Case(
         "another command's frame before the reply",
         ("other frame",),
-        "FE FE 03 12 01 FA, then the reply",
+        "FE FE 03 12 01 FA",
         (Inserted(data=POWERED),),
     ),
     Case(
