@@ -50,11 +50,11 @@ def main() -> None:
     with ThreadPoolExecutor(AT_ONCE) as pool:
         rows = list(pool.map(_measured, runs))
     results = {(run.case.name, run.transport, run.who): row for run, row in zip(runs, rows)}
-    text = page(results, CLIENTS, LIMIT_SECONDS)
     if sys.argv[1:]:
         for key, row in results.items():
             print(*key, row.text(LIMIT_SECONDS), sep=" | ")
     else:
+        text = page(results, CLIENTS, LIMIT_SECONDS)
         before, _, rest = DOCUMENT.read_text().partition(BEGIN)
         DOCUMENT.write_text(before + text + rest.partition(END)[2].lstrip("\n"))
         print(f"{len(rows)} runs, written to {DOCUMENT}")

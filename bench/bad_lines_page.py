@@ -167,16 +167,12 @@ def _cases(
         ends = (_ends(of_ours, limit, first=""), _ends(of_peer, limit, first="pty: "))
         entries.setdefault(ends, []).append(f"{case.name} ({case.line})")
     lines = []
-    for (ours, theirs), names in entries.items():
+    for (our_ends, their_ends), names in entries.items():
         lines.append(f"- {'; '.join(names)}")
-        lines += (
-            [f"  - both: {ours}"]
-            if ours == theirs
-            else [
-                f"  - cobotwire: {ours}",
-                f"  - pymycobot: {theirs}",
-            ]
-        )
+        if our_ends == their_ends:
+            lines.append(f"  - both: {our_ends}")
+        else:
+            lines += [f"  - cobotwire: {our_ends}", f"  - pymycobot: {their_ends}"]
     return "\n".join(lines)
 
 
