@@ -45,9 +45,9 @@ class Failed(Exception):
     """A check failed; the text says what to do."""
 
 
-def version() -> str:
+def version(root: Path = ROOT) -> str:
     """Return the version that Cargo.toml states, for all parts."""
-    stated: str = _toml("Cargo.toml")["workspace"]["package"]["version"]
+    stated: str = _toml("Cargo.toml", root)["workspace"]["package"]["version"]
     return stated
 
 
@@ -87,16 +87,16 @@ def check_changelog() -> str:
 
 def check_tree() -> str:
     """Check that everything is committed."""
-    if changed := _git("status", "--porcelain"):
+    if changed := git("status", "--porcelain"):
         raise Failed(f"not committed: {changed.splitlines()[0]}")
-    return _git("rev-parse", "--short", "HEAD")
+    return git("rev-parse", "--short", "HEAD")
 
 
 def check_branch() -> str:
     """Check that the commit is on main, and that the version has no tag yet."""
-    if _git("tag", "--list", f"v{version()}"):
+    if git("tag", "--list", f"v{version()}"):
         raise Failed(f"v{version()} exists: a version is released once; raise it in Cargo.toml")
-    if (branch := _git("rev-parse", "--abbrev-ref", "HEAD")) != "main":
+    if (branch := git("rev-parse", "--abbrev-ref", "HEAD")) != "main":
         raise Failed(f"this is {branch}; releases are made from main: git switch main")
     return "main"
 
@@ -107,7 +107,7 @@ def check_ci() -> str:
         raise Failed(
             "the command gh is not installed: install it, or look at the commit's checks on GitHub"
         )
-    command = ("gh", "run", "list", "--commit", _git("rev-parse", "HEAD"))
+    command = ("gh", "run", "list", "--commit", git("rev-parse", "HEAD"))
     states = _run(*command, "--json", "name,conclusion", "--jq", '.[] | .name + ": " + .conclusion')
     if not states or any(not line.endswith(": success") for line in states.splitlines()):
         raise Failed(f"not every workflow succeeded: {states or 'none has run'}")
@@ -156,11 +156,12 @@ def notes() -> str:
     raise Failed(f"CHANGELOG.md has no section for {version()}")
 
 
-def _toml(name: str) -> dict[str, Any]:
-    return tomllib.loads((ROOT / name).read_text(encoding="utf-8"))
+def _toml(name: str, root: Path = ROOT) -> dict[str, Any]:
+    return tomllib.loads((root / name).read_text(encoding="utf-8"))
 
 
-def _git(*words: str) -> str:
+def git(*words: str) -> str:
+    """Return what git prints."""
     return _run("git", *words)
 
 
