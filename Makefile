@@ -22,7 +22,7 @@ STATES ?= 1000000
 REV ?= HEAD
 CARGO_FUZZ := .cargo-tools/bin/cargo-fuzz
 
-.PHONY: set-up spec-mutants help demo test lint lint-and-rust python-test computing-tests simulating-tests calling-tests waiting-tests other-tests rust-test products gen targets docs bench plots picture answers table fuzz figures clean faults conform defects attack archives bench-archive bench-compare rust-asan robots layer demos front-end front-end-if-reachable four-hours studio-pictures explore nightly
+.PHONY: set-up spec-mutants help demo test lint lint-and-rust python-test computing-tests simulating-tests calling-tests waiting-tests other-tests rust-test products gen targets docs bench plots picture answers table fuzz figures clean faults conform defects attack archives bench-archive bench-compare rust-asan robots layer demos front-end front-end-if-reachable four-hours studio-pictures explore nightly release-check
 .DEFAULT_GOAL := help
 
 help: ## list the targets
@@ -196,6 +196,9 @@ archives: .venv/.tools .venv/.native ## export and query archives on a Dask clus
 wheels-check: .venv/.base ## build both distributions; run README, website and three other protocols from the wheels in fresh environments: PYTHONS="python3.11 ..."
 	$(BIN)/python -m pip install --quiet --group release
 	PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/python tools/wheels_check.py $(PYTHONS)
+
+release-check: .venv/.tools .venv/.native ## compare API, editions, spec language and recordings with the last release, or with the revision SINCE
+	$(BIN)/python tools/promises.py $(SINCE)
 
 robots: .venv/.tools .venv/.native ## compare every request of the maker's classes with ours
 	PYTHONPATH=tests:tests/peers $(BIN)/python -W ignore -m robots $(ROBOTS)

@@ -1,7 +1,7 @@
 """Compare this tree with the last release, and name the version number that must follow.
 
-    python tools/promises.py             # compare with the last release
-    python tools/promises.py REVISION    # compare with a revision, as if it were the last release
+    make release-check                 # compare with the last release
+    make release-check SINCE=HEAD~9    # compare with a revision, as if it were the last release
 
 docs/compatibility.md says what a release promises, a row for each entry of ``PROMISES``. The exit
 code is 1 if this tree's version (Cargo.toml) promises more than the differences permit.
@@ -20,7 +20,7 @@ import sys
 import tarfile
 import tempfile
 from collections import Counter
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import suppress
 from itertools import chain
 from pathlib import Path
@@ -30,17 +30,17 @@ import griffe
 
 from cobotwire import capture
 from cobotwire.protocol.errors import CaptureError
-from cobotwire.protocol.loading import table_of
+from cobotwire.protocol.loading import VERSION, table_of
 from cobotwire_codegen.check import checked_edition
 from cobotwire_codegen.diff import Finding, bump, bump_before_1_0, diff_all
 from cobotwire_codegen.diff.rules import LEVELS, Level
 from cobotwire_codegen.diff.sources import read
 from cobotwire_codegen.errors import SpecError
 from cobotwire_codegen.project import spec_files
-from release import ROOT, VERSION, Failed, git, version
+from release import RECORDED, ROOT, Failed, git, version
+from release import VERSION as NUMBER
 
 BUMPS = ("major", "minor", "patch", "none")
-RECORDED = "tests/capture/recorded"
 # Prints the verbs with their options, and the exit codes.
 COMMAND_LINE = """
 import click, json
@@ -48,9 +48,10 @@ from cobotwire.cli.app import app
 from cobotwire.cli.shared.exit_codes import CODES
 def words(command, path):
     yield from (f"{path} {word}" for each in command.params for word in each.opts)
-    for name in getattr(command, "commands", ()):
+    context = click.Context(command)
+    for name in command.list_commands(context) if isinstance(command, click.Group) else ():
         yield f"{path} {name}"
-        yield from words(command.get_command(click.Context(command), name), f"{path} {name}")
+        yield from words(command.get_command(context, name), f"{path} {name}")
 print(json.dumps([*words(app, "cobotwire"), *(f"exit code {n}: {e.__name__}" for e, n in CODES)]))
 """
 
@@ -188,10 +189,14 @@ def json_documents(old: Path, new: Path) -> Iterator[Finding]:
     """Load each old ``edition.json`` as a generated package is loaded."""
     del new
     for path in sorted((old / "python/cobotwire/editions").glob("*/edition.json")):
+        document, where = json.loads(path.read_bytes()), path.relative_to(old).as_posix()
+        if document["version"] != VERSION:
+            message = f"the format was {document['version']}, is {VERSION}: build packages again"
+            yield _finding("behaviour", "format-changed", where, message)
+            continue
         try:
-            table_of(json.loads(path.read_bytes()))
+            table_of(document)
         except (KeyError, TypeError, ValueError) as error:
-            where = path.relative_to(old).as_posix()
             yield _finding("api", "not-loaded", where, repr(error))
 
 
@@ -223,10 +228,10 @@ def _finding(level: Level, rule: str, where: str, message: str = "") -> Finding:
     return Finding(rule, level, where, "", "", message)
 
 
-def last_release() -> str | None:
-    """Return the tag of the highest earlier version; None before the first release."""
-    tags = [tag for tag in git("tag", "--list", "v*").split() if re.fullmatch(VERSION, tag[1:])]
-    return max((tag for tag in tags if _parts(tag) < _parts(version())), key=_parts, default=None)
+def last_release(tags: Iterable[str], current: str) -> str | None:
+    """Return the tag of the highest version below the current one; None without any."""
+    tags = [tag for tag in tags if NUMBER.fullmatch(tag[1:]) and _parts(tag) < _parts(current)]
+    return max(tags, key=_parts, default=None)
 
 
 def _parts(number: str) -> tuple[int, ...]:
@@ -254,10 +259,9 @@ def compare(revision: str) -> bool:
         before = version(old)
         for name, promise in PROMISES.items():
             found[name] = [*dict.fromkeys(promise(old, ROOT))]
-            for level in LEVELS:
-                for one in found[name]:
-                    if one.level == level:
-                        print(f"{level}: {one.rule}: {one.where}: {one.message}".removesuffix(": "))
+            for one in sorted(found[name], key=lambda one: [*LEVELS].index(one.level)):
+                if one.level != "docs":
+                    print(f"{one.level}: {one.rule}: {one.where}: {one.message}".removesuffix(": "))
     print(f"\nSince {revision} ({before}):")
     for name, differences in found.items():
         counts = Counter(one.level for one in differences)
@@ -284,7 +288,9 @@ def main() -> int:
     """Compare; return 1 if the version number is too low."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
     parser.add_argument("revision", nargs="?", help="by default the tag of the last release")
-    last = parser.parse_args().revision or last_release()
+    last = parser.parse_args().revision or last_release(
+        git("tag", "--list", "v*").split(), version()
+    )
     if last is None:
         print(f"{version()} is the first release: there is no earlier one to compare with")
         return 0

@@ -2,6 +2,7 @@
 
     python tools/release.py                # check this tree; print what is left to do
     python tools/release.py --build        # also build and check the distributions
+    python tools/release.py --changelog    # move the fragments of news/ into CHANGELOG.md
     python tools/release.py --tag v0.1.0   # in the release workflow: the tag fits the tree
     python tools/release.py --notes        # print the changelog's section of the version
 
@@ -25,8 +26,7 @@ from pathlib import Path
 from typing import Any
 
 ROOT = Path(__file__).parents[1]
-UNRELEASED = "Unreleased"
-SECTIONS = ("Added", "Changed", "Deprecated", "Removed", "Fixed", "Security")
+RECORDED = "tests/capture/recorded"
 VERSION = re.compile(r"\d+\.\d+\.\d+(rc\d+)?")
 DATE_FORMAT = re.compile(r"\d{4}-\d{2}-\d{2}")
 LEFT = """
@@ -34,7 +34,7 @@ Left to do by hand, in this order:
   1. Confirm the repository's URL (pyproject.toml names {repository}) and the site's.
   2. Once: register .github/workflows/release.yml with the environment "pypi" as trusted publisher
      of the projects cobotwire and cobotwire-codegen on PyPI; require an approval in it.
-  3. make test, make wheels-check, make fuzz FUZZ_SECONDS=600, make conform
+  3. make test, make release-check, make wheels-check, make fuzz FUZZ_SECONDS=600, make conform
   4. git tag --sign v{version} && git push origin v{version}
   5. Read what the workflow built, then approve its job "publish".
   6. Install it as a user: pip install cobotwire=={version}; cobotwire demo
@@ -68,21 +68,34 @@ def check_version() -> str:
 
 def check_changelog() -> str:
     """Check that the version has a dated section, and that the sections have known headings."""
+    if left := [path.name for path in (ROOT / "news").iterdir() if path.name != "README.md"]:
+        raise Failed(f"news/ has {left[0]}: run python tools/release.py --changelog")
     text = (ROOT / "CHANGELOG.md").read_text(encoding="utf-8")
+    sections = [
+        kind.capitalize() for kind in _toml("pyproject.toml")["tool"]["towncrier"]["fragment"]
+    ]
     for heading in re.findall(r"^### (.*)$", text, re.MULTILINE):
-        if heading not in SECTIONS:
-            raise Failed(f"CHANGELOG.md: {heading} is not one of {', '.join(SECTIONS)}")
+        if heading not in sections:
+            raise Failed(f"CHANGELOG.md: {heading} is not one of {', '.join(sections)}")
     entries = re.findall(r"^- .*(?:\n  .*)*", text, re.MULTILINE)
     doubled = sorted({entry for entry in entries if entries.count(entry) > 1})
     if doubled:
         raise Failed(f"CHANGELOG.md has this twice: {doubled[0]}")
     found = re.search(rf"^## {re.escape(version())} \((.*)\)$", text, re.MULTILINE)
     if found is None:
-        raise Failed(f"CHANGELOG.md: rename '## {UNRELEASED}' to '## {version()} ({date.today()})'")
+        raise Failed(f"CHANGELOG.md has no section {version()}: add news, then use --changelog")
     if not DATE_FORMAT.fullmatch(found[1]):
         heading, dated = found[0], f"## {version()} ({date.today()})"
         raise Failed(f"CHANGELOG.md: {heading!r} has no date; on the day write {dated!r}")
     return f"{version()} of {found[1]}"
+
+
+def check_recording() -> str:
+    """Check that later releases will have a recording of this one to read."""
+    path = f"{RECORDED}/{version()}.pcapng"
+    if not (ROOT / path).exists():
+        raise Failed(f"{path} is missing: cobotwire monitor URL --count 2 --record {path}")
+    return path
 
 
 def check_tree() -> str:
@@ -176,7 +189,7 @@ def _run(*words: str) -> str:
 
 
 def _checks(tagged: bool, with_build: bool) -> Iterator[Callable[[], str]]:
-    yield from (check_version, check_changelog)
+    yield from (check_version, check_changelog, check_recording)
     if not tagged:
         yield from (check_tree, check_branch, check_ci)
     if with_build:
@@ -189,10 +202,14 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
     parser.add_argument("--build", action="store_true", help="also build the distributions")
     parser.add_argument("--tag", help="the tag that starts the release")
+    parser.add_argument("--changelog", action="store_true", help="move news/ into CHANGELOG.md")
     parser.add_argument("--notes", action="store_true", help="print the changelog's section")
     given = parser.parse_args()
     if given.notes:
         print(notes())
+        return 0
+    if given.changelog:
+        print(_run(sys.executable, "-m", "towncrier", "build", "--yes", "--version", version()))
         return 0
     failed = 0
     for check in _checks(given.tag is not None, given.build):
