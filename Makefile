@@ -212,7 +212,7 @@ demos: .venv/.tools .venv/.native ## run the maker's public demos: with the libr
 faults: .venv/.tools .venv/.native ## run our client and pymycobot on each fault; write docs/fault-scenarios.md
 	PYTHONPATH=tests $(BIN)/python bench/fault_scenarios.py
 
-figures: .venv/.tools .venv/.native ## count files, lines and import cycles of each room, and the files that a call uses
+figures: .venv/.tools .venv/.native ## count files and lines of each room, and the files that a call uses
 	$(BIN)/python tests/house_figures.py
 
 clean: ## remove the environment and all build products

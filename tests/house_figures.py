@@ -16,11 +16,10 @@ import statistics
 import subprocess
 import sys
 import tokenize
-from collections.abc import Iterator
 from pathlib import Path
 from typing import NamedTuple
 
-from module_graph import import_cycles, python_imports_of, rust_imports_of
+from module_graph import python_imports_of
 
 PACKAGE = "python/cobotwire/"
 GENERATED = re.compile(r"python/cobotwire/editions/\w+/|docs/reference/")
@@ -63,10 +62,6 @@ def main() -> None:
     counts = _sizes(root)
     _print_rooms(counts)
     _print_longest(counts)
-    for name, found in _cycles(root):
-        print(f"import cycles in {name}: {len(found)}")
-        for cycle in found:
-            print(f"    {' '.join(cycle)}")
     _print_arrows(root / "python" / "cobotwire")
 
 
@@ -158,16 +153,6 @@ def _print_longest(counts: dict[Source, Size]) -> None:
     print("longest files of code:")
     for path in sorted(sizes, key=lambda path: -sizes[path])[:LONGEST]:
         print(f"    {sizes[path]:5}  {path}")
-
-
-def _cycles(root: Path) -> Iterator[tuple[str, list[list[str]]]]:
-    for folder, name in [
-        (root / "python" / "cobotwire", "cobotwire"),
-        (root / "codegen" / "src" / "cobotwire_codegen", "cobotwire_codegen"),
-    ]:
-        yield name, import_cycles(python_imports_of(folder, name))
-    for crate in ("core", "py", "fuzz"):
-        yield f"rust/{crate}", import_cycles(rust_imports_of(root / "rust" / crate / "src"))
 
 
 if __name__ == "__main__":

@@ -6,6 +6,7 @@ import ast
 import re
 from collections.abc import Iterator, Mapping
 from functools import cache
+from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
 
 Imports = dict[str, set[str]]
@@ -116,22 +117,11 @@ def _paths(tree: str) -> Iterator[list[str]]:
         yield [word for word in branch.strip().split("{")[0].split("::") if word]
 
 
-def import_cycles(imports: Mapping[str, set[str]]) -> list[list[str]]:
-    """Return the largest sets of modules in which each module reaches every other one."""
-    reached = {name: _reached(imports, name) for name in imports}
-    found = {
-        frozenset({name, *(other for other in reached[name] if name in reached[other])})
-        for name in imports
-        if name in reached[name]
-    }
-    return sorted(sorted(cycle) for cycle in found)
-
-
-def _reached(imports: Mapping[str, set[str]], start: str) -> set[str]:
-    found: set[str] = set()
-    waiting = [start]
-    while waiting:
-        for name in imports[waiting.pop()] - found:
-            found.add(name)
-            waiting.append(name)
-    return found
+def import_cycle(imports: Mapping[str, set[str]]) -> list[str]:
+    """Return modules that import each other in a circle; the list is empty if there are none."""
+    try:
+        TopologicalSorter(imports).prepare()
+    except CycleError as error:
+        cycle: list[str] = error.args[1]
+        return cycle
+    return []
