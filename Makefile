@@ -155,7 +155,7 @@ plots: .venv/.tools .venv/.native ## measure and draw the curves of docs/; takes
 	$(BIN)/python bench/plot_resync.py target/resync.json docs/plots
 
 picture: .venv/.tools .venv/.native ## record the picture of the README: a simulated arm, a program, monitor
-	$(BIN)/python tools/record_picture.py docs/pictures
+	PYTHONPATH=tests $(BIN)/python tools/record_picture.py docs/pictures
 
 answers: .venv/.tools .venv/.native ## record the example capture of docs/answers.md, export it, draw its pictures
 	rm -rf target/answers && mkdir -p target/answers

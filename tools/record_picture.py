@@ -21,7 +21,8 @@ from typing import NamedTuple
 from cobotwire.editions.mycobot280 import TABLE, MyCobot280
 from cobotwire.simulator.kinematics import geometry_of
 from cobotwire.simulator.kinematics.forward import frames
-from terminal_picture import FONT, Film, Screen, Terminal
+from terminal import Terminal
+from terminal_picture import FONT, Film, Screen, screen_of
 
 FRAMES_A_SECOND = 10
 PROGRAM = (
@@ -54,22 +55,18 @@ class Recorded(NamedTuple):
 def record(program: Sequence[str] = PROGRAM, port: int = 9000) -> Recorded:
     """Start all programs, type ``program`` and return what was shown meanwhile."""
     with ExitStack() as stack:
-        words = [sys.executable, "-c", "from cobotwire.cli import main; main()"]
-        sim = stack.enter_context(
-            Terminal(*words, "sim", "--quiet", "--tcp", f":{port}", columns=80, lines=10)
-        )
-        sim.until("socket://")
-        url = next(word for word in sim.text().split() if word.startswith("socket://"))
+        words = ("sim", "--quiet", "--tcp", f":{port}")
+        sim = stack.enter_context(Terminal(*words, columns=80, lines=10))
+        sim.until(lambda: "socket://" in sim.text())
+        url = next(row for row in sim.rows() if row.startswith("socket://"))
         start = Path(stack.enter_context(tempfile.TemporaryDirectory()), "start.py")
         start.write_text(START)
         python = stack.enter_context(
-            Terminal(sys.executable, "-q", columns=64, lines=12, PYTHONSTARTUP=str(start))
+            Terminal(program=[sys.executable, "-q"], columns=64, lines=12, PYTHONSTARTUP=str(start))
         )
-        python.until(PROMPT)
-        monitor = stack.enter_context(
-            Terminal(*words, "monitor", url, "--rate", "10", columns=98, lines=9)
-        )
-        monitor.until("last error")
+        python.until(lambda: _prompts(python))
+        monitor = stack.enter_context(Terminal("monitor", url, "--rate", "10", columns=98, lines=9))
+        monitor.until(lambda: "lasterror" in monitor.text())
         arm = stack.enter_context(MyCobot280(url))
         found = Recorded([], [], [])
         for _ in _typed(python, ["from cobotwire import MyCobot280", f'arm = MyCobot280("{url}")']):
@@ -81,8 +78,8 @@ def record(program: Sequence[str] = PROGRAM, port: int = 9000) -> Recorded:
             sim.read()
             monitor.read()
             found.angles.append(tuple(arm.get_angles()))
-            found.python.append(python.screen())
-            found.monitor.append(monitor.screen())
+            found.python.append(screen_of(python))
+            found.monitor.append(screen_of(monitor))
             time.sleep(max(0.0, began + number / FRAMES_A_SECOND - time.monotonic()))
         return found
 
@@ -91,14 +88,18 @@ def _typed(python: Terminal, program: Sequence[str]) -> Iterator[None]:
     """Type each line when the line before it has returned; yield once for each frame."""
     for line in program:
         for at in range(0, len(line), 6):
-            python.type(line[at : at + 6])
+            python.press(line[at : at + 6].encode())
             yield from _frames(python, 1)
-        before = python.text()
-        python.type("\n")
-        while python.text() == before or not python.text().rstrip("\n").endswith(PROMPT):
+        before = python.rows()
+        python.press(b"\n")
+        while python.rows() == before or not _prompts(python):
             yield from _frames(python, 1)
         yield from _frames(python, 5)
     yield from _frames(python, 10)
+
+
+def _prompts(python: Terminal) -> bool:
+    return "\n".join(python.rows()).rstrip("\n").endswith(PROMPT)
 
 
 def _frames(python: Terminal, count: int) -> Iterator[None]:

@@ -1,4 +1,4 @@
-"""Run programs on terminals, and draw what their screens show over time as an animated SVG.
+"""Draw what the screens of terminals show over time as an animated SVG.
 
 The animation is SMIL, which a browser also plays in an ``<img>``. Each different row of a line is
 written once, below the one before it, and a window of one row's height moves over them.
@@ -6,20 +6,14 @@ written once, below the one before it, and a window of one row's height moves ov
 
 from __future__ import annotations
 
-import fcntl
-import os
-import select
-import struct
-import subprocess
-import termios
-import time
 from collections.abc import Sequence
 from html import escape
 from itertools import groupby
-from types import TracebackType
-from typing import NamedTuple, Self
+from typing import NamedTuple
 
 import pyte
+
+from terminal import Terminal
 
 FONT = "ui-monospace, SFMono-Regular, Menlo, Consolas, 'DejaVu Sans Mono', monospace"
 # The colours of the terminal; pyte calls the default colour "default".
@@ -51,79 +45,20 @@ Row = tuple[Span, ...]
 Screen = tuple[Row, ...]
 
 
-class Terminal:
-    """A program on a terminal of ``columns`` and ``lines``, as long as the ``with`` block runs."""
+def screen_of(terminal: Terminal) -> Screen:
+    """Return what the screen shows."""
+    return tuple(_row(terminal.emulated, line) for line in range(terminal.emulated.lines))
 
-    def __init__(self, *words: str, columns: int, lines: int, **environment: str) -> None:
-        self._master, slave = os.openpty()
-        fcntl.ioctl(slave, termios.TIOCSWINSZ, struct.pack("4H", lines, columns, 0, 0))
-        self._screen = pyte.Screen(columns, lines)
-        self._stream = pyte.ByteStream(self._screen)
-        self._process = subprocess.Popen(  # noqa: S603  (the words are this program's own)
-            words,
-            stdin=slave,
-            stdout=slave,
-            stderr=slave,
-            start_new_session=True,
-            env={**os.environ, "TERM": "xterm-256color", **environment},
-        )
-        os.close(slave)
 
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        traceback: TracebackType | None,
-    ) -> None:
-        self._process.kill()
-        self._process.wait()
-        os.close(self._master)
-
-    def type(self, keys: str) -> None:
-        """Send keys to the program."""
-        os.write(self._master, keys.encode())
-
-    def text(self) -> str:
-        """Return the rows of the screen as text."""
-        return "\n".join(row.rstrip() for row in self._screen.display)
-
-    def read(self) -> None:
-        """Take what the program has written since the last call."""
-        while select.select([self._master], [], [], 0)[0]:
-            try:
-                self._stream.feed(os.read(self._master, 65536))
-            except OSError:  # the program has ended
-                return
-
-    def until(self, shown: str, seconds: float = 20.0) -> None:
-        """Read until the screen shows a text.
-
-        Raises:
-            TimeoutError: it did not show the text in time; the error has the screen.
-        """
-        end = time.monotonic() + seconds
-        while shown not in self.text():
-            if time.monotonic() > end:
-                raise TimeoutError(f"the screen does not show {shown!r}:\n{self.text()}")
-            select.select([self._master], [], [], 0.1)
-            self.read()
-
-    def screen(self) -> Screen:
-        """Return what the screen shows."""
-        return tuple(self._row(line) for line in range(self._screen.lines))
-
-    def _row(self, line: int) -> Row:
-        cells = [(x, self._screen.buffer[line][x]) for x in range(self._screen.columns)]
-        spans = []
-        for (colour, bold), group in groupby(cells, lambda cell: (cell[1].fg, cell[1].bold)):
-            found = list(group)
-            text = "".join(cell.data for _, cell in found)
-            if text.strip():
-                spans.append(Span(found[0][0], text.rstrip(), COLOURS.get(colour, colour), bold))
-        return tuple(spans)
+def _row(screen: pyte.Screen, line: int) -> Row:
+    cells = [(x, screen.buffer[line][x]) for x in range(screen.columns)]
+    spans = []
+    for (colour, bold), group in groupby(cells, lambda cell: (cell[1].fg, cell[1].bold)):
+        found = list(group)
+        text = "".join(cell.data for _, cell in found)
+        if text.strip():
+            spans.append(Span(found[0][0], text.rstrip(), COLOURS.get(colour, colour), bold))
+    return tuple(spans)
 
 
 class Film(NamedTuple):
