@@ -11,13 +11,12 @@ from __future__ import annotations
 
 import argparse
 import ast
-import io
 import json
 import os
 import re
+import shutil
 import subprocess
 import sys
-import tarfile
 import tempfile
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator
@@ -40,6 +39,7 @@ from cobotwire_codegen.project import spec_files
 from release import RECORDED, ROOT, Failed, git, version
 from release import VERSION as NUMBER
 
+COMPARED = ("Cargo.toml", "docs", "python", "spec", "tests/capture")
 BUMPS = ("major", "minor", "patch", "none")
 # Prints the verbs with their options, and the exit codes.
 COMMAND_LINE = """
@@ -128,15 +128,11 @@ def python_api(old: Path, new: Path) -> Iterator[Finding]:
             f"the last release promises {', '.join(sorted(missing))}, but has no such name"
         )
     for broken in griffe.find_breaking_changes(before, after):
-        yield _finding("api", _rule_of(broken), _place_of(broken))
+        yield _finding("api", broken.kind.name.lower().replace("_", "-"), _place_of(broken))
     # What the old API lacks was added.
     for added in griffe.find_breaking_changes(after, before):
         if added.kind is griffe.BreakageKind.OBJECT_REMOVED:
             yield _finding("addition", "object-added", _place_of(added))
-
-
-def _rule_of(broken: griffe.Breakage) -> str:
-    return broken.kind.name.lower().replace("_", "-")
 
 
 def _place_of(broken: griffe.Breakage) -> str:
@@ -242,7 +238,7 @@ def _parts(number: str) -> tuple[int, ...]:
 def raised(old: str, new: str) -> str:
     """Return the part of the version number that was raised: major, minor, patch or none."""
     pairs = zip(BUMPS, _parts(old), _parts(new))
-    return next((part for part, before, after in pairs if after > before), "none")
+    return next((part for part, before, after in pairs if after != before), "none")
 
 
 def compare(revision: str) -> bool:
@@ -254,8 +250,9 @@ def compare(revision: str) -> bool:
     commit = git("rev-parse", "--verify", "--end-of-options", f"{revision}^{{commit}}")
     found: dict[str, list[Finding]] = {}
     with tempfile.TemporaryDirectory() as folder:
-        old = Path(folder).resolve()
-        _extract(commit, old)
+        old, packed = Path(folder).resolve(), f"{folder}/old.tar"
+        git("archive", "--output", packed, commit, "--", *COMPARED)
+        shutil.unpack_archive(packed, old, filter="data")
         before = version(old)
         for name, promise in PROMISES.items():
             found[name] = [*dict.fromkeys(promise(old, ROOT))]
@@ -275,13 +272,6 @@ def compare(revision: str) -> bool:
         f"the differences need: {needed}"
     )
     return enough
-
-
-def _extract(commit: str, folder: Path) -> None:
-    command = ("git", "archive", commit, "Cargo.toml", "docs", "python", "spec", "tests/capture")
-    made = subprocess.run(command, cwd=ROOT, capture_output=True, check=True)  # noqa: S603
-    with tarfile.open(fileobj=io.BytesIO(made.stdout)) as archive:
-        archive.extractall(folder, filter="data")
 
 
 def main() -> int:

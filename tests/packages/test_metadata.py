@@ -14,6 +14,7 @@ from typing import Any
 import pytest
 
 import cobotwire
+import front_end
 from cobotwire import editions
 from cobotwire.editions.clients import EDITIONS
 from newcomer.installing import run
@@ -61,6 +62,48 @@ def test_both_distributions_have_the_same_links_and_licence() -> None:
     assert project("cobotwire")["urls"] == project("codegen")["urls"]
     assert {"Documentation", "Repository", "Changelog", "Issues"} <= set(project("codegen")["urls"])
     assert (ROOT / "codegen" / "LICENSE").read_text() == (ROOT / "LICENSE").read_text()
+
+
+def declared() -> set[str]:
+    """Return the names of everything third-party that a file of the project asks for."""
+    stated: list[str] = []
+    for path in PROJECTS.values():
+        table = tomllib.loads(path.read_text("utf-8"))
+        extras, groups = (
+            table["project"]["optional-dependencies"],
+            table.get("dependency-groups", {}),
+        )
+        stated += [*table["build-system"]["requires"], *table["project"]["dependencies"]]
+        stated += [
+            each
+            for group in (*extras.values(), *groups.values())
+            for each in group
+            if isinstance(each, str)
+        ]
+    found = {each.group() for text in stated if (each := re.match(r"[\w.-]+", text))}
+    for path in ROOT.glob("rust/*/Cargo.toml"):
+        table = tomllib.loads(path.read_text("utf-8"))
+        for part in (table, *table.get("target", {}).values()):
+            found |= {*part.get("dependencies", {}), *part.get("dev-dependencies", {})}
+    found |= {package.name for package in front_end.PACKAGES}
+    texts = [path.read_text("utf-8") for path in (ROOT / ".github/workflows").glob("*.yml")]
+    for pattern in (r"uses: ([\w-]+/[\w-]+)@", r"pipx run ([\w-]+)", r"go run \S+/([\w-]+)@"):
+        found |= {*re.findall(pattern, "".join(texts))}
+    found |= {
+        *re.findall(
+            r"cargo install .* (\S+)$", (ROOT / "Makefile").read_text("utf-8"), re.MULTILINE
+        )
+    }
+    return {name for name in found if not name.startswith("cobotwire")}
+
+
+def test_page_of_dependencies_names_each_and_no_version() -> None:
+    page = (ROOT / "docs/contribute/dependencies.md").read_text("utf-8")
+    table = page.partition("## What we write")[0]
+    rows = re.findall(r"^\|([^|]*`[^|]*)\|", table, re.MULTILINE)
+    named = [name for row in rows for name in re.findall(r"`([^`]+)`", row)]
+    assert sorted(named) == sorted(declared())
+    assert not re.search(r"\d\.\d", table)
 
 
 @pytest.mark.parametrize("name", PROJECTS)
