@@ -99,7 +99,7 @@ def _api_of(tree: Path, names: list[str]) -> griffe.Module:
         listed = module.parent.exports if module.parent else None
         module.public = module.path in names or module.name in (listed or ())
         for member in module.members.values():
-            if member.is_alias and member.wildcard_imported:
+            if isinstance(member, griffe.Alias) and member.wildcard_imported:
                 with suppress(griffe.AliasResolutionError):  # of another package
                     member.public = not member.is_module and not member.name.startswith("_")
     for name in names:

@@ -13,7 +13,7 @@ import pytest
 
 import promises
 from cobotwire import capture
-from release import RECORDED
+from release import RECORDED, Failed
 from vectors import ROOT
 
 PAGE = "| **Python API** | every name of `cobotwire` and `cobotwire.part` | |\n"
@@ -80,7 +80,7 @@ def test_change_of_the_api_is_found_if_a_page_promises_the_name(
 
 
 def test_page_without_packages_is_an_error(tmp_path: Path) -> None:
-    with pytest.raises(promises.Failed, match="no row 'Python API'"):
+    with pytest.raises(Failed, match="no row 'Python API'"):
         [*promises.python_api(tree(tmp_path, PACKAGE | {"docs/compatibility.md": ""}), tmp_path)]
 
 
