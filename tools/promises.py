@@ -49,7 +49,9 @@ from cobotwire.cli.shared.exit_codes import CODES
 def words(command, path):
     yield from (f"{path} {word}" for each in command.params for word in each.opts)
     context = click.Context(command)
-    for name in command.list_commands(context) if isinstance(command, click.Group) else ():
+    # The list leaves out verbs that cannot run here, such as studio without its JavaScript.
+    listed = command.list_commands(context) if isinstance(command, click.Group) else ()
+    for name in {*listed, *getattr(command, "verbs", ())}:
         yield f"{path} {name}"
         yield from words(command.get_command(context, name), f"{path} {name}")
 print(json.dumps([*words(app, "cobotwire"), *(f"exit code {n}: {e.__name__}" for e, n in CODES)]))

@@ -141,7 +141,12 @@ def test_edition_of_a_release_that_cannot_be_loaded_is_found(tmp_path: Path) -> 
 
 
 def test_verbs_options_and_exit_codes_are_listed() -> None:
-    expected = {"cobotwire call --json", "cobotwire conform device", "exit code 3: LinkError"}
+    expected = {
+        "cobotwire call --json",
+        "cobotwire conform device",
+        "cobotwire studio --host",
+        "exit code 3: LinkError",
+    }
     assert expected <= promises._words_of(ROOT)
 
 
