@@ -19,7 +19,7 @@ import subprocess
 import sys
 import tempfile
 from collections import Counter
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Set
 from contextlib import suppress
 from itertools import chain
 from pathlib import Path
@@ -81,12 +81,11 @@ class _Reexports(griffe.Extension):
 
     def on_alias_instance(self, *, node: Any, alias: griffe.Alias, **_: Any) -> None:
         if isinstance(node, ast.ImportFrom):
-            alias.public = (
-                any(alias.name == each.name == each.asname for each in node.names) or None
-            )
+            kept = any(alias.name == each.name == each.asname for each in node.names)
+            alias.public = kept or None
 
 
-def _api_of(tree: Path, names: list[str]) -> griffe.Module:
+def _api_of(tree: Path, names: Set[str]) -> griffe.Module:
     """Return a module that has the promised objects of a tree under their full names."""
     found = griffe.load(
         "cobotwire",
@@ -105,11 +104,9 @@ def _api_of(tree: Path, names: list[str]) -> griffe.Module:
                 with suppress(griffe.AliasResolutionError):  # of another package
                     member.public = not member.is_module and not member.name.startswith("_")
     for name in names:
-        try:
+        with suppress(KeyError):
             target = found[name.removeprefix("cobotwire.")] if name != "cobotwire" else found
-        except KeyError:
-            continue
-        api.members[name] = griffe.Alias(name, target, parent=api)
+            api.members[name] = griffe.Alias(name, target, parent=api)
     return api
 
 
@@ -122,13 +119,10 @@ def _modules(module: Any) -> Iterator[griffe.Module]:
 
 def python_api(old: Path, new: Path) -> Iterator[Finding]:
     """Compare names, parameters and defaults. griffe compares no types."""
-    names = [*dict.fromkeys(promised_names(old))]
+    names = dict.fromkeys(promised_names(old)).keys()
     before, after = _api_of(old, names), _api_of(new, names)
-    missing = names - before.members.keys()
-    if missing:
-        raise Failed(
-            f"the last release promises {', '.join(sorted(missing))}, but has no such name"
-        )
+    if missing := names - before.members.keys():
+        raise Failed(f"the last release promises names that it lacks: {sorted(missing)}")
     for broken in griffe.find_breaking_changes(before, after):
         yield _finding("api", broken.kind.name.lower().replace("_", "-"), _place_of(broken))
     # What the old API lacks was added.
@@ -162,13 +156,9 @@ def _words_of(tree: Path) -> set[str]:
 def editions(old: Path, new: Path) -> Iterator[Finding]:
     """Compare the specs, as ``cobotwire-gen diff`` does."""
     try:
-        before = read(str(old)).editions
+        yield from diff_all(read(str(old)).editions, read(str(new)).editions)
     except SpecError:
-        yield _finding(
-            "wire", "not-compared", "spec", "the old spec is rejected: see spec language"
-        )
-        return
-    yield from diff_all(before, read(str(new)).editions)
+        yield _finding("wire", "not-compared", "spec", "the rows of the spec language say why")
 
 
 def spec_language(old: Path, new: Path) -> Iterator[Finding]:
@@ -188,12 +178,11 @@ def json_documents(old: Path, new: Path) -> Iterator[Finding]:
     del new
     for path in sorted((old / "python/cobotwire/editions").glob("*/edition.json")):
         document, where = json.loads(path.read_bytes()), path.relative_to(old).as_posix()
-        if document["version"] != VERSION:
-            message = f"the format was {document['version']}, is {VERSION}: build packages again"
-            yield _finding("behaviour", "format-changed", where, message)
-            continue
         try:
-            table_of(document)
+            if document["version"] == VERSION:
+                table_of(document)
+            else:
+                yield _finding("behaviour", "format-changed", where, f"is {VERSION}: build again")
         except (KeyError, TypeError, ValueError) as error:
             yield _finding("api", "not-loaded", where, repr(error))
 
@@ -280,9 +269,8 @@ def main() -> int:
     """Compare; return 1 if the version number is too low."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
     parser.add_argument("revision", nargs="?", help="by default the tag of the last release")
-    last = parser.parse_args().revision or last_release(
-        git("tag", "--list", "v*").split(), version()
-    )
+    tags = git("tag", "--list", "v*").split()
+    last = parser.parse_args().revision or last_release(tags, version())
     if last is None:
         print(f"{version()} is the first release: there is no earlier one to compare with")
         return 0

@@ -67,20 +67,10 @@ def check_version() -> str:
 
 
 def check_changelog() -> str:
-    """Check that the version has a dated section, and that the sections have known headings."""
+    """Check that the version has a dated section, and that no news is left out."""
     if left := [path.name for path in (ROOT / "news").iterdir() if path.name != "README.md"]:
         raise Failed(f"news/ has {left[0]}: run python tools/release.py --changelog")
     text = (ROOT / "CHANGELOG.md").read_text(encoding="utf-8")
-    sections = [
-        kind.capitalize() for kind in _toml("pyproject.toml")["tool"]["towncrier"]["fragment"]
-    ]
-    for heading in re.findall(r"^### (.*)$", text, re.MULTILINE):
-        if heading not in sections:
-            raise Failed(f"CHANGELOG.md: {heading} is not one of {', '.join(sections)}")
-    entries = re.findall(r"^- .*(?:\n  .*)*", text, re.MULTILINE)
-    doubled = sorted({entry for entry in entries if entries.count(entry) > 1})
-    if doubled:
-        raise Failed(f"CHANGELOG.md has this twice: {doubled[0]}")
     found = re.search(rf"^## {re.escape(version())} \((.*)\)$", text, re.MULTILINE)
     if found is None:
         raise Failed(f"CHANGELOG.md has no section {version()}: add news, then use --changelog")
