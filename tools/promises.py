@@ -149,7 +149,7 @@ def _words_of(tree: Path) -> set[str]:
     command = (sys.executable, "-c", COMMAND_LINE)
     ended = subprocess.run(command, env=where, capture_output=True, text=True, check=False)  # noqa: S603
     if ended.returncode:
-        raise Failed(f"the command line of {tree} cannot be listed: {ended.stderr.strip()}")
+        raise Failed(f"the command line of {tree} cannot be listed: {ended.stderr[-200:].strip()}")
     return {*json.loads(ended.stdout)}
 
 
