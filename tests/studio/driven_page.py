@@ -13,7 +13,7 @@ from targets.decoder.browser import Tab
 
 SECONDS = 30
 KEYS = {"Tab": 9, "Enter": 13, "Escape": 27, " ": 32, "End": 35, "Home": 36, "ArrowUp": 38}
-KEYS |= {"ArrowDown": 40}
+KEYS |= {"ArrowDown": 40, "ArrowLeft": 37, "ArrowRight": 39}
 # Wait in the page itself, since each question from here costs a round trip.
 UNTIL = """
 async (look) => {
@@ -71,6 +71,30 @@ class Page:
         self.until(f"{element} && !{element}.disabled")
         self.get(f"{element}.click()")
 
+    def show_tab(self, panel: str) -> None:
+        """Show the panel of a tab."""
+        self.click(f"[role=tab][aria-controls={panel}]")
+
+    def middle(self, selector: str) -> tuple[float, float]:
+        """Return where the middle of an element is on the screen, after scrolling to it."""
+        x, y = self.get(
+            f"(() => {{ const found = document.querySelector({json.dumps(selector)});"
+            " found.scrollIntoView({ block: 'nearest' }); const box = found.getBoundingClientRect();"
+            " return [box.x + box.width / 2, box.y + box.height / 2]; })()"
+        )
+        return x, y
+
+    def mouse(self, kind: str, x: float, y: float) -> None:
+        """Move the mouse, or press or release its left button: ``mouseMoved`` and so on."""
+        held = 0 if kind == "mouseReleased" else 1
+        button = {"button": "left", "buttons": held, "clickCount": 1}
+        self.tab.call("Input.dispatchMouseEvent", type=kind, x=x, y=y, **button)
+
+    def touch(self, kind: str, *points: tuple[float, float]) -> None:
+        """Touch the screen: ``touchStart`` and ``touchMove`` with points, ``touchEnd`` without."""
+        at = [{"x": x, "y": y} for x, y in points]
+        self.tab.call("Input.dispatchTouchEvent", type=kind, touchPoints=at)
+
     def choose(self, id: str, value: str) -> None:
         """Write a value into a box, or choose it."""
         self.get(
@@ -81,11 +105,16 @@ class Page:
 
     def press(self, key: str) -> None:
         """Press a key where the focus is."""
+        self.key("keyDown", key)
+        self.key("keyUp", key)
+
+    def key(self, kind: str, key: str) -> None:
+        """Press or release a key: ``keyDown`` or ``keyUp``."""
         event: dict[str, Any] = {"key": key, "code": "Space" if key == " " else key}
         event |= {"windowsVirtualKeyCode": KEYS[key]}
         text = {"text": "\r" if key == "Enter" else " "} if key in ("Enter", " ") else {}
-        self.tab.call("Input.dispatchKeyEvent", type="keyDown", **event, **text)
-        self.tab.call("Input.dispatchKeyEvent", type="keyUp", **event)
+        event |= text if kind == "keyDown" else {}
+        self.tab.call("Input.dispatchKeyEvent", type=kind, **event)
 
     def send(self, command: str, *numbers: float) -> str:
         """Send a command through the form; return what the page says about it."""
@@ -99,10 +128,7 @@ class Page:
         return str(self.until(f"{result} !== 'sending' && {result}"))
 
     def control(self) -> None:
-        """Take control, and allow motion."""
-        self.until("document.getElementById('control').textContent === 'Take control'")
-        self.click("#control")
-        self.click("#motion")
+        """Wait for control and motion, which the first page of a simulated arm has."""
         self.until("document.getElementById('motion').checked")
 
     def picture(self, path: Path) -> None:

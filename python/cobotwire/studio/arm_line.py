@@ -17,6 +17,9 @@ from cobotwire.studio.sending import NotPermitted
 from cobotwire.transport import open_transport
 
 POLLED: tuple[Role, ...] = ("joints", "coordinates")
+# A query that gets no reply this often, although another one does, is asked again after a pause: an
+# arm of unknown geometry may not know its coordinates, and waiting for them slows down the rest.
+UNANSWERED, PAUSE_SECONDS = 2, 60.0
 # A port that disappeared is opened again at most this often.
 REOPEN_SECONDS = 1.0
 # Traffic that the server has not taken yet; beyond that the oldest is lost, and counted.
@@ -30,6 +33,13 @@ class PortOptions(NamedTuple):
     baudrate: int | None = None
     record: str | None = None
     address: int | str | None = None
+
+
+class _Poll:
+    """A query that is sent again and again."""
+
+    def __init__(self, command: Command) -> None:
+        self.command, self.unanswered, self.due = command, 0, 0.0
 
 
 class ArmLine:
@@ -67,7 +77,7 @@ class ArmLine:
             self._transport.close()
             raise
         roles = (self.table.find_role(role) for role in POLLED)
-        self._polled = [command for command in roles if command is not None and rate]
+        self._polled = [_Poll(command) for command in roles if command is not None and rate]
         self._ended = threading.Event()
         self._thread = threading.Thread(target=self._run, name="cobotwire-studio", daemon=True)
 
@@ -159,14 +169,25 @@ class ArmLine:
 
     def _poll(self) -> None:
         due = time.monotonic() + (1 / self._rate if self._polled else 0.1)
-        for command in tuple(self._polled):
-            try:
-                getattr(self._arm, command.name)()
-            except (ReplyTimeout, ProtocolError) as error:
-                # Pages see on the line what came instead.
-                if isinstance(error, ReplyTimeout) and error.refusal:
-                    self._polled.remove(command)
+        for poll in tuple(self._polled):
+            if poll.due <= time.monotonic():
+                self._ask(poll)
         self._arm.listen(max(0.0, due - time.monotonic()))
+
+    def _ask(self, poll: _Poll) -> None:
+        try:
+            getattr(self._arm, poll.command.name)()
+        except (ReplyTimeout, ProtocolError) as error:
+            # Pages see on the line what came instead.
+            if isinstance(error, ReplyTimeout) and error.refusal:
+                self._polled.remove(poll)
+                return
+            poll.unanswered += 1
+            others = any(not each.unanswered for each in self._polled)
+            if poll.unanswered >= UNANSWERED and others:
+                poll.due = time.monotonic() + PAUSE_SECONDS
+        else:
+            poll.unanswered = 0
 
     def _reopen(self) -> None:
         while not self._ended.wait(REOPEN_SECONDS):

@@ -10,6 +10,7 @@ from starlette.websockets import WebSocket, WebSocketDisconnect
 
 from cobotwire.protocol.errors import CobotwireError
 from cobotwire.studio.access import PROTOCOL
+from cobotwire.studio.holding import Holding
 from cobotwire.studio.recorded import Player, RecordedSession
 from cobotwire.studio.stage import Stage
 from cobotwire.studio.viewers import Viewer
@@ -32,11 +33,12 @@ class Feed:
         viewer = Viewer()
         self._stage.open(viewer)
         player = None
+        holding = Holding(self._stage, viewer.page, lambda text: viewer.show(refused=text))
         tasks = [asyncio.create_task(_send(socket, viewer))]
         if isinstance(self._stage.session, RecordedSession):
             player = Player(self._stage.session, viewer)
             tasks.append(asyncio.create_task(player.run()))
-        tasks.append(asyncio.create_task(self._receive(socket, viewer, player)))
+        tasks.append(asyncio.create_task(self._receive(socket, viewer, player, holding)))
         try:
             await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
         finally:
@@ -44,8 +46,11 @@ class Feed:
                 task.cancel()
             await asyncio.gather(*tasks, return_exceptions=True)
             self._stage.leave(viewer)
+            await holding.end()
 
-    async def _receive(self, socket: WebSocket, viewer: Viewer, player: Player | None) -> None:
+    async def _receive(
+        self, socket: WebSocket, viewer: Viewer, player: Player | None, holding: Holding
+    ) -> None:
         stops: set[asyncio.Task[None]] = set()
         while True:
             try:
@@ -60,6 +65,8 @@ class Feed:
                 task.add_done_callback(stops.discard)
             elif player is not None:
                 _play(player, viewer, wish)
+            else:
+                _hold(holding, wish)
 
     async def _stop(self, viewer: Viewer, number: object) -> None:
         error = ""
@@ -69,6 +76,15 @@ class Feed:
             error = str(failed)
         shown = number if isinstance(number, int) else 0
         viewer.show(stopped={"number": shown, "error": error})
+
+
+def _hold(holding: Holding, wish: dict[str, Any]) -> None:
+    if wish.get("wish") == "hold":
+        holding.hold(wish.get("command"), wish.get("arguments"))
+    elif wish.get("wish") == "keep":
+        holding.keep()
+    elif wish.get("wish") == "release":
+        holding.release()
 
 
 async def _send(socket: WebSocket, viewer: Viewer) -> None:

@@ -54,9 +54,9 @@ def _argument(command: Command, field: Field, optional: bool, radians: bool) -> 
         "doc": field.doc,
         "many": field.many,
         "optional": optional,
-        "elements": [_in_radians(each) for each in _elements(numbers)]
+        "elements": [_in_radians(each) for each in elements(numbers)]
         if radians
-        else _elements(numbers),
+        else elements(numbers),
         "choices": _choices(field),
     }
     if field.each or field.sizes:
@@ -68,12 +68,13 @@ def _argument(command: Command, field: Field, optional: bool, radians: bool) -> 
         variant = next(each for each in command.request if field in each.fields)
         form["selector"] = variant.fields[field.selector].name
         form["cases"] = [
-            {"when": list(case.when), "elements": _elements(case.numbers)} for case in field.cases
+            {"when": list(case.when), "elements": elements(case.numbers)} for case in field.cases
         ]
     return form
 
 
-def _elements(numbers: Sequence[Number]) -> list[Form]:
+def elements(numbers: Sequence[Number]) -> list[Form]:
+    """Return the name, the unit and the range of each number, in the units of callers."""
     return [
         {
             "name": number.name,

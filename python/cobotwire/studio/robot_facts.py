@@ -26,6 +26,7 @@ def robot_facts(table: Table) -> Facts:
         "coordinates": coordinates,
         "limits": [list(limit) for limit in joint_limits(table)],
         "reach": round(reach, 1),
+        "links": [] if geometry is None else [list(link) for link in table.robot.geometry.links],
         "noGeometry": "" if geometry is not None else table.robot.why_no_geometry,
         "stop": "" if stop is None else stop.name,
     }

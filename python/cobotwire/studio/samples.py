@@ -7,15 +7,16 @@ from collections.abc import Sequence
 from typing import Any
 
 from cobotwire.codec.interface import DecodedMessage
+from cobotwire.protocol.effects import Does, Moves, each_case, effect_of
 from cobotwire.protocol.roles import picked, row_index
 from cobotwire.protocol.table import Command, Field, Table, Variant
-from cobotwire.simulator.kinematics import Geometry, geometry_of
-from cobotwire.simulator.kinematics.forward import frames
 from cobotwire.simulator.start import coordinates
 from cobotwire.studio.entries import Entry
 
 # Replies that are later than this belong to no request that a person would look for.
 LONGEST_REPLY_SECONDS = 5.0
+# An arm that is as near as this to its target has reached it.
+REACHED_DEGREES, REACHED_MILLIMETRES = 0.5, 1.0
 
 Sample = dict[str, Any]
 
@@ -23,17 +24,17 @@ Sample = dict[str, Any]
 class Sampler:
     """Takes the messages of a line in their order; returns samples for the pages.
 
-    A sample has the time ``t`` in seconds, and some of: ``j`` joint angles, ``p`` the points where
-    the links meet in millimetres, ``c`` coordinates of the end, ``r`` the reply time in
-    milliseconds, ``z`` bytes of noise; the targets: ``tj`` and ``tp`` of the joints, ``te`` where
-    the end goes.
+    A sample has the time ``t`` in seconds, and some of: ``j`` joint angles, ``c`` coordinates of
+    the end, ``r`` the reply time in milliseconds, ``z`` bytes of noise; the targets: ``tj`` of the
+    joints, ``te`` where the end goes, in millimetres. A target that is None is one no longer: the
+    arm has reached it, was stopped, or got another kind of target.
     """
 
     def __init__(self, table: Table) -> None:
-        self._geometry = geometry_of(table)
         self._places = coordinates(table)
         self._joints: list[float] = []
         self._target: list[float] = []
+        self._end: list[float] = []
         # When the last request of each command was sent.
         self._sent: dict[str, float] = {}
 
@@ -58,48 +59,53 @@ class Sampler:
         row = _row(message.variant, message.values)
         if command.role == "joints" and _finite(row):
             self._joints = row
-            return {"j": _rounded(row), **_named("p", points(self._geometry, row))}
+            reached = _near(row, self._target, REACHED_DEGREES)
+            return {"j": _rounded(row), **(self._no_target() if reached else {})}
         if command.role == "coordinates" and _finite(row):
-            return {"c": _rounded(row)}
+            reached = _near(self._end_of(row), self._end, REACHED_MILLIMETRES)
+            return {"c": _rounded(row), **(self._no_target() if reached else {})}
         return {}
 
     def _requested(self, command: Command, message: DecodedMessage) -> Sample:
         row = _row(message.variant, message.values)
         if command.role == "joint targets" and _finite(row):
-            self._target = row
+            self._target, self._end = row, []
         elif command.role == "joint target" and self._joints:
             where = picked(message.variant)
             joint, target = message.values[where.picker], message.values[where.target]
             if not isinstance(joint, int) or not 1 <= joint <= len(self._joints):
                 return {}
-            self._target = self._target or [*self._joints]
+            self._target, self._end = self._target or [*self._joints], []
             self._target[joint - 1] = float(target)
         elif command.role == "coordinate targets" and _finite(row):
-            position = dict(zip(self._places, row))
-            end = [position.get(axis, 0.0) for axis in range(3)]
-            return {"te": _rounded(end), "tj": None, "tp": None}
+            self._target, self._end = [], self._end_of(row)
+        elif self._target or self._end:
+            return self._no_target() if _ends_target(command) else {}
         else:
             return {}
-        target = points(self._geometry, self._target)
-        return {"tj": _rounded(self._target), "te": None, **_named("tp", target)}
+        return {"tj": _rounded(self._target) or None, "te": _rounded(self._end) or None}
+
+    def _end_of(self, row: Sequence[float]) -> list[float]:
+        position = dict(zip(self._places, row))
+        return [position.get(axis, 0.0) for axis in range(3)]
+
+    def _no_target(self) -> Sample:
+        self._target, self._end = [], []
+        return {"tj": None, "te": None}
 
 
-def points(geometry: Geometry | None, angles: Sequence[float]) -> list[list[float]] | None:
-    """Return where the links meet, the base first, in millimetres; None without a geometry.
+def _ends_target(command: Command) -> bool:
+    """Return whether a command stops the arm, or moves it to where no target says."""
+    return any(
+        effect.what in ("stop", "halt", "forget")
+        if isinstance(effect, Does)
+        else isinstance(effect, Moves) and effect.part != "gripper"
+        for effect in each_case(effect_of(command))
+    )
 
-    A link that goes along one axis and then along another has a point where it turns.
-    """
-    if geometry is None or len(angles) < geometry.joints:
-        return None
-    found, before, axis = [[0.0, 0.0, 0.0]], (0.0, 0.0, 0.0), (0.0, 0.0, 1.0)
-    for link, frame in zip(geometry.links, frames(geometry, angles)):
-        # The link goes along the joint's axis first, then across it.
-        corner = tuple(at + link.d * part for at, part in zip(before, axis))
-        if link.d and link.a:
-            found.append(_rounded(corner))
-        before, axis = frame.origin, frame.z
-        found.append(_rounded(before))
-    return found
+
+def _near(row: Sequence[float], target: Sequence[float], distance: float) -> bool:
+    return bool(target) and all(abs(at - to) < distance for at, to in zip(row, target))
 
 
 def _row(variant: Variant, values: Sequence[Any]) -> list[float]:
@@ -118,7 +124,3 @@ def _finite(row: Sequence[float]) -> bool:
 
 def _rounded(row: Sequence[float]) -> list[float]:
     return [round(value, 3) for value in row]
-
-
-def _named(name: str, value: Any) -> Sample:
-    return {} if value is None else {name: value}

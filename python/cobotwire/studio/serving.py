@@ -137,7 +137,8 @@ def staged(options: Options) -> Iterator[Stage]:
         line = stack.enter_context(ArmLine(edition, port, options.rate))
         if options.allow_motion:
             stack.callback(_stop_at_end, line)
-        control = Control(options.allow_motion)
+        # A simulated arm hurts nobody.
+        control = Control(options.allow_motion or simulated is not None)
         stage = Stage(edition, LiveSession(line, remarks), control, simulated, options.address)
         stack.callback(stage.close)
         yield stage

@@ -11,6 +11,7 @@ from cobotwire import codec as codecs
 from cobotwire.editions import Edition
 from cobotwire.protocol.errors import UsageError
 from cobotwire.protocol.json_values import as_json_value
+from cobotwire.studio.controls import controls
 from cobotwire.studio.describing import Describer
 from cobotwire.studio.explained import Explainer
 from cobotwire.studio.live import LiveSession
@@ -60,6 +61,7 @@ class Stage:
         hello = {
             "page": viewer.page,
             "robot": robot_facts(self.table),
+            "controls": controls(self.table),
             "mode": "live" if live else "recording",
             "simulated": self.simulated is not None,
             "motionPermitted": self.control.motion_permitted,

@@ -1,9 +1,9 @@
 // Draw the arm in 3D on a canvas: links, joints, the target and the path of the end.
 //
-// The server computes the points where the links meet; here they are only projected. Ten tubes need
-// no scene graph and no WebGL, which remote desktops and small computers often lack.
+// Ten tubes need no scene graph and no WebGL, which remote desktops and small computers often lack.
 
 import { byId, colour, oncePerFrame, onThemeChange } from "./dom.js";
+import { points } from "./kinematics.js";
 
 const PATH_POINTS = 600;
 const VIEWS = {
@@ -17,34 +17,41 @@ const STEP = 0.12;
 export class ArmView {
   constructor(robot) {
     this.canvas = byId("arm-canvas");
+    this.links = robot.links;
     this.reach = robot.reach || 500;
     [this.yaw, this.pitch] = VIEWS.free;
     this.zoom = 1;
-    this.points = null;
-    this.targetPoints = null;
-    this.targetEnd = null;
-    this.path = [];
     this.near = false;
     this.redraw = oncePerFrame(() => this.draw());
+    this.clear();
     this.listen();
     onThemeChange(this.redraw);
     new ResizeObserver(this.redraw).observe(this.canvas);
   }
 
   clear() {
-    this.points = this.targetPoints = this.targetEnd = null;
+    this.points = this.targetPoints = this.targetEnd = this.ghost = this.ghostEnd = null;
     this.path = [];
     this.redraw();
   }
 
-  add(sample, near) {
-    if (sample.p) {
-      this.points = sample.p;
-      this.near = near;
-      this.extend(sample.p.at(-1));
-    }
-    if (sample.tp !== undefined) this.targetPoints = sample.tp;
-    if (sample.te !== undefined) this.targetEnd = sample.te;
+  moved(joints) {
+    if (!this.links.length) return;
+    this.points = points(this.links, joints);
+    this.extend(this.points.at(-1));
+  }
+
+  // Show the target of the joints, or of the end; null: there is none.
+  show(targetJoints, targetEnd, near) {
+    this.targetPoints = targetJoints && this.links.length ? points(this.links, targetJoints) : null;
+    this.targetEnd = targetEnd;
+    this.near = near;
+    this.redraw();
+  }
+
+  // Show where the arm would be, or its end, while a slider is dragged.
+  preview(ghost, end = null) {
+    [this.ghost, this.ghostEnd] = [ghost, end];
     this.redraw();
   }
 
@@ -140,8 +147,9 @@ export class ArmView {
     pen.lineCap = pen.lineJoin = "round";
     this.drawGround();
     this.drawPath();
-    if (this.targetPoints) this.drawGhost(this.targetPoints);
-    if (this.targetEnd) this.drawCross(this.targetEnd);
+    const [ghost, end] = [this.ghost ?? this.targetPoints, this.ghostEnd ?? this.targetEnd];
+    if (ghost) this.drawGhost(ghost);
+    if (end) this.drawCross(end);
     if (this.points) this.drawArm(this.points);
   }
 
@@ -179,6 +187,9 @@ export class ArmView {
   }
 
   drawGhost(points) {
+    this.pen.globalAlpha = 0.25;
+    this.line(points, colour("target"), this.thickness(points[0]) * 0.8);
+    this.pen.globalAlpha = 1;
     this.pen.setLineDash([5, 5]);
     this.line(points, colour("target"), 2.5);
     this.pen.setLineDash([]);

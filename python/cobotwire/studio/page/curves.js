@@ -6,23 +6,29 @@ import { Series } from "./series.js";
 
 const MOST_POINTS = 1200;
 const EVERY_MS = 120;
-const HEIGHT = 128;
+// What a curve needs at least, in pixels; the height of the legend is measured.
+const LEAST_HEIGHT = 40;
+const SIGNS = { degrees: "°", millimetres: "mm" };
 
 export class Curves {
-  constructor(robot) {
+  // `seconds` is the length of a recording; undefined while an arm is watched.
+  constructor(robot, seconds) {
+    this.seconds = seconds;
     const joints = robot.joints.map((joint) => joint.name);
-    const named = robot.coordinates.map((coordinate) => coordinate.name);
     const shapes = [
-      ["j", `Joints${unit(robot.joints)}`, joints],
-      ["r", "Reply time, milliseconds", ["reply"]],
-      ["z", "Noise, bytes a second", ["noise"]],
+      ["j", "Joints", joints, robot.joints.map((joint) => joint.unit)],
+      ["r", "Reply time", ["reply"], ["ms"]],
+      ["z", "Noise", ["noise"], ["bytes a second"]],
     ];
-    if (named.length) shapes.splice(1, 0, ["c", `Coordinates${unit(robot.coordinates)}`, named]);
-    this.charts = shapes.map(([key, title, names]) => new Chart(key, title, names));
+    const { coordinates } = robot;
+    const named = coordinates.map((coordinate) => coordinate.name);
+    if (named.length) shapes.splice(1, 0, ["c", "Coordinates", named, coordinates.map((each) => each.unit)]);
+    this.charts = shapes.map((shape) => new Chart(...shape));
     byId("charts").replaceChildren(...this.charts.map((chart) => chart.figure));
     this.now = 0;
     this.dirty = true;
     this.noise = { second: -1, bytes: 0 };
+    if (seconds !== undefined) byId("window").value = "Infinity";
     byId("window").addEventListener("change", () => (this.dirty = true));
     onThemeChange(() => this.rebuild());
     new ResizeObserver(() => this.rebuild()).observe(byId("charts"));
@@ -53,8 +59,8 @@ export class Curves {
     const chart = this.charts.at(-1);
     if (second > this.noise.second) {
       const empty = Math.min(second - this.noise.second - 1, 2);
-      if (this.noise.second >= 0) chart.series.push(this.noise.second, [this.noise.bytes]);
-      if (empty > 0) chart.series.push(second - 1, [0]);
+      if (this.noise.second >= 0) chart.series.append(this.noise.second, [this.noise.bytes]);
+      if (empty > 0) chart.series.append(second - 1, [0]);
       this.noise = { second, bytes: 0 };
     }
     this.noise.bytes += sample.z ?? 0;
@@ -64,7 +70,8 @@ export class Curves {
     if (!this.dirty || document.hidden) return;
     this.dirty = false;
     const span = Number(byId("window").value);
-    for (const chart of this.charts) chart.draw(this.now, span);
+    // All of a recording is as wide as the recording, however much of it was played.
+    for (const chart of this.charts) chart.draw(this.now, span, this.seconds ?? this.now);
   }
 
   rebuild() {
@@ -74,61 +81,69 @@ export class Curves {
 }
 
 class Chart {
-  constructor(key, title, names) {
+  constructor(key, title, names, units) {
     this.key = key;
     this.names = names;
+    this.units = units.map((unit) => SIGNS[unit] ?? unit);
     this.series = new Series(names.length);
-    this.caption = el("figcaption", {}, title);
+    const scales = [...new Set(this.units)].filter(Boolean);
+    this.caption = el("figcaption", {}, [title, scales.join(" (left) and ") + (scales[1] ? " (right)" : "")].filter(Boolean).join(", "));
     this.place = el("div", { class: "plot" });
-    this.figure = el("figure", {}, this.caption, this.place);
+    this.figure = el("figure", { class: `chart-${key}` }, this.caption, this.place);
     this.span = [0, 60];
   }
 
   build() {
-    const width = this.place.clientWidth;
-    if (!width || (this.plot && this.plot.width === width && this.theme === colour("text"))) return;
-    this.theme = colour("text");
+    const { clientWidth: width, clientHeight: height } = this.place;
+    const made = [width, height, colour("text")].join();
+    if (height < LEAST_HEIGHT || made === this.made) return;
+    this.made = made;
     this.plot?.destroy();
     const axis = { stroke: colour("muted"), grid: { stroke: colour("grid"), width: 1 } };
     const ticks = { ticks: { stroke: colour("grid"), width: 1 }, font: "11px system-ui" };
+    // Each unit has a scale and an axis of its own: the first left, the second right.
+    const scales = [...new Set(this.units)];
+    const axes = scales.map((scale, at) => ({ ...axis, ...ticks, scale, size: 42, side: at ? 1 : 3, grid: { ...axis.grid, show: !at } }));
     this.plot = new uPlot(
       {
         width,
-        height: this.key === "j" ? HEIGHT + 40 : HEIGHT,
+        height,
         scales: { x: { time: false, range: () => this.span } },
         cursor: { sync: { key: "studio" }, drag: { x: false, y: false } },
         legend: { live: true },
         axes: [
-          { ...axis, ...ticks, size: 24, values: (plot, values) => values.map((at) => clock(at)) },
-          { ...axis, ...ticks, size: 46 },
+          { ...axis, ...ticks, size: 22, values: (plot, values) => values.map((at) => clock(at)) },
+          ...axes,
         ],
         series: [
           { label: "time", value: (plot, at) => (at === null ? "" : clock(at, 2)) },
           ...this.names.map((name, index) => ({
             label: name,
+            scale: this.units[index],
+            value: (plot, value) => (value === null ? "–" : String(Number(value.toFixed(2)))),
             stroke: colour(this.names.length > 1 ? `series-${index + 1}` : `series-${this.key}`),
             width: 1.5,
             points: { show: false },
-            spanGaps: true,
+            spanGaps: false,
           })),
         ],
       },
       [[], ...this.names.map(() => [])],
       this.place,
     );
+    const legend = this.plot.root.querySelector(".u-legend").offsetHeight;
+    this.plot.setSize({ width, height: Math.max(LEAST_HEIGHT, height - legend) });
   }
 
-  draw(now, span) {
+  draw(now, span, end) {
     this.build();
     if (!this.plot) return;
     const first = this.series.length ? this.series.times[0] : 0;
     const begin = span === Infinity ? first : Math.max(0, now - span);
-    this.span = [begin, span === Infinity ? Math.max(now, begin + 1) : begin + span];
-    this.plot.setData(this.series.since(begin, MOST_POINTS));
+    this.span = [begin, span === Infinity ? Math.max(end, begin + 1) : begin + span];
+    const data = this.series.since(begin, MOST_POINTS);
+    this.plot.setData(data);
+    // The legend shows the newest values unless the pointer is over a curve.
+    if (this.plot.cursor.left < 0 && data[0].length) this.plot.setLegend({ idx: data[0].length - 1 });
   }
-}
-
-function unit(numbers) {
-  const units = [...new Set(numbers.map((number) => number.unit).filter(Boolean))];
-  return units.length ? `, ${units.join(" and ")}` : "";
 }

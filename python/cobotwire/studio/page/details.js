@@ -3,8 +3,8 @@
 import { byId, clock, el } from "./dom.js";
 
 export class Details {
-  constructor(server) {
-    this.server = server;
+  constructor(source) {
+    this.source = source;
     this.place = byId("details");
     this.wanted = null;
   }
@@ -12,7 +12,7 @@ export class Details {
   async show(number) {
     this.wanted = number;
     try {
-      const found = await this.server.get(`/api/entry/${number}`);
+      const found = await this.source.explain(number);
       // A later choice may have been answered first.
       if (this.wanted === number) this.place.replaceChildren(...explanation(found));
     } catch (error) {

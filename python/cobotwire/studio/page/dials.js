@@ -2,7 +2,8 @@
 
 import { byId, el, svg } from "./dom.js";
 
-const NEAR_DEGREES = 5;
+// A joint that is nearer to its limit is marked.
+export const NEAR_DEGREES = 5;
 const SIZE = 64;
 
 export class Dials {
@@ -11,25 +12,17 @@ export class Dials {
     byId("dials").replaceChildren(...this.dials.map((dial) => dial.item));
   }
 
-  show(angles) {
-    this.dials.forEach((dial, index) => dial.show(angles[index]));
-  }
-
-  target(angles) {
-    this.dials.forEach((dial, index) => dial.target(angles?.[index]));
-  }
-
-  // Return the names of the joints that are near a limit.
-  get near() {
-    return this.dials.filter((dial) => dial.isNear).map((dial) => dial.name);
+  show(angles, targets) {
+    this.dials.forEach((dial, index) => {
+      dial.show(angles?.[index]);
+      dial.target(targets?.[index]);
+    });
   }
 }
 
 class Dial {
   constructor(joint, limit) {
-    this.name = joint.name;
     this.limit = limit;
-    this.isNear = false;
     const middle = SIZE / 2;
     this.needle = svg("line", { x1: middle, y1: middle, x2: middle, y2: 10, class: "needle" });
     this.goal = svg("line", { x1: middle, y1: 13, x2: middle, y2: 3, class: "goal" });
@@ -63,9 +56,9 @@ class Dial {
     turn(this.needle, angle);
     this.value.textContent = `${angle.toFixed(2)}°`;
     const near = this.limit && Math.min(angle - this.limit[0], this.limit[1] - angle);
-    this.isNear = this.limit !== undefined && near < NEAR_DEGREES;
-    this.item.classList.toggle("near", this.isNear);
-    this.warning.textContent = this.isNear ? (near < 0 ? "beyond its limit" : "near its limit") : "";
+    const isNear = this.limit !== undefined && near < NEAR_DEGREES;
+    this.item.classList.toggle("near", isNear);
+    this.warning.textContent = isNear ? (near < 0 ? "beyond its limit" : "near its limit") : "";
   }
 
   target(angle) {

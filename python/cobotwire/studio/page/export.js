@@ -2,7 +2,7 @@
 
 import { byId, el } from "./dom.js";
 
-export function wireExport(server) {
+export function wireExport(source) {
   byId("export").addEventListener("submit", async (event) => {
     event.preventDefault();
     const query = new URLSearchParams(new FormData(byId("export")));
@@ -11,8 +11,7 @@ export function wireExport(server) {
     const say = (text) => (byId("export-status").textContent = text);
     say("writing");
     try {
-      const response = await server.fetch(`/api/export?${query}`);
-      if (!response.ok) await server.answer(response);
+      const response = await source.exported(query);
       const named = /filename="([\w.-]+)"/.exec(response.headers.get("content-disposition"));
       const data = await response.blob();
       const address = URL.createObjectURL(data);

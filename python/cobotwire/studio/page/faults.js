@@ -6,14 +6,14 @@ const SHOWN = 12;
 const NO_FAULTS = "The simulated arm replies as it should.";
 
 export class Faults {
-  constructor(server, scenarios, notify) {
+  constructor(source, scenarios, notify) {
     this.scenarios = scenarios;
     const options = scenarios.map(({ name }) => el("option", { value: name }, name));
     byId("scenario").replaceChildren(el("option", { value: "" }, "no faults"), ...options);
     byId("scenario").addEventListener("input", () => this.describe(byId("scenario").value));
     byId("begin").addEventListener("click", async () => {
       try {
-        await server.post("/api/scenario", { name: byId("scenario").value });
+        await source.scenario(byId("scenario").value);
         byId("injected").replaceChildren();
         this.shown = [];
       } catch (error) {

@@ -12,7 +12,7 @@ export class Line {
   constructor(choose) {
     this.choose = choose;
     this.entries = [];
-    this.shown = [];
+    this.rows = new Rows();
     this.paused = null;
     this.lost = 0;
     this.chosen = null;
@@ -27,7 +27,7 @@ export class Line {
   }
 
   listen() {
-    for (const id of ["search", "by-command", "by-direction", "by-noise"]) {
+    for (const id of ["search", "by-command", "by-direction", "by-noise", "queries"]) {
       byId(id).addEventListener("input", () => this.filter());
     }
     byId("pause").addEventListener("click", () => this.pause(this.paused === null));
@@ -39,8 +39,8 @@ export class Line {
     });
     this.place.addEventListener("click", (event) => {
       const row = event.target.closest(".row");
-      // By its number, since the list may have changed since it was drawn.
-      if (row) this.select(this.shown.findIndex((entry) => entry.n === Number(row.dataset.number)));
+      // By its key, since the list may have changed since it was drawn.
+      if (row) this.select(this.shown.findIndex((each) => each.key === Number(row.dataset.key)));
     });
     this.place.addEventListener("keydown", (event) => this.key(event));
     new ResizeObserver(this.redraw).observe(this.place);
@@ -48,7 +48,7 @@ export class Line {
 
   key(event) {
     const page = Math.floor(this.place.clientHeight / this.rowHeight) - 1;
-    const now = this.shown.findIndex((entry) => entry.n === this.chosen);
+    const now = this.shown.findIndex((row) => row.key === this.chosen);
     const end = this.shown.length - 1;
     const start = now < 0 ? end + 1 : now;
     const goals = {
@@ -79,13 +79,13 @@ export class Line {
     for (const entry of entries) {
       this.entries.push(entry);
       this.note(entry);
-      if (this.matches(entry)) this.shown.push(entry);
+      if (this.matches(entry)) this.rows.add(entry);
     }
     if (this.entries.length > KEPT + DROPPED_AT_ONCE) {
       this.entries.splice(0, this.entries.length - KEPT);
       const first = this.entries[0].n;
       const before = this.shown.length;
-      this.shown = this.shown.filter((entry) => entry.n >= first);
+      this.rows.drop(first);
       if (!this.follows) this.place.scrollTop -= (before - this.shown.length) * this.rowHeight;
     }
     this.redraw();
@@ -115,8 +115,13 @@ export class Line {
     return !wanted || `${entry.l} ${entry.x} ${entry.h}`.toLowerCase().includes(wanted);
   }
 
+  get shown() {
+    return this.rows.list;
+  }
+
   filter() {
-    this.shown = this.entries.filter((entry) => this.matches(entry));
+    this.rows = new Rows(byId("queries").value);
+    for (const entry of this.entries) if (this.matches(entry)) this.rows.add(entry);
     this.follows = true;
     this.redraw();
   }
@@ -132,22 +137,21 @@ export class Line {
 
   clear() {
     this.entries = [];
-    this.shown = [];
     if (this.paused) this.paused = [];
-    this.redraw();
+    this.filter();
   }
 
   select(index, scroll = false) {
-    const entry = this.shown[index];
-    if (!entry) return;
-    this.chosen = entry.n;
+    const row = this.shown[index];
+    if (!row) return;
+    this.chosen = row.key;
     if (scroll) {
       const top = index * this.rowHeight;
       const bottom = top + this.rowHeight - this.place.clientHeight;
       this.place.scrollTop = Math.max(bottom, Math.min(top, this.place.scrollTop));
     }
     this.redraw();
-    this.choose(entry.n);
+    this.choose(row.entry.n);
   }
 
   draw() {
@@ -160,19 +164,52 @@ export class Line {
     while (this.pool.length < visible.length) this.pool.push(makeRow(this.spacer));
     this.pool.forEach((row, at) => {
       row.hidden = at >= visible.length;
-      if (!row.hidden) fillRow(row, visible[at], first + at, height, visible[at].n === this.chosen);
+      if (!row.hidden) fillRow(row, visible[at], first + at, height, visible[at].key === this.chosen);
     });
-    const marked = visible.some((entry) => entry.n === this.chosen);
+    const marked = visible.some((row) => row.key === this.chosen);
     if (marked) this.place.setAttribute("aria-activedescendant", `row-${this.chosen}`);
     else this.place.removeAttribute("aria-activedescendant");
     this.count();
   }
 
   count() {
-    const parts = [`${this.shown.length} of ${this.entries.length} shown`];
+    const parts = [`${this.rows.count} of ${this.entries.length} shown`];
     if (this.paused) parts.push(`paused, ${this.paused.length} more came`);
     if (this.lost) parts.push(`${this.lost} were left out, because this page was too slow`);
     byId("line-count").textContent = parts.join("; ");
+  }
+}
+
+// The rows of the list. The queries between two other entries are one row for each command, which
+// shows the last of them: a program or this server sends the same queries again and again.
+class Rows {
+  // `queries` is "group", "each" or "hide".
+  constructor(queries = "group") {
+    this.queries = queries;
+    this.list = [];
+    this.groups = new Map();
+    this.count = 0;
+  }
+
+  add(entry) {
+    const query = entry.k === "frame" && entry.s === "query";
+    if (query && this.queries === "hide") return;
+    this.count += 1;
+    if (!query) this.groups.clear();
+    let row = this.groups.get(entry.l);
+    if (!row) {
+      row = { key: entry.n, entry, sent: 0, received: 0 };
+      this.list.push(row);
+      if (query && this.queries === "group") this.groups.set(entry.l, row);
+    }
+    row.entry = entry;
+    row[entry.d === "sent" ? "sent" : "received"] += 1;
+  }
+
+  // Drop the rows whose last entry is older than a number.
+  drop(first) {
+    this.list = this.list.filter((row) => row.entry.n >= first);
+    this.count = this.list.reduce((sum, row) => sum + row.sent + row.received, 0);
   }
 }
 
@@ -183,17 +220,19 @@ function makeRow(spacer) {
   return row;
 }
 
-function fillRow(row, entry, index, height, chosen) {
-  row.id = `row-${entry.n}`;
-  row.dataset.number = entry.n;
+function fillRow(row, { key, entry, sent, received }, index, height, chosen) {
+  row.id = `row-${key}`;
+  row.dataset.key = key;
   row.style.top = `${index * height}px`;
   row.className = `row ${entry.k} ${entry.d}${chosen ? " chosen" : ""}`;
   row.setAttribute("aria-selected", String(chosen));
   const [time, way, label, text, hex] = row.children;
   time.textContent = clock(entry.t, 3);
-  way.textContent = entry.k === "remark" ? "!" : ARROWS[entry.d];
-  way.title = entry.d;
-  label.textContent = entry.l;
+  const times = Math.max(sent, received);
+  const grouped = sent + received > 1;
+  way.textContent = grouped ? "⇄" : entry.k === "remark" ? "!" : ARROWS[entry.d];
+  way.title = grouped ? `${sent} sent, ${received} received, the last at ${clock(entry.t, 2)}` : entry.d;
+  label.textContent = times > 1 ? `${entry.l} × ${times}` : entry.l;
   text.textContent = entry.x;
   hex.textContent = entry.size ? `${entry.h} … ${entry.size} bytes` : entry.h;
 }

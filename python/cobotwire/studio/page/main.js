@@ -1,4 +1,4 @@
-// Put the parts of the page together, and pass on what the server sends.
+// Put the parts of the page together, and pass on what the source sends.
 
 import { ArmView } from "./arm.js";
 import { Curves } from "./curves.js";
@@ -8,20 +8,29 @@ import { byId } from "./dom.js";
 import { wireExport } from "./export.js";
 import { Faults } from "./faults.js";
 import { Line } from "./line.js";
+import { Move } from "./move.js";
 import { Player } from "./player.js";
 import { Send } from "./send.js";
 import { Server } from "./server.js";
+import { wireTabs } from "./tabs.js";
+
+// A sample that is older than this is marked as old.
+const OLD_SECONDS = 2;
+const STATUS_MS = 4000;
+const USES_SPACE = "a, button, input, select, textarea, [role=listbox]";
 
 // What the parts need to know of each other.
-const state = { mine: false, motion: false, motionPermitted: false, lost: false };
+const state = { mine: false, taken: false, motion: false, motionPermitted: false, lost: false, problem: "" };
 let parts = null;
 let stops = 0;
+// When the newest joints were received, and their time on the line.
+let sampled = { at: 0, time: 0 };
 
-const server = new Server(take, connected);
-const details = new Details(server);
+const source = new Server(take, connected);
+const details = new Details(source);
 const line = new Line((number) => details.show(number));
-const send = new Send(server, state);
-wireExport(server);
+const send = new Send(source, state);
+wireExport(source);
 wireControls();
 
 function take({ entries, samples, states }) {
@@ -31,12 +40,12 @@ function take({ entries, samples, states }) {
   if (states.port) showPort(states.port);
   if (states.control) showControl(states.control);
   if (states.scenario !== undefined) parts?.faults?.run(states.scenario);
-  if (states.player) parts?.player?.show(states.player);
+  if (states.player) showPlayer(states.player);
   if (states.stopped) showStopped(states.stopped);
-  if (states.refused) notify(states.refused);
+  if (states.refused) parts?.move ? parts.move.say(states.refused, true) : notify(states.refused);
   if (!parts) return;
-  for (const sample of samples) show(sample);
-  if (samples.length) summarize();
+  for (const sample of samples) note(sample);
+  if (samples.length) show();
   if (entries.length) {
     line.add(entries);
     parts.faults?.add(entries);
@@ -44,23 +53,24 @@ function take({ entries, samples, states }) {
 }
 
 function begin(hello) {
-  server.page = hello.page;
-  state.motionPermitted = hello.motionPermitted;
-  state.robot = hello.robot;
+  source.page = hello.page;
+  Object.assign(state, { motionPermitted: hello.motionPermitted, robot: hello.robot });
+  state.simulated = hello.simulated;
   const recorded = hello.mode === "recording";
   document.body.classList.toggle("recorded", recorded);
   byId("player").hidden = !recorded;
-  byId("faults").hidden = !hello.simulated;
+  byId("send-tab").hidden = recorded;
+  byId("faults-tab").hidden = !hello.simulated;
   const what = hello.simulated ? "a simulated arm" : hello.recording?.name || hello.url;
   byId("source").textContent = `${what} · edition ${hello.robot.edition}`;
   byId("source").title = hello.url;
   byId("stop").disabled = hello.robot.stop === "";
   byId("stop").title = hello.robot.stop ? "" : "This edition has no stop.";
-  byId("no-geometry").hidden = !hello.robot.noGeometry;
-  byId("no-geometry").textContent = `Drawn as dials: ${hello.robot.noGeometry}.`;
-  byId("scene").hidden = Boolean(hello.robot.noGeometry);
-  byId("views").hidden = Boolean(hello.robot.noGeometry);
-  byId("dials").classList.toggle("large", Boolean(hello.robot.noGeometry));
+  const drawn = hello.robot.links.length > 0;
+  byId("no-geometry").hidden = drawn;
+  byId("no-geometry").textContent = `Shown as dials: ${hello.robot.noGeometry}.`;
+  for (const id of ["scene", "views"]) byId(id).hidden = !drawn;
+  byId("dials").hidden = drawn;
   // After a new connection the server sends the past again.
   if (parts) clear();
   else parts = make(hello, recorded);
@@ -70,12 +80,14 @@ function begin(hello) {
 }
 
 function make(hello, recorded) {
+  const arm = new ArmView(hello.robot);
   return {
-    arm: new ArmView(hello.robot),
-    dials: new Dials(hello.robot),
-    curves: new Curves(hello.robot),
-    faults: hello.simulated ? new Faults(server, hello.scenarios, notify) : null,
-    player: recorded ? new Player(server, hello.recording) : null,
+    arm,
+    move: new Move(source, state, hello.controls, arm),
+    dials: hello.robot.links.length ? null : new Dials(hello.robot),
+    curves: new Curves(hello.robot, hello.recording?.seconds),
+    faults: hello.simulated ? new Faults(source, hello.scenarios, notify) : null,
+    player: recorded ? new Player(source, hello.recording) : null,
   };
 }
 
@@ -83,79 +95,137 @@ function clear() {
   line.clear();
   parts?.arm.clear();
   parts?.curves.clear();
+  state.targetJoints = state.targetEnd = null;
 }
 
-function show(sample) {
-  const { arm, dials, curves } = parts;
+function note(sample) {
   if (sample.j) {
     state.joints = sample.j;
-    dials.show(sample.j);
+    sampled = { at: performance.now(), time: sample.t };
+    parts.arm.moved(sample.j);
   }
   if (sample.c) state.coordinates = sample.c;
-  if (sample.tj !== undefined) dials.target(sample.tj);
-  arm.add(sample, dials.near.length > 0);
-  curves.add(sample);
+  if (sample.tj !== undefined) state.targetJoints = sample.tj;
+  if (sample.te !== undefined) state.targetEnd = sample.te;
+  parts.curves.add(sample);
 }
 
-// Say in words what the drawing shows.
-function summarize() {
-  const { robot, joints, coordinates } = state;
+function show() {
+  const { robot, joints, coordinates, targetJoints, targetEnd } = state;
+  parts.move.show(state);
+  parts.dials?.show(joints, targetJoints);
+  const { near } = parts.move;
+  parts.arm.show(targetJoints, targetEnd, near.length > 0);
+  showAge();
+  // Say in words what the drawing shows.
   const list = (numbers, facts) =>
     numbers.map((value, at) => `${facts[at]?.name} ${value.toFixed(1)}`).join(", ");
   if (coordinates) byId("coordinates").textContent = list(coordinates, robot.coordinates);
-  const near = parts.dials.near;
   const warning = near.length ? ` Near a limit: ${near.join(", ")}.` : "";
+  byId("near").textContent = warning.trim();
   if (joints) parts.arm.describe(`The arm. Joints: ${list(joints, robot.joints)}.${warning}`);
 }
 
+function showPlayer(player) {
+  state.position = player.position;
+  parts?.player?.show(player);
+}
+
+// Mark joints that are old: the arm may be elsewhere.
+function showAge() {
+  const recorded = document.body.classList.contains("recorded");
+  const age = recorded ? (state.position ?? 0) - sampled.time : (performance.now() - sampled.at) / 1000;
+  const old = Boolean(state.joints) && age > OLD_SECONDS;
+  byId("arm").classList.toggle("old", old);
+  byId("age").textContent = old ? `The joints are ${Math.floor(age)} s old.` : "";
+}
+
 function showPort({ problem }) {
-  state.lost = problem !== "";
-  setStatus(problem || "connected", problem ? "bad" : "good");
-  send.permit();
+  Object.assign(state, { lost: problem !== "", problem });
+  showLine();
+  permit();
+}
+
+function showLine() {
+  setStatus(state.problem || "connected", state.problem ? "bad" : "good");
 }
 
 function showControl({ page, motion }) {
-  state.mine = page === server.page && page !== "";
+  const wasFree = state.mine === false && page === "";
+  state.mine = page === source.page && page !== "";
   state.motion = state.mine && motion;
-  const other = page !== "" && !state.mine;
-  byId("control").textContent = state.mine ? "Release control" : other ? "Another page controls" : "Take control";
-  byId("control").disabled = other;
+  state.taken = page !== "" && !state.mine;
+  byId("control").textContent = state.mine ? "Release control" : state.taken ? "Another page controls" : "Take control";
+  byId("control").disabled = state.taken;
   byId("motion").checked = state.motion;
   byId("motion").disabled = !state.mine || !state.motionPermitted;
-  byId("motion-label").title = state.motionPermitted ? "" : "Start the server with --allow-motion.";
   byId("begin").disabled = !state.mine;
+  permit();
+  // A simulated arm may be moved from the start, by the first page that opens.
+  if (wasFree && state.simulated && !state.offered) {
+    state.offered = true;
+    source.control(true).then(() => source.allowMotion(true)).catch(() => {});
+  }
+}
+
+function permit() {
   send.permit();
+  parts?.move.permit();
 }
 
 function wireControls() {
-  const attempt = (path, values) => server.post(path, values()).catch((error) => notify(error.message));
-  byId("control").addEventListener("click", () => attempt("/api/control", () => ({ take: !state.mine })));
-  byId("motion").addEventListener("change", () => attempt("/api/motion", () => ({ on: byId("motion").checked })));
+  const attempt = (request) => request.catch((error) => notify(error.message));
+  wireTabs(byId("tabs"));
+  wireTabs(byId("move-tabs"));
+  byId("control").addEventListener("click", async () => {
+    await attempt(source.control(!state.mine));
+    if (state.simulated && byId("control").textContent === "Take control") await attempt(source.allowMotion(true));
+  });
+  byId("motion").addEventListener("change", () => attempt(source.allowMotion(byId("motion").checked)));
   byId("stop").addEventListener("click", stop);
-  // Escape stops, wherever the focus is.
-  document.addEventListener("keydown", (event) => event.key === "Escape" && stop());
+  byId("taller").addEventListener("click", () => {
+    const taller = document.body.classList.toggle("taller");
+    byId("taller").textContent = taller ? "Lower" : "Taller";
+  });
+  // Capturing: nothing that has the focus may keep a stop from the arm.
+  document.addEventListener("keydown", stopKey, true);
+  setInterval(showAge, 500);
+}
+
+// Escape stops, wherever the focus is. So does the space bar, but where it does something else; in
+// the controls of the arm it always stops.
+function stopKey(event) {
+  const where = (selector) => event.target.closest?.(selector);
+  const space = event.key === " " && (where("#move") || !where(USES_SPACE));
+  if (event.key !== "Escape" && !space) return;
+  if (space) event.preventDefault();
+  stop();
 }
 
 function stop() {
   if (byId("stop").disabled || document.body.classList.contains("recorded")) return;
   stops += 1;
   byId("stop").classList.add("sent");
-  const sent = server.wish("stop", { number: stops });
-  if (!sent) server.post("/api/stop").then(() => showStopped({}), (error) => notify(`Stop was NOT sent: ${error.message}`));
+  const sent = source.wish("stop", { number: stops });
+  parts?.move.cancel();
+  if (!sent) source.stop().then(() => showStopped({}), (error) => notify(`Stop was NOT sent: ${error.message}`));
 }
 
 function showStopped({ error }) {
   byId("stop").classList.remove("sent");
   if (error) notify(`Stop was NOT sent: ${error}`);
-  else setStatus("stop was sent", "good");
+  else {
+    setStatus("stop was sent", "good");
+    clearTimeout(state.timer);
+    state.timer = setTimeout(showLine, STATUS_MS);
+  }
 }
 
 function connected(now) {
   if (now === "open") return notify("");
   setStatus("not connected", "bad");
-  state.mine = false;
-  state.lost = true;
-  send.permit();
+  Object.assign(state, { mine: false, lost: true, problem: "not connected" });
+  permit();
   notify(
     now === "refused"
       ? "The token is missing or wrong. Open the address that cobotwire printed."

@@ -3,28 +3,28 @@
 import { byId, clock } from "./dom.js";
 
 export class Player {
-  constructor(server, recording) {
-    this.server = server;
+  constructor(source, recording) {
+    this.source = source;
     this.seconds = recording.seconds;
     this.playing = false;
     byId("scrub").max = recording.seconds;
     byId("recording-remarks").textContent = recording.remarks.join("; ");
     byId("play").addEventListener("click", () => {
-      if (this.playing) server.wish("pause");
+      if (this.playing) source.wish("pause");
       else this.play();
     });
     byId("speed").addEventListener("input", () => this.playing && this.play());
     byId("scrub").addEventListener("input", () => {
       clearTimeout(this.timer);
       // While the handle moves, the page asks for a few of the places only.
-      this.timer = setTimeout(() => server.wish("seek", { value: Number(byId("scrub").value) }), 60);
+      this.timer = setTimeout(() => source.wish("seek", { value: Number(byId("scrub").value) }), 60);
       this.held = Date.now();
       this.write(Number(byId("scrub").value));
     });
   }
 
   play() {
-    this.server.wish("play", { value: Number(byId("speed").value) });
+    this.source.wish("play", { value: Number(byId("speed").value) });
   }
 
   show({ position, playing }) {

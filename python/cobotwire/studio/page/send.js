@@ -2,12 +2,13 @@
 
 import { byId, el } from "./dom.js";
 import { explanation } from "./details.js";
+import { refusal } from "./permission.js";
 
 const PREVIEW_MS = 150;
 
 export class Send {
-  constructor(server, state) {
-    this.server = server;
+  constructor(source, state) {
+    this.source = source;
     this.state = state;
     this.commands = [];
     byId("find").addEventListener("input", () => this.list());
@@ -21,7 +22,7 @@ export class Send {
 
   async load() {
     if (this.commands.length) return;
-    this.commands = (await this.server.get("/api/table")).commands;
+    this.commands = await this.source.commands();
     this.list();
   }
 
@@ -94,14 +95,9 @@ export class Send {
 
   // Show whether the command may be sent now, and if not, why.
   permit() {
-    const { command, state } = this;
+    const { command } = this;
     if (!command || !this.button) return;
-    const query = command.safety === "query";
-    let why = "";
-    if (state.lost) why = "The port is gone.";
-    else if (!state.mine) why = "Take control first.";
-    else if (!query && !state.motionPermitted) why = "The server was started without --allow-motion.";
-    else if (!query && !state.motion) why = "Switch on “Allow motion” first.";
+    const why = refusal(this.state, command.safety === "query");
     this.button.disabled = why !== "";
     this.why.textContent = why;
   }
@@ -120,8 +116,7 @@ export class Send {
     if (!command) return;
     let shown;
     try {
-      const given = { command: command.name, arguments: this.values() };
-      const found = await this.server.post("/api/preview", given);
+      const found = await this.source.preview(command.name, this.values());
       shown = [el("h3", {}, "The frame"), ...explanation(found, false)];
     } catch (error) {
       shown = [el("p", { class: "problem" }, error.message)];
@@ -134,9 +129,8 @@ export class Send {
     button.disabled = true;
     result.textContent = "sending";
     result.classList.remove("problem");
-    const given = { command: command.name, arguments: this.values(), force: this.force.checked };
     try {
-      const reply = (await this.server.post("/api/send", given)).result;
+      const reply = await this.source.send(command.name, this.values(), this.force.checked);
       result.textContent = reply === null ? "sent" : format(reply);
     } catch (error) {
       result.textContent = error.message;

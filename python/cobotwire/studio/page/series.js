@@ -6,15 +6,25 @@ export class Series {
   constructor(width, capacity = 24000) {
     this.capacity = capacity;
     this.length = 0;
+    // The usual seconds between two rows.
+    this.usual = 0;
     this.times = new Float64Array(capacity);
     this.columns = Array.from({ length: width }, () => new Float64Array(capacity));
   }
 
   clear() {
-    this.length = 0;
+    this.length = this.usual = 0;
   }
 
+  // Add a row. After a silence a row without numbers comes first, so that no line crosses it.
   push(time, row) {
+    const since = this.length ? time - this.times[this.length - 1] : 0;
+    if (isGap(since, this.usual)) this.append(time - since / 2, []);
+    else if (since > 0) this.usual = this.usual ? 0.9 * this.usual + 0.1 * since : since;
+    this.append(time, row);
+  }
+
+  append(time, row) {
     if (this.length === this.capacity) this.thin();
     this.times[this.length] = time;
     this.columns.forEach((column, index) => (column[this.length] = row[index] ?? NaN));
@@ -23,8 +33,11 @@ export class Series {
 
   thin() {
     const half = this.capacity >> 1;
+    const [numbers] = this.columns;
+    // Of each two rows the one that marks a gap stays.
+    const kept = Uint32Array.from({ length: half >> 1 }, (_, at) => 2 * at + Number.isNaN(numbers[2 * at + 1]));
     for (const column of [this.times, ...this.columns]) {
-      for (let at = 0; at < half >> 1; at++) column[at] = column[2 * at];
+      kept.forEach((from, at) => (column[at] = column[from]));
       column.copyWithin(half >> 1, half, this.capacity);
     }
     this.length = this.capacity - half + (half >> 1);
@@ -70,5 +83,9 @@ export class Series {
     return found;
   }
 }
+
+// Return whether so many seconds between two samples are a gap. `inspect/plot/series.py` has the
+// same rule.
+export const isGap = (seconds, usual) => seconds > Math.max(1, 4 * usual);
 
 const finite = (value) => (Number.isFinite(value) ? value : null);

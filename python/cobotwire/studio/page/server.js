@@ -1,4 +1,7 @@
-// Talk to the server. The token is kept where only this origin, port included, can read it.
+// Talk to the server: where entries and samples come from, and what requests go to.
+//
+// The other modules know the methods of this class, but no address: a page may get another source.
+// The token is kept where only this origin, port included, can read it.
 
 const KEY = "cobotwire-studio-token";
 const AGAIN_MS = 1000;
@@ -58,6 +61,48 @@ export class Server {
   fetch(path, options = {}) {
     const headers = { authorization: `Bearer ${this.token}`, "x-studio-page": this.page };
     return fetch(path, { ...options, headers, cache: "no-store" });
+  }
+
+  // Return the forms of all commands.
+  async commands() {
+    return (await this.get("/api/table")).commands;
+  }
+
+  // Return the explanation of an entry, or of a request that has not been sent.
+  explain(number) {
+    return this.get(`/api/entry/${number}`);
+  }
+
+  preview(command, values) {
+    return this.post("/api/preview", { command, arguments: values });
+  }
+
+  // Send a command with the texts of its arguments, and return its result.
+  async send(command, values, force = false) {
+    return (await this.post("/api/send", { command, arguments: values, force })).result;
+  }
+
+  // Let this page send, or no longer; turn its switch; begin a fault scenario; stop the arm.
+  control(take) {
+    return this.post("/api/control", { take });
+  }
+
+  allowMotion(on) {
+    return this.post("/api/motion", { on });
+  }
+
+  scenario(name) {
+    return this.post("/api/scenario", { name });
+  }
+
+  stop() {
+    return this.post("/api/stop");
+  }
+
+  // Return the response with the entries that a query selects, as a file.
+  async exported(query) {
+    const response = await this.fetch(`/api/export?${query}`);
+    return response.ok ? response : this.answer(response);
   }
 
   async get(path) {

@@ -1,0 +1,73 @@
+"""Motions that go on only while a page holds a button: a page that is gone or stuck ends them."""
+
+from __future__ import annotations
+
+import asyncio
+import time
+from collections.abc import Callable, Coroutine
+from typing import Any
+
+from cobotwire.protocol.errors import CobotwireError
+from cobotwire.studio.stage import Stage
+
+# A page says at least this often that it still holds. It sends ten times a second.
+LONGEST_SILENCE_SECONDS = 0.5
+
+
+class Holding:
+    """The motion that one page holds; there is at most one."""
+
+    def __init__(self, stage: Stage, page: str, refuse: Callable[[str], None]) -> None:
+        """``refuse`` gets the text of an error: the motion was not sent, or stop was not."""
+        self._stage, self._page, self._refuse = stage, page, refuse
+        self._tasks: set[asyncio.Task[None]] = set()
+        self._held, self._kept = False, 0.0
+
+    def hold(self, command: object, arguments: object) -> None:
+        """Send a motion; it is stopped when the page releases it or says nothing more."""
+        if not self._held:
+            self._held = True
+            self._start(self._watch())
+        self.keep()
+        self._start(self._send(command, arguments))
+
+    def keep(self) -> None:
+        """Note that the page still holds."""
+        self._kept = time.monotonic()
+
+    def release(self) -> None:
+        """Stop the arm, if the page holds a motion."""
+        if self._held:
+            self._held = False
+            self._start(self._stop())
+
+    async def end(self) -> None:
+        """Stop the arm if a motion is held, when the page has left."""
+        self.release()
+        await asyncio.gather(*self._tasks)
+
+    async def _send(self, command: object, arguments: object) -> None:
+        try:
+            await self._stage.send(self._page, command, arguments, force=False)
+        except CobotwireError as error:
+            self._refuse(str(error))
+
+    async def _watch(self) -> None:
+        while self._held:
+            left = self._kept + LONGEST_SILENCE_SECONDS - time.monotonic()
+            if left <= 0:
+                self.release()
+                self._refuse("the arm was stopped: the page did not say that the button is held")
+                return
+            await asyncio.sleep(left)
+
+    async def _stop(self) -> None:
+        try:
+            await self._stage.stop()
+        except CobotwireError as error:
+            self._refuse(f"stop was NOT sent: {error}")
+
+    def _start(self, work: Coroutine[Any, Any, None]) -> None:
+        task = asyncio.create_task(work)
+        self._tasks.add(task)
+        task.add_done_callback(self._tasks.discard)
