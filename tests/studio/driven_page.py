@@ -79,7 +79,8 @@ class Page:
         """Return where the middle of an element is on the screen, after scrolling to it."""
         x, y = self.get(
             f"(() => {{ const found = document.querySelector({json.dumps(selector)});"
-            " found.scrollIntoView({ block: 'nearest' }); const box = found.getBoundingClientRect();"
+            " found.scrollIntoView({ block: 'nearest' });"
+            " const box = found.getBoundingClientRect();"
             " return [box.x + box.width / 2, box.y + box.height / 2]; })()"
         )
         return x, y

@@ -9,6 +9,8 @@ from collections.abc import Iterator
 import pytest
 from websockets.exceptions import InvalidStatus
 
+from cobotwire.editions.mycobot280 import TABLE
+from cobotwire.simulator import SimulatedArm, TcpServer
 from studio.feeds import watching
 from studio.studio_server import Studio, running
 
@@ -258,7 +260,12 @@ def test_wishes_that_make_no_sense_are_ignored(studio: Studio) -> None:
 
 
 def test_without_allow_motion_only_queries_are_sent() -> None:
-    with running() as studio, watching(studio) as feed:
+    arm = SimulatedArm(TABLE)
+    with (
+        TcpServer(arm.connect) as server,
+        running(server.url) as studio,
+        watching(studio) as feed,
+    ):
         page = feed.state("hello")["page"]
         studio.post("/api/control", {"take": True}, page)
         refused = studio.post("/api/motion", {"on": True}, page)

@@ -43,6 +43,7 @@ def opened(page: Page, studio: Studio) -> Page:
     page.choose("speed-of-motion", "100")
     page.click("#home")
     _at_rest(page, [0.0] * 6)
+    page.click("#clear")
     return page
 
 
@@ -55,10 +56,12 @@ def _sent(page: Page, command: str) -> int:
     """Return how often a command was sent, by the list of the page."""
     page.choose("queries", "hide")
     page.choose("by-direction", "sent")
-    found = "document.querySelector(\"#by-command option[value={}]\")"
+    found = 'document.querySelector("#by-command option[value={}]")'
     if not page.get(f"Boolean({found.format(command)})"):
         return 0
     page.choose("by-command", command)
+    # The count is written with the next frame.
+    _wait(page, 200)
     count = page.get("parseInt(document.getElementById('line-count').textContent)")
     return int(count)
 
@@ -90,8 +93,8 @@ def test_slider_shows_a_ghost_and_sends_its_target_when_it_is_released(opened: P
     opened.show_tab("line")
     assert _sent(opened, "send_angle") == 0, "nothing is sent before"
     opened.mouse("mouseReleased", x, y)
+    opened.until(f"{STATUS} === 'sent'")
     _at_rest(opened, [0, target, 0, 0, 0, 0])
-    assert opened.get(STATUS) == "sent"
     assert opened.complaints == []
 
 
@@ -121,11 +124,18 @@ def test_arm_follows_a_drag_if_the_user_says_so(opened: Page) -> None:
 
 @pytest.mark.parametrize("by", ["mouse", "touch", "arrow key", "Enter"])
 def test_jog_moves_while_it_is_held_and_release_stops(opened: Page, by: str) -> None:
+    opened.choose("speed-of-motion", "30")
     x, y = opened.middle(JOG.format(3, 2))
     begin, end = {
-        "mouse": (lambda: opened.mouse("mousePressed", x, y), lambda: opened.mouse("mouseReleased", x, y)),
+        "mouse": (
+            lambda: opened.mouse("mousePressed", x, y),
+            lambda: opened.mouse("mouseReleased", x, y),
+        ),
         "touch": (lambda: opened.touch("touchStart", (x, y)), lambda: opened.touch("touchEnd")),
-        "arrow key": (lambda: opened.key("keyDown", "ArrowRight"), lambda: opened.key("keyUp", "ArrowRight")),
+        "arrow key": (
+            lambda: opened.key("keyDown", "ArrowRight"),
+            lambda: opened.key("keyUp", "ArrowRight"),
+        ),
         "Enter": (lambda: opened.key("keyDown", "Enter"), lambda: opened.key("keyUp", "Enter")),
     }[by]
     focus = JOG.format(3, 2) if by == "Enter" else SLIDER.format(3)
@@ -141,7 +151,7 @@ def test_jog_moves_while_it_is_held_and_release_stops(opened: Page, by: str) -> 
     _wait(opened, 300)
     stopped = opened.get(f"{ANGLES}[2]")
     _wait(opened, 400)
-    assert opened.get(f"{ANGLES}[2]") == stopped
+    assert abs(opened.get(f"{ANGLES}[2]") - stopped) < 0.5
     assert stopped < 140
 
 
@@ -165,7 +175,7 @@ def test_jog_ends_when_nothing_holds_it_any_longer(opened: Page, studio: Studio,
         opened.key("keyUp", "ArrowLeft")
     stopped = opened.get(f"{ANGLES}[0]")
     _wait(opened, 600)
-    assert opened.get(f"{ANGLES}[0]") == stopped
+    assert abs(opened.get(f"{ANGLES}[0]") - stopped) < 0.5
     assert -165 < stopped < -3
 
 
@@ -178,11 +188,15 @@ def test_coordinates_gripper_light_and_home_are_sent(opened: Page) -> None:
     opened.get(f"{boxes}[2].focus()")
     opened.get(f"{boxes}[2].value = '{z - 30:.1f}'")
     opened.press("Enter")
-    opened.until(f"document.activeElement.blur() || Math.abs({boxes}[2].valueAsNumber - {z - 30:.1f}) < 1.5")
+    opened.until(
+        f"document.activeElement.blur() || Math.abs({boxes}[2].valueAsNumber - {z - 30:.1f}) < 1.5"
+    )
     opened.click("#close")
     opened.until(f"{STATUS} === 'sent'")
-    opened.get("(() => { const box = document.getElementById('light'); box.value = '#ff8000';"
-               " box.dispatchEvent(new Event('change')); })()")
+    opened.get(
+        "(() => { const box = document.getElementById('light'); box.value = '#ff8000';"
+        " box.dispatchEvent(new Event('change')); })()"
+    )
     opened.until(f"{STATUS} === 'sent'")
     opened.show_tab("send")
     assert opened.send("get_gripper_value") == "0"
@@ -194,7 +208,7 @@ def test_coordinates_gripper_light_and_home_are_sent(opened: Page) -> None:
 def test_target_disappears_when_the_arm_is_stopped(opened: Page) -> None:
     opened.choose("speed-of-motion", "5")
     _drag(opened, SLIDER.format(1), 40)
-    opened.until(f"{ANGLES}[0] > 1")
+    opened.until(f"{STATUS} === 'sent' && {ANGLES}[0] > 1 && {ANGLES}[0] < 50")
     slider = f"document.querySelector('{SLIDER.format(1)}').valueAsNumber"
     assert opened.get(f"{slider} - {ANGLES}[0]") > 10
     opened.get("document.body.focus()")
@@ -204,12 +218,11 @@ def test_target_disappears_when_the_arm_is_stopped(opened: Page) -> None:
 
 def test_queries_are_grouped_until_something_else_happens(opened: Page) -> None:
     opened.show_tab("line")
-    opened.click("#clear")
     label = f"{ROWS}.map((row) => row.children[2].textContent)"
-    opened.until(f"{label}.some((text) => /^get_angles × [1-9]\\d$/.test(text)) && {ROWS}.length === 2")
+    polls = f"{label}.filter((text) => text.startsWith('get_angles'))"
+    opened.until(f"{polls}.length === 1 && / \\d\\d+$/.test({polls}[0])")
     opened.click("#close")
-    opened.until(f"{label}.includes('set_gripper_value')")
-    opened.until(f"{label}.filter((text) => text.startsWith('get_angles ×')).length >= 2")
+    opened.until(f"{label}.includes('set_gripper_value') && {polls}.length >= 2")
     opened.choose("queries", "hide")
     opened.until(f"{label}.every((text) => text === 'set_gripper_value') && {ROWS}.length > 0")
 
@@ -221,7 +234,9 @@ def test_all_is_on_one_screen(opened: Page, width: int, height: int) -> None:
         opened.show_tab(panel)
         for id in ("arm-canvas", "stop", "home", "follow", panel):
             box = f"document.getElementById('{id}').getBoundingClientRect()"
-            assert opened.get(f"{box}.top >= 0 && {box}.bottom <= innerHeight && {box}.height > 20"), id
+            assert opened.get(
+                f"{box}.top >= 0 && {box}.bottom <= innerHeight && {box}.height > 10"
+            ), id
     assert opened.get("document.getElementById('arm-canvas').clientHeight") > 250
     assert opened.get("document.documentElement.scrollHeight === innerHeight")
 
@@ -262,7 +277,9 @@ def test_page_says_why_a_real_arm_is_not_moved(page: Page) -> None:
 def test_drawing_agrees_with_the_kinematics_of_the_server(opened: Page) -> None:
     geometry = geometry_of(mycobot280.TABLE)
     assert geometry is not None
-    links: Any = [[link.offset, link.alpha, link.a, link.d, link.turned_by] for link in geometry.links]
+    links: Any = [
+        [link.offset, link.alpha, link.a, link.d, link.turned_by] for link in geometry.links
+    ]
     for angles in ([0.0] * 6, [10.0, -20.0, 30.0, -40.0, 50.0, -60.0]):
         found = opened.get(
             f"import('./kinematics.js').then((m) => m.points({json.dumps(links)}, {angles}))"
@@ -274,23 +291,25 @@ def test_drawing_agrees_with_the_kinematics_of_the_server(opened: Page) -> None:
 
 
 def test_six_sliders_move_at_sixty_frames_a_second(opened: Page) -> None:
-    # Frames that the page itself delays: its scripts take less than a frame, also when the arm
-    # moves, all six targets change and the curves grow.
-    opened.get(
-        "(() => { window.long = []; new PerformanceObserver((list) => {"
-        " for (const entry of list.getEntries()) window.long.push(entry.duration); })"
-        ".observe({ type: 'longtask' }); })()"
-    )
+    opened.tab.call("Performance.enable")
     opened.send("send_angles", 90, 60, -90, 60, 90, 90, 20)
     sliders = "[...document.querySelectorAll('#joints input[type=range]')]"
+    before = _busy(opened)
     frames = opened.get(
-        "new Promise((done) => { const begin = performance.now(); let count = 0; let busy = 0;"
-        " const step = () => { const at = performance.now();"
+        "new Promise((done) => { const begin = performance.now(); let count = 0;"
+        " const step = (at) => { count += 1;"
         f" {sliders}.forEach((slider, index) => {{ slider.value = 40 * Math.sin(at / 300 + index);"
         " slider.dispatchEvent(new Event('input')); });"
-        " busy += performance.now() - at; count += 1;"
-        " if (at - begin < 2000) requestAnimationFrame(step); else done([count / 2, busy / count]); };"
+        " if (at - begin < 3000) requestAnimationFrame(step); else done(count); };"
         " requestAnimationFrame(step); })"
     )
-    print(f"{frames[0]:.0f} frames a second; {frames[1]:.2f} ms of script in each")
-    assert frames[1] < 8
+    each = 1000 * (_busy(opened) - before) / frames
+    print(f"{frames / 3:.0f} frames a second; {each:.1f} ms of work in each")
+    # What the page does for a frame must fit into a sixtieth of a second.
+    assert each < 1000 / 60
+
+
+def _busy(page: Page) -> float:
+    """Return how many seconds the page has worked."""
+    metrics = page.tab.call("Performance.getMetrics")["metrics"]
+    return float(next(each["value"] for each in metrics if each["name"] == "TaskDuration"))

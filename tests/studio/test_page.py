@@ -86,6 +86,7 @@ def _plain(number: float) -> str:
 
 def test_frame_is_shown_before_it_goes_and_a_wrong_value_is_named(opened: Page) -> None:
     opened.until("document.querySelector('#command option[value=send_angle]')")
+    opened.show_tab("send")
     opened.choose("command", "send_angle")
     preview = "document.querySelector('#form .preview').textContent"
     strip = "document.querySelector('#form .strip').innerText.split(/\\s+/).join(' ')"
@@ -164,7 +165,17 @@ def test_page_is_used_with_the_keyboard_alone(opened: Page) -> None:
         seen.append(opened.get("document.activeElement.id || document.activeElement.textContent"))
         if seen[-1] == "rows":
             break
-    assert {"control", "stop", "arm-canvas", "+", "home", "line-tab", "pause", "search", "rows"} <= set(seen)
+    assert {
+        "control",
+        "stop",
+        "arm-canvas",
+        "+",
+        "home",
+        "line-tab",
+        "pause",
+        "search",
+        "rows",
+    } <= set(seen)
     opened.press("Home")
     opened.until(
         "document.querySelector('.row.chosen') && document.getElementById('rows').scrollTop === 0"

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import asyncio
 import json
-import math
 import time
 from collections import deque
 from collections.abc import Iterator
 from functools import partial
-from itertools import pairwise, product
+from itertools import product
 from typing import Any
 
 import pytest
@@ -17,10 +16,11 @@ import pytest
 from cobotwire import codec as codecs
 from cobotwire import editions
 from cobotwire.editions import mycobot280
+from cobotwire.editions.mycobot280 import messages as m
 from cobotwire.simulator import SimulatedArm, TcpServer
 from cobotwire.simulator.faults import find
-from cobotwire.simulator.kinematics import flange, geometry_of
-from cobotwire.studio.arm_line import ArmLine, PortOptions
+from cobotwire.studio.arm_line import UNANSWERED, ArmLine, PortOptions
+from cobotwire.studio.controls import controls
 from cobotwire.studio.describing import Described, Describer
 from cobotwire.studio.entries import Entry
 from cobotwire.studio.explained import Explainer
@@ -28,7 +28,6 @@ from cobotwire.studio.forms import forms
 from cobotwire.studio.history import KEPT_ENTRIES, History
 from cobotwire.studio.live import LiveSession
 from cobotwire.studio.robot_facts import robot_facts
-from cobotwire.studio.samples import points
 from cobotwire.studio.sending import Control, NotPermitted, Preparer
 from cobotwire.studio.viewers import QUEUED_ENTRIES, Viewer
 
@@ -78,19 +77,72 @@ def test_every_edition_has_facts_for_the_page(name: str) -> None:
     assert json.loads(json.dumps(facts)) == facts
 
 
-def test_points_end_at_the_flange_and_no_link_is_cut() -> None:
-    for name in EDITIONS:
-        geometry = geometry_of(editions.load(name).TABLE)
-        if geometry is None:
+@pytest.mark.parametrize("name", EDITIONS)
+def test_what_a_control_sends_is_a_request_of_the_edition(name: str) -> None:
+    table = editions.load(name).TABLE
+    found, preparer = controls(table), Preparer(table)
+    joints = robot_facts(table)["joints"]
+    for control in ("joint", "coordinate", "jogJoint", "jogCoordinate", "gripper"):
+        use = found[control]
+        if use is None:
             continue
-        angles = [10.0 * (joint + 1) for joint in range(geometry.joints)]
-        found = points(geometry, angles)
-        assert found is not None
-        assert found[-1] == [round(part, 3) for part in flange(geometry, angles).origin]
-        lengths = sum(math.dist(one, other) for one, other in pairwise(found))
-        assert lengths == pytest.approx(
-            sum(abs(link.a) + abs(link.d) for link in geometry.links), abs=0.1
-        )
+        names, numbers = use["arguments"], use["elements"] or [{"low": 1.0}]
+        assert "at" not in names or len(use["places"]) >= (len(joints) if "Joint" in control else 3)
+        for at, number in enumerate(numbers):
+            given = {names["speed"]: str(found["speeds"]["high"])} if "speed" in names else {}
+            given |= {names["at"]: str(use["places"][at])} if "at" in names else {}
+            given |= {names["to"]: str(number["low"])} if "to" in names else {}
+            given |= {names["direction"]: str(found["forward"])} if "direction" in names else {}
+            command = preparer.command(use["command"])
+            preparer.encoded(command, preparer.arguments(command, given))
+    assert (found["jogJoint"] is None) == (name in ("myarm_c650", "myarm_m750"))
+
+
+def _targets(*steps: tuple[str, Any]) -> list[Any]:
+    """Return the targets that pages know after each request and reply."""
+    codec, shown = codecs.load(mycobot280.TABLE), []
+    describer, target = Describer(codec), None
+    for name, message in steps:
+        reply = hasattr(message, "result")
+        data = codec.encode(name, "reply" if reply else "request", message.values)
+        entry = Entry(0.0, "received" if reply else "sent", data)
+        for sample in map(json.loads, describer.describe(0, entry).samples):
+            target = sample.get("tj", target) or sample.get("te", None)
+        shown.append(target)
+    return shown
+
+
+def test_target_ends_when_it_is_reached_stopped_or_replaced() -> None:
+    there, end = [10.0] * 6, [100.0, 0.0, 200.0, 0.0, 0.0, 0.0]
+    at_rest = ("get_angles", m.GetAnglesReply(m.Angles(*[0.0] * 6)))
+    reached = ("get_angles", m.GetAnglesReply(m.Angles(*[10.2] * 6)))
+    go = ("send_angles", m.SendAngles(there, 50))
+    assert _targets(go, at_rest, reached) == [there, there, None]
+    assert _targets(go, ("stop", m.Stop())) == [there, None]
+    assert _targets(go, ("jog_angle", m.JogAngle(1, 1, 20))) == [there, None]
+    assert _targets(go, ("set_gripper_value", m.SetGripperValue(10, 50))) == [there, there]
+    assert _targets(go, ("send_coords", m.SendCoords(end, 50, 0))) == [there, end[:3]]
+    assert (
+        _targets(at_rest, ("send_angle", m.SendAngle(2, 30.0, 50)), at_rest)[1:]
+        == [[0.0, 30.0, 0.0, 0.0, 0.0, 0.0]] * 2
+    )
+
+
+def test_query_that_an_arm_never_answers_does_not_slow_down_the_others() -> None:
+    table = editions.load("mercury_a1").TABLE
+    coordinates = bytes([table.in_role("coordinates").id])
+    with (
+        TcpServer(SimulatedArm(table).connect) as server,
+        ArmLine(editions.load("mercury_a1"), PortOptions(server.url), 100.0) as polled,
+    ):
+        sent: list[bytes] = []
+        end = time.monotonic() + 30
+        while len([data for data in sent if data[3:4] != coordinates]) < 60:
+            assert time.monotonic() < end
+            time.sleep(0.02)
+            sent += _sent(polled)
+    # Each query is sent three times before it counts as unanswered.
+    assert len([data for data in sent if data[3:4] == coordinates]) <= 3 * UNANSWERED
 
 
 @pytest.fixture

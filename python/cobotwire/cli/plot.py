@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from datetime import UTC, datetime
 from pathlib import Path
 
 import click
@@ -47,16 +48,19 @@ def plot(edition: str, file: str, output: str, interface: int, pose: bool) -> No
     """
     check_output(output)
     capture = recording_named((file,))
-    title = printable(Path(file).name)
+    title = [printable(Path(file).name)]
     if capture is None:
         codec = codecs.load(editions.load(edition).TABLE)
         blocks = open_bytes((file,), None, lambda text: click.echo(f"cobotwire: {text}", err=True))
         series = series_of_bytes((block for block, _ in blocks.blocks), codec)
+        title.append(f"edition {codec.table.edition}")
     else:
         series, codec = _read_recording(capture, interface, edition)
-        title = f"{title}   {printable(capture.interfaces[interface].url)}".strip()
+        begin = datetime.fromtimestamp(series.start_ns / 1e9, UTC)
+        title += [printable(capture.interfaces[interface].url), f"edition {codec.table.edition}"]
+        title.append(f"{begin:%Y-%m-%d %H:%M:%S} UTC")
     if not pose:
-        draw_charts(series, output, title)
+        draw_charts(series, output, "   ".join(filter(None, title)))
     elif joints := series.tracks["joints"].rows:
         draw_pose(codec.table, joints[-1], output)
     else:

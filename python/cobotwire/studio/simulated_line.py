@@ -34,9 +34,7 @@ class SimulatedLine:
         self.table = table
         self._on_remark = on_remark
         self._clock = RunningClock()
-        self._arm = SimulatedArm(
-            table, clock=self._clock, on_note=self._note, powered=True
-        )
+        self._arm = SimulatedArm(table, clock=self._clock, on_note=self._note, powered=True)
         self._scenario: Scenario | None = None
         # Of every client, since others may connect to the arm too; forgotten when they leave.
         self._peers: WeakSet[SwitchedPeer] = WeakSet()

@@ -17,6 +17,7 @@ from cobotwire.editions.mycobot280 import TABLE, MyCobot280
 from cobotwire.editions.mypalletizer260 import TABLE as PALLETIZER
 from cobotwire.inspect.plot import Series, series_of_bytes, series_of_packets
 from cobotwire.inspect.plot.charts import BARS, bar_width, draw
+from cobotwire.inspect.plot.series import Track
 from cobotwire.simulator import MemoryTransport, SimulatedArm, SteppedClock
 from cobotwire.simulator.faults import Late, Lost, Scenario, ServoLeak
 from cobotwire.transport import TappedTransport
@@ -67,6 +68,16 @@ def test_series_holds_each_reply_at_its_time(tmp_path: Path) -> None:
     assert (series.reply_times.late, series.reply_times.missing) == ([], [])
     # Two acknowledgements, and two replies per sample.
     assert len(series.frames) == 2 + 80
+
+
+def test_no_line_crosses_a_gap() -> None:
+    times = [0.1 * step for step in range(10)] + [4.0, 4.1]
+    track = Track(at=times, rows=[(time,) for time in times])
+    at, rows = track.with_gaps()
+    [gap] = [index for index, (value,) in enumerate(rows) if value != value]
+    assert (at[gap - 1], at[gap + 1], len(at)) == (times[9], 4.0, 13)
+    slow = Track(at=[0.0, 5.0, 10.0], rows=[(0.0,)] * 3)
+    assert slow.with_gaps() == (slow.at, slow.rows), "every five seconds is the usual interval"
 
 
 def test_series_holds_late_and_lost_replies_and_noise(tmp_path: Path) -> None:

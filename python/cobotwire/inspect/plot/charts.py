@@ -90,29 +90,34 @@ def _figure(series: Series, title: str) -> Figure:
 
 
 def _panels(series: Series) -> list[Panel]:
-    """Return a panel for each kind of data that the series holds."""
+    """Return a panel for each kind of data that the series holds; at least that of the frames."""
+    timed = series.axis == "seconds"
     joints, coords = series.tracks["joints"], series.tracks["coordinates"]
     panels: list[Panel] = []
     if joints.at:
         names = [f"J{joint + 1}" for joint in range(len(joints.rows[0]))]
-        panels.append(("joints, °", lambda axes: _lines(axes, joints, dict(enumerate(names)))))
+        lines = partial(_lines, track=joints, names=dict(enumerate(names)), gaps=timed)
+        panels.append(("joints, °", lines))
     for unit, symbol in (("millimetre", "mm"), ("degree", "°")):
         shown = {at: coords.names[at] for at, each in enumerate(coords.units) if each == unit}
         if coords.at and shown:
-            panels.append((f"end, {symbol}", partial(_lines, track=coords, names=shown)))
-    each = "per second" if series.axis == "seconds" else "per 1000 bytes"
+            lines = partial(_lines, track=coords, names=shown, gaps=timed)
+            panels.append((f"end, {symbol}", lines))
+    each = "per second" if timed else "per 1000 bytes"
     panels.append((f"frames received\n{each}", lambda axes: _frames(axes, series)))
-    panels.append((f"noise, bytes\n{each}", lambda axes: _noise(axes, series)))
+    if series.noise:
+        panels.append((f"noise, bytes\n{each}", lambda axes: _noise(axes, series)))
     times = series.reply_times
     if times is not None and (times.all or times.missing):
         panels.append(("reply time, ms", lambda axes: _reply_times(axes, times)))
     return panels
 
 
-def _lines(axes: Axes, track: Track, names: Mapping[int, str]) -> None:
+def _lines(axes: Axes, track: Track, names: Mapping[int, str], gaps: bool) -> None:
     """Draw the numbers of a track that have names, by their places in a row."""
+    times, rows = track.with_gaps() if gaps else (track.at, track.rows)
     for index, (at, name) in enumerate(names.items()):
-        values = [row[at] for row in track.rows]
+        values = [row[at] for row in rows]
         # A seventh line has the colour of the first, and other dashes.
         style: dict[str, Any] = {
             "color": COLOURS[index % 6],
@@ -120,7 +125,7 @@ def _lines(axes: Axes, track: Track, names: Mapping[int, str]) -> None:
             "linewidth": 1.3,
         }
         # A single value would be an invisible line.
-        axes.plot(track.at, values, label=name, marker="." if len(values) < 2 else None, **style)
+        axes.plot(times, values, label=name, marker="." if len(values) < 2 else None, **style)
 
 
 def _frames(axes: Axes, series: Series) -> None:
@@ -129,10 +134,6 @@ def _frames(axes: Axes, series: Series) -> None:
 
 def _noise(axes: Axes, series: Series) -> None:
     _bars(axes, series, series.noise, COLOURS[1])
-    if not series.noise:
-        axes.set_ylim(0, 1)
-        axes.set_yticks([0])
-        axes.text(0.5, 0.5, "none", transform=axes.transAxes, ha="center", color="#666666")
 
 
 def _bars(axes: Axes, series: Series, events: Sequence[tuple[float, int]], colour: str) -> None:

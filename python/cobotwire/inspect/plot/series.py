@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass, field
+from itertools import pairwise
+from math import nan
+from statistics import median
 from typing import Literal
 
 from cobotwire.capture import Packet
@@ -14,6 +17,9 @@ from cobotwire.protocol.errors import ProtocolError, UsageError
 from cobotwire.protocol.table import Role
 
 ROLES: tuple[Role, ...] = ("joints", "coordinates")
+# Two replies are this many usual intervals apart, and at least this many seconds, if there is a gap
+# between them. The curves of the studio (`studio/page/series.js`) have the same rule.
+GAP_INTERVALS, GAP_SECONDS = 4, 1.0
 
 
 @dataclass
@@ -28,6 +34,19 @@ class Track:
     at: list[float] = field(default_factory=list)
     rows: list[tuple[float, ...]] = field(default_factory=list)
 
+    def with_gaps(self) -> tuple[list[float], list[tuple[float, ...]]]:
+        """Return the times and the rows, with a row of NaN in each gap: no line crosses it."""
+        intervals = [later - earlier for earlier, later in pairwise(self.at)]
+        longest = max(GAP_SECONDS, GAP_INTERVALS * median(intervals)) if intervals else 0.0
+        times, rows = self.at[:1], self.rows[:1]
+        for at, row, since in zip(self.at[1:], self.rows[1:], intervals):
+            if since > longest:
+                times.append(at - since / 2)
+                rows.append((nan,) * len(row))
+            times.append(at)
+            rows.append(row)
+        return times, rows
+
 
 @dataclass
 class Series:
@@ -39,6 +58,7 @@ class Series:
         tracks: joints in degrees, coordinates in millimetres and degrees; may be empty.
         frames: the place of each received frame.
         noise: the place and the size in bytes of each received span of noise.
+        start_ns: the time of the first packet, in nanoseconds since 1970; 0 without times.
         reply_times: the times between requests and replies; None without times.
     """
 
@@ -47,6 +67,7 @@ class Series:
     tracks: dict[Role, Track] = field(default_factory=lambda: {role: Track() for role in ROLES})
     frames: list[float] = field(default_factory=list)
     noise: list[tuple[float, int]] = field(default_factory=list)
+    start_ns: int = 0
     reply_times: ReplyTimes | None = None
 
 
@@ -61,7 +82,7 @@ def series_of_packets(packets: Iterable[Packet], codec: Codec) -> Series:
         raise UsageError("FILE", message="the recording holds no packets")
     # Not that of the first packet: the recorder's clock may have been set back meanwhile.
     start_ns = min(packet.time_ns for packet in packets)
-    collector = _Collector(Series("seconds"), codec)
+    collector = _Collector(Series("seconds", start_ns=start_ns), codec)
     pairing = Pairing(codec.table)
     # Packets of unknown direction count as replies, because the charts show replies.
     for stream, events, _ in cut(packets, lambda interface: codec, "reply"):

@@ -173,7 +173,7 @@ export class Line {
   }
 
   count() {
-    const parts = [`${this.rows.count} of ${this.entries.length} shown`];
+    const parts = [`${this.shown.length} rows of ${this.entries.length} entries`];
     if (this.paused) parts.push(`paused, ${this.paused.length} more came`);
     if (this.lost) parts.push(`${this.lost} were left out, because this page was too slow`);
     byId("line-count").textContent = parts.join("; ");
@@ -188,13 +188,11 @@ class Rows {
     this.queries = queries;
     this.list = [];
     this.groups = new Map();
-    this.count = 0;
   }
 
   add(entry) {
     const query = entry.k === "frame" && entry.s === "query";
     if (query && this.queries === "hide") return;
-    this.count += 1;
     if (!query) this.groups.clear();
     let row = this.groups.get(entry.l);
     if (!row) {
@@ -209,7 +207,6 @@ class Rows {
   // Drop the rows whose last entry is older than a number.
   drop(first) {
     this.list = this.list.filter((row) => row.entry.n >= first);
-    this.count = this.list.reduce((sum, row) => sum + row.sent + row.received, 0);
   }
 }
 

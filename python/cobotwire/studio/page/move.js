@@ -52,14 +52,14 @@ export class Move {
       drop: control && ((value) => this.send(request(value))),
       jog:
         jogging && this.state.robot.stop
-          ? (forward) => {
+          ? (forward, by) => {
               const direction = forward ? this.controls.forward : this.controls.backward;
               const given = { ...place(jogging), [jogging.arguments.direction]: String(direction) };
               this.say("");
-              this.hold.start(jogging.command, { ...given, ...this.speed(jogging) });
+              this.hold.start(by, jogging.command, { ...given, ...this.speed(jogging) });
             }
           : null,
-      release: () => this.hold.end(),
+      release: (by) => this.hold.end(by),
       step: (by) => this.focus(target === "joint" ? this.joints : this.coordinates, at + by),
     });
   }
@@ -160,17 +160,20 @@ export class Move {
 class Hold {
   constructor(source) {
     this.source = source;
-    this.timer = null;
+    this.timer = this.by = null;
   }
 
-  start(command, values) {
+  // `by` is the element that is held.
+  start(by, command, values) {
     this.end();
     if (!this.source.wish("hold", { command, arguments: values })) return;
+    this.by = by;
     this.timer = setInterval(() => this.source.wish("keep"), KEEP_MS);
   }
 
-  end() {
-    if (this.timer === null) return;
+  // End the motion that an element holds, or any.
+  end(by = this.by) {
+    if (this.timer === null || by !== this.by) return;
     clearInterval(this.timer);
     this.timer = null;
     this.source.wish("release");
@@ -230,8 +233,7 @@ class Axis {
     );
     this.slider.disabled = this.box.disabled = !actions.drop;
     this.item.addEventListener("keydown", (event) => this.key(event));
-    this.item.addEventListener("keyup", () => actions.release());
-    this.item.addEventListener("focusout", () => actions.release());
+    for (const ends of ["keyup", "focusout"]) this.item.addEventListener(ends, () => actions.release(this.item));
   }
 
   jogButton(label, forward) {
@@ -240,9 +242,9 @@ class Axis {
     button.addEventListener("pointerdown", (event) => {
       if (event.button) return;
       button.setPointerCapture(event.pointerId);
-      jog(forward);
+      jog(forward, button);
     });
-    for (const ends of ["pointerup", "pointercancel", "lostpointercapture"]) button.addEventListener(ends, release);
+    for (const ends of ["pointerup", "pointercancel", "lostpointercapture"]) button.addEventListener(ends, () => release(button));
     // A long press on a phone would open a menu.
     button.addEventListener("contextmenu", (event) => event.preventDefault());
     return button;
@@ -256,7 +258,7 @@ class Axis {
     if (event.key === "ArrowUp" || event.key === "ArrowDown") step(event.key === "ArrowUp" ? -1 : 1);
     else if (event.key === "ArrowLeft" || event.key === "ArrowRight" || (onButton && event.key === "Enter")) {
       if (event.target === this.box) return;
-      if (!event.repeat && jog) jog(forward);
+      if (!event.repeat && jog) jog(forward, this.item);
     } else if (event.target !== this.slider || (event.key !== "Home" && event.key !== "End")) return;
     // Home and End would send the joint to its limit.
     event.preventDefault();
