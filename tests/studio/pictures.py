@@ -16,19 +16,13 @@ SETTLED = "new Promise((go) => setTimeout(go, 700))"
 
 def live(page: Page, folder: Path) -> None:
     """The arm on its way to a target, on a wide screen; then on a phone, in the dark."""
-    with running("--allow-motion", "--rate", "20") as studio:
-        page.show(1280, 1120)
+    with running("--rate", "20") as studio:
+        page.show(1440, 900)
         page.open(studio.url)
         page.control()
-        page.send("power_on")
         page.send("send_angles", 50, 20, -60, 40, 10, 0, 60)
         page.get(SETTLED)
         page.send("send_angles", -40, -50, -70, 30, 60, 20, 25)
-        page.choose("by-command", "send_angles")
-        page.until(f"{ROWS}.length > 2 && {ROWS}.every((row) => row.innerText.includes('send_'))")
-        page.get(f"{ROWS}.at(-2).click()")
-        page.until("document.querySelector('#details table')")
-        page.choose("by-command", "")
         page.get(SETTLED)
         page.picture(folder / "studio-live.webp")
         page.show(390, 844, dark=True)
@@ -41,10 +35,11 @@ def live(page: Page, folder: Path) -> None:
 
 def faults(page: Page, folder: Path) -> None:
     """A fault scenario, and what the noise is, in the dark."""
-    with running("--allow-motion") as studio:
-        page.show(1280, 1120, dark=True)
+    with running() as studio:
+        page.show(1440, 900, dark=True)
         page.open(studio.url)
         page.control()
+        page.show_tab("line")
         page.choose("scenario", "servo-leaks")
         page.click("#begin")
         page.until("document.querySelectorAll('#injected li').length > 11")
@@ -53,8 +48,6 @@ def faults(page: Page, folder: Path) -> None:
         page.get(f"{ROWS}[4].click()")
         page.until("document.getElementById('details').textContent.includes('What to do')")
         page.choose("by-noise", "")
-        page.get("document.getElementById('line').scrollIntoView()")
-        page.get("scrollBy(0, -90)")
         page.get(SETTLED)
         page.picture(folder / "studio-faults.webp")
 
@@ -64,11 +57,11 @@ def recording(page: Page, folder: Path) -> None:
     with tempfile.TemporaryDirectory() as place:
         path = record(Path(place) / "arm.pcapng", 8.0)
         with running(str(path)) as studio:
-            page.show(1280, 760)
+            page.show(1280, 800)
             page.open(studio.url)
             page.choose("scrub", "1.4")
-            page.choose("window", "10")
-            page.until(f"{ROWS}.length > 5")
+            page.show_tab("line")
+            page.until(f"{ROWS}.length > 2")
             page.get(SETTLED)
             page.picture(folder / "studio-recording.webp")
 

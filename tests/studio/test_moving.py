@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from typing import Any
 
 import pytest
@@ -126,7 +126,7 @@ def test_arm_follows_a_drag_if_the_user_says_so(opened: Page) -> None:
 def test_jog_moves_while_it_is_held_and_release_stops(opened: Page, by: str) -> None:
     opened.choose("speed-of-motion", "30")
     x, y = opened.middle(JOG.format(3, 2))
-    begin, end = {
+    hands: dict[str, tuple[Callable[[], None], Callable[[], None]]] = {
         "mouse": (
             lambda: opened.mouse("mousePressed", x, y),
             lambda: opened.mouse("mouseReleased", x, y),
@@ -137,7 +137,8 @@ def test_jog_moves_while_it_is_held_and_release_stops(opened: Page, by: str) -> 
             lambda: opened.key("keyUp", "ArrowRight"),
         ),
         "Enter": (lambda: opened.key("keyDown", "Enter"), lambda: opened.key("keyUp", "Enter")),
-    }[by]
+    }
+    begin, end = hands[by]
     focus = JOG.format(3, 2) if by == "Enter" else SLIDER.format(3)
     opened.get(f"document.querySelector('{focus}').focus()")
     begin()

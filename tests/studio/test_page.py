@@ -293,13 +293,13 @@ def test_markup_on_the_line_stays_text(page: Page) -> None:
         assert page.complaints == []
 
 
-def test_edition_without_geometry_has_dials(page: Page) -> None:
+def test_edition_without_geometry_gives_the_place_of_the_arm_to_the_curves(page: Page) -> None:
     page.show()
     with running(edition="mercury_a1") as studio:
         page.open(studio.url)
         page.until(f"{ANGLES}.length === 7 && {ANGLES}.every(Number.isFinite)")
-        assert page.get("document.querySelectorAll('#dials .value').length") == 7
-        assert page.get("document.getElementById('scene').hidden")
+        assert page.get("document.getElementById('arm').clientHeight") == 0
+        assert page.get("document.getElementById('curves').clientHeight") > 500
         assert "the geometry of this arm is not known" in page.text("no-geometry")
 
 

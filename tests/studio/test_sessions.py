@@ -16,6 +16,7 @@ import pytest
 from cobotwire import codec as codecs
 from cobotwire import editions
 from cobotwire.editions import mycobot280
+from cobotwire.editions.mycobot280 import Angles
 from cobotwire.editions.mycobot280 import messages as m
 from cobotwire.simulator import SimulatedArm, TcpServer
 from cobotwire.simulator.faults import find
@@ -114,8 +115,8 @@ def _targets(*steps: tuple[str, Any]) -> list[Any]:
 
 def test_target_ends_when_it_is_reached_stopped_or_replaced() -> None:
     there, end = [10.0] * 6, [100.0, 0.0, 200.0, 0.0, 0.0, 0.0]
-    at_rest = ("get_angles", m.GetAnglesReply(m.Angles(*[0.0] * 6)))
-    reached = ("get_angles", m.GetAnglesReply(m.Angles(*[10.2] * 6)))
+    at_rest = ("get_angles", m.GetAnglesReply(Angles(*[0.0] * 6)))
+    reached = ("get_angles", m.GetAnglesReply(Angles(*[10.2] * 6)))
     go = ("send_angles", m.SendAngles(there, 50))
     assert _targets(go, at_rest, reached) == [there, there, None]
     assert _targets(go, ("stop", m.Stop())) == [there, None]

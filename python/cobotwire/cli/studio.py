@@ -25,7 +25,7 @@ from cobotwire.studio.extras import check_extra
     default=0,
     help="The TCP port of the page [default: a free one].",
 )
-@click.option("--allow-motion", is_flag=True, help="Let the page send more than queries.")
+@click.option("--allow-motion", is_flag=True, help="Let the page move a real arm and change it.")
 @click.option("--no-browser", is_flag=True, help="Print the address, but open no browser.")
 @click.pass_obj
 def studio(
@@ -43,13 +43,14 @@ def studio(
     """Show the arm at URL, or a RECORDING, on a page in the browser, until Ctrl-C.
 
     URL is a serial port, or a URL such as socket://host:9000. Without it, a simulated arm is
-    started. The page shows the arm in 3D, curves, and every frame on the line, byte by byte.
+    started, which the page may move. The page shows the arm in 3D, curves, and every frame on the
+    line, byte by byte; sliders and buttons move the arm.
 
     The first line of output is the address of the page. It contains a secret: whoever has it can
     see the page. Only programs on this machine reach the page, unless --host says otherwise.
 
-    The page sends queries. Anything else needs --allow-motion here and the switch "allow motion" on
-    the page. With --allow-motion the arm is sent stop at the end.
+    A real arm is sent queries. Anything else needs --allow-motion here and the switch "Allow motion"
+    on the page. With --allow-motion the arm is sent stop at the end.
     """
     check_extra()
     # Imported here: the packages of the extra may be absent.

@@ -15,7 +15,7 @@ def robot_facts(table: Table) -> Facts:
     """Return the facts as JSON values; a list is empty where the edition states nothing."""
     joints, coordinates = _numbers(table, "joints"), _numbers(table, "coordinates")
     geometry = geometry_of(table)
-    stop = table.find_role("stop")
+    stop, stated = table.find_role("stop"), table.robot.geometry
     reach = 0.0
     if geometry is not None:
         reach = sum(abs(link.a) + abs(link.d) for link in geometry.links)
@@ -26,7 +26,7 @@ def robot_facts(table: Table) -> Facts:
         "coordinates": coordinates,
         "limits": [list(limit) for limit in joint_limits(table)],
         "reach": round(reach, 1),
-        "links": [] if geometry is None else [list(link) for link in table.robot.geometry.links],
+        "links": [list(link) for link in stated.links] if stated is not None else [],
         "noGeometry": "" if geometry is not None else table.robot.why_no_geometry,
         "stop": "" if stop is None else stop.name,
     }

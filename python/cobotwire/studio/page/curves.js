@@ -95,7 +95,7 @@ class Chart {
 
   build() {
     const { clientWidth: width, clientHeight: height } = this.place;
-    const made = [width, height, colour("text")].join();
+    const made = [width, colour("text")].join();
     if (height < LEAST_HEIGHT || made === this.made) return;
     this.made = made;
     this.plot?.destroy();
@@ -112,7 +112,7 @@ class Chart {
         cursor: { sync: { key: "studio" }, drag: { x: false, y: false } },
         legend: { live: true },
         axes: [
-          { ...axis, ...ticks, size: 22, values: (plot, values) => values.map((at) => clock(at)) },
+          { ...axis, ...ticks, size: 27, values: (plot, values) => values.map((at) => clock(at)) },
           ...axes,
         ],
         series: [
@@ -131,11 +131,12 @@ class Chart {
       [[], ...this.names.map(() => [])],
       this.place,
     );
-    const legend = this.plot.root.querySelector(".u-legend").offsetHeight;
-    this.plot.setSize({ width, height: Math.max(LEAST_HEIGHT, height - legend) });
+    this.legend = this.plot.root.querySelector(".u-legend");
   }
 
   draw(now, span, end) {
+    // An arm whose geometry is not known may report no coordinates.
+    this.figure.hidden = this.key === "c" && !this.series.length;
     this.build();
     if (!this.plot) return;
     const first = this.series.length ? this.series.times[0] : 0;
@@ -143,6 +144,9 @@ class Chart {
     this.span = [begin, span === Infinity ? Math.max(end, begin + 1) : begin + span];
     const data = this.series.since(begin, MOST_POINTS);
     this.plot.setData(data);
+    // The legend has a second row if the values need it.
+    const height = Math.max(LEAST_HEIGHT, this.place.clientHeight - this.legend.offsetHeight);
+    if (height !== this.plot.height) this.plot.setSize({ width: this.plot.width, height });
     // The legend shows the newest values unless the pointer is over a curve.
     if (this.plot.cursor.left < 0 && data[0].length) this.plot.setLegend({ idx: data[0].length - 1 });
   }

@@ -15,13 +15,6 @@ export function el(tag, properties = {}, ...children) {
   return made;
 }
 
-export function svg(tag, attributes = {}, ...children) {
-  const made = document.createElementNS("http://www.w3.org/2000/svg", tag);
-  for (const [name, value] of Object.entries(attributes)) made.setAttribute(name, value);
-  made.append(...children);
-  return made;
-}
-
 const dark = matchMedia("(prefers-color-scheme: dark)");
 const colours = new Map();
 dark.addEventListener("change", () => colours.clear());

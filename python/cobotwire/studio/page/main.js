@@ -3,7 +3,6 @@
 import { ArmView } from "./arm.js";
 import { Curves } from "./curves.js";
 import { Details } from "./details.js";
-import { Dials } from "./dials.js";
 import { byId } from "./dom.js";
 import { wireExport } from "./export.js";
 import { Faults } from "./faults.js";
@@ -60,6 +59,7 @@ function begin(hello) {
   document.body.classList.toggle("recorded", recorded);
   byId("player").hidden = !recorded;
   byId("send-tab").hidden = recorded;
+  byId("move-title").textContent = recorded ? "Position" : "Move";
   byId("faults-tab").hidden = !hello.simulated;
   const what = hello.simulated ? "a simulated arm" : hello.recording?.name || hello.url;
   byId("source").textContent = `${what} · edition ${hello.robot.edition}`;
@@ -67,10 +67,10 @@ function begin(hello) {
   byId("stop").disabled = hello.robot.stop === "";
   byId("stop").title = hello.robot.stop ? "" : "This edition has no stop.";
   const drawn = hello.robot.links.length > 0;
+  // Without a drawing the curves have its place.
+  document.body.classList.toggle("undrawn", !drawn);
   byId("no-geometry").hidden = drawn;
-  byId("no-geometry").textContent = `Shown as dials: ${hello.robot.noGeometry}.`;
-  for (const id of ["scene", "views"]) byId(id).hidden = !drawn;
-  byId("dials").hidden = drawn;
+  byId("no-geometry").textContent = `The arm is not drawn: ${hello.robot.noGeometry.replace(/\.$/, "")}.`;
   // After a new connection the server sends the past again.
   if (parts) clear();
   else parts = make(hello, recorded);
@@ -84,7 +84,6 @@ function make(hello, recorded) {
   return {
     arm,
     move: new Move(source, state, hello.controls, arm),
-    dials: hello.robot.links.length ? null : new Dials(hello.robot),
     curves: new Curves(hello.robot, hello.recording?.seconds),
     faults: hello.simulated ? new Faults(source, hello.scenarios, notify) : null,
     player: recorded ? new Player(source, hello.recording) : null,
@@ -113,7 +112,6 @@ function note(sample) {
 function show() {
   const { robot, joints, coordinates, targetJoints, targetEnd } = state;
   parts.move.show(state);
-  parts.dials?.show(joints, targetJoints);
   const { near } = parts.move;
   parts.arm.show(targetJoints, targetEnd, near.length > 0);
   showAge();
@@ -136,7 +134,7 @@ function showAge() {
   const recorded = document.body.classList.contains("recorded");
   const age = recorded ? (state.position ?? 0) - sampled.time : (performance.now() - sampled.at) / 1000;
   const old = Boolean(state.joints) && age > OLD_SECONDS;
-  byId("arm").classList.toggle("old", old);
+  document.body.classList.toggle("old", old);
   byId("age").textContent = old ? `The joints are ${Math.floor(age)} s old.` : "";
 }
 
@@ -164,7 +162,7 @@ function showControl({ page, motion }) {
   // A simulated arm may be moved from the start, by the first page that opens.
   if (wasFree && state.simulated && !state.offered) {
     state.offered = true;
-    source.control(true).then(() => source.allowMotion(true)).catch(() => {});
+    source.control(true).then(() => source.allowMotion(true)).catch(() => (state.offered = false));
   }
 }
 

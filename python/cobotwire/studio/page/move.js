@@ -1,6 +1,5 @@
 // Move the arm: a slider and jog buttons for each joint and coordinate, and the other controls.
 
-import { NEAR_DEGREES } from "./dials.js";
 import { byId, el } from "./dom.js";
 import { points } from "./kinematics.js";
 import { refusal } from "./permission.js";
@@ -8,6 +7,8 @@ import { refusal } from "./permission.js";
 const KEEP_MS = 100;
 // While a slider is dragged the arm follows with at most five motions a second.
 const FOLLOW_MS = 200;
+// A joint that is nearer to its limit is marked.
+const NEAR_DEGREES = 5;
 
 export class Move {
   constructor(source, state, controls, arm) {
