@@ -49,8 +49,8 @@ def studio(
     The first line of output is the address of the page. It contains a secret: whoever has it can
     see the page. Only programs on this machine reach the page, unless --host says otherwise.
 
-    A real arm is sent queries. Anything else needs --allow-motion here and the switch "Allow motion"
-    on the page. With --allow-motion the arm is sent stop at the end.
+    A real arm is sent queries. Anything else needs --allow-motion here and the switch "Allow
+    motion" on the page. With --allow-motion the arm is sent stop at the end.
     """
     check_extra()
     # Imported here: the packages of the extra may be absent.
