@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import sys
 
 import pytest
 from click.testing import CliRunner
@@ -10,6 +11,7 @@ from click.testing import CliRunner
 from cobotwire.cli.ports import ports
 from cobotwire.transport.serial import ports as serial_ports
 from cobotwire.transport.serial.ports import Port
+from cobotwire.transport.serial.remedies import RULES_FILE
 
 ARM = Port("/dev/ttyACM0", True, "CH9102, a bridge", True, "USB Single Serial", "1A86:55D4", "54")
 CLOSED = Port("/dev/ttyUSB3", False, "no known adapter", False)
@@ -37,6 +39,21 @@ def test_exit_code_is_1_without_a_likely_port(monkeypatch: pytest.MonkeyPatch) -
     code, output = run(monkeypatch, [])
     assert code == 1
     assert "check that the arm's cable is plugged in" in output
+
+
+def test_fix_prints_the_steps_for_this_system_and_changes_nothing(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(serial_ports, "programs_using", lambda device: "minicom (process 7)")
+    code, output = run(monkeypatch, [CLOSED], "--fix")
+    assert code == 1, "no port is likely"
+    lines = output.splitlines()
+    assert lines[0].split()[:3] == ["needed", "/dev/ttyUSB3:", "minicom"]
+    assert f"sudo tee {RULES_FILE} <<'END'" in lines
+    assert all(len(line) < 80 for line in lines if "ATTRS" not in line)
+    steps = json.loads(run(monkeypatch, [ARM], "--fix", "--json")[1])
+    assert steps["system"] == sys.platform
+    assert [step["name"] for step in steps["remedies"]] == ["busy", "group", "udev", "brltty"]
 
 
 def test_json_output_holds_every_attribute(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -22,7 +22,8 @@ TESTS = Path(__file__).parents[1]
 IMPORT_ALL = """
 import cobotwire, pkgutil, importlib
 names = [m.name for m in pkgutil.walk_packages(cobotwire.__path__, "cobotwire.")]
-names = [n for n in names if n != "cobotwire.transport.serial.port" and not n.endswith("__main__")]
+others = "cobotwire.transport.serial.port", "cobotwire.transport.serial.linux"
+names = [n for n in names if n not in others and not n.endswith("__main__")]
 names = [n for n in names if not n.startswith("cobotwire.editions.") or "mycobot280." in n + "."]
 for name in names:
     importlib.import_module(name)

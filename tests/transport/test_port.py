@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import fcntl
+import grp
 import os
 import resource
 import struct
 import subprocess
 import sys
 import termios
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -31,6 +33,14 @@ except LinkError as error:
     print(error)
 else:
     print("opened")
+"""
+
+AS_NOBODY = """
+import os
+from cobotwire.transport.serial import linux, port, ports
+os.setgroups([])
+os.setgid(65534)
+os.setuid(65534)
 """
 
 # Changes to the user `nobody` only after Python is loaded, since its files may be root's.
@@ -56,7 +66,9 @@ def in_another_process(script: str, *arguments: str) -> str:
 def test_second_process_on_a_port_is_a_link_error() -> None:
     with Line("serial") as line:
         message = in_another_process(OPEN, line.end.url)
-        assert message == f"{line.end.url}: cannot be opened: another program has it open"
+        this = Path("/proc/self/comm").read_text().strip()
+        assert message.startswith(f"{line.end.url}: cannot be opened: ")
+        assert f"{this} (process {os.getpid()}) has it open; end that first" in message
         line.transport.close()
     end = PtyEnd()
     assert in_another_process(OPEN, end.url) == "opened"
@@ -65,10 +77,24 @@ def test_second_process_on_a_port_is_a_link_error() -> None:
 
 def test_second_transport_of_this_process_on_a_port_is_a_link_error() -> None:
     with Line("serial") as line:
-        with pytest.raises(LinkError, match="another program has it open"):
+        with pytest.raises(LinkError, match="this program itself has it open"):
             open_transport(line.end.url, 115200)
         with pytest.raises(LinkError, match="another program has it open"):
             open_transport(f"spy://{line.end.url}", 115200)
+
+
+@pytest.mark.skipif(os.getuid() != 0, reason="only root can become another user")
+def test_missing_permission_names_the_group_that_the_user_is_not_in() -> None:
+    end, group = PtyEnd(), grp.getgrnam("dialout")
+    os.chown(end.url, 0, group.gr_gid)
+    os.chmod(end.url, 0o660)
+    try:
+        message = in_another_process(AS_NOBODY + OPEN, end.url)
+    finally:
+        end.unplug()
+    missing = "Permission denied; you (nobody) are not in the group dialout"
+    assert message.startswith(f"{end.url}: cannot be opened: {missing}")
+    assert message.endswith("`cobotwire ports --fix` prints what to enter")
 
 
 @pytest.mark.skipif(os.getuid() != 0, reason="only root can become another user")

@@ -10,13 +10,14 @@ from hypothesis import given
 from hypothesis import strategies as st
 from serial.tools import list_ports
 
-from cobotwire.transport.serial.ports import BRIDGES, judge, ports
+from cobotwire.transport.serial.chips import CHIPS, Chip
+from cobotwire.transport.serial.ports import judge, ports
 
 
-@pytest.mark.parametrize("ids", BRIDGES)
-def test_known_usb_bridge_is_likely_under_any_port_name(ids: tuple[int, int]) -> None:
+@pytest.mark.parametrize("chip", CHIPS)
+def test_known_usb_chip_is_likely_under_any_port_name(chip: Chip) -> None:
     for device in ("/dev/ttyUSB0", "/dev/cu.usbserial-1", "COM3"):
-        assert judge(device, *ids) == (True, BRIDGES[ids])
+        assert judge(device, chip.vendor, chip.product) == (True, chip.name)
 
 
 @pytest.mark.parametrize("device", ["/dev/ttyAMA0", "/dev/ttyTHS1"])
@@ -30,7 +31,7 @@ def test_built_in_port_of_a_board_in_the_base_is_likely(device: str) -> None:
 def test_every_port_has_a_reason(device: str, vendor: int | None, product: int | None) -> None:
     likely, why = judge(device, vendor, product)
     assert why
-    assert likely or (vendor, product) not in BRIDGES
+    assert likely or (vendor, product) not in {chip[:2] for chip in CHIPS}
 
 
 class Info:

@@ -2,38 +2,61 @@
 
 from __future__ import annotations
 
+import errno
 import json
 import sys
+from textwrap import fill
 
 import click
 
 from cobotwire.protocol.printable import printable
 from cobotwire.transport.serial import ports as serial_ports
+from cobotwire.transport.serial import remedies
 from cobotwire.transport.serial.ports import Port
+from cobotwire.transport.serial.remedies import Computer, Remedy
 
-NOT_ALLOWED = (
-    "you have no permission to open it; on most systems: sudo usermod -aG dialout $USER, "
-    "then log in again"
-)
+NOT_ALLOWED = "you have no permission to open it"
+WIDTH = 79
 
 
 @click.command(short_help="List serial ports, likely ones first.")
-@click.option("--json", "as_json", is_flag=True, help="Print the ports as JSON.")
-def ports(as_json: bool) -> None:
+@click.option("--fix", is_flag=True, help="Print what to do so that ports can be opened.")
+@click.option("--json", "as_json", is_flag=True, help="Print the ports, or the steps, as JSON.")
+def ports(fix: bool, as_json: bool) -> None:
     """List the serial ports that may lead to an arm, likely ones first, with the reason.
+
+    With --fix, print what to do on this system so that they can be opened: permissions, names,
+    drivers, and the programs that have them open. Nothing is changed.
 
     No port is opened. Exit codes: 0 there is a likely port; 1 there is none.
     """
-    found = serial_ports.ports()
-    if as_json:
+    found, computer = serial_ports.ports(), serial_ports.this_computer()
+    if fix:
+        _show_remedies(found, computer, as_json)
+    elif as_json:
         click.echo(json.dumps([port._asdict() for port in found], indent=1))
     elif not found:
-        click.echo(
-            "no serial port was found; check that the arm's cable is plugged in and its power is on"
-        )
-    for port in () if as_json else found:
+        click.echo(remedies.missing(computer))
+    for port in () if as_json or fix else found:
         click.echo("\n".join(_lines(port)))
     sys.exit(0 if any(port.likely for port in found) else 1)
+
+
+def _show_remedies(found: list[Port], computer: Computer, as_json: bool) -> None:
+    using = [(port.device, serial_ports.programs_using(port.device)) for port in found]
+    steps = remedies.remedies(computer, [each for each in using if each[1]])
+    if as_json:
+        system = {"system": computer.system, "remedies": [step._asdict() for step in steps]}
+        click.echo(json.dumps(system, indent=1))
+        return
+    for step in steps:
+        click.echo("\n".join(_step_lines(step)))
+
+
+def _step_lines(step: Remedy) -> list[str]:
+    text = fill(step.text, WIDTH, initial_indent=f"{step.state:<9} ", subsequent_indent=" " * 10)
+    # Commands are not broken, so that they can be copied.
+    return [text, *(["", *step.commands, ""] if step.commands else [])]
 
 
 def _lines(port: Port) -> list[str]:
@@ -44,5 +67,7 @@ def _lines(port: Port) -> list[str]:
     if port.description or number:
         lines.append(f"{'':<16} {'':8}  {printable(port.description)}{number}")
     if not port.accessible:
-        lines.append(f"{'':<16} {'':8}  {NOT_ALLOWED}")
+        here = serial_ports.this_computer(port.device)
+        why = remedies.explain(here, port.device, errno.EACCES, NOT_ALLOWED)
+        lines.append(f"{'':<16} {'':8}  {why}")
     return lines

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from typing import Any
 
 from cobotwire.protocol.errors import LinkError, UsageError
 from cobotwire.transport.descriptor import reason_of
+
+# pyserial has the number of an error of Windows only in its text.
+_NUMBER_OF_WINDOWS = re.compile(r"Error\((\d+), ")
 
 
 def configure(port: Any, baudrate: int) -> None:
@@ -37,8 +41,8 @@ def request_low_latency(port: Any) -> bool:
 
 
 @contextmanager
-def opening(url: str) -> Iterator[None]:
-    """Turn the errors of pyserial into UsageError or LinkError."""
+def opening(url: str, device: str = "") -> Iterator[None]:
+    """Turn the errors of pyserial into UsageError or LinkError, on opening a ``device`` or URL."""
     try:
         yield
     # Each backend of pyserial fails in its own way, from KeyError to termios.error.
@@ -47,7 +51,20 @@ def opening(url: str) -> Iterator[None]:
         if isinstance(cause, ValueError | KeyError) and not isinstance(cause, OSError):
             message = f"pyserial cannot open {url}: {cause}"
             raise UsageError("port", url, message=message) from None
-        raise LinkError(url, f"cannot be opened: {reason_of(error)}") from error
+        raise LinkError(url, f"cannot be opened: {_explained(device, error, cause)}") from error
+
+
+def _explained(device: str, error: Exception, cause: BaseException) -> str:
+    """Return why a port cannot be opened, and what to do."""
+    if not device or getattr(error, "filename", None):
+        return reason_of(error)
+    # Imported here, since most ports open.
+    from cobotwire.transport.serial import ports, remedies
+
+    match = _NUMBER_OF_WINDOWS.search(str(error))
+    number = getattr(cause, "errno", None) or (int(match[1]) if match else None)
+    by = ports.programs_using(device) if number in remedies.BUSY else ""
+    return remedies.explain(ports.this_computer(device), device, number, reason_of(error), by)
 
 
 def _innermost(error: BaseException) -> BaseException:

@@ -70,6 +70,7 @@ class SerialTransport(DescriptorTransport):
     def _connect(self) -> int:
         with opening(self.url):
             device = _device(self.url)
+        with opening(self.url, device):
             port = _QuietPort()
             port.port = device
             configure(port, self._baudrate)

@@ -4,20 +4,14 @@ from __future__ import annotations
 
 import glob
 import os
+import sys
 from typing import NamedTuple
 
 from serial.tools import list_ports
 
-# The USB bridges on the controllers of these arms (M5Stack Basic and Atom, and carrier boards), by
-# USB vendor and product id.
-BRIDGES: dict[tuple[int, int], str] = {
-    (0x10C4, 0xEA60): "CP2102/CP2104, the bridge of many M5Stack controllers",
-    (0x1A86, 0x55D4): "CH9102, the bridge of newer M5Stack and Atom controllers",
-    (0x1A86, 0x7523): "CH340, the bridge of some carrier boards",
-    (0x0403, 0x6001): "FT232R, the bridge of Atom controllers",
-    (0x0403, 0x6015): "FT231X, the bridge of some carrier boards",
-    (0x303A, 0x1001): "the USB port of an ESP32-S3 or -C3 itself, as on AtomS3",
-}
+from cobotwire.transport.serial.chips import CHIPS
+from cobotwire.transport.serial.remedies import Computer
+
 # Arms with a computer in their base connect its built-in port to the controller. pyserial does not
 # list the built-in port of the Jetson.
 WIRED = {
@@ -62,11 +56,32 @@ def ports() -> list[Port]:
     return sorted(found.values(), key=lambda port: (not port.likely, port.device))
 
 
+def this_computer(device: str = "") -> Computer:
+    """Return what is known about this computer, for what to do so that a port can be opened."""
+    devices = [port.device for port in ports()]
+    if sys.platform == "linux":
+        from cobotwire.transport.serial import linux
+
+        return linux.this_computer(devices, device)
+    return Computer(sys.platform, devices)
+
+
+def programs_using(device: str) -> str:
+    """Return the programs that have a port open; empty if none is visible to this user."""
+    if sys.platform == "linux":
+        from cobotwire.transport.serial import linux
+
+        return linux.programs_using(device)
+    return ""
+
+
 def judge(device: str, vendor: int | None, product: int | None) -> tuple[bool, str]:
     """Return whether a port probably connects to an arm, and the reason."""
     if vendor is not None and product is not None:
-        bridge = BRIDGES.get((vendor, product))
-        return (True, bridge) if bridge else (False, "a USB device that no such arm has")
+        for chip in CHIPS:
+            if (vendor, product) == chip[:2]:
+                return True, chip.name
+        return False, "a USB device that no such arm has"
     for prefix, why in WIRED.items():
         if device.startswith(prefix):
             return True, why

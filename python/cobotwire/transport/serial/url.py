@@ -51,7 +51,7 @@ class UrlTransport:
     def reopen(self) -> None:
         """Close it and open it again."""
         self.close()
-        with opening(self.url):
+        with opening(self.url, self.url if self.kind == "serial" else ""):
             port: Any = serial.serial_for_url(self.url, do_not_open=True)
             configure(port, self._baudrate)
             if os.name == "posix" and isinstance(port, serial.Serial):
