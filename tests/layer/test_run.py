@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import inspect
+import re
 import signal
 import subprocess
 import sys
@@ -10,13 +12,17 @@ from pathlib import Path
 
 import pytest
 
+import cobotwire.pymycobot as ours
 from cobotwire.editions.mycobot280 import TABLE
+from cobotwire.pymycobot.layer.absent import OTHERS
+from cobotwire.pymycobot.migrate import migrate
 from cobotwire.pymycobot.running import as_library
 from cobotwire.session import RequestReceived
 from cobotwire.session.device import DeviceEvent
 from cobotwire.simulator import PtyServer, SimulatedArm
 from command_line import PROGRAM, run_program
 
+PAGE = Path(__file__).parents[2] / "docs" / "pymycobot.md"
 TYPICAL = Path(__file__).parent / "programs" / "typical.py"
 
 
@@ -118,10 +124,31 @@ def test_missing_program_and_missing_module_are_named(tmp_path: Path) -> None:
     other.write_text("from pymycobot.ultraArm import ultraArm\n")
     ended = run_program("run", other)
     assert ended.returncode == 1
-    assert "cobotwire has no pymycobot.ultraArm" in ended.stderr
+    assert "cobotwire has no pymycobot.ultraArm: these robots take G-code" in ended.stderr
 
 
 # It reads the language of the system in a way that Python deprecates.
+@pytest.mark.filterwarnings("ignore:.*getdefaultlocale:DeprecationWarning")
+def test_every_class_that_is_not_offered_is_refused_with_its_reason() -> None:
+    import pymycobot
+
+    for name in set(pymycobot.__all__) - set(ours.__all__):
+        module = f"pymycobot.{Path(inspect.getfile(getattr(pymycobot, name))).stem}"
+        [decision] = migrate(f"from pymycobot import {name}\n").decisions
+        why = decision.what.removeprefix(f"cobotwire has no {name}: ")
+        assert why in OTHERS.values()
+        assert why in PAGE.read_text(), "the page has the same table"
+        with as_library():
+            for source, absent in (("cobotwire.pymycobot", name), (module, module)):
+                with pytest.raises(
+                    ImportError, match=re.escape(f"cobotwire has no {absent}: {why}")
+                ):
+                    exec(f"from {source} import {name}", {})
+            with pytest.raises(ImportError, match=re.escape(why)):
+                exec(f"from pymycobot import {name}", {})
+
+
+# Likewise.
 @pytest.mark.filterwarnings("ignore:.*getdefaultlocale:DeprecationWarning")
 def test_installed_library_is_the_same_before_and_after() -> None:
     import pymycobot

@@ -17,6 +17,7 @@ from cobotwire.pymycobot import utils
 from cobotwire.pymycobot.constants import PI_BAUD, PI_PORT
 from cobotwire.pymycobot.genre import Angle, Coord
 from cobotwire.pymycobot.layer import classes
+from cobotwire.pymycobot.layer.absent import why_no
 
 if TYPE_CHECKING:
     from cobotwire.pymycobot.layer.classes import (
@@ -89,4 +90,7 @@ def __getattr__(name: str) -> Any:
     # A class is made when it is used.
     if name in __all__:
         return getattr(classes, name)
+    # An AttributeError would lose its text, if the name is imported.
+    if why := why_no(name):
+        raise ImportError(why, name=name)
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

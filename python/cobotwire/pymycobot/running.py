@@ -17,6 +17,7 @@ from types import ModuleType
 from typing import Literal
 
 from cobotwire.protocol.errors import CobotwireError, UsageError
+from cobotwire.pymycobot.layer.absent import why_no
 from cobotwire.pymycobot.layer.policy import policy
 
 LIBRARY = "pymycobot"
@@ -34,8 +35,8 @@ class _Alias(MetaPathFinder, Loader):
         if package != LIBRARY:
             return None
         if find_spec(_ours(fullname)) is None:
-            message = f"cobotwire has no {fullname}: no edition covers what that module drives"
-            raise ModuleNotFoundError(message, name=fullname)
+            unknown = f"cobotwire has no {fullname}: no edition covers what that module drives"
+            raise ModuleNotFoundError(why_no(fullname) or unknown, name=fullname)
         return ModuleSpec(fullname, self, is_package=not rest)
 
     def create_module(self, spec: ModuleSpec) -> ModuleType:

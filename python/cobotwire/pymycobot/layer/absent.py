@@ -1,4 +1,4 @@
-"""Says why a name of the maker's class has no counterpart."""
+"""Says why a name of the maker's library has no counterpart: of a class, or of a class's method."""
 
 from __future__ import annotations
 
@@ -8,6 +8,34 @@ from pkgutil import get_data
 
 # The names that no class of ours has.
 _ALL = "*"
+# Why classes and modules have no counterpart, by how their names begin, in lower case without "_".
+_OWN_FRAMES = "with frames of its own, which no edition describes"
+_INSIDE = "it is a part of the library itself; use the class of the robot"
+OTHERS = {
+    "elephantrobot": "it sends texts over TCP to a controller, which no edition describes",
+    "ultraarm": "these robots take G-code and other texts, which no edition describes",
+    "myagv": f"it is a vehicle {_OWN_FRAMES}",
+    "mercurychassis": f"it is a vehicle {_OWN_FRAMES}",
+    "chassiscontrol": f"it is a vehicle {_OWN_FRAMES}",
+    "conveyor": f"it is a conveyor belt {_OWN_FRAMES}",
+    "exoskeleton": f"it is a controller that a person wears, {_OWN_FRAMES}",
+    "myarmmcontrol": "it is another class for the myArm M; use MyArmM",
+    "mybuddybluetooth": "there is no transport for Bluetooth; use MyBuddy or MyBuddySocket",
+    "mybuddyemoticon": "it shows videos on the robot's display, and sends nothing to an arm",
+    "pro320modbus": "it translates Modbus registers into calls of MyCobot320; use that",
+    "commandgenerator": _INSIDE,
+    "mybuddycommandgenerator": _INSIDE,
+    "generate": _INSIDE,
+    "interface": _INSIDE,
+    "common": _INSIDE,
+}
+
+
+def why_no(name: str) -> str:
+    """Return why a class or module of the library has no counterpart; empty if it is not known."""
+    key = name.rpartition(".")[2].lower().replace("_", "")
+    found = (why for start, why in OTHERS.items() if key.startswith(start))
+    return next((f"cobotwire has no {name}: {why}" for why in found), "")
 
 
 def why_absent(kind: type, name: str) -> str:

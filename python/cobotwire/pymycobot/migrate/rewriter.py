@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import libcst as cst
 
+from cobotwire.pymycobot.layer.absent import why_no
 from cobotwire.pymycobot.migrate import imports
 from cobotwire.pymycobot.migrate.arguments import (
     HIDDEN,
@@ -56,7 +57,7 @@ class Rewriter(cst.CSTTransformer):
             return updated_node
         lines, left = imports.rewritten(first)
         for name in left:
-            self.decide(original_node, f"cobotwire has no counterpart of {name}")
+            self.decide(original_node, why_no(name) or f"cobotwire has no counterpart of {name}")
         made = [updated_node.with_changes(body=[line]) for line in lines]
         return cst.FlattenSentinel([made[0], *(m.with_changes(leading_lines=[]) for m in made[1:])])
 
