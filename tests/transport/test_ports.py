@@ -17,21 +17,21 @@ from cobotwire.transport.serial.ports import judge, ports
 @pytest.mark.parametrize("chip", CHIPS)
 def test_known_usb_chip_is_likely_under_any_port_name(chip: Chip) -> None:
     for device in ("/dev/ttyUSB0", "/dev/cu.usbserial-1", "COM3"):
-        assert judge(device, chip.vendor, chip.product) == (True, chip.name)
+        assert judge(device, chip.usb) == (True, chip.name)
 
 
 @pytest.mark.parametrize("device", ["/dev/ttyAMA0", "/dev/ttyTHS1"])
 def test_built_in_port_of_a_board_in_the_base_is_likely(device: str) -> None:
-    likely, why = judge(device, None, None)
+    likely, why = judge(device, "")
     assert likely
     assert "built-in port" in why
 
 
-@given(st.text(), st.none() | st.integers(0, 0xFFFF), st.none() | st.integers(0, 0xFFFF))
-def test_every_port_has_a_reason(device: str, vendor: int | None, product: int | None) -> None:
-    likely, why = judge(device, vendor, product)
+@given(st.text(), st.text())
+def test_every_port_has_a_reason(device: str, usb: str) -> None:
+    likely, why = judge(device, usb)
     assert why
-    assert likely or (vendor, product) not in {chip[:2] for chip in CHIPS}
+    assert likely or usb not in {chip.usb for chip in CHIPS}
 
 
 class Info:

@@ -13,10 +13,9 @@ from cobotwire.protocol.printable import printable
 from cobotwire.transport.serial import ports as serial_ports
 from cobotwire.transport.serial import remedies
 from cobotwire.transport.serial.ports import Port
-from cobotwire.transport.serial.remedies import Computer, Remedy
+from cobotwire.transport.serial.remedies import Remedy
 
 NOT_ALLOWED = "you have no permission to open it"
-WIDTH = 79
 
 
 @click.command(short_help="List serial ports, likely ones first.")
@@ -31,30 +30,22 @@ def ports(fix: bool, as_json: bool) -> None:
     No port is opened. Exit codes: 0 there is a likely port; 1 there is none.
     """
     found, computer = serial_ports.ports(), serial_ports.this_computer()
-    if fix:
-        _show_remedies(found, computer, as_json)
-    elif as_json:
-        click.echo(json.dumps([port._asdict() for port in found], indent=1))
-    elif not found:
-        click.echo(remedies.missing(computer))
-    for port in () if as_json or fix else found:
-        click.echo("\n".join(_lines(port)))
+    using = [(port.device, serial_ports.programs_using(port.device)) for port in found if fix]
+    steps = remedies.remedies(computer, [each for each in using if each[1]])
+    if as_json:
+        listed = [each._asdict() for each in (steps if fix else found)]
+        shown = {"system": computer.system, "remedies": listed} if fix else listed
+        lines = [json.dumps(shown, indent=1)]
+    elif fix:
+        lines = [line for step in steps for line in _step_lines(step)]
+    else:
+        lines = [line for port in found for line in _lines(port)] or [remedies.missing(computer)]
+    click.echo("\n".join(lines))
     sys.exit(0 if any(port.likely for port in found) else 1)
 
 
-def _show_remedies(found: list[Port], computer: Computer, as_json: bool) -> None:
-    using = [(port.device, serial_ports.programs_using(port.device)) for port in found]
-    steps = remedies.remedies(computer, [each for each in using if each[1]])
-    if as_json:
-        system = {"system": computer.system, "remedies": [step._asdict() for step in steps]}
-        click.echo(json.dumps(system, indent=1))
-        return
-    for step in steps:
-        click.echo("\n".join(_step_lines(step)))
-
-
 def _step_lines(step: Remedy) -> list[str]:
-    text = fill(step.text, WIDTH, initial_indent=f"{step.state:<9} ", subsequent_indent=" " * 10)
+    text = fill(step.text, 79, initial_indent=f"{step.state:<9} ", subsequent_indent=" " * 10)
     # Commands are not broken, so that they can be copied.
     return [text, *(["", *step.commands, ""] if step.commands else [])]
 

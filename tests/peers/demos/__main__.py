@@ -17,7 +17,6 @@ from cobotwire.pymycobot.migrate import migrate
 from demos.running import RUNS, WITH_LAYER, WITH_LIBRARY, outcome
 from demos.scripts import COMMIT, DEMOS, FOLDERS, NOT_RUN, REPOSITORY, Demo
 
-PAGE = Path(__file__).parents[3] / "docs" / "pymycobot.md"
 HEADING = (
     "| demo | with the library | with our layer | rewritten | to decide |\n|---|---|---|---|--:|"
 )
@@ -33,29 +32,20 @@ class Folders(NamedTuple):
 
 
 def main() -> int:
-    """Fetch the demos, and print the table or write it into the page."""
+    """Fetch the demos, and print the table."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--repository", default=REPOSITORY, help="where to clone the demos from")
-    parser.add_argument("--write", action="store_true", help="write the tables into the page")
     parser.add_argument("--only", default="*", help="a pattern of the demos to run")
     given = parser.parse_args()
     worse = 0
-    lines = [HEADING]
     print(HEADING)
     with tempfile.TemporaryDirectory() as name:
         folders = fetched(given.repository, Path(name))
         for demo in (each for each in DEMOS if fnmatch(each.path, given.only)):
             line, is_worse = row(demo, folders)
             print(line, flush=True)
-            lines.append(line)
             worse += is_worse
-        left = [OTHERS, *not_run(folders.library)]
-    print("\n" + "\n".join(left))
-    if given.write:
-        text = PAGE.read_text("utf-8")
-        for table in (lines, left):
-            text = replaced(text, table)
-        PAGE.write_text(text, "utf-8")
+        print("\n" + "\n".join([OTHERS, *not_run(folders.library)]))
     return 1 if worse else 0
 
 
@@ -125,14 +115,6 @@ def not_run(repository: Path) -> Iterator[str]:
         yield f"| `{pattern}` | {len(here)} | {why} |"
     if left:
         raise SystemExit(f"neither run nor listed: {', '.join(sorted(left))}")
-
-
-def replaced(text: str, table: list[str]) -> str:
-    """Return a page in which a table replaces the one with the same heading."""
-    before, found, after = text.partition(table[0])
-    if not found:
-        raise SystemExit(f"{PAGE} has no table with the heading {table[0].splitlines()[0]}")
-    return before + "\n".join(table) + "\n\n" + after.partition("\n\n")[2]
 
 
 if __name__ == "__main__":

@@ -14,20 +14,17 @@ _INSIDE = "it is a part of the library itself; use the class of the robot"
 OTHERS = {
     "elephantrobot": "it sends texts over TCP to a controller, which no edition describes",
     "ultraarm": "these robots take G-code and other texts, which no edition describes",
-    "myagv": f"it is a vehicle {_OWN_FRAMES}",
-    "mercurychassis": f"it is a vehicle {_OWN_FRAMES}",
-    "chassiscontrol": f"it is a vehicle {_OWN_FRAMES}",
+    **dict.fromkeys(
+        ["myagv", "mercurychassis", "chassiscontrol"], f"it is a vehicle {_OWN_FRAMES}"
+    ),
     "conveyor": f"it is a conveyor belt {_OWN_FRAMES}",
     "exoskeleton": f"it is a controller that a person wears, {_OWN_FRAMES}",
     "myarmmcontrol": "it is another class for the myArm M; use MyArmM",
     "mybuddybluetooth": "there is no transport for Bluetooth; use MyBuddy or MyBuddySocket",
     "mybuddyemoticon": "it shows videos on the robot's display, and sends nothing to an arm",
     "pro320modbus": "it translates Modbus registers into calls of MyCobot320; use that",
-    "commandgenerator": _INSIDE,
-    "mybuddycommandgenerator": _INSIDE,
-    "generate": _INSIDE,
-    "interface": _INSIDE,
-    "common": _INSIDE,
+    **dict.fromkeys(["commandgenerator", "mybuddycommandgenerator"], _INSIDE),
+    **dict.fromkeys(["generate", "interface", "common"], _INSIDE),
 }
 
 

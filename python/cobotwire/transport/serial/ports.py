@@ -5,10 +5,12 @@ from __future__ import annotations
 import glob
 import os
 import sys
+from contextlib import suppress
 from typing import NamedTuple
 
 from serial.tools import list_ports
 
+from cobotwire.protocol.printable import printable
 from cobotwire.transport.serial.chips import CHIPS
 from cobotwire.transport.serial.remedies import Computer
 
@@ -67,21 +69,28 @@ def this_computer(device: str = "") -> Computer:
 
 
 def programs_using(device: str) -> str:
-    """Return the programs that have a port open; empty if none is visible to this user."""
-    if sys.platform == "linux":
-        from cobotwire.transport.serial import linux
+    """Return the programs that have a port open; empty if the system shows none to this user."""
+    real, numbers = os.path.realpath(device), set()
+    for path in glob.iglob("/proc/[0-9]*/fd/*"):
+        with suppress(OSError):
+            if os.readlink(path) == real:
+                numbers.add(int(path.split("/")[2]))
+    return ", ".join(map(_program, sorted(numbers)))
 
-        return linux.programs_using(device)
-    return ""
+
+def _program(number: int) -> str:
+    if number == os.getpid():
+        return "this program itself"
+    with suppress(OSError), open(f"/proc/{number}/comm", errors="replace") as file:
+        return f"{printable(file.readline().strip())} (process {number})"
+    return f"process {number}"
 
 
-def judge(device: str, vendor: int | None, product: int | None) -> tuple[bool, str]:
-    """Return whether a port probably connects to an arm, and the reason."""
-    if vendor is not None and product is not None:
-        for chip in CHIPS:
-            if (vendor, product) == chip[:2]:
-                return True, chip.name
-        return False, "a USB device that no such arm has"
+def judge(device: str, usb: str) -> tuple[bool, str]:
+    """Return whether a port probably connects to an arm, and the reason; ``usb`` are its ids."""
+    if usb:
+        names = [chip.name for chip in CHIPS if chip.usb == usb]
+        return (True, names[0]) if names else (False, "a USB device that no such arm has")
     for prefix, why in WIRED.items():
         if device.startswith(prefix):
             return True, why
@@ -91,7 +100,8 @@ def judge(device: str, vendor: int | None, product: int | None) -> tuple[bool, s
 def _port(
     device: str, vendor: int | None, product: int | None, description: str, serial_number: str
 ) -> Port:
-    likely, why = judge(device, vendor, product)
+    usb = "" if vendor is None or product is None else f"{vendor:04X}:{product:04X}"
+    likely, why = judge(device, usb)
     return Port(
         device,
         likely,
@@ -99,6 +109,6 @@ def _port(
         # Windows reports a missing permission only when the port is opened.
         os.access(device, os.R_OK | os.W_OK) or os.name != "posix",
         description if description != "n/a" else "",
-        "" if vendor is None or product is None else f"{vendor:04X}:{product:04X}",
+        usb,
         serial_number,
     )

@@ -1,13 +1,13 @@
 """What to do so that a port can be opened, on each system.
 
-Both the errors of opening a port and ``cobotwire ports --fix`` take their texts from here. Each is
-a function of facts about the computer, so those of all systems can be tested on one.
+The errors of opening a port and ``cobotwire ports --fix`` take their texts from here. Each is a
+function of facts about the computer, so those of all systems can be tested on one.
 """
 
 from __future__ import annotations
 
 import errno
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from shlex import quote
 from string import digits
 from typing import Literal, NamedTuple
@@ -21,8 +21,8 @@ BUSY = errno.EBUSY, errno.EAGAIN
 # A message names so many ports; `cobotwire ports` lists all.
 MOST_NAMED = 4
 # The names of the two devices that macOS has for each port begin so.
-_DIAL_IN = "/dev/tty."
-_CALL_OUT = "the names with tty wait for a signal that these arms do not send"
+_DIAL_IN, _CALL_OUT = "/dev/tty.", "/dev/cu."
+_WHY_CALL_OUT = "the names with tty wait for a signal that these arms do not send"
 
 
 class Computer(NamedTuple):
@@ -34,8 +34,7 @@ class Computer(NamedTuple):
         user: the name of the user.
         group: the group that may open serial ports; empty if none may.
         member: whether the user belongs to the group.
-        in_login: whether this login may open ports: it has the group, or is the administrator's. A
-            login that is older than the membership lacks the group.
+        in_login: whether this login has the group, or is root's: one from before lacks it.
     """
 
     system: str
@@ -47,40 +46,36 @@ class Computer(NamedTuple):
 
 
 class Remedy(NamedTuple):
-    """Something to do before a port can be opened.
+    """Something to do before a port can be opened; ``commands`` are lines for a shell."""
 
-    Attributes:
-        name: the subject: ``group``, ``udev``, ``brltty``, ``device name``, ``driver``, ``busy``.
-        state: whether it is needed, done already, or helps only in some cases.
-        text: what to do.
-        commands: lines to enter in a shell.
-    """
-
-    name: str
-    state: Literal["needed", "done", "optional"]
+    name: Literal["busy", "group", "udev", "brltty", "device name", "driver"]
     text: str
+    state: Literal["needed", "done", "optional"] = "optional"
     commands: tuple[str, ...] = ()
 
 
 def remedies(computer: Computer, busy: Sequence[tuple[str, str]] = ()) -> list[Remedy]:
     """Return what to do on a computer; ``busy`` has ports that are in use, and by what."""
-    found = [Remedy("busy", "needed", f"{device}: {in_use(computer, by)}") for device, by in busy]
-    return found + _SYSTEMS.get(computer.system, _others)(computer)
+    found = [Remedy("busy", f"{name}: {in_use(computer, by)}", "needed") for name, by in busy]
+    if computer.system == "linux":
+        return [*found, _group(computer), _udev(), _BRLTTY]
+    if computer.system == "darwin":
+        text = f"open {_CALL_OUT}NAME, not {_DIAL_IN}NAME: {_WHY_CALL_OUT}"
+        return [*found, Remedy("device name", text), *_drivers("no driver")]
+    text = "ports have names such as COM3; the Device Manager lists them under Ports (COM & LPT)"
+    drivers = _drivers("no driver, from Windows 10 on", ", shown as {}")
+    return [*found, Remedy("device name", text), *drivers]
 
 
 def explain(computer: Computer, device: str, number: int | None, reason: str, by: str = "") -> str:
     """Return why a port cannot be opened, and what to do.
 
-    Args:
-        computer: where the port was opened.
-        device: the name of the port.
-        number: the number of the error, as in ``errno``.
-        reason: what the system says.
-        by: the programs that have the port open, as far as known.
+    ``number`` is that of the error, as in ``errno``, and ``reason`` its text; ``by`` are the
+    programs that have the port open, as far as known.
     """
     denied = number in (errno.EACCES, errno.EPERM)
     if computer.system == "darwin" and device.startswith(_DIAL_IN):
-        return f"{reason}; open /dev/cu.{device.removeprefix(_DIAL_IN)} instead: {_CALL_OUT}"
+        return f"{reason}; open {device.replace(_DIAL_IN, _CALL_OUT)} instead: {_WHY_CALL_OUT}"
     if number == errno.ENOENT:
         return f"{reason}; {missing(computer, device)}"
     # Windows opens a port for one program, and denies access to any other.
@@ -102,9 +97,9 @@ def missing(computer: Computer, device: str = "") -> str:
             "on; `cobotwire ports --fix` says what else can be wrong"
         )
     near = [each for each in computer.devices if each.rstrip(digits) == device.rstrip(digits)]
+    guess = f"did you mean {printable(near[0])}? " if near else ""
     named = ", ".join(map(printable, computer.devices[:MOST_NAMED]))
     more = ", and more" if len(computer.devices) > MOST_NAMED else ""
-    guess = f"did you mean {printable(near[0])}? " if near else ""
     return f"{guess}this computer has {named}{more}; `cobotwire ports` says which are likely"
 
 
@@ -114,28 +109,25 @@ def in_use(computer: Computer, by: str = "") -> str:
         return f"{by} has it open; end that first"
     if computer.system == "win32":
         return "another program has it open, such as a serial monitor or myStudio; end that first"
-    return (
-        "another program has it open, perhaps of another user; `sudo lsof` and its name says which"
-    )
+    return "another program has it open, perhaps another user's; `sudo lsof` on it says which"
 
 
 def _group(computer: Computer) -> Remedy:
     """Return the remedy for a missing permission on Linux."""
     you, group = f"you ({printable(computer.user)})", printable(computer.group)
-    if computer.in_login and not group:
-        return Remedy("group", "done", f"{you} may open every port")
     if computer.in_login:
-        return Remedy("group", "done", f"{you} are in the group {group}, which opens serial ports")
+        why = (
+            f"are in the group {group}, which opens serial ports" if group else "may open any port"
+        )
+        return Remedy("group", f"{you} {why}", "done")
     if not group:
-        return Remedy("group", "optional", "no group opens it; the rule for udev may help")
+        return Remedy("group", "no group opens it; the rule for udev may help")
     if computer.member:
         text = f"{you} are in the group {group}, but not in this login: log out and in again"
-        return Remedy("group", "needed", text)
-    text = (
-        f"{you} are not in the group {group}, which opens serial ports: join it, then log in again"
-    )
+        return Remedy("group", text, "needed")
+    text = f"{you} are not in the group {group}, which opens serial ports: join, then log in again"
     command = f"sudo usermod -aG {quote(group)} {quote(printable(computer.user))}"
-    return Remedy("group", "needed", text, (command,))
+    return Remedy("group", text, "needed", (command,))
 
 
 def _udev() -> Remedy:
@@ -143,63 +135,30 @@ def _udev() -> Remedy:
 
     systemd's 73-seat-late.rules reads the tag ``uaccess``, so the file's number is below 73.
     """
-    rules = [
-        f'SUBSYSTEM=="tty", ATTRS{{idVendor}}=="{chip.vendor:04x}", '
-        f'ATTRS{{idProduct}}=="{chip.product:04x}", TAG+="uaccess"'
-        for chip in CHIPS
-    ]
+    rule = 'SUBSYSTEM=="tty", ATTRS{{idVendor}}=="{}", ATTRS{{idProduct}}=="{}", TAG+="uaccess"'
+    rules = [rule.format(*chip.usb.lower().split(":")) for chip in CHIPS]
     text = (
         "or let whoever sits at this computer open the USB chips of these arms, without a group; "
         "the rule does not hold for logins over the network"
     )
     reload = "sudo udevadm control --reload && sudo udevadm trigger --subsystem-match=tty"
     commands = (f"sudo tee {RULES_FILE} <<'END'", *rules, "END", reload)
-    return Remedy("udev", "optional", text, commands)
+    return Remedy("udev", text, commands=commands)
 
 
-def _linux(computer: Computer) -> list[Remedy]:
-    # The maintainer's words: github.com/arduino/arduino-ide/issues/1788.
-    braille = (
-        "if a port disappears some seconds after it was plugged in: brltty before 6.5, as in "
-        "Ubuntu 22.04, takes CP210x and CH340 for Braille displays; remove it unless you need it"
-    )
-    return [
-        _group(computer),
-        _udev(),
-        Remedy("brltty", "optional", braille, ("sudo apt remove brltty",)),
-    ]
-
-
-def _macos(computer: Computer) -> list[Remedy]:
-    text = f"open /dev/cu.NAME, not /dev/tty.NAME: {_CALL_OUT}"
-    return [Remedy("device name", "optional", text), *_drivers("no driver")]
-
-
-def _windows(computer: Computer) -> list[Remedy]:
-    text = "ports have names such as COM3; the Device Manager lists them under Ports (COM & LPT)"
-    return [
-        Remedy("device name", "optional", text),
-        *_drivers("no driver, from Windows 10 on", ", shown as {0.shown}"),
-    ]
+# The maintainer's words: github.com/arduino/arduino-ide/issues/1788.
+_BRLTTY = Remedy(
+    "brltty",
+    "if a port disappears some seconds after it was plugged in: brltty before 6.5, as in Ubuntu "
+    "22.04, takes CP210x and CH340 for Braille displays; remove it unless you need it",
+    commands=("sudo apt remove brltty",),
+)
 
 
 def _drivers(without: str, shown: str = "") -> list[Remedy]:
-    found = []
-    for chip in CHIPS:
-        needs = f"the driver {chip.driver}" if chip.driver else without
-        named = shown.format(chip) if chip.shown else ""
-        text = f"{chip.name} ({chip.usb}), needs {needs}{named}"
-        found.append(Remedy("driver", "optional", text))
-    return found
-
-
-def _others(computer: Computer) -> list[Remedy]:
-    text = f"nothing is known about ports on {printable(computer.system)}"
-    return [Remedy("device name", "optional", text)]
-
-
-_SYSTEMS: dict[str, Callable[[Computer], list[Remedy]]] = {
-    "linux": _linux,
-    "darwin": _macos,
-    "win32": _windows,
-}
+    texts = (
+        f"{chip.name} ({chip.usb}), needs {f'the driver {chip.driver}' if chip.driver else without}"
+        f"{shown.format(chip.shown) if chip.shown else ''}"
+        for chip in CHIPS
+    )
+    return [Remedy("driver", text) for text in texts]
