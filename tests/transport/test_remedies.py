@@ -76,7 +76,7 @@ def test_hostile_names_stay_one_printable_line(device: str, user: str, group: st
     ("error", "text"),
     [
         # The texts of Windows are in the language of its user.
-        (FileNotFoundError(2, "Datei nicht gefunden", None), "no serial port was found"),
+        (FileNotFoundError(2, "Datei nicht gefunden", None), "this computer has no serial port"),
         (PermissionError(13, "Zugriff verweigert", None), "another program has it open, such as"),
         (OSError(22, "Falscher Parameter", None), "Falscher Parameter"),
     ],

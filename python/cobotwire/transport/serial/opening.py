@@ -56,15 +56,18 @@ def opening(url: str, device: str = "") -> Iterator[None]:
 
 def _explained(device: str, error: Exception, cause: BaseException) -> str:
     """Return why a port cannot be opened, and what to do."""
-    if not device or getattr(error, "filename", None):
-        return reason_of(error)
-    # Imported here, since most ports open.
-    from cobotwire.transport.serial import ports, remedies
-
     match = _NUMBER_OF_WINDOWS.search(str(error))
     number = getattr(cause, "errno", None) or (int(match[1]) if match else None)
-    by = ports.programs_using(device) if number in remedies.BUSY else ""
-    return remedies.explain(ports.this_computer(device), device, number, reason_of(error), by)
+    # pyserial lists no ports on some systems.
+    with suppress(ImportError, OSError):
+        # Imported here, since most ports open.
+        from cobotwire.transport.serial import ports, remedies
+
+        if device:
+            by = ports.programs_using(device) if number in remedies.BUSY else ""
+            here = ports.this_computer(device)
+            return remedies.explain(here, device, number, reason_of(error), by)
+    return reason_of(error)
 
 
 def _innermost(error: BaseException) -> BaseException:

@@ -91,16 +91,14 @@ def explain(computer: Computer, device: str, number: int | None, reason: str, by
 
 def missing(computer: Computer, device: str = "") -> str:
     """Return what to say about a port that does not exist; without a name, about having none."""
+    check = "check its cable and power; `cobotwire ports --fix` says what else can be wrong"
     if not computer.devices:
-        return (
-            "no serial port was found; check that the arm's cable is plugged in and its power is "
-            "on; `cobotwire ports --fix` says what else can be wrong"
-        )
+        return f"this computer has no serial port; if the arm is connected to it, {check}"
     near = [each for each in computer.devices if each.rstrip(digits) == device.rstrip(digits)]
     guess = f"did you mean {printable(near[0])}? " if near else ""
     named = ", ".join(map(printable, computer.devices[:MOST_NAMED]))
     more = ", and more" if len(computer.devices) > MOST_NAMED else ""
-    return f"{guess}this computer has {named}{more}; `cobotwire ports` says which are likely"
+    return f"{guess}this computer has {named}{more}; if the arm's port is not listed, {check}"
 
 
 def in_use(computer: Computer, by: str = "") -> str:
