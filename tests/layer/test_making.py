@@ -86,5 +86,5 @@ def test_method_shows_its_parameters_and_what_it_calls() -> None:
 
 @pytest.mark.parametrize("place", ["cobotwire.pymycobot", "cobotwire.pymycobot.layer.classes"])
 def test_unknown_class_is_an_attribute_error(place: str) -> None:
-    with pytest.raises(AttributeError, match="'ultraArm'"):
-        getattr(import_module(place), "ultraArm")  # noqa: B009 - it has no such name
+    with pytest.raises(AttributeError, match="'Unknown'"):
+        getattr(import_module(place), "Unknown")  # noqa: B009 - it has no such name

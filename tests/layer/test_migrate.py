@@ -91,7 +91,10 @@ def test_constructor_is_rewritten(before: str, after: str) -> None:
         ("mc.send_angles(*given)", "3:1: the arguments are not known here"),
         ("mc.no_such_method()", "3:1: MyCobot280 has no counterpart of no_such_method"),
         ("robot.send_angles(row, 50)", "3:1: robot may be an arm"),
-        ("from pymycobot import ultraArm", "3:1: cobotwire has no counterpart of ultraArm"),
+        (
+            "from pymycobot import ultraArm",
+            "3:1: cobotwire has no ultraArm: these robots take G-code",
+        ),
         ("import pymycobot", "3:1: names of `import pymycobot` are not rewritten"),
         ("other = MyCobot280(port, timeout=1)", "3:9: timeout was the time of one read"),
     ],
