@@ -65,8 +65,8 @@ def _explained(device: str, error: Exception, cause: BaseException) -> str:
 
         if device:
             by = ports.programs_using(device) if number in remedies.BUSY else ""
-            here = ports.this_computer(device)
-            return remedies.explain(here, device, number, reason_of(error), by)
+            computer = ports.this_computer(device)
+            return remedies.explain(computer, device, number, reason_of(error), by)
     return reason_of(error)
 
 
