@@ -13,6 +13,8 @@ import pytest
 
 from cobotwire import __version__
 from cobotwire.cli.app import VERBS, app
+from cobotwire.cli.capture import VERBS as CAPTURE_VERBS
+from cobotwire.cli.capture import capture
 from cobotwire.cli.conform import VERBS as CONFORM_VERBS
 from cobotwire.cli.conform import conform
 from cobotwire.editions import mycobot280
@@ -210,7 +212,9 @@ def test_unknown_edition_gets_a_suggestion() -> None:
     assert "did you mean mycobot?" in result.stderr
 
 
-@pytest.mark.parametrize(("group", "texts"), [(app, VERBS), (conform, CONFORM_VERBS)])
+@pytest.mark.parametrize(
+    ("group", "texts"), [(app, VERBS), (capture, CAPTURE_VERBS), (conform, CONFORM_VERBS)]
+)
 def test_help_describes_each_verb_as_the_verb_does(
     group: click.Group, texts: dict[str, str]
 ) -> None:

@@ -58,10 +58,11 @@ def _block(kind: int, body: bytes) -> bytes:
     return struct.pack("<I", kind) + size + body + size
 
 
-def section(application: str) -> bytes:
+def section(application: str, comments: Iterable[str] = ()) -> bytes:
     """Return the block that begins a file; ``application`` names the program that writes it."""
     head = struct.pack("<IHHq", BYTE_ORDER_MAGIC, *VERSION, SECTION_LENGTH_UNKNOWN)
-    return _block(SECTION, head + _options(text(SECTION_APPLICATION, application)))
+    options = [option for comment in comments for option in text(COMMENT, comment)]
+    return _block(SECTION, head + _options([*options, *text(SECTION_APPLICATION, application)]))
 
 
 def interface(name: str, description: str, speed: int) -> bytes:
@@ -92,3 +93,8 @@ def statistics(index: int, start_ns: int, end_ns: int, packets: int) -> bytes:
         (STATISTICS_RECEIVED, struct.pack("<Q", packets)),
     ]
     return _block(STATISTICS, struct.pack("<I", index) + _time(end_ns) + _options(options))
+
+
+def end_mark(index: int, end_ns: int) -> bytes:
+    """Return statistics without numbers: they only mark an interface's recording as finished."""
+    return _block(STATISTICS, struct.pack("<I", index) + _time(end_ns))

@@ -70,11 +70,11 @@ def cut_blocks(name: str) -> Generator[int | Block, bytes, None]:
             magic = yield 4
             if len(magic) < 4:
                 raise Truncated(offset)
-            order = _order_of(magic, name, offset)
+            order = order_of(magic, name, offset)
         elif not order:
             raise damaged(name, offset, "not-pcapng")
         kind, size = struct.unpack(order + "II", head)
-        _check_size(size, kind, name, offset)
+        check_size(size, kind, name, offset)
         rest = magic + (yield size - 8 - len(magic))
         if len(rest) < size - 8:
             raise Truncated(offset)
@@ -95,14 +95,16 @@ def _read(file: Readable, size: int) -> bytes:
     return data
 
 
-def _order_of(magic: bytes, name: str, offset: int) -> str:
+def order_of(magic: bytes, name: str, offset: int) -> str:
+    """Return the byte order that the second number of a section's body shows."""
     for order in "<>":
         if struct.unpack(order + "I", magic)[0] == blocks.BYTE_ORDER_MAGIC:
             return order
     raise damaged(name, offset, "not-pcapng")
 
 
-def _check_size(size: int, kind: int, name: str, offset: int) -> None:
+def check_size(size: int, kind: int, name: str, offset: int) -> None:
+    """Raise CaptureError if a block of a kind cannot have that length."""
     smallest = SMALLEST_SECTION if kind == blocks.SECTION else SMALLEST_BLOCK
     if size % 4 or not smallest <= size <= LARGEST_BLOCK:
         raise damaged(name, offset, "bad-length", size, smallest)

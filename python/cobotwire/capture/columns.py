@@ -107,7 +107,7 @@ def read_batches(
         CaptureError: the file is not a capture, or it is damaged at ``offset``. It is raised after
             the batches with everything before that place.
     """
-    pieces = _Pieces(source, piece)
+    pieces = Pieces(source, piece)
     reader = capture_reader(codec, listening, raw=raw, name=pieces.name)
     for data in pieces:
         batch = reader.feed(data)
@@ -143,7 +143,7 @@ def read_columns(
         UsageError: the file does not exist, or it cannot be read.
         CaptureError: the file is not a capture, or it is damaged at ``offset``.
     """
-    pieces = _Pieces(source, PIECE)
+    pieces = Pieces(source, PIECE)
     reader = capture_reader(codec, listening, raw=raw, name=pieces.name)
     for data in pieces:
         reader.add(data)
@@ -153,7 +153,7 @@ def read_columns(
     return found
 
 
-class _Pieces:
+class Pieces:
     """The contents of a source, piece by piece.
 
     Attributes:

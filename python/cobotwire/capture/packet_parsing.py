@@ -23,11 +23,20 @@ class _Format(NamedTuple):
     resolution: int
     offset_seconds: int
 
-    def nanoseconds(self, high: int, low: int) -> int:
-        """Return a time stamp in nanoseconds; finer fractions are cut off."""
+    @property
+    def _units(self) -> int:
+        """The number of time stamps in a second."""
         exponent = self.resolution & 0x7F
         units: int = 2**exponent if self.resolution & 0x80 else 10**exponent
-        return (high << 32 | low) * 1_000_000_000 // units + self.offset_seconds * 1_000_000_000
+        return units
+
+    def nanoseconds(self, ticks: int) -> int:
+        """Return a time stamp in nanoseconds; finer fractions are cut off."""
+        return ticks * 1_000_000_000 // self._units + self.offset_seconds * 1_000_000_000
+
+    def ticks(self, time_ns: int) -> int:
+        """Return the first time stamp that is not before a time in nanoseconds."""
+        return -(-(time_ns - self.offset_seconds * 1_000_000_000) * self._units // 1_000_000_000)
 
 
 class PacketParser:
@@ -72,6 +81,32 @@ class PacketParser:
         # Other blocks (names, secrets, private ones) are skipped.
         return None
 
+    def stamp(self, block: Block) -> tuple[int, int]:
+        """Return the index of a packet's interface in its section, and its time stamp.
+
+        The packet may have any link type.
+
+        Raises:
+            CaptureError: the block is damaged.
+        """
+        fields = Fields(block, self.name)
+        index, high, low, size, _ = fields.numbers("IIIII")
+        if index >= len(self._formats):
+            self._reject(block, "no-interface", index)
+        fields.data(size)
+        for _ in fields.options():
+            pass
+        return index, high << 32 | low
+
+    def time_ns(self, block: Block) -> int:
+        """Return the time of a packet in nanoseconds; see :meth:`stamp`."""
+        index, ticks = self.stamp(block)
+        return self._formats[index].nanoseconds(ticks)
+
+    def ticks(self, time_ns: int) -> list[int]:
+        """Return a time as the first time stamp at or after it, for each interface of a section."""
+        return [format.ticks(time_ns) for format in self._formats]
+
     def _section(self, block: Block, fields: Fields) -> None:
         _, major, _, _ = fields.numbers("IHHq")
         if major != blocks.VERSION[0]:
@@ -108,7 +143,7 @@ class PacketParser:
         options = dict(fields.options())
         flags = int.from_bytes(options.get(blocks.PACKET_FLAGS, b""), self._endian)
         packet = Packet(
-            format.nanoseconds(high, low),
+            format.nanoseconds(high << 32 | low),
             DIRECTIONS[flags & 3],
             data,
             "frame" if self.application.startswith(OURS) else "bytes",

@@ -25,6 +25,7 @@ VERBS = {
     "migrate": "Rewrite a program for our clients.",
     "decode": "Explain bytes, streams and recordings.",
     "export": "Write captures to Parquet, CSV, Arrow and MCAP.",
+    "capture": "Show what recordings hold; cut, merge and repair them.",
     "sim": "Serve a simulated arm.",
     "studio": "Show an arm or a recording in the browser.",
     "replay": "Print a recording, or serve it as an arm.",

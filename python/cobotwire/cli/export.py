@@ -4,13 +4,9 @@ from __future__ import annotations
 
 import json
 import sys
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
 from typing import get_args
 
 import click
-from rich.console import Console
-from rich.progress import BarColumn, DownloadColumn, Progress, TextColumn, TimeRemainingColumn
 
 from cobotwire.capture import archive
 from cobotwire.capture.archive import ENGINES, EngineName, choose_engine
@@ -21,6 +17,7 @@ from cobotwire.capture.export.times import time_ns
 from cobotwire.cli.shared.completers import complete_commands
 from cobotwire.cli.shared.export_report import report_lines
 from cobotwire.cli.shared.output import print_line
+from cobotwire.cli.shared.progress_bar import progress_bar
 from cobotwire.codec.interface import Listening
 from cobotwire.inspect.exporting import InstalledEditions
 
@@ -173,7 +170,7 @@ def export(
     )
     chosen = choose_engine(engine, scheduler, workers)
     inputs = Inputs.find(input)
-    with _progress(inputs, quiet) as advance:
+    with progress_bar("exporting", inputs.size, hidden=quiet) as advance:
         if chosen is None:
             report = write(plan, inputs, advance)
         else:
@@ -183,15 +180,3 @@ def export(
     elif not quiet:
         click.echo("\n".join(report_lines(report)), err=True)
     sys.exit(0 if report.clean else 1)
-
-
-@contextmanager
-def _progress(inputs: Inputs, quiet: bool) -> Iterator[Callable[[int], None]]:
-    """Yield a function that takes the sizes of reads, and shows them if there is a terminal."""
-    console = Console(stderr=True)
-    columns = TextColumn("exporting"), BarColumn(), DownloadColumn(), TimeRemainingColumn()
-    hidden = quiet or not console.is_terminal
-    # The bar goes when the export is complete: the report takes its place.
-    with Progress(*columns, console=console, disable=hidden, transient=True) as bar:
-        task = bar.add_task("exporting", total=inputs.size)
-        yield lambda size: bar.advance(task, size)

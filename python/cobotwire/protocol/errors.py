@@ -313,11 +313,13 @@ class CaptureError(CobotwireError, ValueError):
     Attributes:
         name: the name of the file.
         offset: the offset of the faulty block in the file, in bytes.
+        detail: what is wrong.
     """
 
     def __init__(self, name: str, offset: int, detail: str) -> None:
         self.name = name
         self.offset = offset
+        self.detail = detail
         super().__init__(f"{name}: {detail} (at byte {offset})")
 
 

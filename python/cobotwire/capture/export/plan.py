@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from typing import Literal, NamedTuple, Protocol, get_args
 
@@ -92,11 +92,8 @@ class ExportPlan:
         if self.wide and self.format == "mcap":
             message = "an MCAP message has a field for each of its rows of numbers: not wide"
             raise UsageError("wide", self.wide, message=message)
-        begin, end = self.begin_ns, self.end_ns
-        if begin is not None and end is not None and begin >= end:
-            message = "the time range is empty: it ends before it begins"
-            raise UsageError("end", end, message=message)
-        self._check_commands()
+        check_range(self.begin_ns, self.end_ns)
+        check_commands(self.commands, self.editions)
 
     @property
     def needs_times(self) -> bool:
@@ -108,9 +105,18 @@ class ExportPlan:
         by_name = not self.commands or message.command in self.commands
         return by_name and self.direction in (message.direction, "both")
 
-    def _check_commands(self) -> None:
-        table = self.editions.codec("").table
-        known = {command.name for command in table.commands}
-        for command in self.commands:
-            if command not in known and not self.editions.has_command(command):
-                table.command(command)
+
+def check_commands(commands: Iterable[str], editions: Editions) -> None:
+    """Raise UsageError for a command that neither the default edition nor another one has."""
+    table = editions.codec("").table
+    known = {command.name for command in table.commands}
+    for command in commands:
+        if command not in known and not editions.has_command(command):
+            table.command(command)
+
+
+def check_range(begin_ns: int | None, end_ns: int | None) -> None:
+    """Raise UsageError for a range of time that is empty."""
+    if begin_ns is not None and end_ns is not None and begin_ns >= end_ns:
+        message = "the time range is empty: it ends before it begins"
+        raise UsageError("end", end_ns, message=message)

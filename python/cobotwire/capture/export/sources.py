@@ -11,12 +11,12 @@ import pyarrow.compute as pc
 from cobotwire.capture.captured_columns import CapturedColumns
 from cobotwire.capture.columns import capture_reader
 from cobotwire.capture.export.batch import Batch
-from cobotwire.capture.export.gaps import Gaps
 from cobotwire.capture.export.inputs import Input
 from cobotwire.capture.export.opening import InputStream, Progress
 from cobotwire.capture.export.plan import ExportPlan, Message
 from cobotwire.capture.export.report import Report
 from cobotwire.capture.export.tables import MessageTables, Origin, occurring
+from cobotwire.capture.gaps import Gaps
 from cobotwire.capture.packet import Interface
 from cobotwire.capture.packet_parsing import OURS
 from cobotwire.capture.reader import is_capture
@@ -109,7 +109,8 @@ class Source:
             streams = [stream for stream in batch.streams if stream.interface == interface]
             robot = f"{input.robot}-{interface}" if interface else input.robot
             found = gaps.setdefault(interface, Gaps(self._plan.gap_ns))
-            if count := found.take([time for stream in streams for time in stream.times]):
+            times = (time for stream in streams for times in stream.times for time in times)
+            if count := sum(1 for _ in found.take(times)):
                 self._report.gaps[robot] += count
             for stream in streams:
                 origin = Origin(robot, input.url, stream)

@@ -20,9 +20,19 @@ CLUSTER = (
 )
 
 CAPTURES = Plan(
+    prepare=f"{RECORDED}\nfor i in left right killed; do cp arm.pcapng $i.pcapng; done",
+    commands={
+        "cobotwire capture info arm.pcapng": Expected(r"1 x get_angles\.reply"),
+        "cobotwire capture cut arm.pcapng -o part.pcapng --from 12.5 --to 60": Expected(),
+        "cobotwire capture cut arm.pcapng -o angles.pcapng --commands get_angles,send_angles": (
+            Expected(r"wrote angles\.pcapng")
+        ),
+        "cobotwire capture merge left.pcapng right.pcapng -o both.pcapng": Expected("overlap"),
+        "cobotwire capture repair killed.pcapng -o whole.pcapng": Expected("is a copy"),
+    },
     programs={
         "from cobotwire import MyCobot280": Program(
-            output=r"(.*get_angles|.* fe fe .*\n)+True None"
+            "import os; os.remove('arm.pcapng')", output=r"(.*get_angles|.* fe fe .*\n)+True None"
         ),
         'with Recording("arm.pcapng", codec, url="/dev/ttyACM0") as recording:': Program(
             "import os; os.remove('arm.pcapng')\n"
@@ -39,7 +49,7 @@ CAPTURES = Plan(
             "    arm.power_on(); arm.send_angle(1, 5.0, 50); arm.get_angles()",
             r"request: 1 5\.0\n.*reply: Angles\(",
         ),
-    }
+    },
 )
 
 EXPORT = Plan(

@@ -1,0 +1,28 @@
+"""``cobotwire capture``: show what recordings hold; cut, merge and repair them."""
+
+from __future__ import annotations
+
+import click
+
+from cobotwire.cli.shared.lazy_group import LazyGroup
+
+VERBS = {
+    "info": "Show times, messages, rates, gaps and noise.",
+    "cut": "Write a part of a recording: a time, some commands.",
+    "merge": "Write several recordings into one, by time.",
+    "repair": "Write what is whole in a truncated or damaged one.",
+}
+
+
+class _Capture(LazyGroup):
+    verbs = VERBS
+    modules = "cobotwire.cli.capture_"
+
+
+@click.group(cls=_Capture, short_help="Show what recordings hold; cut, merge and repair them.")
+def capture() -> None:
+    """Show what recordings (pcapng) hold; cut, merge and repair them.
+
+    Recordings that are compressed with gzip or zstd are read too. An input is never changed, and an
+    output appears under its name only when it is complete.
+    """

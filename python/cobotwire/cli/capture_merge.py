@@ -1,0 +1,52 @@
+"""``cobotwire capture merge``: write several recordings into one."""
+
+from __future__ import annotations
+
+import sys
+from itertools import combinations
+
+import click
+
+from cobotwire.capture import editing
+from cobotwire.cli.shared.capture_files import output_options, recorded_size, time_text
+from cobotwire.cli.shared.progress_bar import progress_bar
+from cobotwire.protocol.counted import counted
+from cobotwire.protocol.printable import printable
+
+
+@click.command(short_help="Write several recordings into one, by time.")
+@click.argument("files", nargs=-1, required=True, type=click.Path(), metavar="FILE...")
+@output_options
+def merge(files: tuple[str, ...], output: str, overwrite: bool) -> None:
+    """Write the recordings FILE... into OUT, by the times of their packets.
+
+    Each interface of each FILE becomes an interface of OUT, with its own name and edition. The
+    times do not change: they are those of the clock of the computer that recorded, so the order of
+    packets from different computers is only as good as their clocks agree.
+
+    \b
+      cobotwire capture merge left.pcapng right.pcapng -o both.pcapng
+
+    A warning names a port that two recordings contain at the same time. Recordings with several
+    sections, and big-endian ones, are rejected.
+
+    Exit codes: 0 success; 1 a FILE ends too early, and OUT holds what is before that; 6 a FILE is
+    damaged: repair it first.
+    """  # noqa: D301  (click keeps the lines of a paragraph that starts with the character \b)
+    with progress_bar("merging", recorded_size(files)) as advance:
+        found, lacks = editing.merge(files, output, overwrite=overwrite, progress=advance)
+    click.echo(f"wrote {printable(output)}: {counted(len(found), 'interface')}", err=True)
+    for number, each in enumerate(found):
+        url = printable(each.interface.url) or "a port without a name"
+        click.echo(f"  interface {number}: {url}, from {printable(each.source)}", err=True)
+        click.echo(f"    {counted(each.packets, 'packet')}", err=True)
+        if each.packets:
+            click.echo(f"    from {time_text(each.first_ns)}", err=True)
+            click.echo(f"    to   {time_text(each.last_ns)}", err=True)
+    for one, other in combinations(found, 2):
+        if one.overlaps(other):
+            text = f"{one.source} and {other.source} overlap on {one.interface.url}"
+            click.echo(f"cobotwire: {printable(text)}: bytes may be there twice", err=True)
+    for lack in lacks:
+        click.echo(f"cobotwire: {printable(lack)}", err=True)
+    sys.exit(1 if lacks else 0)

@@ -1,0 +1,26 @@
+"""Show how much of the input was read, on a terminal."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+
+from rich.console import Console
+from rich.progress import BarColumn, DownloadColumn, Progress, TextColumn, TimeRemainingColumn
+
+
+@contextmanager
+def progress_bar(
+    work: str, size: int | None, *, hidden: bool = False
+) -> Iterator[Callable[[int], None]]:
+    """Yield a function that takes the sizes of reads, and shows them if there is a terminal.
+
+    ``size`` is the number of bytes to read; None if it is not known.
+    """
+    console = Console(stderr=True)
+    columns = TextColumn(work), BarColumn(), DownloadColumn(), TimeRemainingColumn()
+    hidden = hidden or not console.is_terminal
+    # The bar goes at the end: the report takes its place.
+    with Progress(*columns, console=console, disable=hidden, transient=True) as bar:
+        task = bar.add_task(work, total=size)
+        yield lambda read: bar.advance(task, read)
