@@ -7,10 +7,10 @@ from typing import Any
 import click
 
 import cobotwire
-from cobotwire.cli.shared.completers import complete_editions
+from cobotwire.cli.shared.edition_option import edition_option
 from cobotwire.cli.shared.exit_codes import EPILOG, exit_on_errors
 from cobotwire.cli.shared.lazy_group import LazyGroup
-from cobotwire.editions import DEFAULT
+from cobotwire.cli.shared.termination import sigterm_as_interrupt
 from cobotwire.studio.extras import CURVES
 
 # In the order of --help, each with its text there: --help imports no verb.
@@ -45,7 +45,7 @@ class _App(LazyGroup):
         return [verb for verb in VERBS if verb != "studio" or CURVES.is_file()]
 
     def invoke(self, context: click.Context) -> Any:
-        with exit_on_errors():
+        with sigterm_as_interrupt(), exit_on_errors():
             return super().invoke(context)
 
 
@@ -57,13 +57,7 @@ def _print_version(context: click.Context, option: click.Parameter, wanted: bool
 
 
 @click.group(cls=_App, context_settings={"help_option_names": ["-h", "--help"]}, epilog=EPILOG)
-@click.option(
-    "--edition",
-    default=DEFAULT,
-    show_default=True,
-    shell_complete=complete_editions,
-    help="The protocol edition of the arm, or a package (name or folder) built by cobotwire-gen.",
-)
+@edition_option
 @click.option(
     "--version",
     is_flag=True,
@@ -72,7 +66,5 @@ def _print_version(context: click.Context, option: click.Parameter, wanted: bool
     callback=_print_version,
     help="Show the version and the codec in use.",
 )
-@click.pass_context
-def app(context: click.Context, edition: str) -> None:
+def app() -> None:
     """Control a robot arm, simulate one, and decode its serial traffic."""
-    context.obj = edition

@@ -15,6 +15,7 @@ from cobotwire.cli.shared.arm_options import (
     parse_address,
 )
 from cobotwire.cli.shared.completers import complete_commands, complete_ports
+from cobotwire.cli.shared.edition_option import uses_edition
 from cobotwire.cli.shared.output import format_result
 from cobotwire.inspect.call_arguments import parse
 from cobotwire.inspect.readiness import check_accepted, check_ready
@@ -40,7 +41,7 @@ from cobotwire.session.request import RequestEncoder
     "--force", is_flag=True, help="Send a motion without asking whether the arm will obey it."
 )
 @click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")
-@click.pass_obj
+@uses_edition
 def call(
     edition: str,
     port: str,

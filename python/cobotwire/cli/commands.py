@@ -9,6 +9,7 @@ from rich.table import Table as Grid
 
 from cobotwire import editions
 from cobotwire.cli.shared.completers import complete_commands
+from cobotwire.cli.shared.edition_option import uses_edition
 from cobotwire.cli.shared.output import plain_console
 from cobotwire.protocol.frame_format import FixedPart
 from cobotwire.protocol.json_values import as_json_value
@@ -21,7 +22,7 @@ _NAMES = {"address": "address", "length": "LEN", "command": "CMD"}
 @click.command(short_help="List the commands, or describe one.")
 @click.argument("name", required=False, shell_complete=complete_commands)
 @click.option("--json", "as_json", is_flag=True, help="Print the commands as JSON.")
-@click.pass_obj
+@uses_edition
 def commands(edition: str, name: str | None, as_json: bool) -> None:
     """List the commands of the edition, or describe the command NAME byte by byte."""
     table = editions.load(edition).TABLE

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import click
 
+from cobotwire.cli.shared.edition_option import edition_option
 from cobotwire.cli.shared.lazy_group import LazyGroup
 
 VERBS = {
@@ -22,6 +23,7 @@ class _Conform(LazyGroup):
 
 
 @click.group(cls=_Conform, short_help="Test an arm, a client or a codec.")
+@edition_option
 def conform() -> None:
     """Test an arm, a client or a codec against an edition of the protocol.
 

@@ -20,6 +20,7 @@ from cobotwire.cli.shared.conform_report import (
     report_options,
 )
 from cobotwire.cli.shared.earlier_reports import earlier_report
+from cobotwire.cli.shared.edition_option import uses_edition
 from cobotwire.cli.shared.serving import serve
 from cobotwire.cli.shared.started_client import started_client
 from cobotwire.conformance.client import FAULTS, ClientOptions, Referee, ScriptLine
@@ -80,7 +81,7 @@ from cobotwire.simulator.tcp import address
     help="Repeat the run of a JSON report, with its options and script.",
 )
 @report_options
-@click.pass_obj
+@uses_edition
 def client(
     edition: str,
     listen: str,

@@ -16,6 +16,7 @@ from cobotwire.cli.shared.conform_report import (
     report_options,
 )
 from cobotwire.cli.shared.earlier_reports import earlier_report
+from cobotwire.cli.shared.edition_option import uses_edition
 from cobotwire.conformance.codec import CodecOptions, Program, Run, read_expectations
 from cobotwire.conformance.provenance import identify
 from cobotwire.conformance.sources import spec_lines
@@ -23,7 +24,7 @@ from cobotwire.protocol.errors import UsageError
 
 
 # Our options come before COMMAND; everything after it belongs to COMMAND.
-@click.command(context_settings={"ignore_unknown_options": True, "allow_interspersed_args": False})
+@click.command(context_settings={"allow_interspersed_args": False})
 @click.argument("command", nargs=-1)
 @click.option(
     "--expected",
@@ -45,7 +46,7 @@ from cobotwire.protocol.errors import UsageError
     help="Repeat the run of a JSON report, with its command and options.",
 )
 @report_options
-@click.pass_obj
+@uses_edition
 def codec(
     edition: str,
     command: tuple[str, ...],

@@ -20,6 +20,7 @@ from cobotwire.cli.shared.conform_report import (
     report_options,
 )
 from cobotwire.cli.shared.earlier_reports import earlier_report
+from cobotwire.cli.shared.edition_option import uses_edition
 from cobotwire.cli.shared.subject_connection import STARTING, Lacking, Subject, connected
 from cobotwire.conformance.device import (
     ATTACH,
@@ -94,7 +95,7 @@ from cobotwire.protocol.errors import LinkError
     help="Repeat the run of a JSON report, with its options and in its order.",
 )
 @report_options
-@click.pass_obj
+@uses_edition
 def device(
     edition: str,
     port: str | None,

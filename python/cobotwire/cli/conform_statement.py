@@ -5,13 +5,13 @@ from __future__ import annotations
 import click
 
 from cobotwire import editions
+from cobotwire.cli.shared.edition_option import uses_edition
 from cobotwire.conformance.statement import statement_template
 
 
 @click.command(short_help="Write the template of a statement about a device.")
-@click.option("--edition", "other", help="The edition; as before `conform`.")
-@click.pass_obj
-def statement(edition: str, other: str | None) -> None:
+@uses_edition
+def statement(edition: str) -> None:
     """Print the template of an implementation conformance statement (YAML) for an edition.
 
     In it a maker declares what a device has and lacks; `conform device --statement FILE` selects
@@ -19,6 +19,6 @@ def statement(edition: str, other: str | None) -> None:
 
     \b
       cobotwire conform statement --edition mycobot280 > statement.yaml
-      cobotwire --edition mycobot280 conform device URL --statement statement.yaml
+      cobotwire conform device URL --edition mycobot280 --statement statement.yaml
     """  # noqa: D301  (click keeps the lines of a paragraph that starts with the character \b)
-    click.echo(statement_template(editions.load(other or edition).TABLE), nl=False)
+    click.echo(statement_template(editions.load(edition).TABLE), nl=False)

@@ -10,6 +10,7 @@ import click
 
 from cobotwire.capture.byte_source import ByteFormat, open_bytes
 from cobotwire.cli.shared.decoded_bytes import decode_bytes
+from cobotwire.cli.shared.edition_option import uses_edition
 from cobotwire.cli.shared.input_files import input_files
 from cobotwire.cli.shared.recordings import recording_named
 from cobotwire.cli.shared.stream_printer import DecodeOptions, print_text
@@ -37,7 +38,7 @@ from cobotwire.protocol.printable import printable
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object per line.")
 @click.option("--summary", is_flag=True, help="Print only counts.")
 @click.option("--quiet", is_flag=True, help="Print nothing but the summary, if any.")
-@click.pass_obj
+@uses_edition
 def decode(
     edition: str,
     input: tuple[str, ...],

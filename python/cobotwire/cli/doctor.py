@@ -12,6 +12,7 @@ from cobotwire import codec as codecs
 from cobotwire import editions
 from cobotwire.cli.shared.arm_options import arm_options, open_arm
 from cobotwire.cli.shared.completers import complete_ports
+from cobotwire.cli.shared.edition_option import uses_edition
 from cobotwire.cli.shared.exit_codes import LINK_FAILED
 from cobotwire.cli.shared.output import format_result
 from cobotwire.client import Client
@@ -37,7 +38,7 @@ MOST = 10_000
     help="How many round trips to measure.",
 )
 @click.option("--json", "as_json", is_flag=True, help="Print the report as JSON.")
-@click.pass_obj
+@uses_edition
 def doctor(
     edition: str,
     port: str,

@@ -15,6 +15,7 @@ from cobotwire.capture.export.formats import format_of
 from cobotwire.capture.export.plan import Compression, Key
 from cobotwire.capture.export.times import time_ns
 from cobotwire.cli.shared.completers import complete_commands
+from cobotwire.cli.shared.edition_option import uses_edition
 from cobotwire.cli.shared.export_report import report_lines
 from cobotwire.cli.shared.output import print_line
 from cobotwire.cli.shared.progress_bar import progress_bar
@@ -105,7 +106,7 @@ def _keys(context: click.Context, option: click.Parameter, value: str) -> tuple[
 @click.option("--overwrite", is_flag=True, help="Replace files that exist.")
 @click.option("--json", "as_json", is_flag=True, help="Print the report as JSON.")
 @click.option("--quiet", is_flag=True, help="Print no report and no progress.")
-@click.pass_obj
+@uses_edition
 def export(
     edition: str,
     input: tuple[str, ...],

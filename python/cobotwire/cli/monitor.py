@@ -15,6 +15,7 @@ from cobotwire import codec as codecs
 from cobotwire import editions
 from cobotwire.cli.shared.arm_options import arm_options, open_arm
 from cobotwire.cli.shared.completers import complete_ports
+from cobotwire.cli.shared.edition_option import uses_edition
 from cobotwire.cli.shared.output import print_line
 from cobotwire.inspect import Monitor, Observation
 from cobotwire.protocol.json_values import as_json_value
@@ -28,7 +29,7 @@ from cobotwire.protocol.json_values import as_json_value
 )
 @click.option("--count", type=click.IntRange(1), help="Number of samples [default: until Ctrl-C].")
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object per sample.")
-@click.pass_obj
+@uses_edition
 def monitor(
     edition: str,
     port: str,

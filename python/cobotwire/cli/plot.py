@@ -12,6 +12,7 @@ from cobotwire import editions
 from cobotwire.capture import CaptureReader
 from cobotwire.capture.byte_source import open_bytes
 from cobotwire.capture.streams import packets_of_interface
+from cobotwire.cli.shared.edition_option import uses_edition
 from cobotwire.cli.shared.recordings import interface_option, recording_named, warn_if_incomplete
 from cobotwire.codec.interface import Codec
 from cobotwire.inspect.captured import codec_of_interface
@@ -39,7 +40,7 @@ from cobotwire.protocol.printable import printable
 )
 @interface_option
 @click.option("--pose", is_flag=True, help="Draw the last pose of the arm as a stick figure.")
-@click.pass_obj
+@uses_edition
 def plot(edition: str, file: str, output: str, interface: int, pose: bool) -> None:
     """Draw joints, coordinates, frames, noise and reply times of the recording FILE over time.
 

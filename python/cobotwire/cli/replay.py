@@ -10,6 +10,7 @@ import click
 
 from cobotwire.capture import CaptureReader, Packet, read
 from cobotwire.capture.streams import packets_of_interface
+from cobotwire.cli.shared.edition_option import uses_edition
 from cobotwire.cli.shared.line_output import LineOutput
 from cobotwire.cli.shared.output import as_hex, print_line
 from cobotwire.cli.shared.recordings import ARROWS, interface_option, warn_if_incomplete
@@ -34,7 +35,7 @@ FASTEST = 1e6
 )
 @interface_option
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object per packet.")
-@click.pass_obj
+@uses_edition
 def replay(
     edition: str, file: str, as_arm: bool, speed: float, interface: int, as_json: bool
 ) -> None:

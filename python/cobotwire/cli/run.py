@@ -11,7 +11,7 @@ from cobotwire.pymycobot.running import run_program
 
 @click.command(
     short_help="Run a program written for pymycobot.",
-    context_settings={"ignore_unknown_options": True, "allow_interspersed_args": False},
+    context_settings={"allow_interspersed_args": False},
 )
 @click.option(
     "--errors",

@@ -13,6 +13,7 @@ import click
 from cobotwire import codec as codecs
 from cobotwire import editions
 from cobotwire.cli.shared.completers import complete_scenarios
+from cobotwire.cli.shared.edition_option import uses_edition
 from cobotwire.cli.shared.line_output import LineOutput
 from cobotwire.cli.shared.serving import serve
 from cobotwire.cli.shared.simulator_output import JsonLines, Lines
@@ -87,7 +88,7 @@ def _list_scenarios(context: click.Context, option: click.Parameter, wanted: boo
     callback=_list_scenarios,
     help="List the fault scenarios that come with cobotwire.",
 )
-@click.pass_obj
+@uses_edition
 def sim(
     edition: str,
     on_pty: bool,

@@ -6,6 +6,7 @@ import click
 
 from cobotwire.cli.shared.arm_options import address_option, arm_options, parse_address
 from cobotwire.cli.shared.completers import complete_ports
+from cobotwire.cli.shared.edition_option import uses_edition
 from cobotwire.cli.shared.output import print_line
 from cobotwire.studio.extras import check_extra
 
@@ -27,7 +28,7 @@ from cobotwire.studio.extras import check_extra
 )
 @click.option("--allow-motion", is_flag=True, help="Let the page move a real arm and change it.")
 @click.option("--no-browser", is_flag=True, help="Print the address, but open no browser.")
-@click.pass_obj
+@uses_edition
 def studio(
     edition: str,
     source: str | None,

@@ -23,7 +23,7 @@ def complete_commands(
 ) -> list[CompletionItem]:
     """Return the commands of the edition, with their titles."""
     try:
-        table = editions.load(context.find_root().params.get("edition") or editions.DEFAULT).TABLE
+        table = editions.load(context.obj or editions.DEFAULT).TABLE
     except CobotwireError:
         return []
     commands = (command for command in table.commands if command.name.startswith(start))

@@ -38,7 +38,8 @@ CODES: tuple[tuple[type[CobotwireError], int], ...] = (
 EPILOG = (
     "Exit codes: 0 success; 1 the result is negative (a wrong reply, an illegal frame); 2 wrong "
     "usage; 3 the port failed; 4 no reply; 5 an illegal reply; 6 a damaged recording; "
-    "7 the arm does not obey a motion; 8 a file cannot be written; 130 interrupted."
+    "7 the arm does not obey a motion; 8 a file cannot be written; 130 interrupted; "
+    "143 terminated."
 )
 
 

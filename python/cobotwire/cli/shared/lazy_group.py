@@ -6,6 +6,9 @@ from importlib import import_module
 
 import click
 
+from cobotwire.cli.shared.edition_option import note_unused
+from cobotwire.protocol.errors import did_you_mean
+
 
 class LazyGroup(click.Group):
     """A group that knows the texts of its verbs, so that each starts without those of the others.
@@ -28,6 +31,18 @@ class LazyGroup(click.Group):
         verb = getattr(import_module(self.modules + name), name)
         assert isinstance(verb, click.Command), f"{name} is a verb"
         return verb
+
+    def resolve_command(
+        self, context: click.Context, args: list[str]
+    ) -> tuple[str | None, click.Command | None, list[str]]:
+        """Return the verb that the first word names, and the words after it."""
+        known = self.list_commands(context)
+        if args[0] not in known and not (args[0].startswith("-") or context.resilient_parsing):
+            context.fail(f"there is no command {args[0]!r}{did_you_mean(args[0], known)}")
+        name, verb, rest = super().resolve_command(context, args)
+        if verb is not None and not context.resilient_parsing:
+            note_unused(context, verb)
+        return name, verb, rest
 
     def format_commands(self, context: click.Context, formatter: click.HelpFormatter) -> None:
         """Write the list of the verbs."""

@@ -10,6 +10,7 @@ from types import FrameType
 import click
 
 from cobotwire.cli.shared.output import print_line
+from cobotwire.cli.shared.termination import note_signal
 from cobotwire.simulator.server import Server
 
 
@@ -22,8 +23,9 @@ def serve(
     """
 
     def stop(number: int, frame: FrameType | None) -> None:
-        # If ending hangs, for example on a full output pipe, the next signal kills the process.
-        signal.signal(number, signal.SIG_DFL)
+        # If ending hangs, for example on a full output pipe, the next Ctrl-C kills the process.
+        signal.signal(signal.SIGINT, signal.SIG_DFL)
+        note_signal(number)
 
     # The wakeup descriptor ends the server, not the handler: Python runs handlers only after
     # select() has returned, and a signal just before select() does not make it return.

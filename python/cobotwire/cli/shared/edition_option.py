@@ -1,0 +1,47 @@
+"""The option ``--edition``, which is given before the verb or after it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import click
+
+from cobotwire.cli.shared.completers import complete_editions
+from cobotwire.editions import DEFAULT
+
+# Where the contexts of all groups and the verb keep the editions that were given.
+_GIVEN = "cobotwire.editions"
+
+
+def _choose(context: click.Context, option: click.Parameter, names: Sequence[str]) -> None:
+    given: list[str] = context.meta.setdefault(_GIVEN, [])
+    given += names
+    if len(set(given)) > 1:
+        message = f"--edition is given twice: {given[0]} and {given[-1]}"
+        raise click.UsageError(message, context)
+    context.obj = given[0] if given else DEFAULT
+
+
+edition_option = click.option(
+    "--edition",
+    multiple=True,
+    expose_value=False,
+    callback=_choose,
+    metavar="NAME",
+    shell_complete=complete_editions,
+    help="The protocol edition of the arm, or a package (name or folder) built by cobotwire-gen"
+    f" [default: {DEFAULT}].",
+)
+
+
+def uses_edition(verb: Callable[..., Any]) -> Callable[..., Any]:
+    """Give a verb the option, and the edition as its first argument."""
+    return edition_option(click.pass_obj(verb))
+
+
+def note_unused(context: click.Context, verb: click.Command) -> None:
+    """Print to standard error that a verb does not use the edition that was given before it."""
+    takes = isinstance(verb, click.Group) or any("--edition" in p.opts for p in verb.params)
+    if context.meta.get(_GIVEN) and not takes:
+        click.echo(f"cobotwire: {verb.name} does not use --edition", err=True)
