@@ -74,7 +74,8 @@ def doctor(
 
 def _lines(report: Report) -> list[str]:
     lines = [f"{report.url}: edition {report.edition}"]
-    lines += [f"  {name:<14} {format_result(value)}" for name, value in report.values.items()]
+    width = max(map(len, report.values), default=0)
+    lines += [f"  {name:<{width}} {format_result(value)}" for name, value in report.values.items()]
     if report.requests:
         lines.append(f"  {report.replies} replies to {report.requests} requests")
     if report.round_trip is not None:

@@ -4,9 +4,12 @@ from __future__ import annotations
 
 import json
 import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 
 import click
-from rich.console import Console
+from rich.console import Console, RenderableType
+from rich.constrain import Constrain
 from rich.live import Live
 from rich.table import Table as Grid
 from rich.text import Text
@@ -16,9 +19,12 @@ from cobotwire import editions
 from cobotwire.cli.shared.arm_options import arm_options, open_arm
 from cobotwire.cli.shared.completers import complete_ports
 from cobotwire.cli.shared.edition_option import uses_edition
-from cobotwire.cli.shared.output import print_line
+from cobotwire.cli.shared.output import ECHO_COLUMNS, print_line
 from cobotwire.inspect import Monitor, Observation
 from cobotwire.protocol.json_values import as_json_value
+
+# The width of a number with its name and the space after it; of borders, less the last such space.
+NUMBER_COLUMNS, BORDER_COLUMNS = 13, 5
 
 
 @click.command(short_help="Show joints, coordinates, rate, errors.")
@@ -58,12 +64,40 @@ def monitor(
                 for sample in samples:
                     print_line(_as_json(sample) if as_json else _line(sample))
                 return
-            with Live(console=Console(), auto_refresh=False) as live:
+            with _screen() as (show, width):
                 for sample in samples:
-                    live.update(_grid(port, sample), refresh=True)
+                    show(_grid(port, sample, width))
     except KeyboardInterrupt:
         # Ctrl-C is the usual way to end this verb, not a failure.
         sys.exit(0)
+
+
+@contextmanager
+def _screen() -> Iterator[tuple[Callable[[Grid], None], int]]:
+    """Yield a function that replaces the table on the terminal, and the width of a table.
+
+    At the end the last table is there once, however low the terminal is.
+    """
+    console = Console()
+    width = console.width - ECHO_COLUMNS
+    last: RenderableType = Text()
+
+    def show(grid: Grid) -> None:
+        nonlocal last
+        last = Constrain(grid, width)
+        live.update(last, refresh=True)
+
+    try:
+        with Live(
+            console=console, auto_refresh=False, transient=True, vertical_overflow="crop"
+        ) as live:
+            try:
+                yield show, width
+            finally:
+                # rich does not crop what it shows last, and could not erase what has scrolled away.
+                live.update(Text(), refresh=True)
+    finally:
+        console.print(last)
 
 
 def _as_json(sample: Observation) -> str:
@@ -88,12 +122,16 @@ def _counts(sample: Observation) -> str:
     return f"{sample.sent} sent, {sample.unanswered} unanswered, {sample.late} late"
 
 
-def _grid(port: str, sample: Observation) -> Grid:
+def _grid(port: str, sample: Observation, width: int) -> Grid:
     grid = Grid(title=f"{port}   {sample.time:.1f} s", show_header=False)
+    # A row is broken between two numbers, not between the name of a number and its value.
+    labels = max(map(len, (*sample.values, "last error")))
+    most = max(1, (width - labels - BORDER_COLUMNS) // NUMBER_COLUMNS)
     for name, value in sample.values.items():
         parts = value._asdict().items() if hasattr(value, "_asdict") else ()
-        named = "  ".join(f"{part} {number:8.2f}" for part, number in parts)
-        grid.add_row(name, named or "[red]no reply[/red]")
+        named = [f"{part:<2} {number:8.2f}" for part, number in parts]
+        rows = ["  ".join(named[at : at + most]) for at in range(0, len(named), most)]
+        grid.add_row(name, "\n".join(rows) or "[red]no reply[/red]")
     grid.add_row("rate", f"{sample.rate:.1f} a second")
     grid.add_row("requests", _counts(sample))
     # As plain text, because received bytes may look like markup.

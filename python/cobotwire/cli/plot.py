@@ -13,6 +13,7 @@ from cobotwire.capture import CaptureReader
 from cobotwire.capture.byte_source import open_bytes
 from cobotwire.capture.streams import packets_of_interface
 from cobotwire.cli.shared.edition_option import uses_edition
+from cobotwire.cli.shared.output import report_written
 from cobotwire.cli.shared.recordings import interface_option, recording_named, warn_if_incomplete
 from cobotwire.codec.interface import Codec
 from cobotwire.inspect.captured import codec_of_interface
@@ -67,6 +68,7 @@ def plot(edition: str, file: str, output: str, interface: int, pose: bool) -> No
     else:
         message = f"{file} holds no reply with joint angles, so there is no pose to draw"
         raise UsageError("FILE", file, message=message)
+    report_written(output)
 
 
 def _read_recording(capture: CaptureReader, interface: int, edition: str) -> tuple[Series, Codec]:

@@ -15,6 +15,7 @@ from cobotwire import editions
 from cobotwire.cli.shared.completers import complete_scenarios
 from cobotwire.cli.shared.edition_option import uses_edition
 from cobotwire.cli.shared.line_output import LineOutput
+from cobotwire.cli.shared.output import report_written
 from cobotwire.cli.shared.serving import serve
 from cobotwire.cli.shared.simulator_output import JsonLines, Lines
 from cobotwire.protocol.errors import UsageError
@@ -149,6 +150,7 @@ def sim(
         if view is not None:
             from cobotwire.inspect.plot.live_pose import LivePose
 
+            stack.callback(report_written, view)
             between.append(stack.enter_context(LivePose(package, arm, clock, view)).update)
         serve(server, output.serving(server.url), between)
 

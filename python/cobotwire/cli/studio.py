@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from contextlib import ExitStack
+
 import click
 
 from cobotwire.cli.shared.arm_options import address_option, arm_options, parse_address
 from cobotwire.cli.shared.completers import complete_ports
 from cobotwire.cli.shared.edition_option import uses_edition
-from cobotwire.cli.shared.output import print_line
+from cobotwire.cli.shared.output import print_line, report_written
 from cobotwire.studio.extras import check_extra
 
 
@@ -66,6 +68,8 @@ def studio(
                 err=True,
             )
         print_line(access.url)
+        if record is not None:
+            at_end.callback(report_written, record)
 
     options = Options(
         source,
@@ -79,4 +83,5 @@ def studio(
         allow_motion,
         not no_browser,
     )
-    serve(options, announce)
+    with ExitStack() as at_end:
+        serve(options, announce)

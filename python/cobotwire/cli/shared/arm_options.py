@@ -10,6 +10,7 @@ import click
 
 from cobotwire import codec as codecs
 from cobotwire.capture import Recording
+from cobotwire.cli.shared.output import report_written
 from cobotwire.protocol.table import Table
 from cobotwire.transport import OpenedTransport, TappedTransport, open_transport
 
@@ -53,7 +54,11 @@ def open_arm(
         if record is None:
             yield transport
             return
-        with Recording(record, codecs.load(table), url=port, baudrate=speed) as recording:
+        recording = Recording(record, codecs.load(table), url=port, baudrate=speed)
+        try:
             yield TappedTransport(transport, recording.record)
+        finally:
+            recording.close()
+            report_written(record)
     finally:
         transport.close()

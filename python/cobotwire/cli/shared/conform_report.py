@@ -13,6 +13,7 @@ from typing import Any
 import click
 
 from cobotwire.capture.file_errors import unusable_file
+from cobotwire.cli.shared.output import report_written
 from cobotwire.conformance import Report
 from cobotwire.conformance.hex_text import exchanged
 from cobotwire.conformance.reports import to_html, to_json, to_junit
@@ -96,6 +97,8 @@ def write_reports(report: Report, files: ReportFiles) -> None:
                 file.write(text_of(report))
         except OSError as error:
             raise unusable_file(format, name, error) from error
+        if name != "-":
+            report_written(name)
 
 
 def conclude(report: Report, files: ReportFiles = NO_FILES) -> None:

@@ -10,7 +10,7 @@ from rich.live import Live
 from rich.table import Table as Grid
 from rich.text import Text
 
-from cobotwire.cli.shared.output import format_result
+from cobotwire.cli.shared.output import ECHO_COLUMNS, format_result
 from cobotwire.editions import Edition
 from cobotwire.protocol.errors import CobotwireError
 from cobotwire.protocol.table import Role
@@ -24,8 +24,6 @@ SHOWN: tuple[tuple[Role, str], ...] = (
 )
 # The arm replies at once, or never.
 REPLY_SECONDS = 0.05
-# The terminal echoes ^C after the last row of the table; there it must not begin another row.
-ECHO_COLUMNS = 3
 
 
 class JointTable:

@@ -15,6 +15,8 @@ if TYPE_CHECKING:
     from rich.console import Console
 
 WIDTH_OF_FILES = 200
+# The terminal echoes ^C after the last row of a live table; there it must not begin another row.
+ECHO_COLUMNS = 3
 
 
 def print_line(line: str) -> None:
@@ -26,6 +28,11 @@ def print_line(line: str) -> None:
         click.echo(line)
     except BrokenPipeError:
         discard_output()
+
+
+def report_written(path: str) -> None:
+    """Print to standard error which file was written; standard output is for results."""
+    click.echo(f"wrote {printable(path)}", err=True)
 
 
 def discard_output() -> None:
