@@ -6,7 +6,6 @@ import json
 
 import click
 
-from cobotwire import codec as codecs
 from cobotwire import editions
 from cobotwire.cli.shared.arm_options import (
     address_option,
@@ -14,14 +13,11 @@ from cobotwire.cli.shared.arm_options import (
     open_arm,
     parse_address,
 )
-from cobotwire.cli.shared.completers import complete_commands, complete_ports
+from cobotwire.cli.shared.completers import complete_calls, complete_ports
 from cobotwire.cli.shared.edition_option import uses_edition
 from cobotwire.cli.shared.output import format_result
-from cobotwire.inspect.call_arguments import parse
-from cobotwire.inspect.readiness import check_accepted, check_ready
-from cobotwire.protocol.errors import UsageError
+from cobotwire.inspect.calls import Done, prepare, run
 from cobotwire.protocol.json_values import as_json_value
-from cobotwire.session.request import RequestEncoder
 
 
 # click reads a negative number as an unknown option; unknown options are passed on as ARGS.
@@ -30,7 +26,7 @@ from cobotwire.session.request import RequestEncoder
     context_settings={"ignore_unknown_options": True},
 )
 @click.argument("port", metavar="URL", shell_complete=complete_ports)
-@click.argument("name", shell_complete=complete_commands)
+@click.argument("name", shell_complete=complete_calls)
 @click.argument("args", nargs=-1, metavar="[ARGS]...")
 @arm_options
 @address_option
@@ -42,7 +38,9 @@ from cobotwire.session.request import RequestEncoder
 )
 @click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")
 @uses_edition
+@click.pass_context
 def call(
+    context: click.Context,
     edition: str,
     port: str,
     name: str,
@@ -58,7 +56,7 @@ def call(
 
     URL is a serial port, or a URL such as socket://host:9000.
     Write ARGS in the order of the command's arguments, or as name=value. Separate the items of a
-    list by commas. Write an enum member as its name or its number:
+    list by commas or spaces. Write an enum member as its name or its number:
 
     \b
       cobotwire call /dev/ttyACM0 get_angles
@@ -67,6 +65,16 @@ def call(
 
     `cobotwire commands NAME` shows the arguments of a command.
 
+    NAME can also be a motion of the client, such as go_home or move_angles: it waits until the arm
+    is there, at most for timeout=SECONDS, and prints where that is. Ctrl-C stops the arm:
+
+    \b
+      cobotwire call /dev/ttyACM0 go_home 30
+      cobotwire call /dev/ttyACM0 move_angles 0,20,0,0,0,0 speed=30 timeout=20
+
+    Standard output is the result. Without one, a line on standard error says whether the arm
+    acknowledged the request.
+
     Before a motion that has arguments, the arm is asked whether it has power, whether it is paused,
     and what its error register is. If it would not obey, the motion is not sent; --force sends it.
     After the motion the error register is read again, since the arm does not say that it rejects a
@@ -74,25 +82,38 @@ def call(
     """  # noqa: D301  (click keeps the lines of a paragraph that starts with the character \b)
     package = editions.load(edition)
     to = None if address is None else parse_address(address)
-    command = package.TABLE.command(name)
-    if command.event:
-        message = f"{name} is an event, which the device sends without a request"
-        raise UsageError("command", name, message=message)
-    arguments = parse(command, args)
-    # A bad value is reported before the arm is asked whether it obeys.
-    RequestEncoder(codecs.load(package.TABLE)).encode_request(command.request_type(**arguments))
+    _reject_options(context, args)
+    planned = prepare(package, name, args, to)
     with (
         open_arm(port, package.TABLE, baudrate, record) as transport,
-        # A query that fails must not stop a motion that an earlier call began.
-        package.CLIENT(transport, timeout=timeout, on_error="leave", address=to) as arm,
+        # Only a motion that is waited for is stopped: a query that fails must not stop a motion
+        # that an earlier call began.
+        package.CLIENT(transport, timeout=timeout, on_error=planned.on_error, address=to) as arm,
     ):
-        checks = command.starts_motion and not force
-        if checks:
-            check_ready(arm, command)
-        result = getattr(arm, name)(**arguments)
-        if checks:
-            check_accepted(arm, command)
+        try:
+            done = run(planned, arm, force=force, timeout=timeout)
+        except KeyboardInterrupt:
+            if planned.on_error == "stop":
+                click.echo("cobotwire: interrupted; stop is sent to the arm", err=True)
+            raise
+    if not isinstance(done, Done):
+        raise done
     if as_json:
-        click.echo(json.dumps({"command": name, "result": as_json_value(result)}))
-    elif result is not None:
-        click.echo(format_result(result))
+        shown = {"command": name, "result": as_json_value(done.result), **done.facts}
+        click.echo(json.dumps(shown))
+        return
+    if done.result is not None:
+        click.echo(format_result(done.result))
+    if done.remark:
+        # Not with the results, which programs read.
+        click.echo(done.remark, err=True)
+
+
+def _reject_options(context: click.Context, words: tuple[str, ...]) -> None:
+    """Reject a misspelt option, which would be taken for an argument of the command."""
+    known = [name for option in context.command.params for name in option.opts]
+    for word in words:
+        name = word.partition("=")[0]
+        if name.startswith("--"):
+            hint = f"an argument is written as {word[2:].partition('=')[0]}=VALUE."
+            raise click.NoSuchOption(name, f"No such option {name}; {hint}", known, context)

@@ -1,9 +1,11 @@
-"""Parse the arguments of a command as people write them."""
+"""Parse the arguments of a command, or of a client's method, as people write them."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from typing import Any
+from collections.abc import Callable, Mapping, Sequence
+from inspect import Parameter, signature
+from itertools import accumulate, pairwise
+from typing import Any, get_origin, get_type_hints
 
 from cobotwire.protocol.arguments import choose
 from cobotwire.protocol.errors import UsageError
@@ -16,18 +18,18 @@ _FLAGS |= {"false": False, "no": False, "off": False, "0": False}
 def parse(command: Command, words: Sequence[str]) -> dict[str, Any]:
     """Return the arguments by name; words come in the order of the method or as ``name=value``.
 
-    The given names choose the variant of the request. Arguments with a default may be left out. The
-    text that follows a request is an argument like the fields.
+    A list is a word with commas, or as many words as it has numbers. The given names choose the
+    variant of the request. Arguments with a default may be left out. The text that follows a
+    request is an argument like the fields.
 
     Raises:
         UsageError: an argument is missing, unknown, given twice, or not a value of its field.
     """
     text = command.request_text.fields if command.request_text else ()
-    given = _by_name(command, command.argument_names, words)
+    given = _by_name(command.name, _sizes(command), words)
     for name in text:
         if name not in given:
-            message = f"{command.name}() is missing its argument {name}"
-            raise UsageError(name, message=f"{message}; {_takes(command.argument_names)}")
+            raise _missing(command.name, name, _sizes(command))
     fields = {field.name: field for field in _variant(command, given).fields}
     return {
         name: word if name in text else parse_value(fields[name], word)
@@ -69,23 +71,81 @@ def _variant(command: Command, given: Mapping[str, Any]) -> Variant:
     return command.request[chosen.first]
 
 
-def _by_name(command: Command, names: Sequence[str], words: Sequence[str]) -> dict[str, str]:
+def parse_method(
+    method: Callable[..., Any], sizes: Mapping[str, int], words: Sequence[str]
+) -> dict[str, Any]:
+    """Return the arguments of a method of a client; ``sizes`` has those of its lists by name.
+
+    Raises:
+        UsageError: as :func:`parse`.
+    """
+    types = get_type_hints(method)
+    _, *parameters = signature(method).parameters.values()
+    takes = {
+        each.name: 0 if each.kind is Parameter.KEYWORD_ONLY else sizes.get(each.name, 1)
+        for each in parameters
+    }
+    given = _by_name(method.__name__, takes, words)
+    for each in parameters:
+        if each.default is Parameter.empty and each.name not in given:
+            raise _missing(method.__name__, each.name, takes)
+    return {name: _typed(name, types[name], word) for name, word in given.items()}
+
+
+def _sizes(command: Command) -> dict[str, int]:
+    """Return how many words each argument can be: as many as a list of a fixed size has numbers.
+
+    0 is for an argument that is given only by its name.
+    """
+    fields = [field for variant in command.request for field in variant.fields]
+    lists = {f.name: len(f.cases[0].numbers) for f in fields if f.many and not (f.sizes or f.each)}
+    return {name: lists.get(name, 1) for name in command.argument_names}
+
+
+def _by_name(call: str, sizes: Mapping[str, int], words: Sequence[str]) -> dict[str, str]:
     given: dict[str, str] = {}
     for word in words:
         name, equals, value = word.partition("=")
-        if not equals:
-            name, value = next((free for free in names if free not in given), ""), word
-        if name not in names:
-            message = f"{command.name}() has no argument for {word!r}; {_takes(names)}"
-            raise UsageError("argument", word, message=message)
-        if name in given:
-            raise UsageError(name, word, message=f"{command.name}() got its argument {name} twice")
-        given[name] = value
-    return given
+        if equals and name not in sizes:
+            raise _no_argument(call, word, sizes)
+        if equals and name in given:
+            raise UsageError(name, word, message=f"{call}() got its argument {name} twice")
+        if equals:
+            given[name] = value
+    free = [name for name, size in sizes.items() if size and name not in given]
+    rest = [word for word in words if "=" not in word]
+    if len(rest) > len(free):
+        rest = _gather(rest, [sizes[name] for name in free])
+    if len(rest) > len(free):
+        raise _no_argument(call, rest[len(free)], sizes)
+    return dict(zip(free, rest)) | given
 
 
-def _takes(names: Sequence[str]) -> str:
-    return f"it takes {', '.join(names) or 'no arguments'}"
+def _gather(words: list[str], sizes: Sequence[int]) -> list[str]:
+    """Return one word for each argument, if the words are just the numbers of the first ones."""
+    ends = list(accumulate(sizes, initial=0))
+    if len(words) not in ends:
+        return words
+    spans = pairwise(ends[: ends.index(len(words)) + 1])
+    return [",".join(word.strip("[](), ") for word in words[a:b]) for a, b in spans]
+
+
+def _no_argument(call: str, word: str, sizes: Mapping[str, int]) -> UsageError:
+    message = f"{call}() has no argument for {word!r}; {_takes(call, sizes)}"
+    return UsageError("argument", word, message=message)
+
+
+def _missing(call: str, name: str, sizes: Mapping[str, int]) -> UsageError:
+    message = f"{call}() is missing its argument {name}; {_takes(call, sizes)}"
+    return UsageError(name, message=message)
+
+
+def _takes(call: str, sizes: Mapping[str, int]) -> str:
+    text = f"it takes {', '.join(sizes) or 'no arguments'}"
+    if max(sizes.values(), default=1) > 1:
+        shown = [name.upper() if n == 1 else ",".join("0" * n) for name, n in sizes.items() if n]
+        text += f", written as: {call} {' '.join(shown)}"
+    return text
 
 
 def parse_value(field: Field, word: str) -> Any:
@@ -101,21 +161,29 @@ def parse_value(field: Field, word: str) -> Any:
         return _bytes(field, word)
     if field.each:
         groups = [part.strip(" []()") for part in word.split(";")]
-        return [[_number(field, part.strip()) for part in g.split(",")] for g in groups if g]
-    if field.many and not word.strip("[]() "):
-        return []
+        return [_numbers(field.name, group) for group in groups if group]
     if field.many:
-        return [_number(field, part.strip()) for part in word.strip("[]()").split(",")]
+        return _numbers(field.name, word)
     if field.kind == "flag":
-        if word.lower() not in _FLAGS:
-            raise UsageError(field.name, word, "on or off")
-        return _FLAGS[word.lower()]
+        return _flag(field.name, word)
     if word.upper() in field.labels:
         return field.choices[field.labels.index(word.upper())]
     if field.labels and not word.isdigit():
         members = (f"{label} ({choice})" for label, choice in zip(field.labels, field.choices))
         raise UsageError(field.name, word, ", ".join(members))
-    return _number(field, word)
+    return _number(field.name, word)
+
+
+def _typed(name: str, kind: Any, word: str) -> Any:
+    if get_origin(kind) is Sequence:
+        return _numbers(name, word)
+    return _flag(name, word) if kind is bool else _number(name, word)
+
+
+def _flag(name: str, word: str) -> bool:
+    if word.lower() not in _FLAGS:
+        raise UsageError(name, word, "on or off")
+    return _FLAGS[word.lower()]
 
 
 def _bytes(field: Field, word: str) -> bytes:
@@ -125,10 +193,16 @@ def _bytes(field: Field, word: str) -> bytes:
         raise UsageError(field.name, word, "pairs of hex digits") from None
 
 
-def _number(field: Field, word: str) -> int | float:
+def _numbers(name: str, word: str) -> list[int | float]:
+    inner = word.strip("[]() ")
+    parts = inner.split(",") if "," in inner else inner.split()
+    return [_number(name, part.strip()) for part in parts]
+
+
+def _number(name: str, word: str) -> int | float:
     for number in (lambda text: int(text, 0), float):
         try:
             return number(word)
         except ValueError:
             continue
-    raise UsageError(field.name, word, "a number")
+    raise UsageError(name, word, "a number")

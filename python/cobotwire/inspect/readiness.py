@@ -40,8 +40,8 @@ def problems(table: Table, states: Mapping[Role, Any]) -> list[Problem]:
     return found
 
 
-def check_ready(arm: Client, command: Command) -> None:
-    """Ask the arm whether it obeys a motion.
+def check_ready(arm: Client, name: str) -> None:
+    """Ask the arm whether it obeys the motion of that name.
 
     If only some queries get no reply, as from firmware that lacks one, their states are not known.
 
@@ -59,10 +59,10 @@ def check_ready(arm: Client, command: Command) -> None:
         except ReplyTimeout:
             if not states:
                 raise
-    _raise_for(command, problems(arm.table, states), sent=False)
+    _raise_for(name, problems(arm.table, states), sent=False)
 
 
-def check_accepted(arm: Client, command: Command) -> None:
+def check_accepted(arm: Client, name: str) -> None:
     """Ask the arm for its error register after a motion was sent; no reply is not an error.
 
     Raises:
@@ -75,17 +75,17 @@ def check_accepted(arm: Client, command: Command) -> None:
         error = _ask(arm, query)
     except ReplyTimeout:
         return
-    _raise_for(command, problems(arm.table, {"error": error}), sent=True)
+    _raise_for(name, problems(arm.table, {"error": error}), sent=True)
 
 
 def _ask(arm: Client, query: Command) -> Any:
     return getattr(arm, query.name)()
 
 
-def _raise_for(command: Command, found: list[Problem], *, sent: bool) -> None:
+def _raise_for(name: str, found: list[Problem], *, sent: bool) -> None:
     if found:
         texts = tuple(f"{problem.text}; {problem.advice}" for problem in found)
-        raise ArmNotReady(command.name, sent, texts)
+        raise ArmNotReady(name, sent, texts)
 
 
 def _use(table: Table, role: Role, raw: int, effect: str) -> str:

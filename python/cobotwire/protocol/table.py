@@ -8,7 +8,7 @@ a message and the rules for reading them.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from functools import cached_property
 from typing import Any, Literal, NamedTuple
 
@@ -266,16 +266,17 @@ class Table(NamedTuple):
         """Return a hash of some fields, which tell editions apart: that of all takes long."""
         return hash((self.edition, self.title, self.joints, self.baudrate, len(self.commands)))
 
-    def command(self, name: str) -> Command:
+    def command(self, name: str, *, also: Iterable[str] = ()) -> Command:
         """Return the command called ``name``.
 
         Raises:
-            UsageError: the edition has no such command; the text names the nearest one.
+            UsageError: the edition has no such command; the text names the nearest one, or the
+                nearest of the names in ``also``.
         """
         for command in self.commands:
             if command.name == name:
                 return command
-        hint = did_you_mean(name, [command.name for command in self.commands])
+        hint = did_you_mean(name, [*(command.name for command in self.commands), *also])
         message = f"there is no command {name!r} in edition {self.edition}{hint}"
         raise UsageError("command", name, message=message)
 

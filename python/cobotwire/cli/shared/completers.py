@@ -30,6 +30,19 @@ def complete_commands(
     return [CompletionItem(command.name, help=command.title) for command in commands]
 
 
+def complete_calls(
+    context: click.Context, parameter: click.Parameter, start: str
+) -> list[CompletionItem]:
+    """Return what can be called: the commands of the edition, and the motions of its client."""
+    from cobotwire.inspect.calls import motions
+
+    try:
+        moving = motions(editions.load(context.obj or editions.DEFAULT))
+    except CobotwireError:
+        return []
+    return [*complete_commands(context, parameter, start), *_items(moving, start)]
+
+
 def complete_scenarios(
     context: click.Context, parameter: click.Parameter, start: str
 ) -> list[CompletionItem]:

@@ -13,6 +13,7 @@ from cobotwire.protocol.errors import (
     CaptureError,
     CobotwireError,
     LinkError,
+    MotionTimeout,
     OutputError,
     ProtocolError,
     ReplyTimeout,
@@ -32,14 +33,15 @@ CODES: tuple[tuple[type[CobotwireError], int], ...] = (
     (ProtocolError, 5),
     (CaptureError, 6),
     (ArmNotReady, NOT_READY),
+    (MotionTimeout, NOT_READY),
     (OutputError, NOT_WRITTEN),
 )
 
 EPILOG = (
     "Exit codes: 0 success; 1 the result is negative (a wrong reply, an illegal frame); 2 wrong "
     "usage; 3 the port failed; 4 no reply; 5 an illegal reply; 6 a damaged recording; "
-    "7 the arm does not obey a motion; 8 a file cannot be written; 130 interrupted; "
-    "143 terminated."
+    "7 the arm does not obey a motion, or does not arrive; 8 a file cannot be written; "
+    "130 interrupted; 143 terminated."
 )
 
 
