@@ -11,7 +11,7 @@ from rich.markup import escape
 from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn
 
 from cobotwire import codec as codecs
-from cobotwire.cli.shared.output import as_hex
+from cobotwire.cli.shared.output import as_hex, fold
 from cobotwire.cli.shared.recordings import ARROWS
 from cobotwire.client import Traffic
 from cobotwire.diagnose.explain import DIRECTIONS, FrameReader, Reading, format_message
@@ -42,7 +42,7 @@ def demo(codec: codecs.CodecName | None) -> None:
                 due = next(quarters, 2.0)
 
         def report(step: str) -> None:
-            console.print(f"- {step}", soft_wrap=True, markup=False)
+            console.print(fold(f"- {step}"), soft_wrap=True, markup=False)
 
         result = run(report, progress, codec)
     _print_traffic(console, result.traffic)
@@ -65,7 +65,7 @@ def _print_traffic(console: Console, traffic: Sequence[Traffic]) -> None:
         meaning = format_message(message) if message else "noise"
         time = item.time - traffic[0].time
         line = f"{time:7.3f} {ARROWS[item.direction]} {as_hex(item.data)}  {meaning}"
-        console.print(line, soft_wrap=True, markup=False)
+        console.print(fold(line), soft_wrap=True, markup=False)
 
 
 def _readings(traffic: Sequence[Traffic]) -> list[Reading | None]:

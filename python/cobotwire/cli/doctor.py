@@ -14,7 +14,7 @@ from cobotwire.cli.shared.arm_options import arm_options, open_arm
 from cobotwire.cli.shared.completers import complete_ports
 from cobotwire.cli.shared.edition_option import uses_edition
 from cobotwire.cli.shared.exit_codes import LINK_FAILED
-from cobotwire.cli.shared.output import format_result
+from cobotwire.cli.shared.output import fold, format_result
 from cobotwire.client import Client
 from cobotwire.inspect import Doctor, Report
 from cobotwire.protocol.errors import LinkError
@@ -68,7 +68,9 @@ def doctor(
     except LinkError as error:
         port_failed = True
         report.add_port_failure(error)
-    click.echo(json.dumps(_as_json(report), indent=1) if as_json else "\n".join(_lines(report)))
+    click.echo(
+        json.dumps(_as_json(report), indent=1) if as_json else fold("\n".join(_lines(report)))
+    )
     sys.exit(LINK_FAILED if port_failed else int(not report.healthy))
 
 

@@ -11,7 +11,7 @@ import click
 from cobotwire.cli.shared.arm_options import baudrate_option
 from cobotwire.cli.shared.completers import complete_ports
 from cobotwire.cli.shared.exit_codes import NO_REPLY
-from cobotwire.cli.shared.output import format_result
+from cobotwire.cli.shared.output import fold, format_result
 from cobotwire.inspect.evidence import Evidence
 from cobotwire.inspect.identification import Identification
 from cobotwire.inspect.identification import identify as identify_arm
@@ -34,7 +34,7 @@ def identify(port: str, baudrate: int | None, timeout: float, as_json: bool) -> 
     failed; 4 no reply.
     """
     found = identify_arm(port, baudrate=baudrate, timeout=timeout)
-    click.echo(json.dumps(_as_json(found), indent=1) if as_json else "\n".join(_lines(found)))
+    click.echo(json.dumps(_as_json(found), indent=1) if as_json else fold("\n".join(_lines(found))))
     if not found.edition:
         sys.exit(1 if found.replied else NO_REPLY)
 

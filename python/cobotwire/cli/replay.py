@@ -12,7 +12,7 @@ from cobotwire.capture import CaptureReader, Packet, read
 from cobotwire.capture.streams import packets_of_interface
 from cobotwire.cli.shared.edition_option import uses_edition
 from cobotwire.cli.shared.line_output import LineOutput
-from cobotwire.cli.shared.output import as_hex, print_line
+from cobotwire.cli.shared.output import as_hex, fold, print_line
 from cobotwire.cli.shared.recordings import ARROWS, interface_option, warn_if_incomplete
 from cobotwire.cli.shared.serving import serve
 from cobotwire.cli.shared.simulator_output import left_out
@@ -79,7 +79,7 @@ def _print_request(lines: LineOutput, request: ReplayedRequest) -> None:
     reply = f"replied with {size} bytes" if size else "no reply"
     if size is None:
         reply = "this request was not recorded"
-    lines.print(f"received {as_hex(request.data)}   {reply}")
+    lines.print(fold(f"received {as_hex(request.data)}   {reply}"))
 
 
 def _print_timeline(capture: CaptureReader, edition: str, as_json: bool) -> None:
@@ -93,7 +93,8 @@ def _print_timeline(capture: CaptureReader, edition: str, as_json: bool) -> None
             continue
         interface = f" interface {packet.interface}" if len(capture.interfaces) > 1 else ""
         data, pause = as_hex(packet.data), _pause(packet)
-        print_line(f"{after:10.6f}{interface} {ARROWS[packet.direction]} {data}   {meaning}{pause}")
+        arrow = ARROWS[packet.direction]
+        print_line(fold(f"{after:10.6f}{interface} {arrow} {data}   {meaning}{pause}"))
 
 
 def _meaning(packet: Packet, codec: Codec) -> str:

@@ -13,7 +13,7 @@ from typing import Any
 import click
 
 from cobotwire.capture.file_errors import unusable_file
-from cobotwire.cli.shared.output import report_written
+from cobotwire.cli.shared.output import fold, report_written
 from cobotwire.conformance import Report
 from cobotwire.conformance.hex_text import exchanged
 from cobotwire.conformance.reports import to_html, to_json, to_junit
@@ -120,7 +120,7 @@ def _print_summary(report: Report, to_stderr: bool) -> None:
             echo(f"         also, {printable(also)}")
         for exchange in result.evidence:
             data = printable(exchanged(report.kind, exchange)[:SHOWN])
-            echo(f"         {exchange.at:9.4f} {exchange.direction} {data}")
+            echo(fold(f"         {exchange.at:9.4f} {exchange.direction} {data}", err=to_stderr))
     counts = Counter(result.outcome for result in report.results)
     summary = ", ".join(f"{count} {outcome}" for outcome, count in counts.items())
     echo(

@@ -8,6 +8,7 @@ from contextlib import contextmanager
 
 import click
 
+from cobotwire.cli.shared.output import fold
 from cobotwire.protocol.errors import (
     ArmNotReady,
     CaptureError,
@@ -51,7 +52,7 @@ def exit_on_errors() -> Iterator[None]:
     try:
         yield
     except CobotwireError as error:
-        click.echo(f"cobotwire: {error}", err=True)
+        click.echo(fold(f"cobotwire: {error}", err=True), err=True)
         sys.exit(next((code for kind, code in CODES if isinstance(error, kind)), 1))
     except KeyboardInterrupt:
         sys.exit(INTERRUPTED)

@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import os
+import re
 import sys
 from enum import IntEnum
+from functools import partial
+from shutil import get_terminal_size
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -40,6 +43,37 @@ def discard_output() -> None:
     nowhere = os.open(os.devnull, os.O_WRONLY)
     os.dup2(nowhere, sys.stdout.fileno())
     os.close(nowhere)
+
+
+def fold(text: str, *, err: bool = False) -> str:
+    """Break long lines between words on a terminal, which would break them anywhere.
+
+    The rest of a line begins below its last column that starts in the left half of the terminal.
+    """
+    if not (sys.stderr if err else sys.stdout).isatty():
+        return text
+    width = get_terminal_size().columns
+    return "\n".join(map(partial(_fold_line, width=width), text.split("\n")))
+
+
+def _fold_line(line: str, width: int) -> str:
+    plain = click.unstyle(line)
+    if len(plain) <= width:
+        return line
+    first, *others = (column.end() for column in re.finditer(r"^ *|  +", plain))
+    indent = " " * max([first + 2, *(at for at in others if at <= width // 2)])
+    rows, free, start = [""], width, True
+    for word in line.split(" "):
+        size = len(click.unstyle(word))
+        if not start and size + 1 > free:
+            rows.append(indent)
+            free, start = width - len(indent), True
+        if start and not word and len(rows) > 1:
+            continue
+        rows[-1] += word if start else f" {word}"
+        free -= size + (not start)
+        start = False
+    return "\n".join(rows)
 
 
 def plain_console() -> Console:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from cobotwire.cli.shared.exit_codes import OUTPUT_CLOSED
 from cobotwire.cli.shared.hex_colours import frame_colours
 from cobotwire.cli.shared.item_formats import Format, as_object, byte_by_byte, one_line
-from cobotwire.cli.shared.output import discard_output
+from cobotwire.cli.shared.output import discard_output, fold
 from cobotwire.codec.interface import Codec, Listening
 from cobotwire.diagnose.counts import StreamCounts
 from cobotwire.diagnose.explain import DIRECTIONS, FrameReader
@@ -58,7 +58,8 @@ class StreamPrinter:
         """Count and print items."""
         self._counts.add(items, self.reader)
         if items and not self._options.quiet:
-            print_text("\n".join(map(self.format, items)))
+            text = "\n".join(map(self.format, items))
+            print_text(text if self._options.as_json else fold(text))
 
     def format(self, item: Item) -> str:
         """Format one item."""
