@@ -23,7 +23,7 @@ def recorded(tmp_path: Path) -> Path:
     path = tmp_path / "arm.pcapng"
     with ScriptedPeer([QUERY, LEAK + ANGLES[:8], 0.1, ANGLES[8:]]) as peer:
         result = run("call", peer.url, "get_angles", "--record", path)
-    assert (result.returncode, result.stderr) == (0, "")
+    assert (result.returncode, result.stderr) == (0, f"wrote {path}\n")
     return path
 
 

@@ -93,7 +93,7 @@ def test_ctrl_c_closes_the_port_and_finishes_the_recording(
         assert b"get_angles" in process.stdout.readline()
     process.send_signal(signal.SIGINT)
     _, error = process.communicate(timeout=30)
-    assert (process.returncode, error) == (0, b"")
+    assert (process.returncode, error.decode()) == (0, f"wrote {path}\n")
     capture = read(path)
     assert len(list(capture)) >= 10
     assert capture.finished

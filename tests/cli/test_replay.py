@@ -74,7 +74,7 @@ def test_served_recording_gives_the_recorded_replies(recorded: tuple[Path, list[
         assert converse(url) == results
         with MyCobot(url, timeout=0.2) as arm, pytest.raises(ReplyTimeout):
             arm.get_coords()
-        process.send_signal(signal.SIGTERM)
+        process.send_signal(signal.SIGINT)
         output, errors = process.communicate(timeout=10)
         assert (process.returncode, errors) == (0, "")
         assert "FE FE 02 12 FA   replied with 6 bytes" in output

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import sys
 
 import click
 
@@ -94,7 +95,9 @@ def call(
             done = run(planned, arm, force=force, timeout=timeout)
         except KeyboardInterrupt:
             if planned.on_error == "stop":
-                click.echo("cobotwire: interrupted; stop is sent to the arm", err=True)
+                # The terminal has echoed ^C on this line.
+                start = "\n" if sys.stderr.isatty() else ""
+                click.echo(f"{start}cobotwire: interrupted; stop is sent to the arm", err=True)
             raise
     if not isinstance(done, Done):
         raise done

@@ -125,7 +125,7 @@ def test_plot_draws_recordings_and_raw_bytes(tmp_path: Path) -> None:
     record(path, Scenario(name="sick", faults=(Lost(every=9), ServoLeak(every=5))))
     svg = tmp_path / "arm.svg"
     result = run(path, "-o", svg)
-    assert (result.exit_code, result.output) == (0, "")
+    assert (result.exit_code, result.output) == (0, f"wrote {svg}\n")
     drawn = svg.read_text()
     for label in (
         "joints, °",

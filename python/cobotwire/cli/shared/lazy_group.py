@@ -36,9 +36,10 @@ class LazyGroup(click.Group):
         self, context: click.Context, args: list[str]
     ) -> tuple[str | None, click.Command | None, list[str]]:
         """Return the verb that the first word names, and the words after it."""
-        known = self.list_commands(context)
-        if args[0] not in known and not (args[0].startswith("-") or context.resilient_parsing):
-            context.fail(f"there is no command {args[0]!r}{did_you_mean(args[0], known)}")
+        word = args[0]
+        if word not in self.verbs and not (word.startswith("-") or context.resilient_parsing):
+            hint = did_you_mean(word, self.list_commands(context))
+            context.fail(f"there is no command {word!r}{hint}")
         name, verb, rest = super().resolve_command(context, args)
         if verb is not None and not context.resilient_parsing:
             note_unused(context, verb)
