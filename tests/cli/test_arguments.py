@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import inspect
+import shlex
 from typing import Any
 
 import pytest
@@ -38,6 +39,30 @@ def _word(field: Field) -> str:
     steps = [field.choices[0] if field.choices else number.minimum for number in numbers]
     values = (n.physical(step) for step, n in zip(steps, numbers))
     return ",".join(map(str, values))
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        "-10 0 0 0 0 5 30",
+        "[-10, 0, 0, 0, 0, 5] 30",
+        "'-10, 0, 0, 0, 0, 5' 30",
+        "speed=30 [-10,0,0,0,0,5]",
+    ],
+)
+def test_list_is_accepted_with_commas_brackets_or_spaces(words: str) -> None:
+    send_angles = TABLES["mycobot280"].command("send_angles")
+    expected = {"angles": [-10, 0, 0, 0, 0, 5], "speed": 30}
+    assert parse(send_angles, shlex.split(words)) == expected
+
+
+def test_list_with_a_wrong_count_is_explained_by_the_line_to_type() -> None:
+    send_coords = TABLES["mycobot280"].command("send_coords")
+    with pytest.raises(UsageError, match="written as: send_coords 0,0,0,0,0,0 SPEED MODE"):
+        parse(send_coords, ["1", "2", "3", "4", "5"])
+    drag = TABLES["mycobot280"].command("set_encoders_drag")
+    numbers = [*range(12)]
+    assert parse(drag, [*map(str, numbers)]) == {"encoders": numbers[:6], "speeds": numbers[6:]}
 
 
 def test_arguments_are_accepted_in_order_or_by_name() -> None:

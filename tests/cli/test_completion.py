@@ -23,7 +23,8 @@ CASES = [
     ("conform dev", {"device"}),
     ("--edition myc", {name for name in editions.names() if name.startswith("myc")}),
     ("commands send_", {"send_angle", "send_angles", "send_coord", "send_coords"}),
-    ("--edition mycobot280 call /dev/x set_ssid", {"set_ssid_pwd"}),
+    ("call --edition mercury_a1 /dev/x write_move", {"write_move_c"}),
+    ("call /dev/x go_", {"go_home"}),
     ("sim --scenario late", {name for name in shipped() if name.startswith("late")}),
     ("completion z", {"zsh"}),
 ]

@@ -8,6 +8,8 @@ import subprocess
 from functools import partial
 from pathlib import Path
 
+import pytest
+
 from cobotwire import MyCobot
 from cobotwire.capture import read
 from cobotwire.simulator import PtyServer
@@ -77,8 +79,9 @@ def test_monitor_keeps_the_rate(server: PtyServer) -> None:
     assert run(server.url, "--rate", "0").returncode == 2
 
 
-def test_ctrl_c_closes_the_port_and_finishes_the_recording(
-    server: PtyServer, tmp_path: Path
+@pytest.mark.parametrize(("number", "code"), [(signal.SIGINT, 0), (signal.SIGTERM, 143)])
+def test_signal_closes_the_port_and_finishes_the_recording(
+    server: PtyServer, tmp_path: Path, number: signal.Signals, code: int
 ) -> None:
     path = tmp_path / "watched.pcapng"
     process = subprocess.Popen(
@@ -91,9 +94,9 @@ def test_ctrl_c_closes_the_port_and_finishes_the_recording(
     assert process.stdout is not None
     for _ in range(5):
         assert b"get_angles" in process.stdout.readline()
-    process.send_signal(signal.SIGINT)
+    process.send_signal(number)
     _, error = process.communicate(timeout=30)
-    assert (process.returncode, error.decode()) == (0, f"wrote {path}\n")
+    assert (process.returncode, error.decode()) == (code, f"wrote {path}\n")
     capture = read(path)
     assert len(list(capture)) >= 10
     assert capture.finished
@@ -108,8 +111,15 @@ def test_lost_port_ends_monitor_with_its_exit_code() -> None:
     assert "Traceback" not in result.stderr
 
 
-def test_monitor_shows_a_table_on_a_terminal(server: PtyServer) -> None:
-    with Terminal("monitor", server.url, "--count", "2", columns=100, lines=30) as terminal:
+@pytest.mark.parametrize(("columns", "lines"), [(80, 24), (60, 9)])
+def test_ctrl_c_leaves_one_whole_table_on_a_terminal(
+    server: PtyServer, columns: int, lines: int
+) -> None:
+    with Terminal("monitor", server.url, columns=columns, lines=lines) as terminal:
+        terminal.until(lambda: "get_angles" in terminal.text())
+        terminal.press(b"\x03")
         assert terminal.finish() == 0
-        assert "get_angles" in terminal.text()
-        assert "│" in terminal.text()
+        rows = [row for row in terminal.rows() if row]
+    assert (server.url in rows[0], rows[1][0], rows[-1][0]) == (True, "┌", "└"), rows
+    assert [row[0] for row in rows[2:-1]] == ["│"] * (len(rows) - 3), rows
+    assert sum("j6     0.00" in row for row in rows) == 1

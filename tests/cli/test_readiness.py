@@ -72,6 +72,8 @@ def test_doctor_reports_why_an_arm_does_not_move_and_not_that_it_is_healthy() ->
         _, expected, text = map(str, state.values)
         assert (kind, text.startswith(sentence[:40])) == (expected, True)
         assert f"! {kind}: {sentence}" in human.stdout
+    # The values begin in one column.
+    assert "  get_error_information 3\n  is_moving             " in human.stdout
 
 
 def test_coordinates_that_a_simulated_arm_cannot_compute_are_not_a_lost_reply() -> None:

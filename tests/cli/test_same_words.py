@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import inspect
 import json
 from collections.abc import Iterator
 
@@ -45,6 +46,44 @@ def test_json_option_needs_no_value(name: str) -> None:
             assert isinstance(option, click.Option)
             assert option.is_flag or option.flag_value == "-"
         assert not {"--format", "-j"} & {*option.opts}
+
+
+@pytest.mark.parametrize("name", VERBS)
+def test_only_verbs_that_use_the_edition_have_the_option(name: str) -> None:
+    callback = VERBS[name].callback
+    assert callback is not None
+    takes = any("--edition" in option.opts for option in VERBS[name].params)
+    assert takes == ("edition" in inspect.signature(callback).parameters)
+
+
+@pytest.mark.parametrize(
+    "words",
+    ["--edition mycobot conform statement", "conform --edition mycobot statement"]
+    + [
+        "conform statement --edition mycobot",
+        "--edition mycobot conform --edition mycobot statement",
+    ],
+)
+def test_edition_is_given_before_or_after_the_verb(words: str) -> None:
+    assert "edition: mycobot\n" in cobotwire(*words.split()).stdout
+
+
+@pytest.mark.parametrize(
+    ("words", "code", "stderr"),
+    [
+        ("--edition mycobot commands --edition pro400", 2, "given twice: mycobot and pro400"),
+        ("commands --edition mycobot --edition pro400", 2, "given twice: mycobot and pro400"),
+        ("--edition mycobot conform cases", 0, "cobotwire: cases does not use --edition\n"),
+        ("conform cases --edition mycobot", 2, "No such option"),
+        ("monitr", 2, "there is no command 'monitr'; did you mean monitor?"),
+        ("call /dev/x send_angles 0,0,0,0,0,0 --speed 3", 2, "is written as speed=VALUE"),
+        ("call /dev/x go_hom", 2, "did you mean go_home?"),
+        ("run --eror raise x.py", 2, "--errors"),
+    ],
+)
+def test_misused_words_are_explained(words: str, code: int, stderr: str) -> None:
+    result = cobotwire(*words.split())
+    assert (result.returncode, stderr in result.stderr) == (code, True), result.stderr
 
 
 def test_port_comes_before_the_command(server: PtyServer) -> None:

@@ -17,7 +17,7 @@ from cobotwire.cli.shared.arm_options import (
 from cobotwire.cli.shared.completers import complete_calls, complete_ports
 from cobotwire.cli.shared.edition_option import uses_edition
 from cobotwire.cli.shared.output import format_result
-from cobotwire.inspect.calls import Done, prepare, run
+from cobotwire.inspect.calls import Done, prepare
 from cobotwire.protocol.json_values import as_json_value
 
 
@@ -92,7 +92,7 @@ def call(
         package.CLIENT(transport, timeout=timeout, on_error=planned.on_error, address=to) as arm,
     ):
         try:
-            done = run(planned, arm, force=force, timeout=timeout)
+            done = planned.run(arm, force=force, timeout=timeout)
         except KeyboardInterrupt:
             if planned.on_error == "stop":
                 # The terminal has echoed ^C on this line.

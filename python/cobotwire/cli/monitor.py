@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import json
 import sys
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Iterable
 
 import click
-from rich.console import Console, RenderableType
+from rich.console import Console
 from rich.constrain import Constrain
 from rich.live import Live
 from rich.table import Table as Grid
@@ -64,35 +63,24 @@ def monitor(
                 for sample in samples:
                     print_line(_as_json(sample) if as_json else _line(sample))
                 return
-            with _screen() as (show, width):
-                for sample in samples:
-                    show(_grid(port, sample, width))
+            _watch(port, samples)
     except KeyboardInterrupt:
         # Ctrl-C is the usual way to end this verb, not a failure.
         sys.exit(0)
 
 
-@contextmanager
-def _screen() -> Iterator[tuple[Callable[[Grid], None], int]]:
-    """Yield a function that replaces the table on the terminal, and the width of a table.
-
-    At the end the last table is there once, however low the terminal is.
-    """
+def _watch(port: str, samples: Iterable[Observation]) -> None:
+    """Show a table of the last sample; leave it once in the end, however low the terminal is."""
     console = Console()
-    width = console.width - ECHO_COLUMNS
-    last: RenderableType = Text()
-
-    def show(grid: Grid) -> None:
-        nonlocal last
-        last = Constrain(grid, width)
-        live.update(last, refresh=True)
-
+    width, last = console.width - ECHO_COLUMNS, Constrain(Text())
     try:
         with Live(
             console=console, auto_refresh=False, transient=True, vertical_overflow="crop"
         ) as live:
             try:
-                yield show, width
+                for sample in samples:
+                    last = Constrain(_grid(port, sample, width), width)
+                    live.update(last, refresh=True)
             finally:
                 # rich does not crop what it shows last, and could not erase what has scrolled away.
                 live.update(Text(), refresh=True)

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from inspect import signature
-from types import MappingProxyType
 from typing import Any, NamedTuple
 
 from cobotwire import codec as codecs
@@ -26,102 +25,40 @@ from cobotwire.simulator.clock import SteppedClock
 
 
 class Done(NamedTuple):
-    """What a call did.
-
-    Attributes:
-        result: what the method returned; after a motion that was waited for, where the arm is.
-        remark: how it went, in a sentence; empty if the result says that.
-        facts: the same for programs.
-    """
+    """What a call did: the result, perhaps a sentence how it went, and the same for programs."""
 
     result: Any
-    remark: str = ""
-    facts: Mapping[str, Any] = MappingProxyType({})
+    remark: str
+    facts: dict[str, Any]
 
 
-class CommandCall:
-    """A call of a command, with its arguments."""
+class Call(NamedTuple):
+    """A call whose arguments are valid; ``send`` takes the client and seconds for the reply."""
 
-    on_error: OnError = "leave"
+    name: str
+    starts_motion: bool
+    on_error: OnError
+    send: Callable[[Client, float | None], Done]
 
-    def __init__(
-        self, edition: Edition, name: str, words: Sequence[str], address: int | str | None
-    ) -> None:
-        """Parse and encode it.
+    def run(self, arm: Client, *, force: bool, timeout: float | None) -> Done | CobotwireError:
+        """Send it; first check that the arm obeys it if it is a motion, unless ``force``.
 
-        Raises:
-            UsageError: there is no such command, or an argument is not allowed.
-        """
-        table = edition.TABLE
-        command = table.command(name, also=motions(edition))
-        if command.event:
-            message = f"{name} is an event, which the device sends without a request"
-            raise UsageError("command", name, message=message)
-        self.name, self.starts_motion = name, command.starts_motion
-        self._arguments = parse(command, words)
-        encoder = RequestEncoder(codecs.load(table), find_address(table, address))
-        encoded = encoder.encode_request(command.request_type(**self._arguments))
-        self._ack_seconds = ack_seconds(encoded)
-
-    def run(self, arm: Client, timeout: float | None) -> Done:
-        """Send it; wait for its reply, or for its acknowledgement, which need not come."""
-        method: Callable[..., Any] = getattr(arm, self.name)
-        if self._ack_seconds is None:
-            result = method(**self._arguments)
-            if result is not None:
-                return Done(result)
-            remark = "sent; this request has no acknowledgement"
-            return Done(None, remark, {"acknowledged": None})
-        within = self._ack_seconds if timeout is None else timeout
-        started = time.monotonic()
-        try:
-            method(**self._arguments, ack_within=within)
-        except ReplyTimeout:
-            remark = f"sent; not acknowledged within {1000 * within:.0f} ms"
-            return Done(None, remark, {"acknowledged": False})
-        seconds = time.monotonic() - started
-        remark = f"sent; acknowledged after {1000 * seconds:.0f} ms"
-        return Done(None, remark, {"acknowledged": True, "seconds": seconds})
-
-
-class MotionCall:
-    """A call of a motion that the client offers, with its arguments."""
-
-    def __init__(
-        self, edition: Edition, name: str, words: Sequence[str], address: int | str | None
-    ) -> None:
-        """Parse it, and validate it with a simulated arm.
+        Returns:
+            What it did. An error: nothing was sent, so nothing is to be stopped either.
 
         Raises:
-            UsageError: an argument is not allowed, or the edition lacks a command for it.
+            CobotwireError: the call failed.
         """
-        method = motions(edition)[name]
-        takes = signature(method).parameters
-        self.name = name
-        self._arguments = parse_method(method, _row_sizes(edition.TABLE), words)
-        self._waits = "timeout" in takes and self._arguments.get("wait", True)
-        self.on_error: OnError = "stop" if self._waits else "leave"
-        # One that only waits starts no motion.
-        self.starts_motion = "wait" in takes or "timeout" not in takes
-        if self.starts_motion:
-            transport = MemoryTransport(SimulatedArm(edition.TABLE), SteppedClock())
-            at_once = {"wait": False} if "wait" in takes else {}
-            with edition.CLIENT(transport, address=address) as simulated:
-                getattr(simulated, name)(**{**self._arguments, **at_once})
-
-    def run(self, arm: Client, timeout: float | None) -> Done:
-        """Run it; wait until the arm is there, unless the arguments say otherwise."""
-        started = time.monotonic()
-        getattr(arm, self.name)(**self._arguments)
-        seconds = time.monotonic() - started
-        if not self._waits:
-            return Done(None, "sent")
-        role: Role = "coordinates" if "coords" in self._arguments else "joints"
-        place = getattr(arm, arm.table.in_role(role).name)()
-        return Done(place, f"arrived after {seconds:.1f} s", {"seconds": seconds})
-
-
-Call = CommandCall | MotionCall
+        checks = self.starts_motion and not force
+        if checks:
+            try:
+                check_ready(arm, self.name)
+            except (ArmNotReady, ReplyTimeout) as error:
+                return error
+        done = self.send(arm, timeout)
+        if checks:
+            check_accepted(arm, self.name)
+        return done
 
 
 def motions(edition: Edition) -> dict[str, Callable[..., Any]]:
@@ -134,35 +71,71 @@ def motions(edition: Edition) -> dict[str, Callable[..., Any]]:
 def prepare(
     edition: Edition, name: str, words: Sequence[str], address: int | str | None = None
 ) -> Call:
-    """Parse and validate a call; nothing is sent to an arm.
+    """Parse and validate the call of a command or a motion; nothing is sent to an arm.
 
     Raises:
         UsageError: there is no such command, or an argument is not allowed.
     """
-    kind = MotionCall if name in motions(edition) else CommandCall
-    return kind(edition, name, words, address)
+    make = _motion if name in motions(edition) else _command
+    return make(edition, name, words, address)
 
 
-def run(call: Call, arm: Client, *, force: bool, timeout: float | None) -> Done | CobotwireError:
-    """Run a call, and check that the arm obeys it if it is a motion, unless ``force``.
+def _command(edition: Edition, name: str, words: Sequence[str], address: int | str | None) -> Call:
+    table = edition.TABLE
+    command = table.command(name, also=motions(edition))
+    if command.event:
+        message = f"{name} is an event, which the device sends without a request"
+        raise UsageError("command", name, message=message)
+    arguments = parse(command, words)
+    encoder = RequestEncoder(codecs.load(table), find_address(table, address))
+    usual = ack_seconds(encoder.encode_request(command.request_type(**arguments)))
 
-    Returns:
-        What it did. An error: the arm does not obey it or does not say so; nothing was sent, and
-        what the arm does now need not be stopped.
-
-    Raises:
-        CobotwireError: the call failed.
-    """
-    checks = call.starts_motion and not force
-    if checks:
+    def send(arm: Client, timeout: float | None) -> Done:
+        method: Callable[..., Any] = getattr(arm, name)
+        if usual is None:
+            result = method(**arguments)
+            if result is not None:
+                return Done(result, "", {})
+            return Done(None, "sent; this request has no acknowledgement", {"acknowledged": None})
+        within = usual if timeout is None else timeout
+        started = time.monotonic()
         try:
-            check_ready(arm, call.name)
-        except (ArmNotReady, ReplyTimeout) as error:
-            return error
-    done = call.run(arm, timeout)
-    if checks:
-        check_accepted(arm, call.name)
-    return done
+            method(**arguments, ack_within=within)
+        except ReplyTimeout:
+            # Older firmware sends none.
+            remark = f"sent; not acknowledged within {1000 * within:.0f} ms"
+            return Done(None, remark, {"acknowledged": False})
+        seconds = time.monotonic() - started
+        remark = f"sent; acknowledged after {1000 * seconds:.0f} ms"
+        return Done(None, remark, {"acknowledged": True, "seconds": seconds})
+
+    return Call(name, command.starts_motion, "leave", send)
+
+
+def _motion(edition: Edition, name: str, words: Sequence[str], address: int | str | None) -> Call:
+    method = motions(edition)[name]
+    arguments = parse_method(method, _row_sizes(edition.TABLE), words)
+    takes = signature(method).parameters
+    waits = "timeout" in takes and arguments.get("wait", True)
+    moves = "wait" in takes or "timeout" not in takes
+    if moves:
+        # A simulated arm finds out whether the arguments are allowed.
+        transport = MemoryTransport(SimulatedArm(edition.TABLE), SteppedClock())
+        at_once = {"wait": False} if "wait" in takes else {}
+        with edition.CLIENT(transport, address=address) as simulated:
+            getattr(simulated, name)(**arguments | at_once)
+
+    def send(arm: Client, timeout: float | None) -> Done:
+        started = time.monotonic()
+        getattr(arm, name)(**arguments)
+        if not waits:
+            return Done(None, "sent", {})
+        seconds = time.monotonic() - started
+        role: Role = "coordinates" if "coords" in arguments else "joints"
+        place = getattr(arm, arm.table.in_role(role).name)()
+        return Done(place, f"arrived after {seconds:.1f} s", {"seconds": seconds})
+
+    return Call(name, moves, "stop" if waits else "leave", send)
 
 
 def _row_sizes(table: Table) -> dict[str, int]:

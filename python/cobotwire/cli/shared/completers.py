@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from contextlib import suppress
 
 import click
 from click.shell_completion import CompletionItem
@@ -33,14 +34,13 @@ def complete_commands(
 def complete_calls(
     context: click.Context, parameter: click.Parameter, start: str
 ) -> list[CompletionItem]:
-    """Return what can be called: the commands of the edition, and the motions of its client."""
+    """Return the commands of the edition, and the motions of its client."""
     from cobotwire.inspect.calls import motions
 
-    try:
-        moving = motions(editions.load(context.obj or editions.DEFAULT))
-    except CobotwireError:
-        return []
-    return [*complete_commands(context, parameter, start), *_items(moving, start)]
+    commands = complete_commands(context, parameter, start)
+    with suppress(CobotwireError):
+        commands += _items(motions(editions.load(context.obj or editions.DEFAULT)), start)
+    return commands
 
 
 def complete_scenarios(

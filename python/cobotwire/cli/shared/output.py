@@ -61,19 +61,17 @@ def _fold_line(line: str, width: int) -> str:
     if len(plain) <= width:
         return line
     first, *others = (column.end() for column in re.finditer(r"^ *|  +", plain))
-    indent = " " * max([first + 2, *(at for at in others if at <= width // 2)])
-    rows, free, start = [""], width, True
+    indent = max([first + 2, *(at for at in others if at <= width // 2)])
+    rows, end = [""], 0
     for word in line.split(" "):
         size = len(click.unstyle(word))
-        if not start and size + 1 > free:
-            rows.append(indent)
-            free, start = width - len(indent), True
-        if start and not word and len(rows) > 1:
-            continue
-        rows[-1] += word if start else f" {word}"
-        free -= size + (not start)
-        start = False
-    return "\n".join(rows)
+        if rows[-1].strip() and end + size > width:
+            rows.append(" " * indent)
+            end = indent
+        if word or len(rows) == 1 or rows[-1].strip():
+            rows[-1] += f"{word} "
+            end += size + 1
+    return "\n".join(row.rstrip(" ") for row in rows)
 
 
 def plain_console() -> Console:

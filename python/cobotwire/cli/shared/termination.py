@@ -16,10 +16,7 @@ _received = threading.Event()
 
 
 def note_signal(number: int) -> None:
-    """Remember a signal for the exit code. Whoever sends SIGTERM again is ignored.
-
-    ``timeout`` sends it twice. A process that does not end is killed by SIGKILL or Ctrl-C.
-    """
+    """Remember a SIGTERM for the exit code; ignore further ones, since ``timeout`` sends two."""
     if number == signal.SIGTERM:
         signal.signal(number, signal.SIG_IGN)
         _received.set()
