@@ -17,6 +17,8 @@ from cobotwire.cli.capture import VERBS as CAPTURE_VERBS
 from cobotwire.cli.capture import capture
 from cobotwire.cli.conform import VERBS as CONFORM_VERBS
 from cobotwire.cli.conform import conform
+from cobotwire.cli.shared.hex_colours import frame_colours
+from cobotwire.cli.shared.output import fold
 from cobotwire.editions import mycobot280
 from cobotwire.editions.mycobot import TABLE
 from cobotwire.inspect import demo
@@ -249,3 +251,19 @@ def test_start_imports_only_what_the_words_need(words: list[str], further: set[s
         unwanted |= {"cobotwire.codec.reference", "cobotwire.capture.reader"}
     assert not imported & unwanted
     assert "click" in imported
+
+
+@pytest.mark.parametrize("columns", [16, 40, 80])
+@pytest.mark.parametrize("line", ["noise   {}   bad", "  0.001 > {}", "{} {}", "one: {}  two"])
+def test_hex_is_broken_between_bytes_on_a_terminal(
+    monkeypatch: pytest.MonkeyPatch, columns: int, line: str
+) -> None:
+    monkeypatch.setattr("sys.stdout.isatty", lambda: True)
+    monkeypatch.setenv("COLUMNS", str(columns))
+    frame = bytes.fromhex("FE FE 0F 2A 25 2E FF C3 FF C3 7D 00 FA") * 4
+    text = line.format(*[frame_colours(TABLE.frame)(frame)] * 2)
+    folded = fold(f"{text}\nnext")
+    rows = click.unstyle(folded).split("\n")
+    assert max(map(len, rows)) <= columns
+    assert " ".join(folded.split()) == " ".join(f"{text} next".split())
+    assert len(rows) <= 2 + len(click.unstyle(text)) // (columns // 2 - 3)

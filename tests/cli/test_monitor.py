@@ -111,11 +111,8 @@ def test_lost_port_ends_monitor_with_its_exit_code() -> None:
     assert "Traceback" not in result.stderr
 
 
-@pytest.mark.parametrize(("columns", "lines"), [(80, 24), (60, 9)])
-def test_ctrl_c_leaves_one_whole_table_on_a_terminal(
-    server: PtyServer, columns: int, lines: int
-) -> None:
-    with Terminal("monitor", server.url, columns=columns, lines=lines) as terminal:
+def test_ctrl_c_leaves_one_whole_table_on_a_terminal(server: PtyServer) -> None:
+    with Terminal("monitor", server.url, columns=80, lines=24) as terminal:
         terminal.until(lambda: "get_angles" in terminal.text())
         terminal.press(b"\x03")
         assert terminal.finish() == 0

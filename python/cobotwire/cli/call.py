@@ -14,7 +14,7 @@ from cobotwire.cli.shared.arm_options import (
     open_arm,
     parse_address,
 )
-from cobotwire.cli.shared.completers import complete_calls, complete_ports
+from cobotwire.cli.shared.completers import complete_commands, complete_ports
 from cobotwire.cli.shared.edition_option import uses_edition
 from cobotwire.cli.shared.output import format_result
 from cobotwire.inspect.calls import Done, prepare
@@ -27,7 +27,7 @@ from cobotwire.protocol.json_values import as_json_value
     context_settings={"ignore_unknown_options": True},
 )
 @click.argument("port", metavar="URL", shell_complete=complete_ports)
-@click.argument("name", shell_complete=complete_calls)
+@click.argument("name", shell_complete=complete_commands)
 @click.argument("args", nargs=-1, metavar="[ARGS]...")
 @arm_options
 @address_option

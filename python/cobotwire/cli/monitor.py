@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import sys
-from collections.abc import Iterable
 
 import click
 from rich.console import Console
@@ -63,29 +62,13 @@ def monitor(
                 for sample in samples:
                     print_line(_as_json(sample) if as_json else _line(sample))
                 return
-            _watch(port, samples)
+            with Live(console=Console(), auto_refresh=False) as live:
+                width = live.console.width - ECHO_COLUMNS
+                for sample in samples:
+                    live.update(Constrain(_grid(port, sample, width), width), refresh=True)
     except KeyboardInterrupt:
         # Ctrl-C is the usual way to end this verb, not a failure.
         sys.exit(0)
-
-
-def _watch(port: str, samples: Iterable[Observation]) -> None:
-    """Show a table of the last sample; leave it once in the end, however low the terminal is."""
-    console = Console()
-    width, last = console.width - ECHO_COLUMNS, Constrain(Text())
-    try:
-        with Live(
-            console=console, auto_refresh=False, transient=True, vertical_overflow="crop"
-        ) as live:
-            try:
-                for sample in samples:
-                    last = Constrain(_grid(port, sample, width), width)
-                    live.update(last, refresh=True)
-            finally:
-                # rich does not crop what it shows last, and could not erase what has scrolled away.
-                live.update(Text(), refresh=True)
-    finally:
-        console.print(last)
 
 
 def _as_json(sample: Observation) -> str:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from contextlib import suppress
 
 import click
 from click.shell_completion import CompletionItem
@@ -22,25 +21,18 @@ def complete_editions(
 def complete_commands(
     context: click.Context, parameter: click.Parameter, start: str
 ) -> list[CompletionItem]:
-    """Return the commands of the edition, with their titles."""
+    """Return the commands of the edition, with their titles; for ``call`` also the motions."""
     try:
-        table = editions.load(context.obj or editions.DEFAULT).TABLE
+        edition = editions.load(context.obj or editions.DEFAULT)
     except CobotwireError:
         return []
-    commands = (command for command in table.commands if command.name.startswith(start))
-    return [CompletionItem(command.name, help=command.title) for command in commands]
+    commands = (command for command in edition.TABLE.commands if command.name.startswith(start))
+    found = [CompletionItem(command.name, help=command.title) for command in commands]
+    if context.info_name == "call":
+        from cobotwire.inspect.calls import motions
 
-
-def complete_calls(
-    context: click.Context, parameter: click.Parameter, start: str
-) -> list[CompletionItem]:
-    """Return the commands of the edition, and the motions of its client."""
-    from cobotwire.inspect.calls import motions
-
-    commands = complete_commands(context, parameter, start)
-    with suppress(CobotwireError):
-        commands += _items(motions(editions.load(context.obj or editions.DEFAULT)), start)
-    return commands
+        found += _items(motions(edition), start)
+    return found
 
 
 def complete_scenarios(
