@@ -12,11 +12,6 @@ import click
 import pytest
 
 from cobotwire import __version__
-from cobotwire.cli.app import VERBS, app
-from cobotwire.cli.capture import VERBS as CAPTURE_VERBS
-from cobotwire.cli.capture import capture
-from cobotwire.cli.conform import VERBS as CONFORM_VERBS
-from cobotwire.cli.conform import conform
 from cobotwire.cli.shared.hex_colours import frame_colours
 from cobotwire.cli.shared.output import fold
 from cobotwire.editions import mycobot280
@@ -212,17 +207,6 @@ def test_unknown_edition_gets_a_suggestion() -> None:
     result = run("--edition", "mycobt", "commands")
     assert result.returncode == 2
     assert "did you mean mycobot?" in result.stderr
-
-
-@pytest.mark.parametrize(
-    ("group", "texts"), [(app, VERBS), (capture, CAPTURE_VERBS), (conform, CONFORM_VERBS)]
-)
-def test_help_describes_each_verb_as_the_verb_does(
-    group: click.Group, texts: dict[str, str]
-) -> None:
-    context = click.Context(group)
-    verbs = {name: group.get_command(context, name) for name in texts}
-    assert {name: verb.get_short_help_str(200) for name, verb in verbs.items() if verb} == texts
 
 
 @pytest.mark.parametrize(

@@ -8,9 +8,8 @@ import click
 
 import cobotwire
 from cobotwire.cli.shared.edition_option import edition_option
-from cobotwire.cli.shared.exit_codes import EPILOG, exit_on_errors
+from cobotwire.cli.shared.exit_codes import EPILOG, exit_on_errors, sigterm_as_interrupt
 from cobotwire.cli.shared.lazy_group import LazyGroup
-from cobotwire.cli.shared.termination import sigterm_as_interrupt
 from cobotwire.studio.extras import CURVES
 
 # In the order of --help, each with its text there: --help imports no verb.

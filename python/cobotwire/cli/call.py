@@ -22,10 +22,7 @@ from cobotwire.protocol.json_values import as_json_value
 
 
 # click reads a negative number as an unknown option; unknown options are passed on as ARGS.
-@click.command(
-    short_help="Send one command; print the result.",
-    context_settings={"ignore_unknown_options": True},
-)
+@click.command(context_settings={"ignore_unknown_options": True})
 @click.argument("port", metavar="URL", shell_complete=complete_ports)
 @click.argument("name", shell_complete=complete_commands)
 @click.argument("args", nargs=-1, metavar="[ARGS]...")

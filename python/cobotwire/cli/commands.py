@@ -19,7 +19,7 @@ _DIRECTIONS: tuple[Direction, ...] = ("request", "reply")
 _NAMES = {"address": "address", "length": "LEN", "command": "CMD"}
 
 
-@click.command(short_help="List the commands, or describe one.")
+@click.command()
 @click.argument("name", required=False, shell_complete=complete_commands)
 @click.option("--json", "as_json", is_flag=True, help="Print the commands as JSON.")
 @uses_edition

@@ -22,7 +22,7 @@ class _Conform(LazyGroup):
     modules = "cobotwire.cli.conform_"
 
 
-@click.group(cls=_Conform, short_help="Test an arm, a client or a codec.")
+@click.group(cls=_Conform)
 @edition_option
 def conform() -> None:
     """Test an arm, a client or a codec against an edition of the protocol.

@@ -19,7 +19,7 @@ CASES: dict[str, dict[str, str]] = {
 }
 
 
-@click.command(short_help="List the test cases and the permissions.")
+@click.command()
 @click.option("--json", "as_json", is_flag=True, help="Print a JSON object.")
 def cases(as_json: bool) -> None:
     """List the test cases for each subject, and the permissions for a run on a device."""

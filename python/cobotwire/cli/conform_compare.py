@@ -21,7 +21,7 @@ from cobotwire.protocol.printable import printable
 STYLES = {"worse": "red", "better": "green"}
 
 
-@click.command(short_help="Compare two reports on the same subject.")
+@click.command()
 @click.argument("before", type=click.Path())
 @click.argument("after", type=click.Path())
 @click.option("--json", "as_json", is_flag=True, help="Print the differences as JSON.")

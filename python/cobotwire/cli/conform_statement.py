@@ -9,7 +9,7 @@ from cobotwire.cli.shared.edition_option import uses_edition
 from cobotwire.conformance.statement import statement_template
 
 
-@click.command(short_help="Write the template of a statement about a device.")
+@click.command()
 @uses_edition
 def statement(edition: str) -> None:
     """Print the template of an implementation conformance statement (YAML) for an edition.

@@ -22,7 +22,7 @@ from cobotwire.inspect.demo import Result, run
 SHOWN_FIRST = 2
 
 
-@click.command(short_help="Drive a simulated arm; check every reply.")
+@click.command()
 @click.option("--codec", type=click.Choice(["native", "reference"]), help="The client's codec.")
 def demo(codec: codecs.CodecName | None) -> None:
     """Drive a simulated arm over a pseudo-terminal, and check every reply."""

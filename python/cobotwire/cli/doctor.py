@@ -24,7 +24,7 @@ from cobotwire.session import RetryPolicy
 MOST = 10_000
 
 
-@click.command(short_help="Examine an arm and its port; give advice.")
+@click.command()
 @click.argument("port", metavar="URL", shell_complete=complete_ports)
 @arm_options
 @click.option(

@@ -18,7 +18,7 @@ from cobotwire.inspect.identification import identify as identify_arm
 from cobotwire.protocol.json_values import as_json_value
 
 
-@click.command(short_help="Find out which edition an arm speaks.")
+@click.command()
 @click.argument("port", metavar="URL", shell_complete=complete_ports)
 @baudrate_option
 @click.option(

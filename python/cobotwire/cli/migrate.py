@@ -15,7 +15,7 @@ from cobotwire.protocol.printable import printable
 _COLOURS = {"+": "green", "-": "red", "@": "cyan"}
 
 
-@click.command(short_help="Rewrite a program for our clients.")
+@click.command()
 @click.argument("scripts", nargs=-1, required=True, type=click.Path(), metavar="SCRIPT...")
 @click.option("--write", is_flag=True, help="Change the files; without it, show what would change.")
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object per file.")

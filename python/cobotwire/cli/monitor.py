@@ -25,7 +25,7 @@ from cobotwire.protocol.json_values import as_json_value
 NUMBER_COLUMNS, BORDER_COLUMNS = 13, 5
 
 
-@click.command(short_help="Show joints, coordinates, rate, errors.")
+@click.command()
 @click.argument("port", metavar="URL", shell_complete=complete_ports)
 @arm_options
 @click.option(

@@ -29,7 +29,7 @@ from cobotwire.protocol.errors import UsageError
 from cobotwire.protocol.printable import printable
 
 
-@click.command(short_help="Draw a recording.")
+@click.command()
 @click.argument("file", type=click.Path())
 @click.option(
     "-o",

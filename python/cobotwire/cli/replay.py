@@ -27,7 +27,7 @@ from cobotwire.simulator.local import local_server
 FASTEST = 1e6
 
 
-@click.command(short_help="Print a recording, or serve it as an arm.")
+@click.command()
 @click.argument("file", type=click.Path())
 @click.option("--serve", "as_arm", is_flag=True, help="Serve the recorded arm until Ctrl-C.")
 @click.option(

@@ -9,10 +9,7 @@ import click
 from cobotwire.pymycobot.running import run_program
 
 
-@click.command(
-    short_help="Run a program written for pymycobot.",
-    context_settings={"allow_interspersed_args": False},
-)
+@click.command(context_settings={"allow_interspersed_args": False})
 @click.option(
     "--errors",
     type=click.Choice(["raise", "return"]),

@@ -42,7 +42,7 @@ def _list_scenarios(context: click.Context, option: click.Parameter, wanted: boo
     context.exit()
 
 
-@click.command(short_help="Serve a simulated arm.")
+@click.command()
 @click.option(
     "--pty", "on_pty", is_flag=True, help="Serve a pseudo-terminal [default; on Windows TCP]."
 )

@@ -13,7 +13,7 @@ from cobotwire.cli.shared.output import print_line, report_written
 from cobotwire.studio.extras import check_extra
 
 
-@click.command(short_help="Show an arm or a recording in the browser.")
+@click.command()
 @click.argument("source", required=False, metavar="[URL|RECORDING]", shell_complete=complete_ports)
 @arm_options
 @address_option

@@ -29,7 +29,7 @@ def parse(command: Command, words: Sequence[str]) -> dict[str, Any]:
     given = _by_name(command.name, _sizes(command), words)
     for name in text:
         if name not in given:
-            raise _missing(command.name, name, _sizes(command))
+            raise _misfit(command.name, _sizes(command), name, f"is missing its argument {name}")
     fields = {field.name: field for field in _variant(command, given).fields}
     return {
         name: word if name in text else parse_value(fields[name], word)
@@ -85,11 +85,12 @@ def parse_method(
         each.name: 0 if each.kind is Parameter.KEYWORD_ONLY else sizes.get(each.name, 1)
         for each in parameters
     }
-    given = _by_name(method.__name__, takes, words)
+    name = method.__name__
+    given = _by_name(name, takes, words)
     for each in parameters:
         if each.default is Parameter.empty and each.name not in given:
-            raise _missing(method.__name__, each.name, takes)
-    return {name: _typed(name, types[name], word) for name, word in given.items()}
+            raise _misfit(name, takes, each.name, f"is missing its argument {each.name}")
+    return {each: _typed(each, types[each], word) for each, word in given.items()}
 
 
 def _sizes(command: Command) -> dict[str, int]:
@@ -107,7 +108,7 @@ def _by_name(call: str, sizes: Mapping[str, int], words: Sequence[str]) -> dict[
     for word in words:
         name, equals, value = word.partition("=")
         if equals and name not in sizes:
-            raise _no_argument(call, word, sizes)
+            raise _misfit(call, sizes, "argument", f"has no argument for {word!r}")
         if equals and name in given:
             raise UsageError(name, word, message=f"{call}() got its argument {name} twice")
         if equals:
@@ -117,7 +118,7 @@ def _by_name(call: str, sizes: Mapping[str, int], words: Sequence[str]) -> dict[
     if len(rest) > len(free):
         rest = _gather(rest, [sizes[name] for name in free])
     if len(rest) > len(free):
-        raise _no_argument(call, rest[len(free)], sizes)
+        raise _misfit(call, sizes, "argument", f"has no argument for {rest[len(free)]!r}")
     return dict(zip(free, rest)) | given
 
 
@@ -130,22 +131,12 @@ def _gather(words: list[str], sizes: Sequence[int]) -> list[str]:
     return [",".join(word.strip("[](), ") for word in words[a:b]) for a, b in spans]
 
 
-def _no_argument(call: str, word: str, sizes: Mapping[str, int]) -> UsageError:
-    message = f"{call}() has no argument for {word!r}; {_takes(call, sizes)}"
-    return UsageError("argument", word, message=message)
-
-
-def _missing(call: str, name: str, sizes: Mapping[str, int]) -> UsageError:
-    message = f"{call}() is missing its argument {name}; {_takes(call, sizes)}"
-    return UsageError(name, message=message)
-
-
-def _takes(call: str, sizes: Mapping[str, int]) -> str:
-    text = f"it takes {', '.join(sizes) or 'no arguments'}"
+def _misfit(call: str, sizes: Mapping[str, int], name: str, problem: str) -> UsageError:
+    text = f"{call}() {problem}; it takes {', '.join(sizes) or 'no arguments'}"
     if max(sizes.values(), default=1) > 1:
         shown = [name.upper() if n == 1 else ",".join("0" * n) for name, n in sizes.items() if n]
         text += f", written as: {call} {' '.join(shown)}"
-    return text
+    return UsageError(name, message=text)
 
 
 def parse_value(field: Field, word: str) -> Any:

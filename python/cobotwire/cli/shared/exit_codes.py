@@ -1,10 +1,13 @@
-"""Turn cobotwire's errors into one line on standard error and an exit code."""
+"""Turn cobotwire's errors into one line on standard error and an exit code; signals, too."""
 
 from __future__ import annotations
 
+import signal
 import sys
+import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
+from types import FrameType
 
 import click
 
@@ -23,8 +26,8 @@ from cobotwire.protocol.errors import (
 )
 
 LINK_FAILED, NO_REPLY, NOT_READY, NOT_WRITTEN, INTERRUPTED = 3, 4, 7, 8, 130
-# What a shell reports for a process that SIGPIPE ended.
-OUTPUT_CLOSED = 141
+# What a shell reports for a process that SIGPIPE or SIGTERM ended.
+OUTPUT_CLOSED, TERMINATED = 141, 143
 
 CODES: tuple[tuple[type[CobotwireError], int], ...] = (
     (UsageError, 2),
@@ -56,3 +59,34 @@ def exit_on_errors() -> Iterator[None]:
         sys.exit(next((code for kind, code in CODES if isinstance(error, kind)), 1))
     except KeyboardInterrupt:
         sys.exit(INTERRUPTED)
+
+
+_terminated = threading.Event()
+
+
+def note_signal(number: int) -> None:
+    """Remember a SIGTERM for the exit code; ignore further ones, since ``timeout`` sends two."""
+    if number == signal.SIGTERM:
+        signal.signal(number, signal.SIG_IGN)
+        _terminated.set()
+
+
+def _interrupt(number: int, frame: FrameType | None) -> None:
+    note_signal(number)
+    raise KeyboardInterrupt
+
+
+@contextmanager
+def sigterm_as_interrupt() -> Iterator[None]:
+    """Handle SIGTERM in the block as Ctrl-C, but exit with its own code; in the main thread."""
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    _terminated.clear()
+    before = signal.signal(signal.SIGTERM, _interrupt)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGTERM, before)
+        if _terminated.is_set():
+            sys.exit(TERMINATED)

@@ -30,6 +30,8 @@ class LazyGroup(click.Group):
             return None
         verb = getattr(import_module(self.modules + name), name)
         assert isinstance(verb, click.Command), f"{name} is a verb"
+        # For completion.
+        verb.short_help = self.verbs[name]
         return verb
 
     def resolve_command(

@@ -9,8 +9,8 @@ from types import FrameType
 
 import click
 
+from cobotwire.cli.shared.exit_codes import note_signal
 from cobotwire.cli.shared.output import print_line
-from cobotwire.cli.shared.termination import note_signal
 from cobotwire.simulator.server import Server
 
 
