@@ -107,7 +107,7 @@ def client(
     \b
       send_angles 0,10,0,0,0,0 speed=30
       get_angles
-    \b
+
     In an edition with addresses, a call may end with --address and a name or a number.
     """  # noqa: D301  (click keeps the lines of a paragraph that starts with the character \b)
     with exit_if_not_testable():
