@@ -184,7 +184,7 @@ def test_simulated_arm_of_unknown_geometry_conforms_without_coordinates() -> Non
 
 
 def test_statement_of_an_edition_is_printed_and_selects_test_cases(tmp_path: Path) -> None:
-    printed = _run("statement", "--edition", "mycobot")
+    printed = _run("statement", edition="mycobot")
     assert printed.returncode == 0
     assert "edition: mycobot\n" in printed.stdout
     path, report = tmp_path / "arm.yaml", tmp_path / "report.json"
