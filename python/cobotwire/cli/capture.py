@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import click
 
+from cobotwire.cli.shared.edition_option import edition_option
 from cobotwire.cli.shared.lazy_group import LazyGroup
 
 VERBS = {
@@ -19,7 +20,8 @@ class _Capture(LazyGroup):
     modules = "cobotwire.cli.capture_"
 
 
-@click.group(cls=_Capture, short_help="Show what recordings hold; cut, merge and repair them.")
+@click.group(cls=_Capture)
+@edition_option
 def capture() -> None:
     """Show what recordings (pcapng) hold; cut, merge and repair them.
 

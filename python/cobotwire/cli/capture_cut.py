@@ -14,6 +14,7 @@ from cobotwire.capture.export.plan import check_commands
 from cobotwire.capture.export.times import time_ns
 from cobotwire.cli.shared.capture_files import output_options, recorded_size
 from cobotwire.cli.shared.completers import complete_commands
+from cobotwire.cli.shared.edition_option import uses_edition
 from cobotwire.cli.shared.progress_bar import progress_bar
 from cobotwire.inspect.captured import recorded_codecs
 from cobotwire.inspect.exporting import InstalledEditions
@@ -28,7 +29,7 @@ def _names(context: click.Context, option: click.Parameter, value: str | None) -
     return tuple(value.split(",")) if value else ()
 
 
-@click.command(short_help="Write a part of a recording: a time, some commands.")
+@click.command()
 @click.argument("file", type=click.Path(), metavar="FILE")
 @output_options
 @click.option("--from", "begin", metavar="TIME", help="The first time to keep.")
@@ -52,7 +53,7 @@ def _names(context: click.Context, option: click.Parameter, value: str | None) -
     type=click.Choice(["keep", "drop"]),
     help="What to do with noise; by default it is dropped if commands are chosen, else kept.",
 )
-@click.pass_obj
+@uses_edition
 def cut(
     edition: str,
     file: str,

@@ -11,6 +11,7 @@ import click
 
 from cobotwire.capture.overview import Overview, StreamOverview, overview
 from cobotwire.cli.shared.capture_files import recorded_size, time_text
+from cobotwire.cli.shared.edition_option import uses_edition
 from cobotwire.cli.shared.output import print_line
 from cobotwire.cli.shared.progress_bar import progress_bar
 from cobotwire.inspect.captured import recorded_codecs
@@ -20,7 +21,7 @@ from cobotwire.protocol.printable import printable
 DAMAGED = 6
 
 
-@click.command(short_help="Show times, messages, rates, gaps and noise.")
+@click.command()
 @click.argument("files", nargs=-1, required=True, type=click.Path(), metavar="FILE...")
 @click.option(
     "--gap",
@@ -31,7 +32,7 @@ DAMAGED = 6
     help="Count pauses that are longer.",
 )
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object.")
-@click.pass_obj
+@uses_edition
 def info(edition: str, files: tuple[str, ...], gap: float, as_json: bool) -> None:
     """Show what each FILE holds, and the sum of several.
 

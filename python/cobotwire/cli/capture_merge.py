@@ -14,7 +14,7 @@ from cobotwire.protocol.counted import counted
 from cobotwire.protocol.printable import printable
 
 
-@click.command(short_help="Write several recordings into one, by time.")
+@click.command()
 @click.argument("files", nargs=-1, required=True, type=click.Path(), metavar="FILE...")
 @output_options
 def merge(files: tuple[str, ...], output: str, overwrite: bool) -> None:

@@ -13,7 +13,7 @@ from cobotwire.protocol.counted import counted
 from cobotwire.protocol.printable import printable
 
 
-@click.command(short_help="Write what is whole in a truncated or damaged one.")
+@click.command()
 @click.argument("file", type=click.Path(), metavar="FILE")
 @output_options
 def repair(file: str, output: str, overwrite: bool) -> None:

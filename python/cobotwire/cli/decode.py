@@ -20,7 +20,7 @@ from cobotwire.protocol.counted import counted
 from cobotwire.protocol.printable import printable
 
 
-@click.command(short_help="Explain bytes, streams and recordings.")
+@click.command()
 @click.argument("input", nargs=-1, required=True, type=click.Path(), metavar="HEX...|FILE...|-")
 @click.option("--raw", "format", flag_value="raw", help="FILE holds raw bytes.")
 @click.option("--hex", "format", flag_value="hex", help="FILE holds hex text.")

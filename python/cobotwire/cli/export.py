@@ -31,7 +31,7 @@ def _keys(context: click.Context, option: click.Parameter, value: str) -> tuple[
     return tuple(value.split(",")) if value else ()
 
 
-@click.command(short_help="Write captures to Parquet, CSV, Arrow and MCAP.")
+@click.command()
 @click.argument("input", nargs=-1, required=True, type=click.Path(), metavar="INPUT...")
 @click.option(
     "-o",

@@ -18,7 +18,7 @@ from cobotwire.transport.serial.remedies import Remedy
 NOT_ALLOWED = "you have no permission to open it"
 
 
-@click.command(short_help="List serial ports, likely ones first.")
+@click.command()
 @click.option("--fix", is_flag=True, help="Print what to do so that ports can be opened.")
 @click.option("--json", "as_json", is_flag=True, help="Print the ports, or the steps, as JSON.")
 def ports(fix: bool, as_json: bool) -> None:
