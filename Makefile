@@ -22,7 +22,7 @@ STATES ?= 1000000
 REV ?= HEAD
 CARGO_FUZZ := .cargo-tools/bin/cargo-fuzz
 
-.PHONY: set-up spec-mutants help demo test lint lint-and-rust python-test computing-tests simulating-tests calling-tests waiting-tests other-tests rust-test products gen targets docs bench plots picture answers table fuzz figures clean faults conform defects attack archives bench-archive bench-compare rust-asan robots layer demos front-end front-end-if-reachable four-hours studio-pictures explore nightly release-check
+.PHONY: set-up spec-mutants help demo test lint lint-and-rust python-test computing-tests simulating-tests calling-tests waiting-tests other-tests rust-test products gen targets docs bench plots picture answers table fuzz figures clean faults conform defects attack archives bench-archive bench-compare rust-asan robots layer demos front-end front-end-if-reachable four-hours studio-pictures explore nightly release-check figures-page
 .DEFAULT_GOAL := help
 
 help: ## list the targets
@@ -163,7 +163,7 @@ answers: .venv/.tools .venv/.native ## record the example capture of docs/answer
 	$(BIN)/cobotwire export target/answers/arm7.pcapng -o target/answers/archive --wide || test $$? = 1
 	$(BIN)/python docs/answers/draw.py target/answers/archive docs/plots
 
-fuzz: products .venv/.native $(CARGO_FUZZ) ## fuzz each target for FUZZ_SECONDS (60); see CONTRIBUTING.md
+fuzz: products .venv/.native $(CARGO_FUZZ) ## fuzz each target for FUZZ_SECONDS (60); see docs/contribute/searches.md
 	cargo clippy --manifest-path rust/fuzz/Cargo.toml --all-targets --quiet -- -D warnings
 	@status=0; \
 	$(BIN)/python rust/fuzz/run.py $(FUZZ_SECONDS) || status=1; \
@@ -211,6 +211,9 @@ demos: .venv/.tools .venv/.native ## run the maker's public demos: with the libr
 
 faults: .venv/.tools .venv/.native ## run our client and pymycobot on each fault; write docs/fault-scenarios.md
 	PYTHONPATH=tests $(BIN)/python bench/fault_scenarios.py
+
+figures-page: .venv/.tools .venv/.native ## write docs/figures.md: all blocks (minutes), or make figures-page FIGURES="compared calls"
+	$(BIN)/python bench/figures.py $(FIGURES)
 
 figures: .venv/.tools .venv/.native ## count files and lines of each room, and the files that a call uses
 	$(BIN)/python tests/house_figures.py

@@ -13,17 +13,23 @@ from cobotwire.editions.mycobot import (
 from cobotwire.simulator import PtyServer, SimulatedArm
 
 
-@pytest.mark.parametrize("limit", [165.0, 10.0], ids=["target reached", "target not reached"])
-def test_readme_example_runs_to_its_end(
-    server: PtyServer, simulated: SimulatedArm, limit: float, capsys: pytest.CaptureFixture[str]
+@pytest.mark.parametrize(
+    ("limit", "arrived"), [(165.0, True), (10.0, False)], ids=["reached", "not reached"]
+)
+def test_program_of_the_guide_runs_to_its_end(
+    server: PtyServer,
+    simulated: SimulatedArm,
+    limit: float,
+    arrived: bool,
+    capsys: pytest.CaptureFixture[str],
 ) -> None:
     # The arm ignores a target beyond a limit, and never reaches it.
     simulated.state.maximum[2] = limit
-    text = (vectors.ROOT / "README.md").read_text()
-    blocks = [part.split("```")[0] for part in text.split("```python\n")[1:]]
-    [example] = [block for block in blocks if "/dev/ttyACM0" in block]
-    exec(compile(example.replace("/dev/ttyACM0", server.url), "README.md", "exec"), {})
-    assert "Coords(x=" in capsys.readouterr().out
+    text = (vectors.ROOT / "docs" / "guide" / "drive.md").read_text()
+    [example] = [part.split("```")[0] for part in text.split("drive.py -->\n```python\n")[1:]]
+    exec(compile(example.replace("/dev/ttyACM0", server.url), "drive.py", "exec"), {})
+    printed = capsys.readouterr().out.splitlines()
+    assert (printed[-1] == "[0, -20, 30, 0, 10, 0]", len(printed)) == (arrived, 2 + (not arrived))
 
 
 def test_text_reply_ends_after_a_silence(arm: MyCobot, simulated: SimulatedArm) -> None:

@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 import shutil
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
 
 from cobotwire.editions.mycobot280 import TABLE
-from cobotwire.simulator import PtyServer, RunningClock, SimulatedArm
-from docs.pages import BLOCK, PORT, run
+from cobotwire.simulator import PtyServer, SimulatedArm
+from docs.pages import run
 from vectors import ROOT
 
 GUIDE = ROOT / "docs" / "guide"
@@ -30,24 +28,6 @@ def test_commands_of_guide_page_print_the_output_of_the_page(page: Path, tmp_pat
         runs = list(run(page, tmp_path, server.url))
     assert runs, "each page of the guide has at least one command"
     assert [each for each in runs if not each.matches] == []
-
-
-def test_example_of_the_readme_moves_the_arm_and_prints_readings() -> None:
-    text = (ROOT / "README.md").read_text(encoding="utf-8")
-    [_, example] = [block["text"] for block in BLOCK.finditer(text) if block["kind"] == "python"]
-    clock = RunningClock(4.0)
-    with PtyServer(SimulatedArm(TABLE, clock=clock), clock) as server:
-        done = subprocess.run(
-            [sys.executable, "-c", example.replace(PORT, server.url)],
-            capture_output=True,
-            text=True,
-            timeout=30,
-        )
-    assert (done.returncode, done.stderr) == (0, "")
-    j2, coords, *samples, report = done.stdout.splitlines()
-    assert float(j2) == pytest.approx(-20, abs=0.1)
-    assert coords.startswith("Coords(x=")
-    assert (len(samples), report[:3]) == (10, "10 ")
 
 
 def test_command_with_other_output_than_the_page_does_not_match(tmp_path: Path) -> None:

@@ -1,8 +1,8 @@
-"""The README, the landing page and the quick start."""
+"""The README, the landing page, the quick start and the list of verbs."""
 
 from __future__ import annotations
 
-from newcomer.website.planned import ANY, INSTALLED, Expected, NotRun, Plan, Program
+from newcomer.website.planned import ANY, INSTALLED, Expected, NotRun, Plan
 
 PORT = "/dev/ttyACM0"
 SIM = Expected(r"/dev/pts/\d+", served=True)
@@ -18,11 +18,16 @@ cp before.json after.json
 """
 
 README = Plan(
-    prepare=PREPARE,
     commands={
         "pip install cobotwire": INSTALLED,
         "make demo": NotRun("it is for a clone, with Rust; .ci/run runs it there"),
         "make test": NotRun("it is for a clone, with Rust; .ci/run runs it there"),
+    },
+)
+
+CLI = Plan(
+    prepare=PREPARE,
+    commands={
         f"cobotwire call {PORT} power_on": Expected(r"sent; acknowledged"),
         f"cobotwire call {PORT} send_angles 0,0,0,0,0,0 speed=30": Expected(r"sent"),
         "cobotwire decode FE FE 06 21 01 00 1D 14 FA": Expected(r"send_angle\(joint=1"),
@@ -44,15 +49,15 @@ README = Plan(
         "cobotwire conform codec -- ./my-codec": Expected(r"pass"),
         "cobotwire conform compare before.json after.json": Expected(),
         'eval "$(cobotwire completion bash)"': Expected(r"\A\Z"),
+    },
+)
+
+ADD_COMMAND = Plan(
+    commands={
         "pip install cobotwire cobotwire-codegen": INSTALLED,
         "cobotwire-gen init mine": Expected(r"mine\.yaml"),
         "cobotwire-gen build mine.yaml --out mypkg": Expected(r"mine \(\d+ commands\)"),
         "cobotwire --edition ./mypkg sim": SIM,
-    },
-    programs={
-        "from cobotwire import Limits, MotionTimeout, MyCobot280, ReplyTimeout": Program(
-            output=r"\A-20\.03\nCoords\(x=.*\n(.*\n){10}10 samples"
-        )
     },
 )
 
