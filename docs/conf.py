@@ -74,6 +74,18 @@ html_search_scorer = str(Path(__file__).with_name("search_order.js"))
 # Each page links to its source in the repository.
 html_copy_source = False
 
+# The former addresses of pages that moved.
+MOVED = {"exchange": "contribute/exchange", "attack": "contribute/attack"}
+
+
+def _lead_on(app: Sphinx, error: Exception | None) -> None:
+    """Let the address of a page that moved lead to its new one."""
+    for old, new in MOVED.items() if app.builder.format == "html" else ():
+        link = (
+            f'<meta http-equiv="refresh" content="0; url={new}.html"><a href="{new}.html">moved</a>'
+        )
+        Path(app.outdir, f"{old}.html").write_text(link, "utf-8")
+
 
 def _add_robots(app: Sphinx, page: str, source: list[str]) -> None:
     """List the page of each robot below their overview, and draw the arm of each."""
@@ -156,3 +168,4 @@ def setup(app: Sphinx) -> None:
     app.connect("source-read", _add_robots)
     app.connect("doctree-read", _name_commands)
     app.connect("html-page-context", _collapse, priority=400)
+    app.connect("build-finished", _lead_on)

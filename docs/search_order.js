@@ -6,6 +6,7 @@ const Order = {
   folders: [
     [/^reference\/test-suite\//, -200],
     [/^reference\/(language|pymycobot)$/, -15],
+    [/^contribute\//, -20],
     [/^guide\//, 6],
     [/^api\//, -10],
     [/^reference\/.*\/README$/, -5],

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 
 # The outcomes that must never occur.
 FORBIDDEN = ("wrong", "exceptions", "duplicates", "lost", "late", "merged")
-# The counts, in the order of the table, by their headings; docs/attack.md explains them.
+# The counts, in the order of the table, by their headings; docs/contribute/attack.md explains them.
 COLUMNS = {
     "calls": "calls",
     "right": "right",

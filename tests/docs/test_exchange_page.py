@@ -8,7 +8,7 @@ import vectors
 
 
 def test_every_test_that_the_page_names_exists() -> None:
-    text = (vectors.ROOT / "docs" / "exchange.md").read_text("utf-8")
+    text = (vectors.ROOT / "docs" / "contribute" / "exchange.md").read_text("utf-8")
     named = re.findall(r"`(tests/[\w/]+\.py)::(\w+)`", text)
     assert len(named) >= text.split("## The limits")[0].count("\n| ") - 12
     for path, name in named:

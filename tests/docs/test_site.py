@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from html.parser import HTMLParser
 from pathlib import Path
@@ -17,6 +18,7 @@ from targets.decoder.browser import SHOWN
 from vectors import ROOT
 
 SITE = "https://cobotwire.github.io/cobotwire/"
+REPOSITORY = re.compile(r"https://github\.com/cobotwire/cobotwire/(?:blob|tree|edit)/main/([^#?]+)")
 
 # The elements that make a browser load content, and the attribute that names the content.
 LOADED = {"img": "src", "script": "src", "link": "href", "iframe": "src", "source": "src"}
@@ -69,11 +71,18 @@ def test_every_link_leads_to_an_existing_place(site: Path, pages: dict[Path, Pag
     assert sum(len(page.links) for page in pages.values()) > 1000
 
 
+def test_former_address_of_a_page_leads_to_its_new_one(pages: dict[Path, Page], site: Path) -> None:
+    assert pages[site / "exchange.html"].links == ["contribute/exchange.html"]
+
+
 def _dead(site: Path, pages: dict[Path, Page], path: Path, page: Page) -> Iterator[str]:
     for link in page.links:
         # Pages that are also read in the repository lead to generated ones by their address.
         parts = urlsplit(link.replace(SITE, f"{site}/"))
         if parts.scheme:
+            found = REPOSITORY.match(link)
+            if found and not (ROOT / unquote(found[1])).exists():
+                yield f"{path.relative_to(site)}: {link}"
             continue
         target = (path.parent / unquote(parts.path)).resolve() if parts.path else path
         place = f"{path.relative_to(site)}: {link}"

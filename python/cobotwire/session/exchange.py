@@ -2,7 +2,7 @@
 
 This is the session's state machine: everything that decides a state stands in this file. It has no
 clock, thread or port: bytes and times go in, bytes and events come out, and clients differ only in
-how they wait. ``docs/exchange.md`` shows its states and what it promises.
+how they wait. ``docs/contribute/exchange.md`` shows its states and what it promises.
 
 A request that has a reply passes through three states::
 

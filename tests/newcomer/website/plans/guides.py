@@ -79,6 +79,26 @@ PYMYCOBOT = Plan(
 )
 
 CLONE = "it is for a clone, and takes minutes"
+SEARCHES = Plan(
+    commands=dict.fromkeys(
+        [
+            "make nightly",
+            'make nightly SEARCHES="fuzz layer"',
+            "make fuzz",
+            "make fuzz FUZZ_SECONDS=600",
+            "make attack",
+            "make attack ATTACK_SECONDS=600",
+            'make attack ATTACK="--profile late --seed 7"',
+            "make figures",
+            "make bench",
+            "make bench-compare",
+            "make bench-compare REV=main COMPARE=\"--rows 'scan|raw' --rounds 31\"",
+            "make bench-archive",
+            "make rust-asan",
+        ],
+        NotRun(CLONE),
+    )
+)
 ATTACK = Plan(commands={"make attack": NotRun(CLONE)})
 C = Plan(
     commands={
