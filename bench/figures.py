@@ -1,7 +1,7 @@
 """Write the blocks of docs/figures.md, to which other pages link, and the table of the README.
 
-    make figures                            all blocks; takes minutes
-    make figures FIGURES="compared starts"  these
+    make figures-page                            all blocks; takes minutes
+    make figures-page FIGURES="compared starts"  these
 
 The counts come from the tables that `make table` and `make faults` write; each other block is
 what a bench prints, below the machine that it ran on.

@@ -89,7 +89,7 @@ SEARCHES = Plan(
             "make attack",
             "make attack ATTACK_SECONDS=600",
             'make attack ATTACK="--profile late --seed 7"',
-            "make figures",
+            "make figures-page",
             "make bench",
             "make bench-compare",
             "make bench-compare REV=main COMPARE=\"--rows 'scan|raw' --rounds 31\"",
