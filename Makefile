@@ -22,7 +22,7 @@ STATES ?= 1000000
 REV ?= HEAD
 CARGO_FUZZ := .cargo-tools/bin/cargo-fuzz
 
-.PHONY: set-up spec-mutants help demo test lint lint-and-rust python-test computing-tests simulating-tests calling-tests waiting-tests other-tests rust-test products gen targets docs bench plots picture answers table fuzz figures clean faults conform defects attack archives bench-archive bench-compare rust-asan robots layer demos front-end front-end-if-reachable four-hours studio-pictures explore nightly release-check figures-page
+.PHONY: set-up spec-mutants help demo test lint lint-and-rust python-test computing-tests simulating-tests calling-tests waiting-tests other-tests rust-test products gen targets docs bench plots picture answers table fuzz figures clean faults conform defects attack archives bench-archive bench-compare rust-asan robots layer demos front-end front-end-if-reachable four-hours studio-pictures explore nightly release-check figures-page every-edition
 .DEFAULT_GOAL := help
 
 help: ## list the targets
@@ -188,6 +188,10 @@ explore: .venv/.tools .venv/.native ## explore every order of events of an excha
 
 nightly: .venv/.tools .venv/.native ## run the long searches one after another, and print one table: make nightly SEARCHES="fuzz attack"
 	$(BIN)/python tools/nightly.py $(SEARCHES)
+
+every-edition: set-up ## test all editions where `make test` tests a sample
+	EVERY_EDITION=1 $(BIN)/python -m pytest tests/codec/test_message_tables.py tests/docs/test_site.py \
+		tests/docs/test_robot_pages.py tests/mutation/test_mutants.py
 
 archives: .venv/.tools .venv/.native ## export and query archives on a Dask cluster and an S3 server
 	$(BIN)/python -m pytest tests/capture/archive -o python_files='test_*.py on_*.py'

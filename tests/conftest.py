@@ -50,9 +50,12 @@ TEMPORARY = pytest.StashKey[tempfile.TemporaryDirectory[str]]()
 def pytest_configure(config: pytest.Config) -> None:
     """Restore Ctrl-C in tests and their subprocesses; give them temporary files of their own.
 
+    Nearly all that is created until tests start is kept: collect no garbage until then.
+
     A background shell may have disabled Ctrl-C. The notes on ports are temporary files: a test in
     another process may have left one on a TCP port that this process uses next.
     """
+    gc.disable()
     signal.signal(signal.SIGINT, signal.default_int_handler)
     config.stash[TEMPORARY] = tempfile.TemporaryDirectory(prefix="cw-")
     os.environ["TMPDIR"] = config.stash[TEMPORARY].name
@@ -62,6 +65,7 @@ def pytest_collection_finish() -> None:
     """Keep the garbage collector from what lives to the end, such as tests and loaded editions."""
     gc.collect()
     gc.freeze()
+    gc.enable()
     gc.set_threshold(20_000, 20, 20)
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterator
 from functools import lru_cache
 from pathlib import Path
@@ -32,6 +33,22 @@ ONE_BY_ONE = ("mycobot", "mycobot280")
 def further() -> list[str]:
     """Return the names of the other editions."""
     return [name for name in editions() if name not in ONE_BY_ONE]
+
+
+# The frames of each family: with a footer, with an address, with a CRC; one and two arms.
+SAMPLE = (*ONE_BY_ONE, "mybuddy", "mercury_a1", "mercury_b1", "pro450")
+
+
+def sampled() -> list[str]:
+    """Return the editions that stand for all where a law is the same for each edition.
+
+    ``make every-edition`` tests all of them.
+    """
+    every = sorted(path.stem for path in project.edition_files(ROOT))
+    return every if "EVERY_EDITION" in os.environ else [name for name in every if name in SAMPLE]
+
+
+LEFT_OUT = {path.stem for path in project.edition_files(ROOT)} - {*sampled()}
 
 
 def limits(name: str, vector: Vector) -> Iterator[tuple[dict[str, Any], bool]]:

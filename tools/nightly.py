@@ -24,6 +24,7 @@ LOGS = ROOT / "target" / "nightly"
 # The targets of the Makefile, the shortest first; with the variables that make a search longer.
 SEARCHES = {
     "archives": [],
+    "every-edition": [],
     "robots": [],
     "attack": ["ATTACK_SECONDS=600"],
     "layer": [],

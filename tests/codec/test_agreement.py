@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterator
 from typing import Any
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 import random_tables
@@ -24,7 +24,6 @@ from strategies import TABLES, codec_of
 
 LISTENING = st.sampled_from(["request", "reply", "both"])
 # An example draws one of many kinds of tables.
-MORE = settings(max_examples=2 * (settings.default or settings()).max_examples)
 
 
 def _outcome(action: Callable[[], Any]) -> Any:
@@ -40,7 +39,6 @@ def _same(table: Table, action: Callable[[Codec], Any]) -> None:
     assert _outcome(lambda: action(reference)) == _outcome(lambda: action(native))
 
 
-@MORE
 @given(random_tables.any_tables(), LISTENING, st.booleans(), st.data())
 def test_both_framers_return_the_same_events_and_keep_the_same_bytes(
     table: Table, listening: Listening, accept_unknown: bool, data: st.DataObject
@@ -72,7 +70,6 @@ def _readings(codec: Codec, frame: Frame, names: list[str]) -> Iterator[Any]:
             yield read
 
 
-@MORE
 @given(random_tables.any_tables(), LISTENING, st.booleans(), st.data())
 def test_frames_are_read_alike_in_every_direction_and_as_every_command(
     table: Table, listening: Listening, accept_unknown: bool, data: st.DataObject
@@ -92,7 +89,6 @@ def test_frames_are_read_alike_in_every_direction_and_as_every_command(
     _same(table, readings)
 
 
-@MORE
 @given(random_tables.any_tables(), st.data())
 def test_bytes_are_decoded_alike_or_rejected_at_the_same_byte(
     table: Table, data: st.DataObject
@@ -105,7 +101,6 @@ def test_bytes_are_decoded_alike_or_rejected_at_the_same_byte(
     _same(table, lambda codec: repr(codec.decode(direction, bytes(piece), of=of)))
 
 
-@MORE
 @given(random_tables.any_tables(), st.data())
 def test_values_are_encoded_alike_or_rejected_with_the_same_message(
     table: Table, data: st.DataObject
@@ -141,7 +136,6 @@ def test_legal_message_survives_encode_and_decode(edition: str, data: st.DataObj
         assert read.values == values
 
 
-@MORE
 @given(random_tables.any_tables(), LISTENING, st.booleans(), st.data())
 def test_columns_and_scans_are_the_same_in_the_same_order(
     table: Table, listening: Listening, flag: bool, data: st.DataObject

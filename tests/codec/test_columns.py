@@ -6,7 +6,7 @@ from itertools import pairwise
 from typing import Any
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 import random_tables
@@ -20,7 +20,6 @@ from strategies import CODECS, TABLES, codec_of
 
 LISTENING = st.sampled_from(["request", "reply", "both"])
 EACH_EDITION = pytest.mark.parametrize("edition", TABLES)
-MORE = settings(max_examples=2 * (settings.default or settings()).max_examples)
 ANGLES = bytes.fromhex("FE FE 0E 20 00 64 00 C8 01 2C 01 90 01 F4 02 8A FA")
 COORDS = bytes.fromhex("FE FE 0E 23 01 BC FD A0 10 0D DC 66 FF 54 DE 21 FA")
 FLAG = bytes.fromhex("FE FE 03 12 01 FA")
@@ -31,7 +30,6 @@ def plain(columns: Columns) -> Any:
     return columns.rows("get_angles")["angles"].tolist()
 
 
-@MORE
 @given(random_tables.any_tables(), LISTENING, st.booleans(), st.data())
 def test_stream_in_pieces_has_the_same_rows(
     table: Table, listening: Listening, raw: bool, data: st.DataObject

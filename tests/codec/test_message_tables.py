@@ -19,8 +19,9 @@ from cobotwire.codec.interface import Codec, Columns
 from cobotwire.codec.table_columns import LEADING
 from cobotwire.protocol.errors import ProtocolError, UsageError
 from cobotwire.protocol.table import Direction, Field, Number, Table, Variant
+from vectors import sampled
 
-EDITIONS = editions.names()
+EDITIONS = sampled()
 DIRECTIONS: tuple[Direction, ...] = ("request", "reply")
 
 

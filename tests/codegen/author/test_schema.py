@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import shutil
+from collections.abc import Iterable
 from functools import cache
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -15,6 +16,7 @@ import vectors
 from cobotwire_codegen.build import build_edition
 from cobotwire_codegen.language.schema import editor_schema, schema_json
 from cobotwire_codegen.load import Node, load
+from cobotwire_codegen.model import Edition
 from cobotwire_codegen.project import SERVO_BUS, edition_files
 from codegen.author import samples
 from codegen.author.schema_walk import Closed, Walk, Word, plain
@@ -42,9 +44,8 @@ class Corpus(NamedTuple):
         return load(path, path.relative_to(self.root).as_posix())
 
 
-def _corpus(root: Path, paths: list[Path]) -> Corpus:
-    schema = editor_schema([build_edition(path, root) for path in paths])
-    return Corpus(root, tuple(paths), Walk(schema))
+def _corpus(root: Path, paths: list[Path], editions: Iterable[Edition]) -> Corpus:
+    return Corpus(root, tuple(paths), Walk(editor_schema([*editions])))
 
 
 @cache
@@ -52,7 +53,10 @@ def corpora() -> tuple[Corpus, ...]:
     """Return the project's spec, and the samples, which use the whole language."""
     spec = vectors.ROOT / "spec"
     of_samples = [samples.FOLDER / name for name in samples.EDITIONS]
-    return _corpus(spec, edition_files(vectors.ROOT)), _corpus(samples.FOLDER, of_samples)
+    return (
+        _corpus(spec, edition_files(vectors.ROOT), vectors.editions().values()),
+        _corpus(samples.FOLDER, of_samples, (build_edition(p, samples.FOLDER) for p in of_samples)),
+    )
 
 
 def _occurrences() -> dict[str, tuple[int, Path, Found]]:
