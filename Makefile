@@ -50,7 +50,7 @@ lint: .venv/.tools .venv/.native ## check formatting, types, stubs against the b
 	cargo fmt --all --check
 	cargo fmt --manifest-path rust/fuzz/Cargo.toml --check
 # In release mode, because the dependencies are compiled in it already, for the native module.
-	+cargo clippy --release --workspace --all-targets --quiet -- -D warnings
+	+cargo clippy --release --workspace --lib --tests --quiet -- -D warnings
 
 # Linters and Rust tests use what the tests in Python leave, which wait a third of the time. First
 # the linters: most of what they find is found in seconds.

@@ -35,7 +35,7 @@ from strategies import codec_of
 
 CLASSES = sorted(NAMES)
 # `make layer` compares all methods; here every n-th one.
-EVERY = {"calls": 24, "values": 90, "replies": 60}
+EVERY = {"calls": 24, "values": 90, "replies": 40}
 FEW = settings(max_examples=max(1, (settings.default or settings()).max_examples // 10))
 FAILURES = (REJECTED, FAILED)
 # By class and method: where our parameters are others.
