@@ -35,7 +35,7 @@ def further() -> list[str]:
     return [name for name in editions() if name not in ONE_BY_ONE]
 
 
-# The frames of each family: with a footer, with an address, with a CRC; one and two arms.
+# The frames of each family: with a footer, with an address, with a check value, with a CRC.
 SAMPLE = (*ONE_BY_ONE, "mybuddy", "mercury_a1", "mercury_b1", "pro450")
 
 
