@@ -19,7 +19,7 @@ from tempfile import TemporaryDirectory
 from rich.console import Console
 
 from cobotwire import codec as codecs
-from cobotwire.capture.byte_source import open_bytes
+from cobotwire.capture.byte_source import ByteSource, open_input
 from cobotwire.cli.shared import decoded_bytes
 from cobotwire.cli.shared.stream_printer import DecodeOptions
 from cobotwire.diagnose.counts import StreamCounts
@@ -81,14 +81,16 @@ def decode(folder: Path, megabytes: int) -> tuple[dict[str, Timed], list[Target]
 
 def _decode(path: str, options: DecodeOptions) -> None:
     with Path(os.devnull).open("w") as nowhere, redirect_stdout(nowhere):
-        source = open_bytes([path], "raw", lambda text: None)
+        source = open_input([path], "raw", print)
+        assert isinstance(source, ByteSource), "raw bytes are no recording"
         decoded_bytes.decode_bytes(source, options, StreamCounts())
 
 
 def _frame_by_frame(path: str) -> None:
     codec = codecs.load(TABLE, "native")
     with Path(os.devnull).open("w") as nowhere, redirect_stdout(nowhere):
-        source = open_bytes([path], "raw", lambda text: None)
+        source = open_input([path], "raw", print)
+        assert isinstance(source, ByteSource), "raw bytes are no recording"
         decoded_bytes.diagnose_bytes(codec, source, OPTIONS, StreamCounts())
 
 

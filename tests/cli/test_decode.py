@@ -55,7 +55,6 @@ def test_exit_code_is_1_if_a_byte_is_not_in_a_legal_frame(tmp_path: Path) -> Non
     path.write_bytes(ANGLES * 3)
     assert run(str(path))[0] == 0
     assert run(str(path), "--direction", "request")[0] == 1
-    assert run("-", stdin=b"")[0] == 0
 
 
 def test_direction_and_accept_unknown_choose_what_is_a_frame(tmp_path: Path) -> None:

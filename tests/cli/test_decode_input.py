@@ -57,7 +57,6 @@ def test_long_hex_text_is_decoded_block_by_block(tmp_path: Path) -> None:
         (b"fe fe 02 20 fa zz", ["--hex"], "byte 15 of"),
         (FIELD, ["--hex"], "byte 0 of"),
         (b"fe " * 400 + b"xx", [], "byte 1200 of"),
-        (b"\xef\xbb\xbffe fe 02 20 fa", [], "Unicode"),
         ("fe fe 02 20 fa".encode("utf-16"), [], "Unicode"),
     ],
 )

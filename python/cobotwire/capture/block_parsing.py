@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import struct
 from collections.abc import Generator, Iterator
-from typing import NamedTuple
+from typing import NamedTuple, Protocol
 
 from cobotwire.capture import block_encoding as blocks
-from cobotwire.capture.capture_file import Readable
 from cobotwire.capture.damage import LARGEST_BLOCK, damaged
 
 SMALLEST_BLOCK = 12
@@ -31,6 +30,29 @@ class Truncated(EOFError):
         super().__init__(offset)
 
 
+class Closable(Protocol):
+    """What can be closed."""
+
+    def close(self) -> None:
+        """Close the file."""
+        ...
+
+
+class Readable(Closable, Protocol):
+    """A file that is read from its beginning to its end."""
+
+    def read(self, size: int, /) -> bytes:
+        """Return some bytes, at most ``size``; none at the end."""
+        ...
+
+
+def is_capture(first_bytes: bytes) -> bool:
+    """Return whether a file that begins with these bytes (12 suffice) is a pcapng file."""
+    magic = struct.pack("<I", blocks.BYTE_ORDER_MAGIC)
+    kind = struct.pack("<I", blocks.SECTION)
+    return first_bytes[:4] == kind and first_bytes[8:12] in (magic, magic[::-1])
+
+
 def blocks_of(file: Readable, name: str) -> Iterator[Block]:
     """Yield the blocks of a file, in order.
 
@@ -46,7 +68,7 @@ def blocks_of(file: Readable, name: str) -> Iterator[Block]:
             item = next(cut, None)
         else:
             try:
-                item = cut.send(_read(file, item))
+                item = cut.send(read_exactly(file, item))
             except StopIteration:
                 return
 
@@ -84,7 +106,7 @@ def cut_blocks(name: str) -> Generator[int | Block, bytes, None]:
         offset += size
 
 
-def _read(file: Readable, size: int) -> bytes:
+def read_exactly(file: Readable, size: int) -> bytes:
     """Return exactly ``size`` bytes, or fewer if the file ends."""
     data = file.read(size)
     while data and len(data) < size:

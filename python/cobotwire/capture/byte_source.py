@@ -1,31 +1,25 @@
-"""Read bytes to decode: hex arguments, a file or standard input, as raw bytes or hex text."""
+"""Open what to decode: hex arguments, a file or standard input; detect what they hold."""
 
 from __future__ import annotations
 
 import os
-import re
 import stat
 from collections.abc import Callable, Iterator, Sequence
 from itertools import chain
-from typing import IO, Literal, NamedTuple
+from typing import IO, TYPE_CHECKING, NamedTuple
 
 from cobotwire.capture.file_errors import unusable_file
+from cobotwire.capture.foreign.hex_text import hex_arguments
 from cobotwire.protocol.errors import LinkError, UsageError
-from cobotwire.protocol.printable import printable
 
-ByteFormat = Literal["raw", "hex"]
+if TYPE_CHECKING:
+    from cobotwire.capture.foreign.recognising import Recognised
+    from cobotwire.capture.reader import CaptureReader
+
+__all__ = ["ByteSource", "hex_arguments", "open_input"]
 
 # Bytes to read at a time. A pipe returns what it has.
 BLOCK = 1 << 18
-# The number of bytes that decide between raw bytes and hex text. All of them are read, unless a
-# byte comes that cannot be text: so the result does not depend on how a pipe cuts the input.
-DETECT = 512
-
-_HEX = re.compile(rb"(?:[\s,;:]|0[xX]|[0-9A-Fa-f]{2})*")
-_SEPARATORS = re.compile(rb"0[xX]|[\s,;:]+")
-# A byte order mark before hex digits: UTF-8, or UTF-16 in either byte order.
-_MARKED = re.compile(rb"\xef\xbb\xbf[0-9A-Fa-f]|\xff\xfe[0-9A-Fa-f]\0|\xfe\xff\0[0-9A-Fa-f]")
-_TEXT = frozenset(b"\t\n\v\f\r" + bytes(range(0x20, 0x7F)))
 
 
 class ByteSource(NamedTuple):
@@ -40,17 +34,21 @@ class ByteSource(NamedTuple):
     from_arguments: bool
 
 
-def open_bytes(
-    arguments: Sequence[str], format: ByteFormat | None, notify: Callable[[str], None]
-) -> ByteSource:
+def open_input(
+    arguments: Sequence[str],
+    format: str | None,
+    notify: Callable[[str], None],
+    ports: Sequence[int] = (),
+) -> ByteSource | CaptureReader:
     """Open what the arguments name: bytes in hex, a file, or ``-`` for standard input.
 
-    If ``format`` is None, it is detected. If the input then is hex text, ``notify`` is called with
-    a sentence about it.
+    If ``format`` is None, it is detected. If the input then is of another program, ``notify`` is
+    called with a sentence about it. Recordings, and files of other programs that state times or
+    directions, are returned as recordings.
 
     Raises:
-        UsageError: the arguments name no bytes, or they are ambiguous.
-        LinkError: while reading: the input cannot be read to its end.
+        UsageError: the arguments name no bytes, or they are ambiguous, or the file cannot be read.
+        LinkError: also while reading: the input cannot be read to its end.
     """
     name = arguments[0]
     if format is None and name != "-":
@@ -67,18 +65,7 @@ def open_bytes(
         text = " ".join(arguments)
         message = f"{text} is not hex; give pairs of hex digits, one FILE, or -"
         raise UsageError("HEX", text, message=message)
-    stream = _open(name)
-    status = os.fstat(stream.fileno())
-    size = status.st_size if stat.S_ISREG(status.st_mode) else None
-    return ByteSource(_read(stream, name, format, notify), size, from_arguments=False)
-
-
-def hex_arguments(arguments: Sequence[str]) -> bytes | None:
-    """Return the bytes if the arguments are pairs of hex digits, else None."""
-    text = " ".join(arguments).encode(errors="replace")
-    if not _HEX.fullmatch(text):
-        return None
-    return _unhex(text)
+    return _read(_open(name), name, format, notify, ports)
 
 
 def _open(name: str) -> IO[bytes]:
@@ -90,75 +77,80 @@ def _open(name: str) -> IO[bytes]:
         raise unusable_file("FILE", name, error) from None
 
 
-def _read(
-    stream: IO[bytes], name: str, format: ByteFormat | None, notify: Callable[[str], None]
-) -> Iterator[tuple[bytes, int]]:
-    with stream:
-        blocks = _blocks(stream, name)
-        first = b""
-        if format is None:
-            first, format = _detect(blocks, name)
-            if format == "hex":
-                notify(f"reading {printable(name)} as hex text (--raw: read it as raw bytes)")
-        yield from _raw(first, blocks) if format == "raw" else _hex(first, blocks, name)
+class _Stored(Iterator[bytes]):
+    """Yields the blocks of a stream, and closes it; ``take`` counts their bytes."""
 
+    def __init__(self, stream: IO[bytes], name: str) -> None:
+        self._stream, self._name, self._size = stream, name, 0
 
-def _blocks(stream: IO[bytes], name: str) -> Iterator[bytes]:
-    try:
-        while block := stream.read(BLOCK):
-            yield block
-    except OSError as error:
-        raise LinkError(name, f"reading failed: {error.strerror}") from error
-
-
-def _detect(blocks: Iterator[bytes], name: str) -> tuple[bytes, ByteFormat]:
-    """Return the bytes that were read to detect the format, and the format."""
-    start = b""
-    while len(start) < DETECT and _TEXT.issuperset(start):
-        block = next(blocks, b"")
+    def __next__(self) -> bytes:
+        try:
+            block = self._stream.read(BLOCK)
+        except OSError as error:
+            raise LinkError(self._name, f"reading failed: {error.strerror}") from error
         if not block:
-            break
-        start += block
-    head = start[:DETECT]
-    if _MARKED.match(head):
-        raise _not_hex(name, f"{name} is Unicode text with a byte order mark, not plain hex")
-    if not _TEXT.issuperset(head):
-        return start, "raw"
-    # The second digit of the last pair may come after the head.
-    if len(head) - _end_of_hex(head) > 1:
-        raise _not_hex(name, f"{name} is text, but not hex")
-    return start, "hex"
+            raise StopIteration
+        self._size += len(block)
+        return block
+
+    def take(self) -> int:
+        """Return how many bytes were read since the last call."""
+        size, self._size = self._size, 0
+        return size
+
+    def close(self) -> None:
+        """Close the stream."""
+        self._stream.close()
 
 
-def _not_hex(name: str, problem: str) -> UsageError:
-    return UsageError("FILE", name, message=f"{problem}; --raw decodes it as raw bytes")
+def _read(
+    stream: IO[bytes],
+    name: str,
+    format: str | None,
+    notify: Callable[[str], None],
+    ports: Sequence[int],
+) -> ByteSource | CaptureReader:
+    # Imported here, because bytes in hex need nothing of it.
+    from cobotwire.capture.block_file import BlockFile
+    from cobotwire.capture.foreign.recognising import recognise
+    from cobotwire.capture.reader import CaptureReader, read
+
+    status = os.fstat(stream.fileno())
+    size = status.st_size if stat.S_ISREG(status.st_mode) else None
+    stored = _Stored(stream, name)
+    try:
+        found = recognise(_decompressed(stored, name, format), name, format, ports)
+    except BaseException:
+        stored.close()
+        raise
+    if found.notice and format is None:
+        notify(found.notice)
+    if found.recording and found.reader is None and size is not None:
+        # A file on a disk is read faster without the blocks between.
+        stored.close()
+        return read(name)
+    if found.recording:
+        return CaptureReader(BlockFile(found.blocks, stored, found), name)
+    return ByteSource(_counted(found, stored, notify), size, from_arguments=False)
 
 
-def _end_of_hex(text: bytes) -> int:
-    found = _HEX.match(text)
-    assert found is not None, "the pattern matches the empty text"
-    return found.end()
+def _decompressed(stored: Iterator[bytes], name: str, format: str | None) -> Iterator[bytes]:
+    """Yield the contents of a file that may be compressed."""
+    from cobotwire.capture.compression import compression_of, decompressed
+
+    first = next(stored, b"")
+    compression = None if format == "raw" else compression_of(first)
+    blocks = chain([first], stored)
+    return decompressed(blocks, compression, name) if compression else blocks
 
 
-def _raw(first: bytes, blocks: Iterator[bytes]) -> Iterator[tuple[bytes, int]]:
-    if first:
-        yield first, len(first)
-    for block in blocks:
-        yield block, len(block)
-
-
-def _hex(first: bytes, blocks: Iterator[bytes], name: str) -> Iterator[tuple[bytes, int]]:
-    place, rest = 0, b""
-    for block in chain([first], blocks):
-        text = rest + block
-        end = _end_of_hex(text)
-        if len(text) - end > 1:
-            raise _not_hex(name, f"byte {place + end} of {name} is not a pair of hex digits")
-        yield _unhex(text[:end]), len(block)
-        place, rest = place + end, text[end:]
-    if rest:
-        raise _not_hex(name, f"byte {place} of {name} is not a pair of hex digits")
-
-
-def _unhex(text: bytes) -> bytes:
-    return bytes.fromhex(_SEPARATORS.sub(b"", text).decode("ascii"))
+def _counted(
+    found: Recognised, stored: _Stored, notify: Callable[[str], None]
+) -> Iterator[tuple[bytes, int]]:
+    try:
+        for block in found.blocks:
+            yield block, stored.take()
+        for text in found.file.remarks():
+            notify(text)
+    finally:
+        stored.close()

@@ -3,38 +3,29 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import BinaryIO, Protocol
+from typing import BinaryIO
 
-from cobotwire.capture.compression import (
-    Compression,
-    DamagedCompression,
-    Decompressed,
-    compression_of,
-)
+from cobotwire.capture.block_file import BlockFile
+from cobotwire.capture.block_parsing import Readable
+from cobotwire.capture.compression import Compression, compression_of, decompressed
 from cobotwire.capture.file_errors import unusable_file
-from cobotwire.protocol.errors import CaptureError
+from cobotwire.capture.foreign.recognising import Recognised, recognise
+from cobotwire.protocol.errors import CaptureError, UnreadableInput
 
 # Bytes to read at a time from a compressed file.
 BLOCK = 1 << 16
 MAGIC = 4
 
 
-class Readable(Protocol):
-    """A file that is read from its beginning to its end."""
-
-    def read(self, size: int, /) -> bytes:
-        """Return some bytes, at most ``size``; none at the end."""
-        ...
-
-    def close(self) -> None:
-        """Close the file."""
-        ...
-
-
-def open_capture(path: str | os.PathLike[str]) -> Readable:
+def open_capture(
+    path: str | os.PathLike[str], format: str | None = None, ports: Sequence[int] = ()
+) -> Readable:
     """Open a capture for reading; gzip and zstd are decompressed, whatever the name of the file.
+
+    Files of other programs that state times or directions become recordings; ``format`` and
+    ``ports`` are those of :func:`~cobotwire.capture.foreign.recognising.recognise`.
 
     Raises:
         UsageError: the file does not exist, or it cannot be read, or zstd is not installed.
@@ -44,43 +35,34 @@ def open_capture(path: str | os.PathLike[str]) -> Readable:
         file = Path(path).open("rb")  # noqa: SIM115  (closed by the caller)
     except (OSError, ValueError) as error:
         raise unusable_file("capture", path, error) from None
+    name = str(path)
     try:
         # A pipe is not read before the packets are.
-        first = file.peek(MAGIC)[:MAGIC] if file.seekable() else b""
-        compression = compression_of(first)
-        return CompressedFile(file, compression, str(path)) if compression else file
+        if not file.seekable():
+            return file
+        compression = compression_of(file.peek(MAGIC)[:MAGIC])
+        found = _recognised(_blocks(file, compression, name), name, format, ports)
+        if found and found.reader and found.recording:
+            return BlockFile(found.blocks, file, found)
+        file.seek(0)
+        return BlockFile(_blocks(file, compression, name), file) if compression else file
     except BaseException:
         file.close()
         raise
 
 
-class CompressedFile:
-    """Reads the decompressed bytes of an open file."""
+def _blocks(file: BinaryIO, compression: Compression | None, name: str) -> Iterator[bytes]:
+    stored = iter(lambda: file.read(BLOCK), b"")
+    return decompressed(stored, compression, name) if compression else stored
 
-    def __init__(self, file: BinaryIO, compression: Compression, name: str) -> None:
-        self._file, self._name = file, name
-        stored: Iterator[bytes] = iter(lambda: file.read(BLOCK), b"")
-        self._pieces = Decompressed(stored, compression, name)
-        self._piece = memoryview(b"")
-        self._offset = 0
 
-    def read(self, size: int, /) -> bytes:
-        """Return some bytes, at most ``size``; none at the end.
-
-        Raises:
-            CaptureError: the compressed data is damaged; the offset is that of decompressed bytes.
-        """
-        if not self._piece:
-            try:
-                self._piece = memoryview(next(self._pieces, b""))
-            except DamagedCompression as error:
-                why = f"the compressed data is damaged: {error}"
-                raise CaptureError(self._name, self._offset, why) from error
-        data = self._piece[:size].tobytes()
-        self._piece = self._piece[size:]
-        self._offset += len(data)
-        return data
-
-    def close(self) -> None:
-        """Close the file."""
-        self._file.close()
+def _recognised(
+    blocks: Iterator[bytes], name: str, format: str | None, ports: Sequence[int]
+) -> Recognised | None:
+    """Return the contents of a file; None if reading it as a recording says what is wrong."""
+    try:
+        return recognise(blocks, name, format, ports)
+    except (UnreadableInput, CaptureError):
+        if format is not None:
+            raise
+        return None

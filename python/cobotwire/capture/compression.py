@@ -7,7 +7,7 @@ import zlib
 from collections.abc import Callable, Iterable, Iterator
 from typing import Any, Literal
 
-from cobotwire.protocol.errors import UsageError
+from cobotwire.protocol.errors import CaptureError, UsageError
 
 Compression = Literal["gzip", "zstd"]
 
@@ -73,6 +73,23 @@ class Decompressed(Iterator[bytes]):
                         yield data
                     self.complete = part.eof
                     rest = part.unused_data
+
+
+def decompressed(blocks: Iterable[bytes], compression: Compression, name: str) -> Iterator[bytes]:
+    """Yield the decompressed bytes of a capture.
+
+    Raises:
+        UsageError: zstd is not installed.
+        CaptureError: the compressed data is damaged; the offset is that of decompressed bytes.
+    """
+    offset = 0
+    try:
+        for piece in Decompressed(blocks, compression, name):
+            yield piece
+            offset += len(piece)
+    except DamagedCompression as error:
+        why = f"the compressed data is damaged: {error}"
+        raise CaptureError(name, offset, why) from error
 
 
 def _expanded(part: Any, data: bytes) -> bytes:

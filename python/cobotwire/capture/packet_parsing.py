@@ -13,6 +13,8 @@ DIRECTIONS: tuple[Direction, ...] = ("unknown", "received", "sent", "unknown")
 MICROSECONDS = 6
 # Files of other applications hold raw chunks; ours hold frames and noise.
 OURS = "cobotwire"
+# What the application of a recording without times ends with; its packets all have the time 0.
+UNTIMED = " (no times)"
 
 
 class _Format(NamedTuple):
@@ -46,10 +48,14 @@ class PacketParser:
         name: the name of the file, for messages.
         interfaces: the interfaces that the blocks so far describe.
         application: the name of the program that wrote the capture.
+        link_types: the link types of the interfaces.
     """
 
-    def __init__(self, name: str) -> None:
+    def __init__(self, name: str, *, any_link: bool = False) -> None:
+        """Read a file of that name; ``any_link`` also takes packets that are not serial."""
         self.name = name
+        self.link_types: list[int] = []
+        self._any_link = any_link
         self.interfaces: list[Interface] = []
         self.application = ""
         self._formats: list[_Format] = []
@@ -129,6 +135,7 @@ class PacketParser:
         description = options.get(blocks.INTERFACE_DESCRIPTION, b"")
         speed = int.from_bytes(options.get(blocks.INTERFACE_SPEED, b""), self._endian)
         self.interfaces.append(interface_of(name, description, speed))
+        self.link_types.append(link_type)
         resolution = options.get(blocks.INTERFACE_RESOLUTION) or bytes([MICROSECONDS])
         offset = options.get(blocks.INTERFACE_OFFSET, b"")
         seconds = int.from_bytes(offset, self._endian, signed=True)
@@ -136,7 +143,7 @@ class PacketParser:
 
     def _packet(self, block: Block, fields: Fields) -> Packet:
         format = self._format(block, fields)
-        if format.link_type not in blocks.USER_LINK_TYPES:
+        if format.link_type not in blocks.USER_LINK_TYPES and not self._any_link:
             self._reject(block, "link-type", format.link_type)
         high, low, size, _ = fields.numbers("IIII")
         data = fields.data(size)

@@ -3,37 +3,40 @@
 from __future__ import annotations
 
 import os
-import struct
-from collections.abc import Generator, Iterator
+from collections.abc import Generator, Iterator, Sequence
 from types import TracebackType
 from typing import Self
 
-from cobotwire.capture import block_encoding as blocks
-from cobotwire.capture.block_parsing import Truncated, blocks_of
-from cobotwire.capture.capture_file import Readable, open_capture
+from cobotwire.capture.block_file import BlockFile
+from cobotwire.capture.block_parsing import Readable, Truncated, blocks_of, is_capture
+from cobotwire.capture.capture_file import open_capture
+from cobotwire.capture.foreign.recognising import Recognised
 from cobotwire.capture.packet import Interface, Packet
-from cobotwire.capture.packet_parsing import PacketParser
+from cobotwire.capture.packet_parsing import UNTIMED, PacketParser
 from cobotwire.protocol.printable import printable
 
-
-def is_capture(first_bytes: bytes) -> bool:
-    """Return whether a file that begins with these bytes (12 suffice) is a pcapng file."""
-    magic = struct.pack("<I", blocks.BYTE_ORDER_MAGIC)
-    kind = struct.pack("<I", blocks.SECTION)
-    return first_bytes[:4] == kind and first_bytes[8:12] in (magic, magic[::-1])
+__all__ = ["CaptureReader", "is_capture", "read"]
 
 
-def read(path: str | os.PathLike[str]) -> CaptureReader:
+def read(
+    path: str | os.PathLike[str], *, format: str | None = None, ports: Sequence[int] = ()
+) -> CaptureReader:
     """Open a capture; iterate over the result to get its packets.
 
-    Files that are compressed with gzip or zstd are decompressed.
+    Files that are compressed with gzip or zstd are decompressed. Files of other programs that state
+    times or directions are read too; ``docs/guide/decode.md`` lists them.
+
+    Args:
+        path: the file.
+        format: the format of a file of another program, such as ``socat``; None to detect it.
+        ports: the TCP ports of arms in a capture of a network; empty for 9000 and 4500.
 
     Raises:
         UsageError: the file does not exist, or it cannot be read, or zstd is not installed.
         CaptureError: the file is not a capture, or it is damaged at ``offset`` (raised while
             iterating).
     """
-    return CaptureReader(open_capture(path), str(path))
+    return CaptureReader(open_capture(path, format, ports), str(path))
 
 
 class CaptureReader:
@@ -43,12 +46,14 @@ class CaptureReader:
         name: the name of the file, for messages.
         truncated_at: the offset of the incomplete block at the end of the file; None if the last
             block is complete, or the end has not been read yet.
+        packets: how many packets were read.
     """
 
     def __init__(self, file: Readable, name: str = "capture") -> None:
         """Read from an open binary file; ``name`` is for messages."""
         self.truncated_at: int | None = None
         self.name = name
+        self.packets = 0
         self._file = file
         self._parser = PacketParser(name)
         self._packets = self._read()
@@ -73,6 +78,17 @@ class CaptureReader:
         return self._parser.finished
 
     @property
+    def timed(self) -> bool:
+        """Whether the packets have times. If they have none, all times are 0."""
+        return not self.application.endswith(UNTIMED)
+
+    @property
+    def foreign(self) -> Recognised | None:
+        """How a file of another program is read; None for a recording."""
+        origin = self._file.origin if isinstance(self._file, BlockFile) else None
+        return origin if isinstance(origin, Recognised) and origin.reader else None
+
+    @property
     def incomplete(self) -> str:
         """What is missing at the end, in a sentence; empty if nothing is missing."""
         name = printable(self.name)
@@ -81,6 +97,8 @@ class CaptureReader:
                 f"{name} ends in the middle of a packet; "
                 f"everything before byte {self.truncated_at} is complete"
             )
+        if self.foreign:
+            return "; ".join(f"{name} {text}" for text in self.foreign.file.missing)
         return "" if self.finished else f"the recording {name} was not finished"
 
     def __iter__(self) -> Iterator[Packet]:
@@ -110,6 +128,7 @@ class CaptureReader:
             for block in blocks_of(self._file, self.name):
                 packet = self._parser.take(block)
                 if packet is not None:
+                    self.packets += 1
                     yield packet
         except Truncated as end:
             self.truncated_at = end.offset

@@ -10,8 +10,14 @@ from contextlib import closing, contextmanager
 from typing import NamedTuple
 
 from cobotwire.capture import block_encoding as blocks
-from cobotwire.capture.block_parsing import SMALLEST_BLOCK, Block, check_size, order_of
-from cobotwire.capture.capture_file import Readable, open_capture
+from cobotwire.capture.block_parsing import (
+    SMALLEST_BLOCK,
+    Block,
+    Readable,
+    check_size,
+    order_of,
+)
+from cobotwire.capture.capture_file import open_capture
 from cobotwire.capture.damage import LARGEST_BLOCK, damaged
 from cobotwire.protocol.errors import CaptureError, LinkError
 

@@ -13,7 +13,7 @@ from cobotwire.capture.packet import Direction, Packet
 from cobotwire.capture.reader import CaptureReader
 from cobotwire.capture.recorder import IDLE_NS
 from cobotwire.codec.interface import Codec, Event, Listening
-from cobotwire.protocol.errors import UsageError
+from cobotwire.protocol.errors import EmptyInput, UsageError
 
 LISTENING: dict[Direction, Listening] = {"sent": "request", "received": "reply"}
 
@@ -107,12 +107,12 @@ def packets_of_interface(capture: CaptureReader, interface: int) -> list[Packet]
     """Return all packets of one interface.
 
     Raises:
+        EmptyInput: the capture holds no packet.
         UsageError: the capture has no interface with that index.
     """
     packets = [packet for packet in capture if packet.interface == interface]
-    if not capture.interfaces:
-        message = f"{capture.name} describes no interface, so it has no packets"
-        raise UsageError("interface", interface, message=message)
+    if not capture.packets:
+        raise EmptyInput(capture.name)
     if not 0 <= interface < len(capture.interfaces):
         raise UsageError("interface", interface, f"0..{len(capture.interfaces) - 1}")
     return packets

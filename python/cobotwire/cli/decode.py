@@ -5,25 +5,30 @@ from __future__ import annotations
 import json
 import sys
 from collections.abc import Iterator
+from typing import TYPE_CHECKING
 
 import click
 
-from cobotwire.capture.byte_source import ByteFormat, open_bytes
+from cobotwire.capture.byte_source import ByteSource, open_input
 from cobotwire.cli.shared.decoded_bytes import decode_bytes
 from cobotwire.cli.shared.edition_option import uses_edition
-from cobotwire.cli.shared.input_files import input_files
-from cobotwire.cli.shared.recordings import recording_named
+from cobotwire.cli.shared.exit_codes import USAGE
+from cobotwire.cli.shared.input_files import input_files, reading_options
+from cobotwire.cli.shared.recordings import notify
 from cobotwire.cli.shared.stream_printer import DecodeOptions, print_text
 from cobotwire.codec.interface import Listening
 from cobotwire.diagnose.counts import StreamCounts
 from cobotwire.protocol.counted import counted
+from cobotwire.protocol.errors import UnreadableInput
 from cobotwire.protocol.printable import printable
+
+if TYPE_CHECKING:
+    from cobotwire.capture import CaptureReader
 
 
 @click.command()
 @click.argument("input", nargs=-1, required=True, type=click.Path(), metavar="HEX...|FILE...|-")
-@click.option("--raw", "format", flag_value="raw", help="FILE holds raw bytes.")
-@click.option("--hex", "format", flag_value="hex", help="FILE holds hex text.")
+@reading_options
 @click.option(
     "--direction",
     type=click.Choice(["request", "reply", "both"]),
@@ -42,7 +47,8 @@ from cobotwire.protocol.printable import printable
 def decode(
     edition: str,
     input: tuple[str, ...],
-    format: ByteFormat | None,
+    format: str | None,
+    ports: tuple[int, ...],
     direction: Listening,
     accept_unknown: bool,
     each_byte: bool,
@@ -61,41 +67,56 @@ def decode(
     frame is decoded in the direction in which it was sent, and printed with its time. --direction
     applies only to packets of unknown direction.
 
-    Any other FILE holds raw bytes or hex text. It is hex text if its first 512 bytes contain only
-    hex. Other text is rejected, so that it is not decoded by mistake. --raw and --hex choose the
-    format.
+    FILE may also be raw bytes, hex text, what socat -x, xxd, hexdump -C, od, candump, Saleae Logic,
+    PulseView or pymycobot's debug log show, bytes as Python prints them, or the TCP packets of a
+    pcap file. The format is detected by the first 512 bytes, and reported. Other text is rejected,
+    so that it is not decoded by mistake. --raw, --hex and --read-as choose the format.
 
     \b
       cobotwire decode FE FE 06 21 01 00 1D 14 FA
       cobotwire decode capture.bin --summary
       cobotwire decode monday.bin tuesday.bin captures/ '*.hex' --summary
       cobotwire decode arm.pcapng
+      cobotwire decode tcpdump.pcap --tcp-port 9001
       cat capture.hex | cobotwire decode - --hex --json
 
-    Exit codes: 0 all bytes are legal frames; 1 some are not; 141 the reader of the output closed
-    it.
+    Exit codes: 0 all bytes are legal frames; 1 some are not; 2 a file is empty or cannot be read;
+    141 the reader of the output closed it.
     """  # noqa: D301  (click keeps the lines of a paragraph that starts with the character \b)
     quiet = quiet or summary
     options = DecodeOptions(edition, direction, accept_unknown, each_byte, as_json, quiet)
     files = input_files(input)
     counts = StreamCounts()
+    unreadable = False
     try:
         for names in [input] if files is None else [(name,) for name in files]:
-            if files is not None and len(files) > 1:
+            several = files is not None and len(files) > 1
+            if several:
                 options = _name_file(options, names[0])
-            capture = recording_named(names) if format is None else None
-            if capture is None:
-                decode_bytes(open_bytes(names, format, _notify), options, counts)
-            else:
-                # Imported here, because most input is no recording.
-                from cobotwire.cli.shared.decoded_recording import decode_recording
-
-                decode_recording(capture, options, counts)
+            try:
+                _decode(open_input(names, format, notify, ports), options, counts)
+            except UnreadableInput as error:
+                if not several:
+                    raise
+                notify(str(error))
+                unreadable = True
     finally:
         # Ctrl-C prints the counts up to that point.
         if summary:
             print_text(_counts_json(counts) if as_json else "\n".join(_counts_lines(counts)))
-    sys.exit(0 if counts.only_legal else 1)
+    sys.exit(USAGE if unreadable else 0 if counts.only_legal else 1)
+
+
+def _decode(
+    source: ByteSource | CaptureReader, options: DecodeOptions, counts: StreamCounts
+) -> None:
+    if isinstance(source, ByteSource):
+        decode_bytes(source, options, counts)
+        return
+    # Imported here, because most input is no recording.
+    from cobotwire.cli.shared.decoded_recording import decode_recording
+
+    decode_recording(source, options, counts)
 
 
 def _name_file(options: DecodeOptions, name: str) -> DecodeOptions:
@@ -103,10 +124,6 @@ def _name_file(options: DecodeOptions, name: str) -> DecodeOptions:
     if not options.quiet and not options.as_json:
         print_text(f"{printable(name)}:")
     return options._replace(file=name)
-
-
-def _notify(text: str) -> None:
-    click.echo(f"cobotwire: {text}", err=True)
 
 
 def _counts_lines(counts: StreamCounts) -> Iterator[str]:

@@ -16,9 +16,12 @@ from cobotwire.capture.export.plan import Compression, Key
 from cobotwire.capture.export.times import time_ns
 from cobotwire.cli.shared.completers import complete_commands
 from cobotwire.cli.shared.edition_option import uses_edition
+from cobotwire.cli.shared.exit_codes import USAGE
 from cobotwire.cli.shared.export_report import report_lines
+from cobotwire.cli.shared.input_files import reading_options
 from cobotwire.cli.shared.output import print_line
 from cobotwire.cli.shared.progress_bar import progress_bar
+from cobotwire.cli.shared.recordings import notify
 from cobotwire.codec.interface import Listening
 from cobotwire.inspect.exporting import InstalledEditions
 
@@ -43,7 +46,7 @@ def _keys(context: click.Context, option: click.Parameter, value: str) -> tuple[
 )
 @click.option(
     "--as",
-    "format",
+    "written_as",
     type=click.Choice(get_args(FormatName)),
     help="The format; by default that of OUT's ending, or Parquet.",
 )
@@ -62,6 +65,7 @@ def _keys(context: click.Context, option: click.Parameter, value: str) -> tuple[
     show_default=True,
     help="Which messages to write; also which messages raw bytes hold.",
 )
+@reading_options
 @click.option("--from", "begin_ns", callback=_time, metavar="TIME", help="The first time (UTC).")
 @click.option("--to", "end_ns", callback=_time, metavar="TIME", help="The time of the end (UTC).")
 @click.option("--wide", is_flag=True, help="Give each number of a field a column of its own.")
@@ -111,7 +115,9 @@ def export(
     edition: str,
     input: tuple[str, ...],
     output: str,
-    format: FormatName | None,
+    format: str | None,
+    ports: tuple[int, ...],
+    written_as: FormatName | None,
     commands: tuple[str, ...],
     direction: Listening,
     begin_ns: int | None,
@@ -129,9 +135,9 @@ def export(
 ) -> None:
     """Write the messages of captures to files that data tools read.
 
-    INPUT is a recording (pcapng) or raw bytes: a file, a folder, a pattern such as 'mon*.pcapng',
-    an fsspec URL such as s3://bucket/day/, or - for standard input. Files that end in .gz or .zst
-    are decompressed.
+    INPUT is a recording (pcapng), raw bytes, or what other programs wrote, as for cobotwire decode:
+    a file, a folder, a pattern such as 'mon*.pcapng', an fsspec URL such as s3://bucket/day/, or -
+    for standard input. Files that end in .gz or .zst are decompressed.
 
     By default, each message has a file in the folder OUT: get_angles.reply.parquet. An MCAP file
     holds all messages, and what Foxglove draws: the states of the joints, and the pose of the end.
@@ -152,13 +158,13 @@ def export(
     that is interrupted leaves no file under its final name.
 
     Exit codes: 0 everything is written, and the inputs hold only legal frames; 1 everything is
-    written, but they also hold noise or rejected frames, or end too early; 8 a file cannot
-    be written.
+    written, but they also hold noise or rejected frames, end too early, or one of them cannot be
+    read; 2 the only one cannot be read; 8 a file cannot be written.
     """  # noqa: D301  (click keeps the lines of a paragraph that starts with the character \b)
     plan = ExportPlan(
         output,
         InstalledEditions(edition),
-        format or format_of(output) or "parquet",
+        written_as or format_of(output) or "parquet",
         commands,
         direction,
         begin_ns,
@@ -168,6 +174,8 @@ def export(
         partition,
         compression,
         overwrite,
+        format or "",
+        ports,
     )
     chosen = choose_engine(engine, scheduler, workers)
     inputs = Inputs.find(input)
@@ -176,6 +184,9 @@ def export(
             report = write(plan, inputs, advance)
         else:
             report = archive.export(plan, inputs, chosen, progress=advance)
+    if report.unread and len(inputs.files) == 1:
+        notify(report.unread[0])
+        sys.exit(USAGE)
     if as_json:
         print_line(json.dumps(report.as_dict()))
     elif not quiet:

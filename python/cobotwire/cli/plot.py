@@ -10,11 +10,11 @@ import click
 from cobotwire import codec as codecs
 from cobotwire import editions
 from cobotwire.capture import CaptureReader
-from cobotwire.capture.byte_source import open_bytes
+from cobotwire.capture.byte_source import ByteSource, open_input
 from cobotwire.capture.streams import packets_of_interface
 from cobotwire.cli.shared.edition_option import uses_edition
 from cobotwire.cli.shared.output import report_written
-from cobotwire.cli.shared.recordings import interface_option, recording_named, warn_if_incomplete
+from cobotwire.cli.shared.recordings import interface_option, notify, warn_if_incomplete
 from cobotwire.codec.interface import Codec
 from cobotwire.inspect.captured import codec_of_interface
 from cobotwire.inspect.plot import (
@@ -49,17 +49,16 @@ def plot(edition: str, file: str, output: str, interface: int, pose: bool) -> No
     the offset in bytes. Plotting needs matplotlib: pip install 'cobotwire[plot]'.
     """
     check_output(output)
-    capture = recording_named((file,))
+    source = open_input((file,), None, notify)
     title = [printable(Path(file).name)]
-    if capture is None:
+    if isinstance(source, ByteSource):
         codec = codecs.load(editions.load(edition).TABLE)
-        blocks = open_bytes((file,), None, lambda text: click.echo(f"cobotwire: {text}", err=True))
-        series = series_of_bytes((block for block, _ in blocks.blocks), codec)
+        series = series_of_bytes((block for block, _ in source.blocks), codec)
         title.append(f"edition {codec.table.edition}")
     else:
-        series, codec = _read_recording(capture, interface, edition)
+        series, codec = _read_recording(source, interface, edition)
         begin = datetime.fromtimestamp(series.start_ns / 1e9, UTC)
-        title += [printable(capture.interfaces[interface].url), f"edition {codec.table.edition}"]
+        title += [printable(source.interfaces[interface].url), f"edition {codec.table.edition}"]
         title.append(f"{begin:%Y-%m-%d %H:%M:%S} UTC")
     if not pose:
         draw_charts(series, output, "   ".join(filter(None, title)))
@@ -75,5 +74,8 @@ def _read_recording(capture: CaptureReader, interface: int, edition: str) -> tup
     with capture:
         packets = packets_of_interface(capture, interface)
         warn_if_incomplete(capture)
+    if not capture.timed:
+        message = f"{capture.name} states no times to draw over"
+        raise UsageError("FILE", capture.name, message=message)
     codec = codec_of_interface(capture, interface, edition)
     return series_of_packets(packets, codec), codec

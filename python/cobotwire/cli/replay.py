@@ -8,12 +8,18 @@ from typing import Any
 
 import click
 
-from cobotwire.capture import CaptureReader, Packet, read
+from cobotwire.capture import CaptureReader, Packet
 from cobotwire.capture.streams import packets_of_interface
 from cobotwire.cli.shared.edition_option import uses_edition
 from cobotwire.cli.shared.line_output import LineOutput
 from cobotwire.cli.shared.output import as_hex, fold, print_line
-from cobotwire.cli.shared.recordings import ARROWS, interface_option, warn_if_incomplete
+from cobotwire.cli.shared.recordings import (
+    ARROWS,
+    interface_option,
+    open_recording,
+    seconds_column,
+    warn_if_incomplete,
+)
 from cobotwire.cli.shared.serving import serve
 from cobotwire.cli.shared.simulator_output import left_out
 from cobotwire.codec.interface import Codec
@@ -46,7 +52,7 @@ def replay(
 
     The edition is the one that the recording names; --edition applies if it names none.
     """
-    with read(file) as capture:
+    with open_recording(file) as capture:
         if not as_arm:
             _print_timeline(capture, edition, as_json)
             warn_if_incomplete(capture)
@@ -87,14 +93,14 @@ def _print_timeline(capture: CaptureReader, edition: str, as_json: bool) -> None
     for packet in capture:
         start = packet.time_ns if start is None else start
         meaning = _meaning(packet, codec_of_interface(capture, packet.interface, edition))
-        after = (packet.time_ns - start) / 1e9
+        after = (packet.time_ns - start) / 1e9 if capture.timed else None
         if as_json:
             print_line(json.dumps(_as_json(capture, packet, after, meaning)))
             continue
         interface = f" interface {packet.interface}" if len(capture.interfaces) > 1 else ""
         data, pause = as_hex(packet.data), _pause(packet)
-        arrow = ARROWS[packet.direction]
-        print_line(fold(f"{after:10.6f}{interface} {arrow} {data}   {meaning}{pause}"))
+        when = f"{seconds_column(after)}{interface}"
+        print_line(fold(f"{when} {ARROWS[packet.direction]} {data}   {meaning}{pause}"))
 
 
 def _meaning(packet: Packet, codec: Codec) -> str:
@@ -118,12 +124,14 @@ def _pause(packet: Packet) -> str:
     return f"   (in {len(packet.pieces)} pieces, the last after {seconds:.6f} s)"
 
 
-def _as_json(capture: CaptureReader, packet: Packet, after: float, meaning: str) -> dict[str, Any]:
+def _as_json(
+    capture: CaptureReader, packet: Packet, after: float | None, meaning: str
+) -> dict[str, Any]:
     pieces = [
         {"size": size, "after": (time_ns - packet.time_ns) / 1e9} for size, time_ns in packet.pieces
     ]
     return {
-        "time_ns": packet.time_ns,
+        "time_ns": None if after is None else packet.time_ns,
         "after": after,
         "url": capture.interfaces[packet.interface].url,
         "direction": packet.direction,

@@ -76,6 +76,27 @@ class UsageError(CobotwireError, ValueError):
         return UsageError(argument, self.value, self.allowed, message=message)
 
 
+class UnreadableInput(UsageError):
+    """An error of an input file: it is empty, in an unknown format, or wrong in one of its lines.
+
+    Attributes:
+        name: the name of the file.
+        line: the number of the line at fault; 0 if the error is about the whole file.
+        detail: what is wrong.
+    """
+
+    def __init__(self, name: str, detail: str, line: int = 0) -> None:
+        self.name, self.line, self.detail = name, line, detail
+        super().__init__("FILE", name, message=f"{name}{f':{line}:' * bool(line)} {detail}")
+
+
+class EmptyInput(UnreadableInput):
+    """An error of an input file: it holds no byte, or it is a recording that holds none."""
+
+    def __init__(self, name: str) -> None:
+        super().__init__("standard input" if name == "-" else name, "is empty")
+
+
 class ProtocolError(CobotwireError):
     """An error of the peer: bytes that the protocol does not allow.
 

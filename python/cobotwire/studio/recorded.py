@@ -15,7 +15,7 @@ from cobotwire.capture import CaptureReader, read
 from cobotwire.capture.packet import Interface
 from cobotwire.diagnose import Finding
 from cobotwire.inspect.captured import codec_of_interface, diagnose_capture
-from cobotwire.protocol.errors import CaptureError, UsageError
+from cobotwire.protocol.errors import CaptureError, EmptyInput, UsageError
 from cobotwire.studio.describing import Described, Describer
 from cobotwire.studio.entries import Entry
 from cobotwire.studio.viewers import Viewer
@@ -42,7 +42,7 @@ class RecordedSession:
             found = islice(_entries_of(capture, edition), MOST_ENTRIES + 1)
             timed = sorted(found, key=attrgetter("time_ns"))
             if not timed:
-                raise UsageError("RECORDING", path, message=f"{path} holds no packet")
+                raise EmptyInput(path)
             self.codec = codec_of_interface(capture, 0, edition)
             described = capture.interfaces[0]
             interfaces = len(capture.interfaces)

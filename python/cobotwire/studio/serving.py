@@ -17,7 +17,7 @@ import uvicorn
 from starlette.applications import Starlette
 
 from cobotwire import editions
-from cobotwire.capture import is_capture
+from cobotwire.capture import is_capture, read
 from cobotwire.editions import Edition
 from cobotwire.protocol.errors import CobotwireError, LinkError, UsageError
 from cobotwire.studio.accepting import Server
@@ -161,8 +161,10 @@ def _is_recording(source: str) -> bool:
         return source.endswith(".pcapng")
     with path.open("rb") as file:
         start = file.read(12)
-    compressed = source.endswith((".gz", ".zst"))
-    return compressed or is_capture(start) or source.endswith(".pcapng")
+    if source.endswith((".gz", ".zst", ".pcapng")) or is_capture(start):
+        return True
+    with read(source) as capture:
+        return capture.foreign is not None
 
 
 def _listening(host: str, port: int) -> socket.socket:

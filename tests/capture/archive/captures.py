@@ -89,5 +89,6 @@ def _plain(table: Any) -> Any:
 
 
 def counts(report: Report) -> dict[str, Any]:
-    """Return a report without its files, which depend on the pieces."""
-    return {key: value for key, value in report.as_dict().items() if key != "files"}
+    """Return a report without its files, which depend on the pieces, and the names of inputs."""
+    found = {key: value for key, value in report.as_dict().items() if key != "files"}
+    return {**found, "unread": len(report.unread)}

@@ -134,7 +134,7 @@ def test_bytes_that_are_added_meanwhile_do_not_count(tmp_path: Path) -> None:
     ("wrong", "text"),
     [
         ({"output": "all.parquet", "commands": ("get_angles",)}, "one for each piece: give a fol"),
-        ({"begin_ns": 1}, "raw bytes without times"),
+        ({"begin_ns": 1}, "bytes without times"),
         ({"piece_bytes": 0}, "piece_bytes is 0; allowed: 1 and more"),
         ({"inputs": ["-"]}, "standard input, which several workers cannot read"),
     ],

@@ -76,7 +76,7 @@ def export(
     """Export inputs; :func:`cobotwire.capture.archive.export` describes it."""
     _check(plan, inputs)
     store = store_at(plan.output)
-    pieces = divide(inputs, piece_bytes)
+    pieces = divide(inputs, piece_bytes, plan.read_as)
     with _hidden_folder(plan, store) as folder:
         tasks = [
             PieceExport(replace(plan, part=f"{number:05}", overwrite=False), piece, folder)

@@ -11,10 +11,9 @@ from cobotwire.capture.export.batch import Batch
 from cobotwire.capture.export.inputs import COMPRESSED, Input, Inputs
 from cobotwire.capture.export.opening import InputStream
 from cobotwire.capture.export.plan import ExportPlan
-from cobotwire.capture.export.sources import MAGIC, Source
-from cobotwire.capture.reader import is_capture
+from cobotwire.capture.export.sources import Source
 from cobotwire.codec.segments import Divider, decode_segment, even_cuts
-from cobotwire.protocol.errors import UsageError
+from cobotwire.protocol.errors import UnreadableInput, UsageError
 
 # The bytes that a task decodes at a time.
 CHUNK = 16 << 20
@@ -56,10 +55,11 @@ class Piece(NamedTuple):
             yield from source.decoded(self.input, parts, first=self.number == 0)
 
 
-def divide(inputs: Inputs, size: int) -> tuple[Piece, ...]:
-    """Return the pieces of all inputs, in their order.
+def divide(inputs: Inputs, size: int, read_as: str = "") -> tuple[Piece, ...]:
+    """Return the pieces of all inputs, in their order; ``read_as`` is that of the plan.
 
-    Raw bytes are divided. Recordings and compressed files are read whole, one task for each.
+    Raw bytes are divided. Recordings, compressed files and files of other programs are read whole,
+    one task for each.
 
     Raises:
         UsageError: ``size`` is not positive, or an input cannot be opened.
@@ -67,19 +67,23 @@ def divide(inputs: Inputs, size: int) -> tuple[Piece, ...]:
     """
     if size < 1:
         raise UsageError("piece_bytes", size, "1 and more")
-    return tuple(piece for input in inputs.files for piece in _pieces(input, size))
+    return tuple(piece for input in inputs.files for piece in _pieces(input, size, read_as))
 
 
-def _pieces(input: Input, size: int) -> Iterator[Piece]:
-    if input.size is None or input.size <= size or not _is_raw(input):
+def _pieces(input: Input, size: int, read_as: str) -> Iterator[Piece]:
+    if input.size is None or input.size <= size or not _is_raw(input, read_as):
         yield Piece(input)
         return
     for number in range(-(-input.size // size)):
         yield Piece(input, number, size)
 
 
-def _is_raw(input: Input) -> bool:
+def _is_raw(input: Input, read_as: str) -> bool:
     if input.url.endswith(tuple(COMPRESSED)):
         return False
-    with closing(InputStream(input, lambda size: None)) as stream:
-        return not is_capture(stream.read(MAGIC))
+    try:
+        with closing(InputStream(input, lambda size: None, read_as or None)) as stream:
+            return stream.found.reader is None and not stream.found.recording
+    except UnreadableInput:
+        # The task that reads it reports that.
+        return False

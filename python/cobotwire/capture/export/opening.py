@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from itertools import chain
 from typing import BinaryIO
 
@@ -14,7 +14,8 @@ from cobotwire.capture.compression import (
 )
 from cobotwire.capture.export.inputs import COMPRESSED, STDIN, Input, is_url, store_of
 from cobotwire.capture.file_errors import unusable_file
-from cobotwire.protocol.errors import LinkError
+from cobotwire.capture.foreign.recognising import recognise
+from cobotwire.protocol.errors import LinkError, UnreadableInput
 
 Progress = Callable[[int], None]
 # Stored bytes to read at a time.
@@ -27,20 +28,36 @@ class InputStream:
     Attributes:
         name: the name of the input, for messages.
         truncated: why the input ends too early; empty if it does not, or has not ended yet.
+        found: its format.
     """
 
-    def __init__(self, input: Input, progress: Progress) -> None:
-        """Open an input; ``progress`` gets the number of stored bytes of each read.
+    def __init__(
+        self, input: Input, progress: Progress, format: str | None = None, ports: Sequence[int] = ()
+    ) -> None:
+        """Open an input, and recognise its format.
+
+        Args:
+            input: the input.
+            progress: gets the number of stored bytes of each read.
+            format: see :func:`~cobotwire.capture.foreign.recognising.recognise`.
+            ports: see there.
 
         Raises:
             UsageError: it cannot be opened, or a package is missing.
+            UnreadableInput: it is empty, or its format is not known.
+            LinkError: reading failed.
         """
         self.name = input.url
         self.truncated = ""
         self._progress = progress
         self._file = _open(input)
-        self._blocks = self._decompressed(input)
         self._rest = b""
+        try:
+            blocks = self._decompressed(input)
+            self.found = recognise(blocks, self.name, format, ports, any_text=True)
+        except BaseException:
+            self.close()
+            raise
 
     def read(self, size: int) -> bytes:
         """Return ``size`` bytes, fewer only at the end.
@@ -50,9 +67,14 @@ class InputStream:
         """
         pieces = [self._rest]
         missing = size - len(self._rest)
-        while missing > 0 and (block := next(self._blocks, b"")):
-            pieces.append(block)
-            missing -= len(block)
+        try:
+            while missing > 0 and (block := next(self.found.blocks, b"")):
+                pieces.append(block)
+                missing -= len(block)
+        except UnreadableInput as error:
+            # A generator that raised an error yields nothing more.
+            line = f"line {error.line}: " * bool(error.line)
+            self.truncated = f"{line}{error.detail}; everything before that is exported"
         joined = b"".join(pieces)
         self._rest = joined[size:]
         return joined[:size]

@@ -62,6 +62,8 @@ class ExportPlan:
         partition: hive-style folders by these keys, from the outermost on.
         compression: how Parquet and Arrow files are compressed.
         overwrite: whether existing files are replaced.
+        read_as: the format of the inputs; empty to detect it.
+        ports: the TCP ports of arms in captures of networks; empty for the usual ones.
         part: added to the names of files, so that several processes can write into one folder.
     """
 
@@ -77,6 +79,8 @@ class ExportPlan:
     partition: tuple[Key, ...] = ()
     compression: Compression = "zstd"
     overwrite: bool = False
+    read_as: str = ""
+    ports: tuple[int, ...] = ()
     part: str = ""
 
     def __post_init__(self) -> None:

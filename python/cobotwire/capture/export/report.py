@@ -24,7 +24,7 @@ class Report:
     ``rejected``, ``not_chosen`` or ``outside``.
 
     Attributes:
-        inputs: how many inputs were read.
+        inputs: how many inputs there were.
         bytes: the bytes of the streams in them, uncompressed, without what a recording adds.
         rows: the rows that were written, by message, such as ``get_angles.reply``.
         noise: bytes that belong to no frame, by reason.
@@ -33,6 +33,8 @@ class Report:
         outside: messages outside of the plan's time range.
         gaps: pauses between the messages of a recording that are longer than the plan's, by robot.
         truncated: inputs that end too early or are damaged, each with what is missing.
+        unread: inputs that are empty or in no known format, each in a sentence.
+        notes: how inputs of other programs were read.
         files: the finished files.
     """
 
@@ -45,6 +47,8 @@ class Report:
     outside: int = 0
     gaps: Counter[str] = field(default_factory=Counter)
     truncated: list[str] = field(default_factory=list)
+    unread: list[str] = field(default_factory=list)
+    notes: list[str] = field(default_factory=list)
     files: list[OutputFile] = field(default_factory=list)
 
     def add(self, other: Report) -> None:
@@ -58,6 +62,8 @@ class Report:
         self.outside += other.outside
         self.gaps.update(other.gaps)
         self.truncated.extend(other.truncated)
+        self.unread.extend(other.unread)
+        self.notes.extend(other.notes)
         self.files.extend(other.files)
 
     @classmethod
@@ -76,7 +82,7 @@ class Report:
     @property
     def clean(self) -> bool:
         """Whether the inputs are complete, and hold nothing but legal frames."""
-        damaged = self.noise.total() or self.rejected or self.truncated
+        damaged = self.noise.total() or self.rejected or self.truncated or self.unread
         return not damaged
 
     def as_dict(self) -> dict[str, Any]:
@@ -91,5 +97,7 @@ class Report:
             "outside": self.outside,
             "gaps": dict(self.gaps.most_common()),
             "truncated": self.truncated,
+            "unread": self.unread,
+            "notes": self.notes,
             "files": [file._asdict() for file in self.files],
         }

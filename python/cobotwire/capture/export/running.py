@@ -18,7 +18,7 @@ def run(plan: ExportPlan, inputs: Inputs, progress: Progress) -> Report:
         for input in inputs.files:
             for batch in source.batches(input):
                 output.write(batch)
-        if output.layout.single and not report.rows:
+        if output.layout.single and not report.rows and len(report.unread) < len(inputs.files):
             output.create_empty(source.empty_schema(output.layout.chosen()[0]))
         report.files = output.publish()
     return report

@@ -18,15 +18,12 @@ from cobotwire.capture.export.report import Report
 from cobotwire.capture.export.tables import MessageTables, Origin, occurring
 from cobotwire.capture.gaps import Gaps
 from cobotwire.capture.packet import Interface
-from cobotwire.capture.packet_parsing import OURS
-from cobotwire.capture.reader import is_capture
+from cobotwire.capture.packet_parsing import OURS, UNTIMED
 from cobotwire.codec.interface import Codec, Columns, Counters, Listening
-from cobotwire.protocol.errors import UsageError
+from cobotwire.protocol.errors import EmptyInput, UnreadableInput, UsageError
 
 # The bytes to decode at a time. The rows of a piece take some three times as much memory.
 PIECE = 8 << 20
-# The number of bytes that show whether an input is a pcapng file.
-MAGIC = 12
 
 
 class Source:
@@ -39,19 +36,32 @@ class Source:
     def batches(self, input: Input) -> Iterator[Batch]:
         """Yield the chosen rows of an input. The end of a damaged recording is left out.
 
+        An input that is empty, or in no known format, has no rows; the report names it.
+
         Raises:
             UsageError: the input cannot be opened, or the plan needs times and it has none.
             LinkError: reading failed.
         """
-        stream = InputStream(input, self._progress)
         try:
-            start = stream.read(MAGIC)
-            read = self._recording if is_capture(start) else self._raw
-            yield from read(input, stream, start)
+            yield from self._batches(input)
+        except UnreadableInput as error:
+            self._report.unread.append(str(error))
+            self._report.inputs += 1
+
+    def _batches(self, input: Input) -> Iterator[Batch]:
+        stream = InputStream(input, self._progress, self._plan.read_as or None, self._plan.ports)
+        found = stream.found
+        if found.notice and not self._plan.read_as:
+            self._report.notes.append(found.notice)
+        try:
+            read = self._recording if found.recording else self._raw
+            yield from read(input, stream)
         finally:
             stream.close()
-        if stream.truncated:
-            self._report.truncated.append(f"{input.url}: {stream.truncated}")
+        self._report.notes.extend(found.file.notes)
+        for missing in (*found.file.missing, stream.truncated):
+            if missing:
+                self._report.truncated.append(f"{input.url}: {missing}")
 
     def empty_schema(self, message: Message) -> Any:
         """Return the schema of a file without rows."""
@@ -68,10 +78,7 @@ class Source:
         Raises:
             UsageError: the plan needs times, which raw bytes do not have.
         """
-        if self._plan.needs_times:
-            what = "an MCAP file" if self._plan.format == "mcap" else "a time range"
-            message = f"{input.url} holds raw bytes without times, which {what} needs"
-            raise UsageError("INPUT", input.url, message=message)
+        self._check_times(input)
         origin = Origin(input.robot, input.url)
         counters = Counters(0, {}, {}, 0)
         for columns in parts:
@@ -80,24 +87,30 @@ class Source:
         self._count(counters)
         self._report.inputs += first
 
-    def _raw(self, input: Input, stream: InputStream, start: bytes) -> Iterator[Batch]:
+    def _raw(self, input: Input, stream: InputStream) -> Iterator[Batch]:
         codec = self._plan.editions.codec("")
-        return self.decoded(input, _parts(codec, self._plan.direction, stream, start))
+        return self.decoded(input, _parts(codec, self._plan.direction, stream))
 
-    def _recording(self, input: Input, stream: InputStream, start: bytes) -> Iterator[Batch]:
+    def _recording(self, input: Input, stream: InputStream) -> Iterator[Batch]:
         reader = capture_reader(self._codec_of, self._plan.direction, name=input.url)
         gaps: dict[int, Gaps] = {}
-        piece = start
-        while piece:
+        while piece := stream.read(PIECE):
             yield from self._captured(reader.feed(piece), input, gaps)
-            piece = stream.read(PIECE)
         last = reader.finish()
         yield from self._captured(last, input, gaps)
+        if not (last.streams or last.error or last.truncated_at):
+            raise EmptyInput(input.url)
         self._report.inputs += 1
         for part in last.streams:
             self._count(part.counters)
         if incomplete := _incomplete(last):
             self._report.truncated.append(f"{input.url}: {incomplete}")
+
+    def _check_times(self, input: Input) -> None:
+        if self._plan.needs_times:
+            what = "an MCAP file" if self._plan.format == "mcap" else "a time range"
+            message = f"{input.url} holds bytes without times, which {what} needs"
+            raise UsageError("INPUT", input.url, message=message)
 
     def _codec_of(self, interface: Interface) -> Codec:
         return self._plan.editions.codec(interface.edition)
@@ -109,11 +122,14 @@ class Source:
             streams = [stream for stream in batch.streams if stream.interface == interface]
             robot = f"{input.robot}-{interface}" if interface else input.robot
             found = gaps.setdefault(interface, Gaps(self._plan.gap_ns))
+            timed = not batch.application.endswith(UNTIMED)
             times = (time for stream in streams for times in stream.times for time in times)
-            if count := sum(1 for _ in found.take(times)):
+            if not timed:
+                self._check_times(input)
+            elif count := sum(1 for _ in found.take(times)):
                 self._report.gaps[robot] += count
             for stream in streams:
-                origin = Origin(robot, input.url, stream)
+                origin = Origin(robot, input.url, stream if timed else None)
                 yield from self._chosen(stream.columns, origin)
 
     def _chosen(self, columns: Columns, origin: Origin) -> Iterator[Batch]:
@@ -154,15 +170,11 @@ class Source:
         self._report.noise.update(counters.noise)
 
 
-def _parts(
-    codec: Codec, listening: Listening, stream: InputStream, start: bytes
-) -> Iterator[Columns]:
-    """Yield the columns of raw bytes, which begin with ``start``."""
+def _parts(codec: Codec, listening: Listening, stream: InputStream) -> Iterator[Columns]:
+    """Yield the columns of raw bytes."""
     reader = codec.column_reader(listening)
-    piece = start
-    while piece:
+    while piece := stream.read(PIECE):
         yield reader.feed(piece)
-        piece = stream.read(PIECE)
     yield reader.flush()
 
 

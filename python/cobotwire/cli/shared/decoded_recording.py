@@ -7,7 +7,7 @@ import json
 from cobotwire.capture import CaptureReader
 from cobotwire.capture.streams import DirectionStream
 from cobotwire.cli.shared.item_formats import as_object
-from cobotwire.cli.shared.recordings import ARROWS, warn_if_incomplete
+from cobotwire.cli.shared.recordings import ARROWS, seconds_column, warn_if_incomplete
 from cobotwire.cli.shared.stream_printer import DecodeOptions, StreamPrinter
 from cobotwire.diagnose import Item
 from cobotwire.diagnose.counts import StreamCounts
@@ -28,18 +28,21 @@ class _TimedStreamPrinter(StreamPrinter):
         super().__init__(stream.codec, stream.listening, options, counts)
         counts.framers.append(stream.framer)
         self._stream, self._start_ns = stream, start_ns
+        self._timed = capture.timed
         self._url = capture.interfaces[stream.interface].url
         several = len(capture.interfaces) > 1
         self._label = f" interface {stream.interface}" if several else ""
 
     def format(self, item: Item) -> str:
-        time_ns = self._stream.time_of(item.offset)
-        after = (time_ns - self._start_ns) / 1e9
+        time_ns = self._stream.time_of(item.offset) if self._timed else None
+        after = None if time_ns is None else (time_ns - self._start_ns) / 1e9
         direction = self._stream.direction
         if not self._options.as_json:
-            return f"{after:10.6f}{self._label} {ARROWS[direction]} {super().format(item)}"
-        when = {"time_ns": time_ns, "after": after, "url": self._url, "direction": direction}
-        return json.dumps({**self._file, **when, **as_object(self.reader, item)})
+            return (
+                f"{seconds_column(after)}{self._label} {ARROWS[direction]} {super().format(item)}"
+            )
+        facts = {"time_ns": time_ns, "after": after, "url": self._url, "direction": direction}
+        return json.dumps({**self._file, **facts, **as_object(self.reader, item)})
 
 
 def decode_recording(capture: CaptureReader, options: DecodeOptions, counts: StreamCounts) -> None:
@@ -55,4 +58,7 @@ def decode_recording(capture: CaptureReader, options: DecodeOptions, counts: Str
             if stream not in printers:
                 printers[stream] = _TimedStreamPrinter(stream, capture, start_ns, options, counts)
             printers[stream].print(items)
+            if items:
+                # Times that nobody needs any more are forgotten, also if nothing is printed.
+                stream.time_of(items[-1].offset)
         warn_if_incomplete(capture)

@@ -25,13 +25,13 @@ from cobotwire.protocol.errors import (
     UsageError,
 )
 
-LINK_FAILED, NO_REPLY, NOT_READY, NOT_WRITTEN, INTERRUPTED = 3, 4, 7, 8, 130
+USAGE, LINK_FAILED, NO_REPLY, NOT_READY, NOT_WRITTEN, INTERRUPTED = 2, 3, 4, 7, 8, 130
 # What a shell reports for a process that SIGPIPE or SIGTERM ended.
 OUTPUT_CLOSED, TERMINATED = 141, 143
 
 CODES: tuple[tuple[type[CobotwireError], int], ...] = (
-    (UsageError, 2),
-    (ScenarioError, 2),
+    (UsageError, USAGE),
+    (ScenarioError, USAGE),
     (LinkError, LINK_FAILED),
     (ReplyTimeout, NO_REPLY),
     (ProtocolError, 5),

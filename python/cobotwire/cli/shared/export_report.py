@@ -14,6 +14,9 @@ LISTED = 20
 
 def report_lines(report: Report) -> Iterator[str]:
     """Yield what was read, what was written, and what could not be."""
+    yield from map(printable, report.notes[:LISTED])
+    if (more := len(report.notes) - LISTED) > 0:
+        yield f"and {counted(more, 'other note')}; --json lists each"
     taken = f"{counted(report.inputs, 'input')}, {counted(report.bytes, 'byte')}"
     rows, files = counted(report.rows.total(), "row"), counted(len(report.files), "file")
     yield f"{taken}: {rows} in {files}"
@@ -29,6 +32,7 @@ def report_lines(report: Report) -> Iterator[str]:
     if report.outside:
         yield f"{counted(report.outside, 'message')} left out: outside of the time range"
     yield from _by_reason("pause", report.gaps)
+    yield from map(printable, report.unread)
     yield from (f"incomplete: {printable(text)}" for text in report.truncated)
     yield from (
         f"wrote {printable(file.path)}: {counted(file.bytes, 'byte')}"

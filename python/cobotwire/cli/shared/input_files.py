@@ -1,13 +1,47 @@
-"""Find the files that arguments name: files, folders and patterns."""
+"""Find the files that arguments name: files, folders and patterns; choose how they are read."""
 
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from glob import glob, has_magic
+from typing import TypeVar
+
+import click
 
 from cobotwire.capture.byte_source import hex_arguments
 from cobotwire.protocol.errors import UsageError
+
+Verb = TypeVar("Verb", bound=Callable[..., None])
+# The formats of files that ``--read-as`` names; ``--raw`` and ``--hex`` are two of them.
+FORMATS = (
+    *("raw", "hex", "xxd", "hexdump", "od", "python", "socat", "pymycobot", "candump"),
+    *("saleae", "sigrok", "pcap", "pcapng-tcp"),
+)
+
+
+def reading_options(verb: Verb) -> Verb:
+    """Add the options that choose the format of files."""
+    for option in (
+        click.option(
+            "--tcp-port",
+            "ports",
+            type=click.IntRange(1, 65535),
+            multiple=True,
+            metavar="PORT",
+            help="The arm's TCP port in a capture of a network; by default 9000 and 4500.",
+        ),
+        click.option(
+            "--read-as",
+            "format",
+            type=click.Choice(FORMATS),
+            help="The format of FILE; else it is detected.",
+        ),
+        click.option("--hex", "format", flag_value="hex", help="FILE holds hex text."),
+        click.option("--raw", "format", flag_value="raw", help="FILE holds raw bytes."),
+    ):
+        verb = option(verb)
+    return verb
 
 
 def input_files(arguments: Sequence[str]) -> list[str] | None:

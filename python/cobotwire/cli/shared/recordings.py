@@ -2,15 +2,11 @@
 
 from __future__ import annotations
 
-import os
-from collections.abc import Sequence
-from contextlib import closing
 from typing import TYPE_CHECKING
 
 import click
 
-from cobotwire.capture.byte_source import hex_arguments
-from cobotwire.protocol.errors import CobotwireError
+from cobotwire.protocol.errors import EmptyInput
 
 if TYPE_CHECKING:
     from cobotwire.capture import CaptureReader, Direction
@@ -26,25 +22,36 @@ interface_option = click.option(
 )
 
 
-def recording_named(arguments: Sequence[str]) -> CaptureReader | None:
-    """Return the recording that the single argument names; None if it is something else."""
-    # Hex is not looked up as a file name, and a pipe is not read, which would consume its start.
-    single = len(arguments) == 1 and hex_arguments(arguments) is None
-    if not single or not os.path.isfile(arguments[0]):
-        return None
-    # Imported here, because bytes in hex need nothing of it.
-    from cobotwire.capture import is_capture, read
-    from cobotwire.capture.capture_file import open_capture
+def notify(text: str) -> None:
+    """Print a sentence about the input to standard error."""
+    click.echo(f"cobotwire: {text}", err=True)
 
-    try:
-        with closing(open_capture(arguments[0])) as file:
-            first = file.read(12)
-    except (OSError, CobotwireError):
-        return None
-    return read(arguments[0]) if is_capture(first) else None
+
+def open_recording(path: str) -> CaptureReader:
+    """Open a recording, or what another program recorded; say how the latter is read."""
+    # Imported here, because bytes in hex need nothing of it.
+    from cobotwire.capture import read
+
+    capture = read(path)
+    if capture.foreign:
+        notify(capture.foreign.notice)
+    return capture
+
+
+def seconds_column(after: float | None) -> str:
+    """Return the seconds since the start of a recording for a line; blanks if it has no times."""
+    return " " * 10 if after is None else f"{after:10.6f}"
 
 
 def warn_if_incomplete(capture: CaptureReader) -> None:
-    """Print to standard error what is missing at the end of a recording."""
+    """Print to standard error what a user should know about a recording that was read.
+
+    Raises:
+        EmptyInput: it holds no packet.
+    """
+    for note in capture.foreign.file.notes if capture.foreign else ():
+        notify(note)
+    if not capture.packets and capture.truncated_at is None:
+        raise EmptyInput(capture.name)
     if capture.incomplete:
-        click.echo(f"cobotwire: {capture.incomplete}", err=True)
+        notify(capture.incomplete)

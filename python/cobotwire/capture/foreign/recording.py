@@ -1,0 +1,50 @@
+"""Turn the chunks of a reader into the blocks of a recording."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from io import BytesIO
+from itertools import chain
+
+from cobotwire.capture.damage import MOST_INTERFACES
+from cobotwire.capture.foreign.reader import Chunk, ForeignFile, Reader
+from cobotwire.capture.packet import Interface, Packet
+from cobotwire.capture.packet_parsing import UNTIMED
+from cobotwire.capture.writer import CaptureWriter
+from cobotwire.protocol.errors import UnreadableInput
+
+LATEST = (1 << 63) - 1
+
+
+def recording_of(reader: Reader, file: ForeignFile) -> Iterator[bytes]:
+    """Yield the blocks of a pcapng file; each stream of the chunks is an interface.
+
+    If the first chunk has no time, none has, and the application of the recording ends with
+    ``UNTIMED``. Times before 1970 are those of a measurement with a trigger: the first is then 0.
+    """
+    chunks = reader.chunks(file)
+    first = next(chunks, None)
+    if first is None:
+        return
+    out = BytesIO()
+    writer = CaptureWriter(out, reader.name + UNTIMED * (first.time_ns is None))
+    start = min(first.time_ns or 0, 0)
+    interfaces: dict[str, int] = {}
+    for chunk in chain([first], chunks):
+        if chunk.stream not in interfaces:
+            if len(interfaces) == MOST_INTERFACES:
+                raise UnreadableInput(file.name, f"holds more than {MOST_INTERFACES} streams")
+            interfaces[chunk.stream] = writer.interface(Interface(chunk.stream))
+        writer.packet(_packet(file, chunk, start, interfaces[chunk.stream]))
+        yield out.getvalue()
+        out.seek(0)
+        out.truncate()
+    writer.finish()
+    yield out.getvalue()
+
+
+def _packet(file: ForeignFile, chunk: Chunk, start: int, interface: int) -> Packet:
+    time_ns = (chunk.time_ns or 0) - start
+    if not 0 <= time_ns <= LATEST:
+        raise UnreadableInput(file.name, f"has a time out of range: {time_ns} ns")
+    return Packet(time_ns, chunk.direction, chunk.data, "bytes", interface=interface)
