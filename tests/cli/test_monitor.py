@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import signal
 import subprocess
-import time
 from functools import partial
 from pathlib import Path
 
@@ -115,7 +114,6 @@ def test_lost_port_ends_monitor_with_its_exit_code() -> None:
 def test_ctrl_c_leaves_one_whole_table_on_a_terminal(server: PtyServer) -> None:
     with Terminal("monitor", server.url, columns=80, lines=24) as terminal:
         terminal.until(lambda: "└" in terminal.text())
-        time.sleep(0.1)  # between two tables
         terminal.press(b"\x03")
         assert terminal.finish() == 0
         rows = [row for row in terminal.rows() if row]

@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import json
+import signal
 import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
 
 import click
 from rich.console import Console
@@ -65,10 +68,25 @@ def monitor(
             with Live(console=Console(), auto_refresh=False) as live:
                 width = live.console.width - ECHO_COLUMNS
                 for sample in samples:
-                    live.update(Constrain(_grid(port, sample, width), width), refresh=True)
+                    shown = Constrain(_grid(port, sample, width), width)
+                    with _signals_wait():
+                        live.update(shown, refresh=True)
     except KeyboardInterrupt:
         # Ctrl-C is the usual way to end this verb, not a failure.
         sys.exit(0)
+
+
+@contextmanager
+def _signals_wait() -> Iterator[None]:
+    """Let Ctrl-C wait while the table is written: otherwise a part of it would stay there twice."""
+    if sys.platform == "win32":
+        yield
+        return
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT, signal.SIGTERM})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
 def _as_json(sample: Observation) -> str:
