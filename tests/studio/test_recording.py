@@ -149,7 +149,7 @@ def test_wrong_selection_is_refused(studio: Studio, query: str) -> None:
     [
         (None, UsageError, "no such file"),
         (b"not a recording at all, but some text", CaptureError, "is not a pcapng"),
-        (b"", UsageError, "holds no packet"),
+        (b"", UsageError, "is empty"),
     ],
     ids=["missing", "text", "empty"],
 )
