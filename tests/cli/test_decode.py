@@ -147,7 +147,7 @@ def _wait_until_read(pipe: int) -> None:
     while struct.unpack("i", fcntl.ioctl(pipe, termios.FIONREAD, bytes(4)))[0]:
         assert time.monotonic() < end
         time.sleep(0.05)
-    time.sleep(0.5)
+    time.sleep(1.0)
 
 
 @pytest.mark.parametrize("option", [[], ["--summary"]], ids=["lines", "summary"])

@@ -65,6 +65,8 @@ STUDIO = Plan(
         "cobotwire studio /dev/ttyACM0": Expected(STUDIO_PAGE, served=True),
         "cobotwire studio /dev/ttyACM0 --allow-motion": Expected(STUDIO_PAGE, served=True),
         "cobotwire studio arm.pcapng": Expected(STUDIO_PAGE, served=True),
+        "cobotwire sim --tcp 127.0.0.1:9000": Expected(r"socket://127\.0\.0\.1:9000", served=True),
+        "cobotwire studio socket://127.0.0.1:9000": NotRun("no arm is served there any longer"),
     },
 )
 
