@@ -8,15 +8,22 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
+import random_editions
 from cobotwire import codec as codecs
 from cobotwire.codec.interface import Codec, Frame, Noise
 from cobotwire.protocol.errors import ProtocolError, UsageError
-from cobotwire.protocol.table import Table
+from cobotwire.protocol.table import Direction, Table
+from cobotwire_codegen.wire import build_frame
 from json_tables import sample
+from random_formats import stated_frame
+from targets.expected import codec_of_edition
 
 CRC, SUM = sample("crc"), sample("sum")
 NAMES: list[codecs.CodecName] = ["reference", "native"]
+WAYS: list[Direction] = ["request", "reply"]
 
 
 @pytest.fixture(params=NAMES)
@@ -92,3 +99,26 @@ def test_unknown_id_is_accepted_on_request_if_its_check_is_right(
     [first, *_] = codec.framer("reply", accept_unknown=True).feed(broken)
     assert isinstance(first, Noise)
     assert first.reason == "bad-check"
+
+
+@given(st.data())
+def test_every_format_that_a_spec_can_state_is_sent_and_read_as_stated(data: st.DataObject) -> None:
+    record, edition = data.draw(random_editions.formats())
+    id = data.draw(st.integers(0, 256**edition.frame.command_number.width - 1))
+    edition = random_editions.in_format(record, id)
+    address = data.draw(st.sampled_from(edition.frame.address_values or (None,)))
+    content = data.draw(st.binary(min_size=2, max_size=20))
+    values = {"data": content.hex(" ")}
+    for way in WAYS:
+        frame = stated_frame(record, id, content, address or 0, reply=way == "reply")
+        assert build_frame(edition.frame, edition.commands[0], way, values, address) == frame
+        for name in NAMES:
+            codec = codec_of_edition(edition, name)
+            assert (
+                codec.encode("send", way, (content,), variant=len(content) - 2, address=address)
+                == frame
+            )
+            assert codec.decode(way, frame).values == (content,)
+            [event] = codec.framer(way).feed(frame)
+            assert isinstance(event, Frame)
+            assert event.data == frame

@@ -38,10 +38,14 @@ LONGEST_NUMBER = 100
 
 @dataclass(frozen=True, slots=True)
 class Scalar:
-    """A text, number, truth value or nothing. Decimal numbers are kept exact."""
+    """A text, number, truth value or nothing. Decimal numbers are kept exact.
+
+    ``text`` is a number as it is written: ``0x55`` is 85, but as bytes it is neither 85 nor 55.
+    """
 
     place: Place
     value: Plain
+    text: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -267,7 +271,7 @@ def _scalar(node: ScalarNode, place: Place, problems: list[Problem]) -> Scalar:
     if tag == "null":
         return Scalar(place, None)
     if tag in ("int", "float"):
-        return Scalar(place, _number(text, tag, place, problems))
+        return Scalar(place, _number(text, tag, place, problems), text)
     if tag != "str":
         problems.append(Problem(place, "bad-tag", f"the tag {node.tag} is not supported"))
     return Scalar(place, text)

@@ -38,12 +38,15 @@ class Reader:
     def _compare_keys(self) -> None:
         keys = self.record.keys()
         for name in self._node.entries:
-            if name not in keys:
+            if name not in keys and name in self.record.LIMITS:
+                self.problem("cannot-say", self.record.LIMITS[name], self._node.keys[name])
+            elif name not in keys:
                 message = f"{self.what} has no key {name}{nearest(name, keys)}"
                 self.problem("unknown-key", message, self._node.keys[name])
         for name, key in keys.items():
             if key.required and name not in self._node.entries:
-                self.problem(key.absent, f"{self.what} lacks the key {name}")
+                hint = f"; {self.record.LIMITS[name]}" if name in self.record.LIMITS else ""
+                self.problem(key.absent, f"{self.what} lacks the key {name}{hint}")
 
     def problem(self, code: str, message: str, place: Place | None = None) -> None:
         """Record a problem."""

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from cobotwire_codegen import language
-from cobotwire_codegen.build.frame_rules import mistakes
+from cobotwire_codegen.build.frame_rules import beyond_language, mistakes
 from cobotwire_codegen.build.parts import Parts
 from cobotwire_codegen.catalogue import CRCS, WIDTHS
 from cobotwire_codegen.errors import Place, Problem
+from cobotwire_codegen.language.limits import CHARACTER
 from cobotwire_codegen.language.records import Key
 from cobotwire_codegen.load import Node
 from cobotwire_codegen.model import Address, Frame, FrameCheck, FrameNumber
@@ -21,15 +24,15 @@ def build_frame_format(parts: Parts, place: Place, problems: list[Problem]) -> F
     if parts.frame is None or parts.transport is None:
         return Frame(place, b"\xfe\xfe", None, b"\xfa", (), 0, "", 1, 1)
     spec, port = language.Frame, language.Transport
+    known = len(problems)
     frame = Reader(parts.frame, spec, "the frame", problems)
     transport = Reader(parts.transport, port, "the transport", problems)
-    _compare_port(transport)
     transport.get(port.source)
     frame.get(spec.source)
-    check = _check(frame)
+    check, header = _check(frame), frame.get(spec.header)
     built = Frame(
         place=frame.place,
-        header=frame.get(spec.header) or b"",
+        header=b"\xfe" if header is None else header,
         check=check,
         footer=frame.get(spec.footer) or b"",
         addresses=_addresses(frame),
@@ -44,9 +47,20 @@ def build_frame_format(parts: Parts, place: Place, problems: list[Problem]) -> F
         baudrate=transport.get(port.baudrate),
         deadline_ms=transport.get(port.deadline_ms),
     )
-    for message in mistakes(built):
-        frame.problem("bad-frame", message)
+    _check_frame(frame, built, known)
+    _compare_port(transport)
     return built
+
+
+def _check_frame(frame: Reader, built: Frame, known: int) -> None:
+    """Report what a frame format cannot be; ``known`` problems are older than it."""
+    stuffing = frame.get(language.Frame.stuffing) if frame.node(language.Frame.stuffing) else None
+    for shown, limit in beyond_language(built, stuffing):
+        if not any(limit.message in problem.message for problem in frame.problems[known:]):
+            frame.problem("cannot-say", shown + limit.message)
+    # Rules that compare keys need all of them.
+    for message in mistakes(built) if len(frame.problems) == known else ():
+        frame.problem("bad-frame", message)
 
 
 def _check(frame: Reader) -> FrameCheck | None:
@@ -81,18 +95,15 @@ def _address_range(frame: Reader) -> tuple[int, ...]:
 def _compare_port(transport: Reader) -> None:
     """Report another character format than the one with which the clients open serial ports."""
     port = language.Transport
-    for key, only in ((port.data_bits, 8), (port.stop_bits, 1)):
-        if transport.node(key) is not None and transport.get(key) != only:
-            _no_such_port(transport, f"{key.name} {transport.get(key)}")
-    if transport.get(port.parity) != "none":
-        _no_such_port(transport, f"the parity {transport.get(port.parity)}")
-
-
-def _no_such_port(transport: Reader, what: str) -> None:
-    message = (
-        f"no client opens a port with {what}; the format is 8 data bits, no parity, 1 stop bit"
+    usual: tuple[tuple[Key[Any], Any], ...] = (
+        (port.data_bits, 8),
+        (port.parity, "none"),
+        (port.stop_bits, 1),
     )
-    transport.problem("bad-transport", message)
+    given = [(key, transport.get(key), only) for key, only in usual if transport.node(key)]
+    if other := [f"{key.name} {value}" for key, value, only in given if value != only]:
+        message = f"no client opens a port with {', '.join(other)}; {CHARACTER.message}"
+        transport.problem("bad-transport", message)
 
 
 def _addresses(frame: Reader) -> tuple[Address, ...]:

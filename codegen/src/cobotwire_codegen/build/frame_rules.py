@@ -5,16 +5,56 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from cobotwire_codegen.catalogue import WIDTHS
+from cobotwire_codegen.errors import nearest
+from cobotwire_codegen.language.limits import (
+    DIRECTION,
+    MORE_PARTS,
+    NO_COMMAND,
+    NO_HEADER,
+    NO_LENGTH,
+    STUFFING,
+    Limit,
+)
 from cobotwire_codegen.model import Frame
 
-_PARTS = ("header", "address", "length", "command", "data", "check", "footer")
+_FIXED = ("address", "length", "command")
+_PARTS = ("header", *_FIXED, "data", "check", "footer")
 # The longest LEN of two bytes that the codecs support.
 _LONGEST = 0x4000
+
+# The first bytes of MSP: `$M` or `$X`, and the direction.
+_MSP = tuple(first + way for first in (b"$M", b"$X") for way in (b"<", b">", b"!"))
+
+
+def beyond_language(frame: Frame, stuffing: bool | None) -> Iterator[tuple[str, Limit]]:
+    """Yield what frames have and a spec cannot state, each with what shows it.
+
+    ``stuffing`` is what the spec states about it.
+    """
+    shown = f"the header {frame.header.hex(' ').upper()}"
+    # One byte at both ends, as in SLIP, COBS and HDLC.
+    delimited = len(frame.header) == 1 and frame.header == frame.footer
+    if not frame.header:
+        yield "", NO_HEADER
+    if frame.header.startswith(_MSP):
+        yield f"{shown} has a direction; ", DIRECTION
+    if stuffing:
+        yield "", STUFFING
+    elif stuffing is None and (delimited or frame.header.startswith(b"\xff\xff\xfd")):
+        advice = "if the device inserts no bytes, write `stuffing: false`"
+        yield f"{shown} suggests byte stuffing; {advice}; ", STUFFING
+    if other := [part for part in frame.layout if part not in _FIXED]:
+        yield f"layout cannot have {other[0]}{nearest(other[0], _FIXED)}; ", MORE_PARTS
+    else:
+        if "length" not in frame.layout or not frame.counted:
+            yield "", NO_LENGTH
+        if "command" not in frame.layout:
+            yield "", NO_COMMAND
 
 
 def mistakes(frame: Frame) -> Iterator[str]:
     """Yield what is wrong with a frame format, as sentences."""
-    if not 1 <= len(frame.header) <= 4:
+    if len(frame.header) > 4:
         yield "the header must have one to four bytes"
     if frame.check is None and len(frame.footer) != 1:
         yield "the footer must have one byte, since `check` is footer"
@@ -49,6 +89,8 @@ def _counted(frame: Frame) -> Iterator[str]:
             yield f"length_counts has {part}, but frames have none"
     if "data" not in frame.counted or len(set(frame.counted)) < len(frame.counted):
         yield "length_counts must have data, and no part twice"
+    if not frame.replies_have_command and "command" not in frame.counted:
+        yield "length_counts must have command, since replies have data in its place"
 
 
 def _check(frame: Frame) -> Iterator[str]:
@@ -59,5 +101,7 @@ def _check(frame: Frame) -> Iterator[str]:
     if check.width not in widths:
         allowed = " or ".join(map(str, widths))
         yield f"check_bytes is {check.width}; allowed for {check.word}: {allowed}"
+    if check.covers_from == "data" and not frame.replies_have_command:
+        yield "check_from cannot be data, since the data of replies start earlier"
     if check.covers_from == "address" and not frame.address_values:
         yield "check_from is address, but frames have none"

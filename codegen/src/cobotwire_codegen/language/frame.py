@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from types import MappingProxyType
+
 from cobotwire_codegen.catalogue import CRCS
 from cobotwire_codegen.language import facts
+from cobotwire_codegen.language.limits import LIMITS
 from cobotwire_codegen.language.names import ADDRESS
 from cobotwire_codegen.language.number_shapes import Range, Whole
 from cobotwire_codegen.language.records import Named, Part, Record, optional, required
@@ -75,6 +78,11 @@ class Frame(Record):
     length_order = optional(_ORDER, "The byte order of LEN.", "big")
     command_bytes = optional(Whole(1, 2, "bad-frame"), "The size of CMD. Left out: 1.", 1)
     command_order = optional(_ORDER, "The byte order of CMD.", "big")
+    stuffing = optional(
+        YesNo(),
+        "Whether bytes are inserted into data that look like a header. Only false can be stated; "
+        "it is needed where the header suggests [byte stuffing](#byte-stuffing).",
+    )
     replies_have_command = optional(
         YesNo(),
         "Whether replies carry CMD. If not, their data starts in its place, each reply has at "
@@ -90,6 +98,7 @@ class Frame(Record):
         Range(), "Further addresses, from the lowest to the highest; each is named by its number."
     )
     source = facts.source()
+    LIMITS = MappingProxyType({key: limit.message for limit in LIMITS for key in limit.keys})
     EXAMPLE = """\
 header: FE FE
 footer: FA

@@ -66,6 +66,8 @@ class Record:
     EXAMPLE: ClassVar[str] = ""
     # Pairs of keys of which only one may be given.
     EXCLUSIVE: ClassVar[tuple[tuple[str, str], ...]] = ()
+    # By key: what a spec without it, or with a key that the language lacks, may try to say.
+    LIMITS: ClassVar[ReadOnly[str, str]] = MappingProxyType({})
 
     @classmethod
     @cache

@@ -16,6 +16,7 @@ from cobotwire_codegen.language.edition import Acks, DeltaEdition, WholeEdition
 from cobotwire_codegen.language.effects import ANY_EFFECT, State
 from cobotwire_codegen.language.facts import Dispute, Evidence
 from cobotwire_codegen.language.frame import Address, Frame, FrameFile, Transport
+from cobotwire_codegen.language.limits import LIMITS
 from cobotwire_codegen.language.messages import (
     ANY_REPLY_FIELD,
     ANY_REQUEST_FIELD,
@@ -47,6 +48,8 @@ problem as `file:line:column: code: message`, and `cobotwire-gen explain CODE` e
 Editors that use the YAML language server complete and check a file whose first line is
 `# yaml-language-server: $schema=PATH/schema.json`; `cobotwire-gen schema` writes the schema.
 """
+_LIMITS = """\
+`cobotwire-gen check` refuses these with a link to this chapter, where it can recognise them."""
 STATE = "State and effects"
 _CHAPTERS: tuple[tuple[str, tuple[Described, ...]], ...] = (
     ("Editions", (WholeEdition, DeltaEdition, Acks, *ROBOT_RECORDS)),
@@ -77,6 +80,10 @@ def language_page() -> str:
             lines += [f"- `{name}`: {doc}" for name, doc in BUILT_IN.items()]
             settable = ", ".join(f"`{name}`" for name in SETTABLE)
             lines += ["", f"Of it, a command can store or set {settable}."]
+    lines += ["", "## What the language cannot say", "", _LIMITS]
+    for limit in LIMITS:
+        lines += ["", f"### {limit.heading}", "", f"Examples: {limit.examples}.", "", limit.doc]
+        lines += ["", f"Instead: {limit.advice}."]
     return "\n".join(lines) + "\n"
 
 

@@ -152,12 +152,13 @@ class Hex(Shape[bytes | None]):
     """Bytes as pairs of hex digits."""
 
     blank = None
-    words = "pairs of hex digits"
+    words = "pairs of hex digits, such as `FE 0A`"
 
     def read(self, node: Node, subject: str, note: Note) -> bytes | None:
         """Return the bytes."""
         try:
-            return bytes.fromhex(str(node.value) if isinstance(node, Scalar) else "-")
+            text = (node.text or str(node.value)) if isinstance(node, Scalar) else "-"
+            return bytes.fromhex(text)
         except ValueError:
             return self._wrong(node, subject, note, "bad-hex")
 

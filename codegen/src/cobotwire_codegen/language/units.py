@@ -12,7 +12,7 @@ class Unit(NamedTuple):
     plural: str
 
 
-_PREFIXES = {"kilo": "k", "centi": "c", "milli": "m", "micro": "µ"}
+_PREFIXES = {"kilo": "k", "centi": "c", "milli": "m", "micro": "µ", "nano": "n"}
 
 # Name: symbol, plural, and the prefixes with which people use the unit.
 _BASES: dict[str, tuple[str, str, tuple[str, ...]]] = {
@@ -48,7 +48,7 @@ _BASES: dict[str, tuple[str, str, tuple[str, ...]]] = {
     "radian_per_second_squared": ("rad/s²", "radians per second squared", ()),
     "revolution": ("r", "revolutions", ()),
     "revolution_per_minute": ("rpm", "revolutions per minute", ()),
-    "second": ("s", "seconds", ("milli", "micro")),
+    "second": ("s", "seconds", ("milli", "micro", "nano")),
     "step": ("step", "steps", ()),
     "step_per_second": ("step/s", "steps per second", ()),
     "step_per_second_squared": ("step/s²", "steps per second squared", ()),

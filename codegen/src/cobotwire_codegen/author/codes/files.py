@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from cobotwire_codegen.author.codes.explanation import Explanation
+from cobotwire_codegen.language.limits import PAGE
 
 EXPLANATIONS = (
     Explanation(
@@ -109,8 +110,7 @@ EXPLANATIONS = (
         "unknown-key",
         "A mapping has a key that the language of the spec does not have there.",
         "A misspelt key would be ignored, together with its value.",
-        "Correct the spelling; https://cobotwire.github.io/cobotwire/reference/language.html "
-        "lists the keys.",
+        f"Correct the spelling; {PAGE} lists the keys.",
         "safty: query",
         "safety: query",
     ),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from cobotwire_codegen.author.codes.explanation import Explanation
+from cobotwire_codegen.language.limits import PAGE
 
 EXPLANATIONS = (
     Explanation(
@@ -10,10 +11,18 @@ EXPLANATIONS = (
         "The codecs lack the frame format, or a reply does not fit it.",
         "A frame has one to four header bytes, then LEN, CMD and an optional address in any order "
         "that does not end with the address, then data, and a check, a footer or both.",
-        "Correct what the message names; https://cobotwire.github.io/cobotwire/reference/"
-        "language.html describes the frame.",
+        f"Correct what the message names; {PAGE} describes the frame.",
         "maximum_data: 300",
         "maximum_data: 16",
+    ),
+    Explanation(
+        "cannot-say",
+        "The protocol has something that a spec cannot state, such as byte stuffing.",
+        "The codecs and all generated code would send other bytes than the device expects.",
+        "Follow the advice of the message; the chapter that it names lists all that a spec cannot "
+        "state. If the header only looks like one of byte stuffing, write `stuffing: false`.",
+        "header: FF FF FD 00",
+        "header: FE FE",
     ),
     Explanation(
         "bad-transport",

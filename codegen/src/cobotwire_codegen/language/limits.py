@@ -1,0 +1,107 @@
+"""What protocols have and the language cannot say: one registry for the messages and the page.
+
+Sources: Robotis, e-Manual, "DYNAMIXEL Protocol 2.0" (byte stuffing); RFC 1055 (SLIP); Cheshire and
+Baker, "Consistent Overhead Byte Stuffing"; Modbus over serial line V1.02 (silence ends a frame);
+Basicmicro, "RoboClaw Series User Manual" (its CRC); Benewake, "TFmini Plus" data sheet; iNav wiki,
+"MSP V2"; MAVLink, "Packet Serialization".
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+PAGE = "https://cobotwire.github.io/cobotwire/reference/language.html"
+
+
+class Limit(NamedTuple):
+    """One thing that a spec cannot say: its heading, examples, what it is, and what to do instead.
+
+    ``keys`` are those that authors of a frame format try; the language has none of them.
+    """
+
+    heading: str
+    examples: str
+    doc: str
+    advice: str
+    keys: tuple[str, ...] = ()
+
+    @property
+    def message(self) -> str:
+        """The sentence with which ``cobotwire-gen check`` refuses it."""
+        thing = self.heading[0].lower() + self.heading[1:]
+        anchor = self.heading.lower().replace(" ", "-")
+        return f"a spec cannot state {thing} ({self.examples}): {self.advice}; see {PAGE}#{anchor}"
+
+
+STUFFING = Limit(
+    "Byte stuffing",
+    "Dynamixel 2.0, SLIP, COBS, HDLC",
+    "The sender changes data that look like a header or an end: Dynamixel 2.0 sends `FF FF FD FD` "
+    "for `FF FF FD`, SLIP `DB DC` for `C0`, and COBS replaces each `00`. The codecs send data as "
+    "they are, so such frames would be wrong. If the header suggests stuffing but the device "
+    "inserts no bytes, write `stuffing: false` in the frame.",
+    "choose a mode of the device without it, such as Dynamixel 1.0",
+    ("byte_stuffing", "bit_stuffing", "escape", "escapes", "escaping", "encoding", "cobs", "slip"),
+)
+NO_HEADER = Limit(
+    "A protocol without a header",
+    "Modbus RTU, RoboClaw",
+    "A frame is found by its first bytes. Modbus RTU divides frames by silence, which neither "
+    "captures nor TCP preserve.",
+    "use a library for that protocol",
+    ("header", "gap", "silence"),
+)
+NO_LENGTH = Limit(
+    "A protocol without a length",
+    "Modbus RTU, RoboClaw, the data frames of a TFmini",
+    "A frame is cut by its LEN: not by a delimiter, nor by the size that belongs to its first "
+    "bytes.",
+    "state only the messages that have LEN, such as the commands of a TFmini (header 5A)",
+    ("length_counts", "delimiter", "terminator", "frame_size", "fixed_length"),
+)
+NO_COMMAND = Limit(
+    "A protocol without a command id",
+    "the data frames of a TFmini",
+    "A message is found by the id that its request carries. Only replies can lack it "
+    "(`replies_have_command: false`).",
+    "state only the messages that have one",
+)
+DIRECTION = Limit(
+    "A header for each direction",
+    "MSP: $M< for requests, $M> for replies, $M! for errors",
+    "All frames start with the same bytes. If the direction is the byte after them, state it as "
+    "an address: `header: 24 4D`, and as `addresses` first `HOST: {value: 0x3C, replies: any, ...}`"
+    ", then `DEVICE: {value: 0x3E, replies: none, ...}`, each with its `doc`. An error (`$M!`) "
+    "then is noise, and the call ends with a timeout.",
+    "state the byte that differs as an address",
+    ("direction", "directions", "request_header", "reply_header", "error_header", "headers"),
+)
+MORE_PARTS = Limit(
+    "Further bytes before the data",
+    "the sequence number of MAVLink, the flag of MSP v2",
+    "Between header and data there are an address of one byte, LEN and CMD, and nothing else.",
+    "state bytes after CMD as fields, with `const` if they are constant",
+    ("sequence", "sequence_number", "counter", "flags", "flag", "version"),
+)
+OTHER_CHECK = Limit(
+    "A check over bytes of another frame",
+    "RoboClaw: the CRC of a reply also covers address and command of the request",
+    "A check covers the bytes of its own frame, from `check_from` to the end of the data.",
+    "use a library for that protocol",
+)
+CHARACTER = Limit(
+    "Another character format",
+    "Modbus RTU with even parity",
+    "All transports, the simulator's too, have 8 data bits, no parity and 1 stop bit.",
+    "set the device to 8 data bits, no parity, 1 stop bit",
+)
+LIMITS = (
+    STUFFING,
+    NO_HEADER,
+    NO_LENGTH,
+    NO_COMMAND,
+    DIRECTION,
+    MORE_PARTS,
+    OTHER_CHECK,
+    CHARACTER,
+)
