@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import json
 from functools import cache, reduce
 from operator import xor
+from pathlib import Path
 from typing import Any
 
 from hypothesis import strategies as st
@@ -11,7 +13,10 @@ from hypothesis import strategies as st
 from cobotwire.protocol.checks import ByteOrder, Check, CoveredFrom
 from cobotwire.protocol.frame_format import CountedPart, FixedPart, FrameFormat, Unsigned
 from cobotwire.protocol.table import Crc
+from cobotwire_codegen.build import build_edition
 from cobotwire_codegen.catalogue import CRCS, WIDTHS
+from cobotwire_codegen.errors import SpecError
+from cobotwire_codegen.model import Edition
 from cobotwire_codegen.wire import remainder
 
 LAYOUTS: st.SearchStrategy[tuple[FixedPart, ...]] = st.sampled_from(
@@ -118,6 +123,45 @@ def frame_records(draw: st.DrawFn) -> Record:
     # One byte is the default only of a sum.
     kept = "check_bytes" if record.get("check_bytes") == 1 and not draw(st.booleans()) else ""
     return {k: v for k, v in record.items() if k == kept or LEFT_OUT.get(k) != v}
+
+
+_BYTES = {"name": "data", "type": "data"}
+
+
+def in_format(record: Record, id: int = 1) -> Edition:
+    """Return an edition whose only command sends bytes and receives bytes, in a frame format.
+
+    Raises:
+        SpecError: the language does not allow the format.
+    """
+    data = {"size": [2, 20], "doc": "Some bytes."}
+    about = {"title": "Send", "doc": "Sends bytes.", "safety": "query"}
+    spec = {
+        "edition": "plain",
+        "class": "Plain",
+        "title": "Bytes",
+        "doc": "Bytes.",
+        "joints": 0,
+        "frame": {"frame": record, "transport": {"baudrate": 9600, "deadline_ms": 500}},
+        "types": {"wire": {"byte": {"bytes": 1, "doc": "A byte."}}, "bytes": {"data": data}},
+        "commands": {"send": {"id": id, **about, "request": [_BYTES], "reply": [_BYTES]}},
+    }
+    path = Path("plain.yaml").resolve()
+    return build_edition(path, path.parent, {path: json.dumps(spec)})
+
+
+def formats() -> st.SearchStrategy[tuple[Record, Edition]]:
+    """Draw a frame format that the language allows, and an edition with it."""
+
+    def allowed(record: Record) -> tuple[Record, Edition] | None:
+        try:
+            return record, in_format(record)
+        except SpecError:
+            return None
+
+    # A filter draws again; an assumption would end the test.
+    found = frame_records().map(allowed)
+    return found.filter(lambda made: made is not None)  # type: ignore[return-value]
 
 
 def stated_frame(record: Record, id: int, data: bytes, address: int, *, reply: bool) -> bytes:

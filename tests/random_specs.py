@@ -12,6 +12,7 @@ import random_values
 from cobotwire_codegen.build import build_edition
 from cobotwire_codegen.model import Command, Edition, Variant
 from cobotwire_codegen.wire import build_frame
+from random_formats import formats
 from random_types import FEATURES, fixed_types, types, varying_types
 from random_variants import draw_arguments, several_variants, sharing_queries
 
@@ -20,16 +21,21 @@ Record = dict[str, Any]
 
 @st.composite
 def frames(draw: st.DrawFn) -> Record:
-    """Draw one of the maker's three frame formats."""
-    check = draw(st.sampled_from(["footer", "crc16-modbus", "sum"]))
+    """Draw one of the maker's three frame formats, or any other of the language."""
+    check = draw(st.sampled_from(["footer", "crc16-modbus", "sum", ""]))
     frame: Record = {"header": "FE FE", "maximum_data": 240, "doc": "A frame."}
-    if check == "footer":
+    if not check:
+        record, edition = draw(formats())
+        # Short replies and acknowledgements need the id.
+        record |= {"replies_have_command": True}
+        frame = record | {"maximum_data": 255 - edition.frame.length(0)}
+    elif check == "footer":
         frame["footer"] = draw(st.sampled_from(["FA", "00", "FE"]))
         frame["length_counts"] = ["command", "data", "footer"]
     else:
         frame["check"] = check
         frame["length_counts"] = ["command", "data", "check"]
-    if draw(st.booleans()):
+    if check and draw(st.booleans()):
         values = draw(st.lists(st.integers(0, 255), min_size=1, max_size=4, unique=True))
         frame["addresses"] = {f"A{v}": {"value": v, "doc": "An arm."} for v in values}
     return {"frame": frame, "transport": {"baudrate": 115200, "deadline_ms": 500}}

@@ -11,7 +11,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-import random_editions
+import random_formats
 from cobotwire import codec as codecs
 from cobotwire.codec.interface import Codec, Frame, Noise
 from cobotwire.protocol.errors import ProtocolError, UsageError
@@ -103,9 +103,9 @@ def test_unknown_id_is_accepted_on_request_if_its_check_is_right(
 
 @given(st.data())
 def test_every_format_that_a_spec_can_state_is_sent_and_read_as_stated(data: st.DataObject) -> None:
-    record, edition = data.draw(random_editions.formats())
+    record, edition = data.draw(random_formats.formats())
     id = data.draw(st.integers(0, 256**edition.frame.command_number.width - 1))
-    edition = random_editions.in_format(record, id)
+    edition = random_formats.in_format(record, id)
     address = data.draw(st.sampled_from(edition.frame.address_values or (None,)))
     content = data.draw(st.binary(min_size=2, max_size=20))
     values = {"data": content.hex(" ")}
