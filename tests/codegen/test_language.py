@@ -12,8 +12,9 @@ from jsonschema import Draft7Validator
 import vectors
 from cobotwire_codegen import language
 from cobotwire_codegen.build import build_edition
-from cobotwire_codegen.errors import Problem
+from cobotwire_codegen.errors import Problem, SpecError
 from cobotwire_codegen.language.edition import FILES
+from cobotwire_codegen.language.limits import LIMITS
 from cobotwire_codegen.language.records import Choice, Key, Record
 from cobotwire_codegen.language.reference import language_page
 from cobotwire_codegen.language.schema import editor_schema, records
@@ -22,6 +23,7 @@ from cobotwire_codegen.project import edition_files
 from cobotwire_codegen.reader import Reader
 from codegen.author import samples
 from codegen.author.schema_walk import plain
+from random_formats import in_format
 
 RECORDS = [one for one in records(FILES.values()) if not isinstance(one, Choice)]
 WITH_EXAMPLE = [record for record in RECORDS if record.EXAMPLE]
@@ -87,3 +89,96 @@ def test_each_link_of_the_page_leads_to_one_of_its_headings() -> None:
     links = set(re.findall(r"\]\(#([^)]*)\)", page))
     assert links
     assert links <= headings
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        *[("01", "01"), ("0055", "00 55"), ("4E10", "4E 10"), ("FE FE", "FE FE"), ('"C0"', "C0")],
+        *[("0x55", None), ("1_2", None), ("-55", None), ("5.5", None), ("", None)],
+    ],
+)
+def test_bytes_are_read_as_they_are_written_although_yaml_reads_some_as_numbers(
+    text: str, expected: str | None
+) -> None:
+    problems: list[Problem] = []
+    reader = Reader(parse(f"footer: {text}", "a.yaml"), language.Frame, "the frame", problems)
+    known = len(problems)
+    found = reader.get(language.Frame.footer)
+    assert found == (expected if expected is None else bytes.fromhex(expected))
+    assert [problem.code for problem in problems[known:]] == ["bad-hex"] * (expected is None)
+
+
+def _refusals(frame: dict[str, Any]) -> list[str]:
+    """Return the code of each problem of a frame format, and what it says cannot be stated."""
+    try:
+        in_format({key: value for key, value in (USUAL | frame).items() if value is not None})
+    except SpecError as error:
+        named = {limit.message: limit.heading for limit in LIMITS}
+        found = [(problem.code, problem.message) for problem in error.problems]
+        return [
+            f"{code}: {next((named[m] for m in named if m in text), text)}" for code, text in found
+        ]
+    return []
+
+
+# What authors write for well-known protocols, most of it as their documents say.
+USUAL = {
+    "header": "FF FF",
+    "length_counts": ["command", "data", "check"],
+    "check": "sum",
+    "maximum_data": 40,
+    "doc": "A frame.",
+}
+DELIMITED = {"check": "footer", "length_counts": ["command", "data"]}
+STUFFED, NO_LENGTH = "cannot-say: Byte stuffing", "A protocol without a length"
+
+
+@pytest.mark.parametrize(
+    ("frame", "refused"),
+    [
+        ({}, []),
+        ({"header": "FF FF FD 00"}, [STUFFED]),  # Dynamixel 2.0
+        ({"header": "FF FF FD 00", "byte_stuffing": True}, [STUFFED]),
+        ({"header": "FF FF FD 00", "stuffing": False}, []),
+        ({"stuffing": True}, [STUFFED]),
+        ({**DELIMITED, "header": "C0", "footer": "C0"}, [STUFFED]),  # SLIP
+        ({**DELIMITED, "header": "7E", "footer": "7E", "stuffing": False}, []),
+        ({**DELIMITED, "header": "7E", "footer": "7F"}, []),
+        ({**DELIMITED, "header": "00", "footer": "00", "cobs": True}, [STUFFED]),
+        ({"header": "24 4D 3C"}, ["cannot-say: A header for each direction"]),  # MSP
+        ({"header": "24 4D", "direction": {}}, ["cannot-say: A header for each direction"]),
+        (  # Modbus RTU
+            {"header": None, "length_counts": None, "layout": ["command"]},
+            ["missing-key: A protocol without a header", f"missing-key: {NO_LENGTH}"],
+        ),
+        ({"header": "01", "layout": ["command"]}, [f"cannot-say: {NO_LENGTH}"]),
+        (
+            {"header": "", "length_counts": []},
+            ["cannot-say: A protocol without a header", f"cannot-say: {NO_LENGTH}"],
+        ),
+        (  # TFmini
+            {"header": "59 59", "layout": []},
+            ["cannot-say: A protocol without a command id", f"cannot-say: {NO_LENGTH}"],
+        ),
+        (  # MAVLink
+            {"layout": ["length", "sequence", "command"]},
+            ["cannot-say: Further bytes before the data"],
+        ),
+        (
+            {"check": "crc-16/umts"},
+            ["unknown-word: check of the frame cannot be crc-16/umts; did you mean crc16-umts?"],
+        ),
+        (
+            {"replies_have_command": False, "check_from": "data", "length_counts": ["data"]},
+            [
+                "bad-frame: check_from cannot be data, since the data of replies start earlier",
+                "bad-frame: length_counts must have command, since replies have data in its place",
+            ],
+        ),
+    ],
+)
+def test_frame_that_the_language_cannot_state_is_refused_by_name(
+    frame: dict[str, Any], refused: list[str]
+) -> None:
+    assert _refusals(frame) == refused

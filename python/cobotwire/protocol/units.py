@@ -69,6 +69,7 @@ PLURALS: Final[dict[str, str]] = {
     "millivolt": "millivolts",
     "milliwatt": "milliwatts",
     "minute": "minutes",
+    "nanosecond": "nanoseconds",
     "newton": "newtons",
     "newton_metre": "newton metres",
     "ohm": "ohms",

@@ -68,11 +68,11 @@ NO_COMMAND = Limit(
 )
 DIRECTION = Limit(
     "A header for each direction",
-    "MSP: $M< for requests, $M> for replies, $M! for errors",
-    "All frames start with the same bytes. If the direction is the byte after them, state it as "
-    "an address: `header: 24 4D`, and as `addresses` first `HOST: {value: 0x3C, replies: any, ...}`"
-    ", then `DEVICE: {value: 0x3E, replies: none, ...}`, each with its `doc`. An error (`$M!`) "
-    "then is noise, and the call ends with a timeout.",
+    "$M<, $M> and $M! of MSP",
+    "All frames start with the same bytes. The byte that differs can be an address: for MSP v1 "
+    "`header: 24 4D`, and in `addresses` first `HOST: {value: 0x3C, replies: any, doc: ...}`, then "
+    "`DEVICE: {value: 0x3E, replies: none, doc: ...}`. An error (`$M!`) is then noise, and the "
+    "call ends with a timeout.",
     "state the byte that differs as an address",
     ("direction", "directions", "request_header", "reply_header", "error_header", "headers"),
 )
@@ -85,14 +85,14 @@ MORE_PARTS = Limit(
 )
 OTHER_CHECK = Limit(
     "A check over bytes of another frame",
-    "RoboClaw: the CRC of a reply also covers address and command of the request",
+    "RoboClaw, where the CRC of a reply also covers address and command of the request",
     "A check covers the bytes of its own frame, from `check_from` to the end of the data.",
     "use a library for that protocol",
 )
 CHARACTER = Limit(
     "Another character format",
     "Modbus RTU with even parity",
-    "All transports, the simulator's too, have 8 data bits, no parity and 1 stop bit.",
+    "Clients open serial ports with 8 data bits, no parity and 1 stop bit.",
     "set the device to 8 data bits, no parity, 1 stop bit",
 )
 LIMITS = (

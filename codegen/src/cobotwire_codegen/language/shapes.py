@@ -152,7 +152,7 @@ class Hex(Shape[bytes | None]):
     """Bytes as pairs of hex digits."""
 
     blank = None
-    words = "pairs of hex digits, such as `FE 0A`"
+    words = "pairs of hex digits, such as FE 0A"
 
     def read(self, node: Node, subject: str, note: Note) -> bytes | None:
         """Return the bytes."""
