@@ -108,7 +108,7 @@ def test_every_format_that_a_spec_can_state_is_sent_and_read_as_stated(data: st.
     edition = random_formats.in_format(record, id)
     address = data.draw(st.sampled_from(edition.frame.address_values or (None,)))
     content = data.draw(st.binary(min_size=2, max_size=20))
-    values = {"data": content.hex(" ")}
+    values: dict[str, object] = {"data": content.hex(" ")}
     for way in WAYS:
         frame = stated_frame(record, id, content, address or 0, reply=way == "reply")
         assert build_frame(edition.frame, edition.commands[0], way, values, address) == frame
