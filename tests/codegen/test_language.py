@@ -148,6 +148,11 @@ STUFFED, NO_LENGTH = "cannot-say: Byte stuffing", "A protocol without a length"
         ({**DELIMITED, "header": "00", "footer": "00", "cobs": True}, [STUFFED]),
         ({"header": "24 4D 3C"}, ["cannot-say: A header for each direction"]),  # MSP
         ({"header": "24 4D", "direction": {}}, ["cannot-say: A header for each direction"]),
+        ({"header": "24 58 3C 00"}, ["cannot-say: Further bytes before the data"]),
+        (
+            {"header": "24 58", "address_range": [0x3C, 0x3E]},
+            ["cannot-say: Further bytes before the data"],
+        ),
         (  # Modbus RTU
             {"header": None, "length_counts": None, "layout": ["command"]},
             ["missing-key: A protocol without a header", f"missing-key: {NO_LENGTH}"],

@@ -22,8 +22,8 @@ _PARTS = ("header", *_FIXED, "data", "check", "footer")
 # The longest LEN of two bytes that the codecs support.
 _LONGEST = 0x4000
 
-# The first bytes of MSP: `$M` or `$X`, and the direction.
-_MSP = tuple(first + way for first in (b"$M", b"$X") for way in (b"<", b">", b"!"))
+# The third byte of MSP, after `$M` in version 1 and `$X` in version 2.
+_DIRECTIONS = (b"<", b">", b"!")
 
 
 def beyond_language(frame: Frame, stuffing: bool | None) -> Iterator[tuple[str, Limit]]:
@@ -36,8 +36,11 @@ def beyond_language(frame: Frame, stuffing: bool | None) -> Iterator[tuple[str, 
     delimited = len(frame.header) == 1 and frame.header == frame.footer
     if not frame.header:
         yield "", NO_HEADER
-    if frame.header.startswith(_MSP):
+    start, third = frame.header[:2], frame.header[2:3]
+    if start == b"$M" and third in _DIRECTIONS:
         yield f"{shown} has a direction; ", DIRECTION
+    if start == b"$X" and (third or bytes(frame.address_values[:1])) in _DIRECTIONS:
+        yield f"{shown} is that of MSP v2, with a flag before CMD; ", MORE_PARTS
     if stuffing:
         yield "", STUFFING
     elif stuffing is None and (delimited or frame.header.startswith(b"\xff\xff\xfd")):

@@ -79,7 +79,8 @@ DIRECTION = Limit(
 MORE_PARTS = Limit(
     "Further bytes before the data",
     "the sequence number of MAVLink, the flag of MSP v2",
-    "Between header and data there are an address of one byte, LEN and CMD, and nothing else.",
+    "Between header and data there are an address of one byte, LEN and CMD, and nothing else. MSP "
+    "v1 has no flag.",
     "state bytes after CMD as fields, with `const` if they are constant",
     ("sequence", "sequence_number", "counter", "flags", "flag", "version"),
 )
