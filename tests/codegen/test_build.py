@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 
 import pytest
@@ -11,6 +12,14 @@ from cobotwire_codegen.cli import main
 from in_process import Ended
 
 LAMP = (Path(__file__).parent / "lamp.yaml").read_text()
+OWN = """\
+{edition: own, class: Own, title: Own, doc: Own., base: "cobotwire:mycobot", types: ../more.yaml,
+commands: {
+ blink: {id: 0x72, title: Blink, doc: Reads., safety: query, reply: [{name: rate, type: rate}]}},
+vectors: [{name: request, command: blink, direction: request, frame: FE FE 02 72 FA},
+ {name: reply, command: blink, direction: reply, frame: FE FE 03 72 07 FA, values: {rate: 7}}]}
+"""
+MORE = "{quantities: {rate: {wire: byte, doc: How often.}}}\n"
 
 
 @pytest.fixture
@@ -39,6 +48,32 @@ def test_build_writes_plugins_into_folder_with_other_files(folder: Path) -> None
     assert run(folder, *words).returncode == 0
     assert sorted(path.name for path in (folder / "plugins").iterdir()) == ["lamp.lua", "other.lua"]
     assert run(folder, *words, "--check").returncode == 0
+
+
+def test_output_is_the_same_in_every_folder(tmp_path: Path) -> None:
+    outputs = []
+    for folder, start in (("one", "."), ("another/inside", "spec/own")):
+        own = tmp_path / folder / "spec" / "own"
+        own.mkdir(parents=True)
+        (own / "own.yaml").write_text(OWN)
+        (own.parent / "more.yaml").write_text(MORE)
+        at = own.relative_to(tmp_path / folder / start).as_posix()
+        options = (f"--{name}={at}/{name}" for name in ("out", "docs", "c", "wireshark"))
+        ended = run(tmp_path / folder / start, "build", f"{at}/own.yaml", *options)
+        assert ended.returncode == 0, ended.stderr
+        run(tmp_path / folder / start, "model", f"{at}/own.yaml", "--out", f"{at}/model.json")
+        files = (path for path in own.rglob("*") if path.is_file())
+        outputs.append({str(path.relative_to(own)): path.read_bytes() for path in files})
+    first, second = outputs
+    assert len(first) > 40
+    assert {name for name in first if first[name] != second.get(name)} == set()
+    assert [name for name, data in first.items() if str(tmp_path).encode() in data] == []
+    places = {
+        each["name"]: each["place"] for each in json.loads(first["out/edition.json"])["commands"]
+    }
+    assert places["blink"] == "own.yaml:3"
+    assert places["get_angles"] == "spec/commands/motion.yaml:19"
+    assert b'"place": "../more.yaml:1:15"' in first["model.json"]
 
 
 @pytest.mark.parametrize(

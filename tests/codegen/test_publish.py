@@ -91,5 +91,5 @@ def test_package_of_another_version_is_rejected(name: str, monkeypatch: pytest.M
 
     package = editions.load(name)
     monkeypatch.setattr(loading, "VERSION", 99)
-    with pytest.raises(ValueError, match="has version 2 of the format, not 99; generate"):
+    with pytest.raises(ValueError, match="has version 3 of the format, not 99; generate"):
         loading.load_table(package.__name__, None)  # type: ignore[attr-defined]

@@ -34,11 +34,11 @@ FILES: dict[str, tuple[Callable[[bytes], bytes], str]] = {
     "not UTF-8": (lambda data: data[:99] + b"\xff" + data[99:], "byte 99 is 0xff"),
     "nested": (lambda data: b"[" * 200_000, "nested too deeply"),
     "a number of 5,000 digits": (
-        lambda data: data.replace(b'"version": 2', b'"version": ' + b"9" * 5000),
+        lambda data: data.replace(b'"version": 3', b'"version": ' + b"9" * 5000),
         "Exceeds the limit",
     ),
     "not a number": (
-        lambda data: data.replace(b'"version": 2', b'"joints": NaN'),
+        lambda data: data.replace(b'"version": 3', b'"joints": NaN'),
         "$.joints is a number; allowed: an integer",
     ),
     "a list": (lambda data: b"[]", "$ is a list; allowed: an object"),

@@ -102,7 +102,12 @@ def test_limits_are_the_ranges_of_targets_or_else_those_of_the_robot() -> None:
 
 
 def test_links_say_which_joints_turn_them() -> None:
-    links = [[0, 90, 0, 1, [[1, 1]]], [0, 0, "1/2", 0, [[1, "-1/2"]]], [0, 0, 0, 0, []]]
+    still = {"offset": 0, "alpha": 0, "a": 0, "d": 0, "turned_by": []}
+    links = [
+        {**still, "d": 1, "turned_by": [{"joint": 1, "share": 1}]},
+        {**still, "a": "1/2", "turned_by": [{"joint": 1, "share": "-1/2"}]},
+        still,
+    ]
     geometry = load_robot({"geometry": {"links": links, "doc": ""}}).geometry
     assert geometry is not None
     assert [link[4] for link in geometry.links] == [((0, 1.0),), ((0, -0.5),), ()]

@@ -54,7 +54,7 @@ def write(target: Target) -> list[Path]:
             stale.path.unlink()
         else:
             stale.path.parent.mkdir(parents=True, exist_ok=True)
-            stale.path.write_text(stale.text, encoding="utf-8")
+            stale.path.write_text(stale.text, encoding="utf-8", newline="\n")
         changed.append(stale.path)
     return changed
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import Any
 
-from cobotwire_codegen.model import Edition, Geometry, Link
+from cobotwire_codegen.model import Edition, Geometry, Link, Servos
 from cobotwire_codegen.publish_sections import exact_number
 
 Record = dict[str, Any]
@@ -19,9 +19,13 @@ def robot_parts(edition: Edition) -> Record:
         "geometry_unknown": robot.geometry_unknown,
         **{
             name: _numbers(getattr(robot, name))
-            for name in ("motion", "encoders", "gripper", "servos", "error_codes")
+            for name in ("motion", "encoders", "gripper", "error_codes")
         },
-        "joint_limits": [list(map(exact_number, pair)) for pair in robot.joint_limits],
+        "servos": robot.servos and _servos(robot.servos),
+        "joint_limits": [
+            {"low": exact_number(low), "high": exact_number(high)}
+            for low, high in robot.joint_limits
+        ],
         "start_angles": [exact_number(angle) for angle in robot.start_angles],
     }
 
@@ -39,11 +43,20 @@ def is_coupled(geometry: Geometry) -> bool:
     return [link.turned_by for link in geometry.links] != usual
 
 
-def _link(link: Link, *, coupled: bool) -> list[Any]:
-    row: list[Any] = [exact_number(part) for part in (link.offset, link.alpha, link.a, link.d)]
+def _link(link: Link, *, coupled: bool) -> Record:
+    record: Record = {
+        name: exact_number(getattr(link, name)) for name in ("offset", "alpha", "a", "d")
+    }
     if coupled:
-        row.append([[joint, exact_number(share)] for joint, share in link.turned_by])
-    return row
+        record["turned_by"] = [
+            {"joint": joint, "share": exact_number(share)} for joint, share in link.turned_by
+        ]
+    return record
+
+
+def _servos(servos: Servos) -> Record:
+    registers = [{"address": address, "initial": value} for address, value in servos.registers]
+    return {"registers": registers, "doc": servos.doc}
 
 
 def _numbers(part: Any) -> Record | None:

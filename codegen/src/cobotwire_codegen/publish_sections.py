@@ -2,36 +2,65 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import os.path
+from collections.abc import Iterable, Iterator
 from dataclasses import fields, is_dataclass
 from fractions import Fraction
+from functools import cache
+from pathlib import Path
 from typing import Any
 
 from cobotwire_codegen.errors import Place
 from cobotwire_codegen.model import Command, Edition
 
 Record = dict[str, Any]
+# Fields of records that hold pairs of a name and a value.
+_BY_NAME = ("values", "accepted", "refused")
 
 
 def sections_for_people(edition: Edition) -> Record:
     """Return what explains the edition: sources, disputes, changes, errata and vectors."""
     return {
-        "sources": [_plain_record(source) for source in _sources(edition)],
-        "changes": [_plain(change) for change in edition.changes],
+        "sources": [_plain(source, edition) for source in _sources(edition)],
+        "changes": _plain(edition.changes, edition),
         "errata": errata_of(edition),
-        "vectors": [_plain(vector) for vector in edition.vectors],
+        "vectors": _plain(edition.vectors, edition),
     }
 
 
 def errata_of(edition: Edition) -> list[Record]:
     """Return the errata of the maker's document."""
-    return [_plain(erratum) for erratum in edition.errata]
+    return [_plain(erratum, edition) for erratum in edition.errata]
 
 
-def places_of(command: Command) -> str:
+def places_of(command: Command, edition: Edition) -> str:
     """Return where the spec states a command and its changes: ``FILE:LINE FILE:LINE``."""
     spots = (command.place, *(change.place for change in command.changes))
-    return " ".join(f"{spot.file}:{spot.line}" for spot in spots)
+    return " ".join(f"{published_file(spot.file, edition)}:{spot.line}" for spot in spots)
+
+
+def published_file(file: str, edition: Edition) -> str:
+    """Return the name of a file of the spec, which is the same on every machine.
+
+    It is relative to the folder of the edition's file. Files of a package that ships editions in
+    ``spec/editions``, as this project does, are named from ``spec`` on.
+    """
+    path = edition.root / file
+    home = _home(edition.root / edition.place.file)
+    shipped = _home(path)
+    if not path.is_relative_to(home) and shipped != path.parent:
+        home = shipped
+    try:
+        return Path(os.path.relpath(path, home)).as_posix()
+    except ValueError:  # on another drive of Windows
+        return path.name
+
+
+@cache
+def _home(path: Path) -> Path:
+    """Return the folder to which the names of an edition's files are relative."""
+    specs = (above for above in path.parents if above.name == "spec")
+    return next((spec.parent for spec in specs if (spec / "editions").is_dir()), path.parent)
 
 
 def _sources(edition: Edition) -> Iterator[Record]:
@@ -53,22 +82,32 @@ def _sources(edition: Edition) -> Iterator[Record]:
         )
 
 
-def _plain_record(record: Record) -> Record:
-    return {key: _plain(value) for key, value in record.items()}
-
-
-def _plain(value: Any) -> Any:
+def _plain(value: Any, edition: Edition, name: str = "") -> Any:
+    """Return the value of a record's field as JSON."""
     if isinstance(value, Place):
-        return str(value)
+        return f"{published_file(value.file, edition)}:{value.line}:{value.column}"
     if isinstance(value, Fraction):
         return exact_number(value)
     if isinstance(value, bytes):
         return hexed(value)
+    if name == "lines":
+        return published_lines(value)
+    if name == "rejected" and value:
+        return {"reason": value[0], "offset": value[1]}
     if isinstance(value, tuple):
-        return [_plain(item) for item in value]
+        if name in _BY_NAME:
+            return {name: _plain(part, edition) for name, part in value}
+        return [_plain(item, edition) for item in value]
     if is_dataclass(value) and not isinstance(value, type):
-        return {field.name: _plain(getattr(value, field.name)) for field in fields(value)}
+        value = {field.name: getattr(value, field.name) for field in fields(value)}
+    if isinstance(value, dict):
+        return {name: _plain(part, edition, name) for name, part in value.items()}
     return value
+
+
+def published_lines(lines: Iterable[tuple[int, int]]) -> list[Record]:
+    """Return ranges of lines of the maker's document."""
+    return [{"first": first, "last": last} for first, last in lines]
 
 
 def given(**record: Any) -> Record:

@@ -5,7 +5,7 @@
   const KINDS = ["flag", "enum", "bytes", "text"];
   const BYTE = { name: "", width: 1, order: "big", signed_at: 255, multiply: 1, divide: 1, minimum: 0, unit: "" };
   // Width and byte order of LEN and CMD.
-  const USUAL = [1, "big"];
+  const USUAL = { width: 1, order: "big" };
   // The raw values of infinity.
   const INFINITE = { 4: 0x7f800000n, 8: 0x7ff0000000000000n };
 
@@ -23,11 +23,11 @@
   function frameOf(record) {
     const [header, footer] = [record.header, record.footer || ""].map(cobotwire.parse).map((bytes) => [...bytes]);
     const addresses = addressesOf(record);
-    const numbers = { length: record.length || USUAL, command: record.id || USUAL };
+    const numbers = { length: record.length || USUAL, command: record.command || USUAL };
     const checked = record.check !== "footer";
     const sizes = {
-      header: header.length, address: addresses.length ? 1 : 0, length: numbers.length[0],
-      command: numbers.command[0], data: 0, check: checked ? record.check_width : 0, footer: footer.length,
+      header: header.length, address: addresses.length ? 1 : 0, length: numbers.length.width,
+      command: numbers.command.width, data: 0, check: checked ? record.check_width : 0, footer: footer.length,
     };
     const order = record.layout || ["address", "length", "command"];
     const at = {};
@@ -42,7 +42,7 @@
     return {
       header, footer, addresses, layout, check_size,
       parts: Object.fromEntries(layout.map((part) => [part,
-        { at: at[part], width: sizes[part], order: (numbers[part] || USUAL)[1] }])),
+        { at: at[part], width: sizes[part], order: (numbers[part] || USUAL).order }])),
       data_at: { request: at.data, reply: record.replies_without_id ? at.command : at.data },
       replies_have_id: !record.replies_without_id,
       // The bytes that LEN does not count.
@@ -54,8 +54,8 @@
     };
   }
 
-  function addressesOf({ addresses = [], address_range: [first, last] = [0, -1] }) {
-    const found = new Set(addresses.map(([, value]) => value));
+  function addressesOf({ addresses = [], address_range: { first, last } = { first: 0, last: -1 } }) {
+    const found = new Set(addresses.map(({ value }) => value));
     for (let value = first; value <= last; value += 1) found.add(value);
     return [...found];
   }
@@ -75,8 +75,8 @@
       return { fields: fields.map((field) => this.field(field, names)) };
     }
 
-    field({ name, type: only, cases = [[[], only]], selector, counts, const: constant }, names) {
-      const type = this.type(cases[0][1]);
+    field({ name, type: only, cases = [{ when: [], type: only }], selector, counts, const: constant }, names) {
+      const type = this.type(cases[0].type);
       const element = type.kind === "list" ? this.type(type.of) : type;
       const fixed = constant !== undefined;
       // Each case of a selected quantity has its own choices, in its number.
@@ -84,9 +84,9 @@
       return {
         name,
         kind: KINDS.includes(element.kind) ? element.kind : "number",
-        cases: cases.map(([when, each]) => ({ when, numbers: this.numbers(each) })),
+        cases: cases.map(({ when, type: each }) => ({ when, numbers: this.numbers(each) })),
         choices: fixed ? [constant] : open ? [] : choicesOf(element),
-        labels: fixed ? [] : (element.members || []).map(([label]) => label),
+        labels: fixed ? [] : (element.members || []).map((member) => member.name),
         selector: names.indexOf(selector),
         counts: counts && names.indexOf(counts),
         least: type.least,
@@ -100,7 +100,7 @@
     // Return the numbers of a type in the order of the wire, or those of one element.
     numbers(given) {
       const type = this.type(given);
-      if (type.kind === "value") return type.items.map(([name, item]) => this.number(name, this.type(item)));
+      if (type.kind === "value") return type.items.map((item) => this.number(item.name, this.type(item.type)));
       if (type.kind === "bits") return type.numbers;
       if (type.kind === "list") return this.numbers(type.of);
       if (type.kind === "bytes" || type.kind === "text")
@@ -119,7 +119,7 @@
 
   function choicesOf({ kind, members, choices = [] }) {
     if (kind === "flag") return [0, 1];
-    return members ? members.map(([, value]) => value) : choices;
+    return members ? members.map(({ value }) => value) : choices;
   }
 
   function rangeOf(type, { width, signed_at, encoding }) {

@@ -11,27 +11,27 @@ from typing import Any
 _KEYS: tuple[tuple[type, str], ...] = (
     (
         str,
-        "alias base check check_from check_order class_name doc document echo family firmware"
-        " footer format generated geometry_unknown header kind name of order place query role"
-        " safety selector suffix title type unit wire",
+        "alias argument base check check_from check_order class_name doc document echo family"
+        " field firmware footer format generated geometry_unknown header kind name of order"
+        " place query role replies safety says selector suffix title unit wire",
     ),
     (
         int,
-        "acceleration baudrate bits check_width closed const deadline_ms divide fastest highest id"
-        " init joints least maximum maximum_data maximum_length minimum most multiply no_power"
-        " no_solution no_straight_line open poly shift signed_at silence_ms stopped ticks version"
-        " width xorout zero",
+        "acceleration baudrate bits check_width closed const deadline_ms divide fastest first"
+        " highest id init initial joints last least maximum maximum_data maximum_length minimum"
+        " most multiply no_power no_solution no_straight_line open poly shift signed_at"
+        " silence_ms stopped ticks value version width xorout zero",
     ),
     (
         list,
-        "accepted address_range addresses agrees_with arguments bases cases choices commands"
-        " default families fields items joint_limits labels links meanings members notes numbers"
-        " prefixes registers reply request samples shares_id signs types wires",
+        "accepted addresses agrees_with arguments bases cases choices commands default families"
+        " fields items joint_limits labels links meanings members notes numbers prefixes"
+        " registers reply request samples shares_id signs types values when wires",
     ),
     (
         dict,
-        "crc edition effect encoders error_codes frame geometry motion read_by request_text"
-        " servos state text",
+        "address_range crc edition effect encoders error_codes frame geometry motion read_by"
+        " request_text servos state text",
     ),
     (bool, "ack event more optional radians refin refout replies_without_id"),
 )

@@ -36,10 +36,9 @@ from cobotwire.protocol.type_records import (
     TypeRecords,
     choices_of,
     letters_of,
-    tuples_of,
 )
 
-VERSION = 2
+VERSION = 3
 CARRIAGE_RETURN = b"\r"
 # The kinds of types that are more than one number or a row of numbers.
 SHAPED = ("bits", "bytes", "text", "list")
@@ -87,7 +86,7 @@ def table_of(document: Record, package: str = "") -> Table:
         load_frame(frame),
         tuple([reader.command(record) for record in document["commands"]]),
         load_robot(edition),
-        tuple([Address(*address) for address in frame.get("addresses", ())]),
+        tuple([Address(**address) for address in frame.get("addresses", ())]),
         tuple(edition.get("bases", ())),
     )
 
@@ -104,16 +103,16 @@ def load_frame(record: Record) -> FrameFormat:
         _addresses(record),
         tuple(get("layout", default.layout)),
         tuple(get("counted", default.counted)),
-        Unsigned(*get("length", ())),
-        Unsigned(*get("id", ())),
+        Unsigned(**get("length", {})),
+        Unsigned(**get("command", {})),
         not get("replies_without_id", False),
     )
 
 
 def _addresses(record: Record) -> tuple[int, ...]:
-    named = [value for _, value, *_ in record.get("addresses", ())]
+    named = [address["value"] for address in record.get("addresses", ())]
     bounds = record.get("address_range")
-    unnamed = range(bounds[0], bounds[1] + 1) if bounds else ()
+    unnamed = range(bounds["first"], bounds["last"] + 1) if bounds else ()
     return (*named, *(value for value in unnamed if value not in named))
 
 
@@ -146,7 +145,7 @@ def load_sources(package: str) -> dict[str, Record]:
     return {
         record["name"]: {
             "place": record["place"],
-            "lines": record.get("lines", []),
+            "lines": [[each["first"], each["last"]] for each in record.get("lines", ())],
             "errata": [each for each in errata if record["name"] in each["commands"]],
         }
         for record in document["commands"]
@@ -213,8 +212,8 @@ class _Reader:
             get("ack", False),
             request_text and TextRequest(*_affixes(request_text), request_text.get("suffix", "")),
             get("role", ""),
-            read_by and ReadBack(read_by["query"], tuples_of(read_by["fields"])),
-            tuples_of(get("samples", ())),
+            read_by and ReadBack(read_by["query"], tuple([*map(_read_back, read_by["fields"])])),
+            tuple([_sample(sample) for sample in get("samples", ())]),
             tuple(get("agrees_with", ())),
             tuple(get("arguments", ())),
             get("event", False),
@@ -288,7 +287,7 @@ class _Reader:
             record.get("doc", ""),
             True,
             choices_of(of) if type["kind"] == "list" else (),
-            tuple([name for name, _, _ in members]),
+            tuple([member["name"] for member in members]),
             echo="echo" in record,
             each=each,
             encoding=of.get("encoding", ""),
@@ -299,9 +298,11 @@ class _Reader:
     def _field(self, record: Record, names: list[str]) -> Field:
         get = record.get
         selector = get("selector", "")
-        types = get("cases") or (((), record["type"]),)
-        cases = tuple([Case(tuple(when), self._types.numbers_of(type)) for when, type in types])
-        first = self._types.record(types[0][1])
+        types = get("cases") or ({"when": (), "type": record["type"]},)
+        cases = tuple(
+            [Case(tuple(case["when"]), self._types.numbers_of(case["type"])) for case in types]
+        )
+        first = self._types.record(types[0]["type"])
         const, kind = get("const"), first["kind"]
         choices: tuple[int, ...] = ()
         labels: tuple[str, ...] = ()
@@ -310,7 +311,7 @@ class _Reader:
         else:
             # Each case of a selected quantity has its own choices, in its number.
             choices = () if selector and first["kind"] == "quantity" else choices_of(first)
-            labels = tuple([name for name, _, _ in first.get("members", ())])
+            labels = tuple([member["name"] for member in first.get("members", ())])
         return Field(
             record["name"],
             kind if kind in ("enum", "flag") else "number",
@@ -327,5 +328,13 @@ class _Reader:
         )
 
 
+def _read_back(record: Record) -> tuple[str, str | int]:
+    return record["field"], record["argument"] if "argument" in record else record["value"]
+
+
+def _sample(records: list[Record]) -> tuple[tuple[str, tuple[int, ...]], ...]:
+    return tuple([(each["argument"], tuple(each["values"])) for each in records])
+
+
 def _affixes(text: Record) -> tuple[tuple[str, ...], tuple[str, ...]]:
-    return tuple(text["prefixes"]), tuple([name for name, _ in text["fields"]])
+    return tuple(text["prefixes"]), tuple([field["name"] for field in text["fields"]])

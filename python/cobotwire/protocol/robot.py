@@ -180,9 +180,9 @@ def load_robot(edition: Record) -> Robot:
         motion and Dynamics(**_numbers(motion)),
         encoders and Encoders(**_numbers(encoders)),
         gripper and Gripper(**_numbers(gripper)),
-        servos and Servos(**_numbers(servos)),
+        servos and _servos(servos["registers"]),
         codes and ErrorCodes(**_numbers(codes)),
-        tuple([(real(low), real(high)) for low, high in get("joint_limits", ())]),
+        tuple([(real(each["low"]), real(each["high"])) for each in get("joint_limits", ())]),
         tuple([real(angle) for angle in get("start_angles", ())]),
         get("state", UNSTATED.state),
         get("geometry_unknown", ""),
@@ -192,15 +192,19 @@ def load_robot(edition: Record) -> Robot:
 def _dimensions(record: Record | None) -> Dimensions | None:
     if record is None:
         return None
-    return Dimensions(tuple([_link(*row) for row in record["links"]]))
+    return Dimensions(tuple([_link(**link) for link in record["links"]]))
 
 
 def _link(
     offset: Any, alpha: Any, a: Any, d: Any, turned_by: Any = None
 ) -> tuple[float, float, float, float, Shares | None]:
-    shares = turned_by and tuple([(joint - 1, real(share)) for joint, share in turned_by])
+    shares = turned_by and tuple([(each["joint"] - 1, real(each["share"])) for each in turned_by])
     fixed: Shares | None = () if turned_by == [] else shares
     return real(offset), real(alpha), real(a), real(d), fixed
+
+
+def _servos(registers: list[Record]) -> Servos:
+    return Servos(tuple([(each["address"], each["initial"]) for each in registers]))
 
 
 def _numbers(record: Record) -> Record:

@@ -33,7 +33,9 @@ class TypeRecords:
             return self._numbers[reference]
         type = self.record(reference)
         if type["kind"] == "value":
-            numbers = tuple([self._number(name, self.record(item)) for name, item in type["items"]])
+            numbers = tuple(
+                [self._number(item["name"], self.record(item["type"])) for item in type["items"]]
+            )
         else:
             numbers = (self._number("", type),)
         if isinstance(reference, str):
@@ -55,7 +57,7 @@ class TypeRecords:
         kind = type["kind"]
         if kind == "flag":
             low, high = 0, 1
-        elif listed := [v for _, v, _ in type["members"]] if kind == "enum" else get("choices"):
+        elif listed := choices_of(type):
             low, high = min(listed), max(listed)
         else:
             low, high = get("minimum", low), get("maximum", high)
@@ -77,16 +79,20 @@ class TypeRecords:
 
 def _prepared(type: Record) -> Record:
     """Convert the lists of a type once, not for each field of each variant."""
-    type["meanings"] = tuples_of(type.get("meanings", ()))
+    type["meanings"] = tuple([*map(_meaning, type.get("meanings", ()))])
     type["numbers"] = tuple([_bits(number) for number in type.get("numbers", ())])
     return type
+
+
+def _meaning(record: Record) -> tuple[int, int, str]:
+    return record["first"], record["last"], record["says"]
 
 
 def choices_of(type: Record) -> tuple[int, ...]:
     """Return all legal raw values of a type; empty if it has a range."""
     if type["kind"] == "flag":
         return 0, 1
-    return tuple([value for _, value, _ in type.get("members", ())] or type.get("choices", ()))
+    return tuple([member["value"] for member in type.get("members", ())] or type.get("choices", ()))
 
 
 def _bits(record: Record) -> Number:
@@ -98,8 +104,3 @@ def _bits(record: Record) -> Number:
 def letters_of(type: Record) -> tuple[Number, ...]:
     """Return the number of a byte of text."""
     return (ASCII if type["encoding"] == "ascii" else BYTE,)
-
-
-def tuples_of(value: Any) -> Any:
-    """Return lists within lists as tuples."""
-    return tuple([tuples_of(part) for part in value]) if isinstance(value, list | tuple) else value

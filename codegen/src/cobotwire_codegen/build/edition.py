@@ -61,7 +61,7 @@ def _collect(
     reader = Reader(files.load(path), language.EDITION, "the edition", problems)
     is_delta = reader.record is language.DeltaEdition
     base = reader.node(language.DeltaEdition.base) if is_delta else None
-    parts = Parts()
+    parts = Parts(texts.root)
     if base is not None:
         above = (*above, path.resolve())
         base_path = files.path(base)
@@ -134,6 +134,7 @@ def _build(reader: Reader, parts: Parts, problems: list[Problem]) -> Edition:
         states=build_state(parts, types, commands, problems),
         gone=tuple(parts.gone.items()),
         bases=(parts.base.name, *parts.base.bases) if parts.base else (),
+        root=parts.root,
     )
 
 

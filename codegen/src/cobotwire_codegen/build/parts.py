@@ -57,6 +57,8 @@ class Inherited(NamedTuple):
 class Parts:
     """An edition as nodes. A delta changes them in place."""
 
+    # The folder to which the file names of places are relative.
+    root: Path
     frame: Node | None = None
     transport: Node | None = None
     joints: int | None = None
@@ -100,7 +102,7 @@ class Texts:
     """
 
     def __init__(self, root: Path, unsaved: Unsaved) -> None:
-        self._root, self._unsaved = root.resolve(), unsaved
+        self.root, self._unsaved = root.resolve(), unsaved
         self._bytes = self._nodes = 0
 
     def load(self, path: Path, place: Place | None = None) -> Node:
@@ -110,7 +112,7 @@ class Texts:
             SpecError: the file cannot be read, or all files together exceed a limit.
         """
         path = path.resolve()
-        shown = path.relative_to(self._root) if path.is_relative_to(self._root) else path
+        shown = path.relative_to(self.root) if path.is_relative_to(self.root) else path
         text, name = self._unsaved.get(path), shown.as_posix()
         if text is not None and not isinstance(text, str):
             return text

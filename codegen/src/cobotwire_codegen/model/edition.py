@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
+from pathlib import Path
 from typing import Literal
 
 from cobotwire_codegen.errors import Place, nearest
@@ -98,6 +99,8 @@ class Edition:
     """Commands of the base that this edition takes away, each with a hint that says where."""
     bases: tuple[str, ...] = ()
     """The names of the base, of its base, and so on."""
+    root: Path = field(default=Path(), compare=False, repr=False)
+    """The folder to which the file names of places are relative."""
 
     def no_command(self, name: str) -> str:
         """Return the message that an unknown command has."""

@@ -3,4 +3,4 @@
 
 from cobotwire.protocol.loading import load_table
 
-TABLE = load_table(__package__, checksum="a634679f")
+TABLE = load_table(__package__, checksum="5b704614")

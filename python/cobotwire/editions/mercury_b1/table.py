@@ -3,4 +3,4 @@
 
 from cobotwire.protocol.loading import load_table
 
-TABLE = load_table(__package__, checksum="33fa28f5")
+TABLE = load_table(__package__, checksum="84c3823f")

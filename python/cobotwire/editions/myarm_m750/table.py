@@ -3,4 +3,4 @@
 
 from cobotwire.protocol.loading import load_table
 
-TABLE = load_table(__package__, checksum="219e4024")
+TABLE = load_table(__package__, checksum="868a1319")

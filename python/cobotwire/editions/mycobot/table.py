@@ -3,4 +3,4 @@
 
 from cobotwire.protocol.loading import load_table
 
-TABLE = load_table(__package__, checksum="eb247338")
+TABLE = load_table(__package__, checksum="e638bd63")

@@ -3,4 +3,4 @@
 
 from cobotwire.protocol.loading import load_table
 
-TABLE = load_table(__package__, checksum="058ae32f")
+TABLE = load_table(__package__, checksum="2f2df428")

@@ -3,4 +3,4 @@
 
 from cobotwire.protocol.loading import load_table
 
-TABLE = load_table(__package__, checksum="167410f8")
+TABLE = load_table(__package__, checksum="5093f6b5")
