@@ -124,6 +124,17 @@ def test_changed_scale_is_not_derived_but_reported(file: Path) -> None:
     assert "unencodable-vector: get-coords-reply-twos-complement: coords.x is not" in "".join(found)
 
 
+def test_moved_id_is_in_the_derived_vectors(file: Path) -> None:
+    moved = f"changes:\n  - change: get_encoder\n    set: {{id: 0x7E}}\n    {WHY}"
+    edition = built(file, moved)
+    check(edition)
+    after = vector(edition, "get-encoder-reply-limits")
+    assert after.derived is not None
+    assert after.frame is not None
+    assert (after.derived.frame[3], after.frame[3]) == (0x3B, 0x7E)
+    assert (after.frame[4:], after.values) == (after.derived.frame[4:], after.derived.values)
+
+
 def test_removed_command_takes_its_vectors_along(file: Path) -> None:
     edition = built(file, f"changes:\n  - remove: [get_coords, send_coords]\n    {WHY}")
     assert not {"get_coords", "send_coords"} & {vector.command for vector in edition.vectors}
@@ -142,7 +153,7 @@ def test_missing_vectors_are_proposed_and_written(file: Path) -> None:
     shown = CliRunner().invoke(main, ["vectors", str(file)])
     assert shown.exit_code == 1
     assert "- name: set-fan-request\n  command: set_fan\n  direction: request\n" in shown.stdout
-    assert "  values: {level: 33}\n" in shown.stdout
+    assert "  values: {level: 40}\n" in shown.stdout
     written = CliRunner().invoke(main, ["vectors", str(file), "--write"])
     assert (written.exit_code, "vectors added; compare each" in written.output) == (0, True)
     check(build_edition(file, file.parent))

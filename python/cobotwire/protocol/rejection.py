@@ -286,14 +286,14 @@ def _allowed(field: Field, number: Number) -> str:
     if number.takes_not_finite:
         return f"{kind}{unit}, also infinity and NaN"
     if number.encoding == "float" and (number.minimum, number.maximum) == number.raw_range:
-        return f"a finite number of {number.width} bytes{unit}"
+        return f"a finite number of {number.width} bytes{unit and f', in{unit}'}"
     return f"{kind} {_bound(number, number.minimum)}..{_bound(number, number.maximum)}{unit}"
 
 
 @lru_cache(maxsize=1000)  # a stream of wrong values has few bounds, and a fraction takes long
 def _bound(number: Number, raw: int) -> str:
     if number.encoding == "float":
-        # The nearest float to a decimal has more digits than anyone wrote.
-        return f"{number.physical(raw):.{6 if number.width == 4 else 15}g}"
+        # The nearest float to a decimal has more digits than anyone wrote; -0.0 is written as 0.
+        return f"{number.physical(raw) + 0.0:.{6 if number.width == 4 else 15}g}"
     whole, rest = divmod(raw * number.multiply, number.divide)
     return str(number.physical(raw) if rest else whole)

@@ -40,7 +40,7 @@ def test_new_command_is_inserted_into_the_middle_of_a_one_file_protocol(tmp_path
     _kept(before, _texts(folder))
     edition = build_edition(folder / "lamp.yaml", folder)
     assert edition.commands[-1].title == "Dim: a little"
-    assert edition.vectors[-1].frame == bytes.fromhex("FE FE 05 70 01 BF 8C FA")
+    assert edition.vectors[-1].frame == bytes.fromhex("FE FE 05 70 02 22 08 FA")
 
 
 def test_new_command_can_be_added_to_a_protocol_from_init(tmp_path: Path) -> None:

@@ -24,7 +24,7 @@ from cobotwire_codegen.model import Edition
 HERE = Path(__file__).parent
 PLACE = Place("test", 1, 1)
 # Fields that say where something stands or stood in the spec, or that follow from other fields.
-PLACES = ("place", "gone", "by_role", "read_by")
+PLACES = ("place", "root", "gone", "by_role", "read_by")
 RECORDS = [
     item
     for item in vars(model).values()

@@ -156,7 +156,7 @@ def test_hover_completion_and_definition_in_a_delta(folder: Path) -> None:
             delta, text, "values", place
         )
         shown = await editor.hover(delta, text, "FE", place)
-        assert "degree (raw -15)" in shown
+        assert "degrees (raw -15)" in shown
         shown = await editor.hover(delta, text, "get_angle", place)
         assert shown.startswith("```text\nget_angle: ")
         # From the delta to what it uses, changes and removes in its base.

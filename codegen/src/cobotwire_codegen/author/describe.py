@@ -64,7 +64,7 @@ def _decoded(field: Field, values: dict[str, object], data: bytes) -> str:
         word, data = data[: part.size], data[part.size :]
         number = int.from_bytes(word, part.wire.order)
         raw = number - 256**part.size if number > part.wire.signed_at else number
-        unit = f" {part.unit}" if isinstance(part, Quantity) and part.unit else ""
+        unit = f" {words.units(part.unit)}" if isinstance(part, Quantity) and part.unit else ""
         value = part.read(word)
         physical = words.decimal(value) if isinstance(value, Fraction) else value
         shown.append(f"{name or field.name} = {physical}{unit} (raw {raw})")

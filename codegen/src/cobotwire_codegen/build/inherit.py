@@ -1,9 +1,9 @@
 """Carries the vectors of a base over to a delta.
 
 A vector of the base remains evidence in the delta. If the delta changed only the frame format,
-ranges or the number of joints, the vector's frame is derived again, and the vector records what it
-was derived from. Any other change (another scale, another field) needs a person, so the vector
-stays as it is and the checks report it.
+ids, ranges or the number of joints, the vector's frame is derived again, and the vector records
+what it was derived from. Any other change (another scale, another field) needs a person, so the
+vector stays as it is and the checks report it.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ Values = tuple[tuple[str, object], ...]
 
 
 class Underivable(Exception):
-    """A change beyond frame format, ranges and the number of joints."""
+    """A change beyond frame format, ids, ranges and the number of joints."""
 
 
 def carried(
@@ -89,8 +89,6 @@ def _adapted(vector: Vector, before: Command, after: Command) -> tuple[Values, b
     """
     given = dict(vector.values)
     old, old_data = encode_variant(before, vector.direction, given)
-    if before.id != after.id:
-        raise Underivable
     try:
         new, data = encode_variant(after, vector.direction, given)
     except ValueError:

@@ -10,6 +10,7 @@ from cobotwire_codegen.cli.check import check
 from cobotwire_codegen.cli.diff import diff
 from cobotwire_codegen.cli.explain import explain
 from cobotwire_codegen.cli.generate import generate
+from cobotwire_codegen.cli.ids import ids
 from cobotwire_codegen.cli.init import init
 from cobotwire_codegen.cli.lsp import lsp
 from cobotwire_codegen.cli.model import model
@@ -73,6 +74,7 @@ VERBS = (
     schema,
     diff,
     new_command,
+    ids,
     vectors,
     reconcile,
     watch,

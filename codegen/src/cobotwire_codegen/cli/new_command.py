@@ -18,6 +18,7 @@ from cobotwire_codegen.author.draft import (
     vector_lines,
 )
 from cobotwire_codegen.author.place import families, vectors_file
+from cobotwire_codegen.author.propose import typical_values
 from cobotwire_codegen.check import check as check_edition
 from cobotwire_codegen.cli.explain import DEFAULT_EDITION
 from cobotwire_codegen.cli.shared import edition_path, report_problems
@@ -68,8 +69,8 @@ def new_command(file: str, dry_run: bool, **given: str | None) -> None:
     """Add a command to an edition, with a vector for each of its messages.
 
     On a terminal, missing options are prompted for. The vectors contain the given frames, or
-    frames with the given values, or with the smallest legal values. The result is checked before
-    anything is written; if it has problems, the files stay unchanged.
+    frames with the given values, or with values that would show a mistake. The result is checked
+    before anything is written; if it has problems, the files stay unchanged.
     """
     path = edition_path(file)
     with report_problems():
@@ -220,10 +221,10 @@ def _values_of(
     frame: bytes,
     listed: str | None,
 ) -> dict[str, object]:
-    """Return a vector's values: of the captured frame, else the listed ones, else the smallest."""
+    """Return a vector's values: of the captured frame, else the listed ones, else typical ones."""
     if frame:
         return read(edition, command, direction, frame)
-    values = {field.name: field.smallest for field in variant}
+    values = typical_values(edition, command, variant)
     values.update(_values(listed) if listed and variant == command.variants(direction)[0] else {})
     return values
 

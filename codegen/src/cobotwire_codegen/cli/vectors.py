@@ -20,9 +20,9 @@ from cobotwire_codegen.cli.shared import edition_path, report_problems, report_w
 def vectors(file: str, write: bool) -> None:
     """Propose a vector for each variant of a message that no vector of FILE shows.
 
-    The frames are computed from legal values in the middle of the ranges. Compare each one with a
-    capture, a document or another library before it counts as evidence. Vectors of the base that
-    a delta inherits need no proposal.
+    The frames are computed from values that would show a mistake, such as another byte order.
+    Compare each one with a capture, a document or another library before it counts as evidence.
+    Vectors of the base that a delta inherits need no proposal.
 
     Exit codes: 0 nothing is missing, or the proposals were written; 1 vectors are missing; 2 the
     spec or the command line is wrong.

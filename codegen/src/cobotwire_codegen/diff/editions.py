@@ -34,6 +34,9 @@ def diff(old: Edition, new: Edition) -> tuple[Finding, ...]:
         *prose.vectors(old, new),
         *prose.history("changes", old.changes, new.changes),
     ]
+    if old.name in new.bases or new.name in old.bases:
+        # The changes of a delta are the other findings in words.
+        found = [one for one in found if one.rule != "history-changed"]
     return _sorted(replace(one, where=f"{new.name}/{one.where}") for one in dict.fromkeys(found))
 
 

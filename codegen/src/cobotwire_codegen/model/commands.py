@@ -9,7 +9,7 @@ from cobotwire_codegen.errors import Place
 from cobotwire_codegen.model.effects import Effect
 from cobotwire_codegen.model.facts import Change, Dispute, Lines
 from cobotwire_codegen.model.shapes import Type
-from cobotwire_codegen.model.types import Member, Value
+from cobotwire_codegen.model.types import Member
 
 
 class NoId(int):
@@ -38,13 +38,6 @@ class Field:
     cases: tuple[tuple[Member, Type], ...]
     default: tuple[int, ...] | None = None
     counts: str = ""
-
-    @property
-    def smallest(self) -> object:
-        """The constant, or else the smallest legal value, as a vector writes it."""
-        if self.const is None or isinstance(self.type, Value):
-            return self.type.smallest
-        return self.type.from_raw(self.const)
 
 
 Variant = tuple[Field, ...]

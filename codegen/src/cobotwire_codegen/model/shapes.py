@@ -50,11 +50,6 @@ class Shaped:
         """Whether values differ in their number of elements."""
         return self.sizes[0] < self.sizes[1]
 
-    @property
-    def smallest(self) -> object:
-        """A legal value, as a vector writes it."""
-        return ()
-
     def from_raw(self, raw: int) -> object:
         """Return the raw value itself."""
         return raw
@@ -112,11 +107,6 @@ class Bits(Shaped):
         """The parts by name."""
         return tuple((part.name, part.type) for part in self.bit_parts)
 
-    @property
-    def smallest(self) -> object:
-        """The smallest value of each part."""
-        return tuple(part.type.smallest for part in self.bit_parts)
-
 
 @dataclass(frozen=True, slots=True)
 class Octets(Shaped):
@@ -140,11 +130,6 @@ class Octets(Shaped):
     def sizes(self) -> tuple[int, int]:
         """The least and the most bytes."""
         return self.least, self.most
-
-    @property
-    def smallest(self) -> object:
-        """As few zeros as are legal."""
-        return bytes(self.least).hex(" ")
 
 
 @dataclass(frozen=True, slots=True)
@@ -171,11 +156,6 @@ class Chars(Shaped):
     def sizes(self) -> tuple[int, int]:
         """The least and the most bytes."""
         return self.least, self.most
-
-    @property
-    def smallest(self) -> object:
-        """The shortest legal text."""
-        return "" if self.padding is not None else "x" * self.least
 
 
 @dataclass(frozen=True, slots=True)
@@ -206,11 +186,6 @@ class Listed(Shaped):
     def element_size(self) -> int:
         """Bytes of an element on the wire."""
         return self.of.size
-
-    @property
-    def smallest(self) -> object:
-        """As few elements as are legal."""
-        return (self.of.smallest,) * self.least
 
 
 def _byte(place: Place) -> Wire:

@@ -2,7 +2,7 @@
 
 All four have the same attributes, so that the rest of the generator rarely distinguishes them:
 ``kind``, ``name``, ``doc``, ``class_name``, ``members``, ``parts``, ``size``, ``choices``, and the
-conversions ``smallest`` and ``read``.
+conversions ``from_raw`` and ``read``.
 """
 
 from __future__ import annotations
@@ -50,12 +50,6 @@ class _Scalar:
     def element_size(self) -> int:
         """Bytes on the wire."""
         return self.size
-
-    @property
-    def smallest(self) -> object:
-        """The smallest legal value, as a vector writes it."""
-        assert isinstance(self, Quantity | Enum | Flag)
-        return self.from_raw(min(self.choices, default=0))
 
     def read(self, data: bytes) -> object:
         """Return the value that bytes encode, as a vector writes it."""
@@ -137,13 +131,6 @@ class Quantity(_Scalar):
         if self.wire.is_float:
             return floats.exact_of(int(raw), self.wire.width)
         return raw * self.scale
-
-    @property
-    def smallest(self) -> object:
-        """The value of the smallest magnitude, of a float; else the lowest physical value."""
-        if self.wire.is_float and self.ends[0] <= 0 <= self.ends[1]:
-            return 0
-        return _plain(self.ends[0])
 
     def from_raw(self, raw: int) -> object:
         """Return the physical value of a raw value."""
@@ -272,11 +259,6 @@ class Value:
     def element_size(self) -> int:
         """Bytes on the wire."""
         return self.size
-
-    @property
-    def smallest(self) -> object:
-        """The smallest value of each part."""
-        return tuple(item.smallest for _, item in self.items)
 
     def read(self, data: bytes) -> object:
         """Return the value of each part that bytes encode."""

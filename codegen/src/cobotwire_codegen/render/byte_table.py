@@ -19,22 +19,20 @@ def byte_rows(
 ) -> Iterator[Row]:
     """Yield the rows of a message's byte table: position, content, value."""
     frame = edition.frame
-    data = sum(size(field.type) for field in variant)
     yield _place(0, len(frame.header)), "header", frame.header.hex(" ").upper()
     for part in frame.layout:
         place = _place(frame.offset(part), frame.sizes[part])
         if part == "length":
-            yield place, "LEN", _digits(frame.length_number, frame.length(data, direction))
+            yield place, "LEN", _lengths(frame, direction, variant)
         elif part == "command" and frame.has_command(direction):
             yield place, "CMD", _digits(frame.command_number, command.id)
         elif part == "address" and frame.address_values:
             yield place, "address", _addresses(frame)
-    position = frame.data_at(direction)
+    ruler = _Ruler(frame.data_at(direction))
     for field in variant:
         for name, width, content in _parts(field):
-            yield _place(position, width), name, content
-            position += width
-    yield from _ending(frame, position)
+            yield ruler.place(None if field.type.varies else width), name, content
+    yield from _ending(frame, ruler)
 
 
 def only_fixed(rows: Iterable[Row]) -> bool:
@@ -45,6 +43,37 @@ def only_fixed(rows: Iterable[Row]) -> bool:
 def on_one_line(rows: Iterable[Row]) -> str:
     """Return a message as a row of bytes and names of fields."""
     return " ".join(label(content, value) for _, content, value in rows)
+
+
+class _Ruler:
+    """Numbers bytes. After a part whose size varies, it counts from the last byte of that part."""
+
+    def __init__(self, position: int) -> None:
+        self._next, self._after = position, ""
+        self._letters = iter("nmkjihgfedcba" * 20)
+
+    def place(self, width: int | None) -> str:
+        """Return the positions of the next part; its width is None if it varies."""
+        if not self._after and width is not None:
+            self._next += width
+            return _place(self._next - width, width)
+        first = f"{self._after}+{self._next}" if self._after else str(self._next)
+        if width is None:
+            self._after, self._next = next(self._letters), 1
+            return f"{first}-{self._after}"
+        self._next += width
+        return first if width == 1 else f"{first}..{self._after}+{self._next - 1}"
+
+
+def _lengths(frame: Frame, direction: Direction, variant: tuple[Field, ...]) -> str:
+    """Return LEN, or the least and the most LEN of a message whose size varies."""
+    sizes = [
+        (size(f.type), f.type.sizes[1] * f.type.element_size) for f in variant if f.type.varies
+    ]
+    fixed = sum(size(field.type) for field in variant if not field.type.varies)
+    most = min(fixed + sum(high for _, high in sizes), frame.maximum_data)
+    ends = dict.fromkeys((fixed + sum(low for low, _ in sizes), most))
+    return "..".join(_digits(frame.length_number, frame.length(n, direction)) for n in ends)
 
 
 def _place(position: int, width: int) -> str:
@@ -62,12 +91,11 @@ def _addresses(frame: Frame) -> str:
     return ", ".join(shown)
 
 
-def _ending(frame: Frame, position: int) -> Iterator[Row]:
+def _ending(frame: Frame, ruler: _Ruler) -> Iterator[Row]:
     if frame.check is not None:
-        yield _place(position, frame.check.width), "check", check_words(frame)
-        position += frame.check.width
+        yield ruler.place(frame.check.width), "check", check_words(frame)
     if frame.footer:
-        yield _place(position, len(frame.footer)), "footer", frame.footer.hex(" ").upper()
+        yield ruler.place(len(frame.footer)), "footer", frame.footer.hex(" ").upper()
 
 
 def check_words(frame: Frame) -> str:

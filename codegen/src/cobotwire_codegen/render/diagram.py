@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 
 # This width fits a code block of the docs, and a terminal.
 WIDTH = 96
@@ -23,14 +23,15 @@ def byte_diagram(rows: Iterable[Row], example: bytes = b"") -> str:
     """
     lines: list[list[Cell]] = [[]]
     used = 0
-    for position, content, value in rows:
-        cell = (position, label(content, value), _part(example, position))
-        width = max(map(len, cell)) + 3
-        if lines[-1] and used + width > WIDTH:
+    rows = list(rows)
+    for (position, content, value), part in zip(rows, _parts(rows, example)):
+        cell = (position, label(content, value), part)
+        needed = max(map(len, cell)) + 3
+        if lines[-1] and used + needed > WIDTH:
             lines.append([])
             used = 0
         lines[-1].append(cell)
-        used += width
+        used += needed
     return "\n".join(_boxes(line) for line in lines)
 
 
@@ -39,9 +40,23 @@ def label(content: str, value: str) -> str:
     return value if content in FIXED else content.replace("`", "").rpartition(" ")[2]
 
 
-def _part(example: bytes, position: str) -> str:
-    first, _, last = position.partition("-")
-    return example[int(first) : int(last or first) + 1].hex(" ").upper()
+def _parts(rows: Iterable[Row], example: bytes) -> Iterator[str]:
+    """Yield the bytes of each part of an example; nothing if the sizes of several parts vary."""
+    widths = [width(position) for position, _, _ in rows]
+    rest = len(example) - sum(filter(None, widths))
+    for each in widths:
+        size = rest if each is None else each
+        yield example[:size].hex(" ").upper() if widths.count(None) < 2 else ""
+        example = example[size:]
+
+
+def width(position: str) -> int | None:
+    """Return how many bytes are at positions: ``4-7``, ``n+1..n+2``; None if it varies: ``4-n``."""
+    first, _, last = position.replace("..", "-").partition("-")
+    if last.isalpha():
+        return None
+    ends = [int(end.rpartition("+")[2]) for end in (first, last or first)]
+    return ends[1] - ends[0] + 1
 
 
 def _boxes(cells: list[Cell]) -> str:

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from typing import Literal
 
 from cobotwire_codegen.model import Command, Edition, Vector
+from cobotwire_codegen.render.diagram import Row, width
 from cobotwire_codegen.render.words import lines
 
 Direction = Literal["request", "reply"]
@@ -42,17 +43,17 @@ def _agree(edition: Edition, command: Command, request: Vector, reply: Vector) -
     return all(sent[name] == received[name] for name in echoed & sent.keys() & received.keys())
 
 
-def example_frame(edition: Edition, command: Command, direction: Direction, size: int) -> bytes:
-    """Return the frame of an example of one variant, which has ``size`` bytes; empty if none has.
+def example_frame(edition: Edition, command: Command, direction: Direction, sizes: range) -> bytes:
+    """Return the frame of an example of one variant, which has such a size; empty if none has.
 
-    It is that of :func:`examples` if that has the size.
+    It is that of :func:`examples` if that has such a size.
     """
     chosen = examples(edition, command).get(direction)
     every = [v for v in edition.vectors if v.command == command.name and v.direction == direction]
     fitting = [
         v.frame for v in [*([chosen] if chosen else []), *sorted(every, key=_rank)] if v.frame
     ]
-    return next((frame for frame in fitting if len(frame) == size), b"")
+    return next((frame for frame in fitting if len(frame) in sizes), b"")
 
 
 def source_lines(edition: Edition, command: Command) -> str:
@@ -69,6 +70,8 @@ def derived(edition: Edition, command: Command) -> list[Vector]:
     return [vector for vector in examples(edition, command).values() if vector.derived]
 
 
-def size_of(rows: Sequence[tuple[str, str, str]]) -> int:
-    """Return how many bytes a message with these rows has."""
-    return int(rows[-1][0].rpartition("-")[2]) + 1
+def sizes_of(rows: Sequence[Row]) -> range:
+    """Return how many bytes a message with these rows may have."""
+    widths = [width(position) for position, _, _ in rows]
+    least = sum(filter(None, widths))
+    return range(least, 1 << 16) if None in widths else range(least, least + 1)

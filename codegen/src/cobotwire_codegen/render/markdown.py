@@ -23,7 +23,7 @@ from cobotwire_codegen.model import (
 from cobotwire_codegen.model.shapes import Shaped
 from cobotwire_codegen.render.arguments import constant_in_words, default_in_words
 from cobotwire_codegen.render.escape_markdown import code as code
-from cobotwire_codegen.render.words import decimal, span
+from cobotwire_codegen.render.words import decimal, span, units
 
 
 def robot(edition: Edition) -> str:
@@ -42,9 +42,9 @@ def wire_variant(type: Type) -> str:
     if type.choices:
         return f"{type.wire.name}, one of {', '.join(map(str, type.choices))}"
     if type.scale == 1:
-        return f"{type.wire.name}, {type.unit}" if type.unit else type.wire.name
+        return f"{type.wire.name}, {units(type.unit)}" if type.unit else type.wire.name
     times = decimal(Fraction(1) / type.scale)
-    return f"{type.wire.name}, {type.unit or 'value'} x {times}"
+    return f"{type.wire.name}, {units(type.unit) if type.unit else 'value'} x {times}"
 
 
 def text_vector(edition: Edition, command: Command) -> Vector | None:

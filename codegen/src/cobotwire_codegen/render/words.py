@@ -41,11 +41,11 @@ def span(type: Type) -> str:
         return "one of " + ", ".join(map(str, type.choices))
     if isinstance(type, Quantity):
         lowest, highest = type.ends
-        unit = f" {type.unit}" if type.unit else ""
+        unit = f" {units(type.unit)}" if type.unit else ""
         if type.not_finite:
             return f"a number{unit}, also infinity and NaN"
         if type.wire.is_float and type.range is None:
-            return f"a finite number of {type.wire.width} bytes{unit}"
+            return f"a finite number of {type.wire.width} bytes{unit and f', in{unit}'}"
         return f"{decimal(lowest)}..{decimal(highest)}{unit}"
     if not isinstance(type, Value):
         return _shape(type)

@@ -42,9 +42,9 @@ class MotionCommands(Client):
 
         Args:
             joint: Joint number; 1 is the base, 6 the flange (1..6).
-            angle: The joint's target angle (for 1: -160..160 degree; for 2: -75..120 degree; for 3:
-                -175..65 degree; for 4: -155..155 degree; for 5: -115..115 degree; for 6: -180..180
-                degree).
+            angle: The joint's target angle (for 1: -160..160 degrees; for 2: -75..120 degrees; for
+                3: -175..65 degrees; for 4: -155..155 degrees; for 5: -115..115 degrees; for 6:
+                -180..180 degrees).
             speed: Speed in percent of the maximum (1..100 percent).
 
         Safety: motion. Command id 0x21.
@@ -60,9 +60,9 @@ class MotionCommands(Client):
         angle.
 
         Args:
-            angles: The six joint angles, base first (6 numbers (j1 -160..160 degree; j2 -75..120
-                degree; j3 -175..65 degree; j4 -155..155 degree; j5 -115..115 degree; j6 -180..180
-                degree)).
+            angles: The six joint angles, base first (6 numbers (j1 -160..160 degrees; j2 -75..120
+                degrees; j3 -175..65 degrees; j4 -155..155 degrees; j5 -115..115 degrees; j6
+                -180..180 degrees)).
             speed: Speed in percent of the maximum (1..100 percent).
 
         Safety: motion. Command id 0x22.
@@ -80,8 +80,8 @@ class MotionCommands(Client):
 
         Args:
             radians: The six joint angles in radians, base first (in radians; on the wire 6 numbers
-                (j1 -160..160 degree; j2 -75..120 degree; j3 -175..65 degree; j4 -155..155 degree;
-                j5 -115..115 degree; j6 -180..180 degree)).
+                (j1 -160..160 degrees; j2 -75..120 degrees; j3 -175..65 degrees; j4 -155..155
+                degrees; j5 -115..115 degrees; j6 -180..180 degrees)).
             speed: Speed in percent of the maximum (1..100 percent).
 
         Safety: motion. Command id 0x22.

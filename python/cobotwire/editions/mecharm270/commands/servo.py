@@ -43,9 +43,9 @@ class ServoCommands(Client):
 
         Args:
             joint: Joint number; 1 is the base, 6 the flange (1..6).
-            angle: The smallest allowed angle of the joint (for 1: -160..160 degree; for 2: -75..120
-                degree; for 3: -175..65 degree; for 4: -155..155 degree; for 5: -115..115 degree;
-                for 6: -180..180 degree).
+            angle: The smallest allowed angle of the joint (for 1: -160..160 degrees; for 2:
+                -75..120 degrees; for 3: -175..65 degrees; for 4: -155..155 degrees; for 5:
+                -115..115 degrees; for 6: -180..180 degrees).
 
         Safety: persistent write. Command id 0x4C.
         """
@@ -60,9 +60,9 @@ class ServoCommands(Client):
 
         Args:
             joint: Joint number; 1 is the base, 6 the flange (1..6).
-            angle: The largest allowed angle of the joint (for 1: -160..160 degree; for 2: -75..120
-                degree; for 3: -175..65 degree; for 4: -155..155 degree; for 5: -115..115 degree;
-                for 6: -180..180 degree).
+            angle: The largest allowed angle of the joint (for 1: -160..160 degrees; for 2: -75..120
+                degrees; for 3: -175..65 degrees; for 4: -155..155 degrees; for 5: -115..115
+                degrees; for 6: -180..180 degrees).
 
         Safety: persistent write. Command id 0x4D.
         """

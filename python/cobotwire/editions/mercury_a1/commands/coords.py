@@ -18,8 +18,8 @@ class CoordsCommands(Client):
     def get_coords(self) -> Coords:
         """Read the coordinates.
 
-        Returns: Position and orientation of the end (x, y, z -3276.8..3276.7 millimetre; rx, ry, rz
-            -327.68..327.67 degree).
+        Returns: Position and orientation of the end (x, y, z -3276.8..3276.7 millimetres; rx, ry,
+            rz -327.68..327.67 degrees).
         Safety: query. Command id 0x23.
         """
         return self._call(messages.coords.GetCoords())
@@ -28,11 +28,11 @@ class CoordsCommands(Client):
         """Calculate coordinates.
 
         Args:
-            angles: The seven joint angles, base first (7 numbers (j1, j3, j5, j7 -165..165 degree;
-                j2 -50..120 degree; j4 -165..1 degree; j6 -75..255 degree)).
+            angles: The seven joint angles, base first (7 numbers (j1, j3, j5, j7 -165..165 degrees;
+                j2 -50..120 degrees; j4 -165..1 degrees; j6 -75..255 degrees)).
 
-        Returns: Position and orientation of the end (x, y, z -3276.8..3276.7 millimetre; rx, ry, rz
-            -327.68..327.67 degree).
+        Returns: Position and orientation of the end (x, y, z -3276.8..3276.7 millimetres; rx, ry,
+            rz -327.68..327.67 degrees).
         Safety: query. Command id 0x23.
         """
         return self._call(messages.coords.AnglesToCoords(angles))
@@ -46,8 +46,8 @@ class CoordsCommands(Client):
 
         Args:
             axis: One of the six coordinates (one of X (1), Y (2), Z (3), RX (4), RY (5), RZ (6)).
-            coord: Target position along x or y (for X, Y: -459..459 millimetre; for Z: -300..542
-                millimetre; for RX, RY, RZ: -180..180 degree).
+            coord: Target position along x or y (for X, Y: -459..459 millimetres; for Z: -300..542
+                millimetres; for RX, RY, RZ: -180..180 degrees).
             speed: Speed in percent of the maximum (1..100 percent).
 
         Safety: motion. Command id 0x24.
@@ -60,8 +60,8 @@ class CoordsCommands(Client):
         """Send the end to coordinates.
 
         Args:
-            coords: Position and orientation of the end (6 numbers (x, y -459..459 millimetre; z
-                -300..542 millimetre; rx, ry, rz -180..180 degree)).
+            coords: Position and orientation of the end (6 numbers (x, y -459..459 millimetres; z
+                -300..542 millimetres; rx, ry, rz -180..180 degrees)).
             speed: Speed in percent of the maximum (1..100 percent).
 
         Safety: motion. Command id 0x25.
@@ -82,9 +82,9 @@ class CoordsCommands(Client):
 
         Args:
             through: Position and orientation of the end (6 numbers (x, y, z -3276.8..3276.7
-                millimetre; rx, ry, rz -327.68..327.67 degree)).
-            end: Position and orientation of the end (6 numbers (x, y, z -3276.8..3276.7 millimetre;
-                rx, ry, rz -327.68..327.67 degree)).
+                millimetres; rx, ry, rz -327.68..327.67 degrees)).
+            end: Position and orientation of the end (6 numbers (x, y, z -3276.8..3276.7
+                millimetres; rx, ry, rz -327.68..327.67 degrees)).
             speed: Speed in percent of the maximum (1..100 percent).
 
         Safety: motion. Command id 0x8C.
@@ -103,9 +103,9 @@ class CoordsCommands(Client):
         """Move on an arc with a radius.
 
         Args:
-            coords: Position and orientation of the end (6 numbers (x, y -459..459 millimetre; z
-                -300..542 millimetre; rx, ry, rz -180..180 degree)).
-            radius: Radius of an arc (0..655.35 millimetre).
+            coords: Position and orientation of the end (6 numbers (x, y -459..459 millimetres; z
+                -300..542 millimetres; rx, ry, rz -180..180 degrees)).
+            radius: Radius of an arc (0..655.35 millimetres).
             speed: Speed in percent of the maximum (1..100 percent).
             arc: Which of two arcs with the same radius (one of USUAL (0), MAJOR (1), MINOR (2)).
 
@@ -119,12 +119,12 @@ class CoordsCommands(Client):
         Calculates the angles near others that bring the end to coordinates.
 
         Args:
-            coords: Position and orientation of the end (6 numbers (x, y -459..459 millimetre; z
-                -300..542 millimetre; rx, ry, rz -180..180 degree)).
-            angles: The seven joint angles, base first (7 numbers (j1, j3, j5, j7 -165..165 degree;
-                j2 -50..120 degree; j4 -165..1 degree; j6 -75..255 degree)).
+            coords: Position and orientation of the end (6 numbers (x, y -459..459 millimetres; z
+                -300..542 millimetres; rx, ry, rz -180..180 degrees)).
+            angles: The seven joint angles, base first (7 numbers (j1, j3, j5, j7 -165..165 degrees;
+                j2 -50..120 degrees; j4 -165..1 degrees; j6 -75..255 degrees)).
 
-        Returns: The seven joint angles, base first (j1, j2, j3, j4, j5, j6, j7 -573..573 degree).
+        Returns: The seven joint angles, base first (j1, j2, j3, j4, j5, j6, j7 -573..573 degrees).
         Safety: query. Command id 0x8D.
         """
         return self._call(messages.coords.SolveInvKinematics(coords, angles))

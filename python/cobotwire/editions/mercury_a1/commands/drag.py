@@ -54,7 +54,7 @@ class DragCommands(Client):
 
         Reads the next recorded point and removes it.
 
-        Returns: The seven joint angles, base first (j1, j2, j3, j4, j5, j6, j7 -360..360 degree).
+        Returns: The seven joint angles, base first (j1, j2, j3, j4, j5, j6, j7 -360..360 degrees).
         Safety: setting. Command id 0x44.
         """
         return self._call(messages.drag.GetDragFifo())
@@ -66,7 +66,7 @@ class DragCommands(Client):
 
         Args:
             angles: The seven joint angles, base first (7 numbers (j1, j2, j3, j4, j5, j6, j7
-                -327.68..327.67 degree)).
+                -327.68..327.67 degrees)).
 
         Safety: setting. Command id 0x45.
         """

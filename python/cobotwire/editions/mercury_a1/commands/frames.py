@@ -24,7 +24,7 @@ class FramesCommands(Client):
 
         Args:
             coords: Position and orientation of the end (6 numbers (x, y, z -3276.8..3276.7
-                millimetre; rx, ry, rz -327.68..327.67 degree)).
+                millimetres; rx, ry, rz -327.68..327.67 degrees)).
 
         Safety: setting. Command id 0x81.
         """
@@ -35,8 +35,8 @@ class FramesCommands(Client):
 
         Reads where the tool is on the flange.
 
-        Returns: Position and orientation of the end (x, y, z -3276.8..3276.7 millimetre; rx, ry, rz
-            -327.68..327.67 degree).
+        Returns: Position and orientation of the end (x, y, z -3276.8..3276.7 millimetres; rx, ry,
+            rz -327.68..327.67 degrees).
         Safety: query. Command id 0x82.
         """
         return self._call(messages.frames.GetToolReference())
@@ -50,7 +50,7 @@ class FramesCommands(Client):
 
         Args:
             coords: Position and orientation of the end (6 numbers (x, y, z -3276.8..3276.7
-                millimetre; rx, ry, rz -327.68..327.67 degree)).
+                millimetres; rx, ry, rz -327.68..327.67 degrees)).
 
         Safety: setting. Command id 0x83.
         """
@@ -61,8 +61,8 @@ class FramesCommands(Client):
 
         Reads where the base is in the world.
 
-        Returns: Position and orientation of the end (x, y, z -3276.8..3276.7 millimetre; rx, ry, rz
-            -327.68..327.67 degree).
+        Returns: Position and orientation of the end (x, y, z -3276.8..3276.7 millimetres; rx, ry,
+            rz -327.68..327.67 degrees).
         Safety: query. Command id 0x84.
         """
         return self._call(messages.frames.GetWorldReference())

@@ -72,7 +72,7 @@ class MotionCommands(Client):
         Args:
             joint: Joint number; 1 is the base, 7 the flange (1..7).
 
-        Returns: A joint angle as the arm reports it in hundredths (-360..360 degree).
+        Returns: A joint angle as the arm reports it in hundredths (-360..360 degrees).
         Safety: query. Command id 0x1C.
         """
         return self._call(messages.motion.GetAngle(joint))
@@ -80,7 +80,7 @@ class MotionCommands(Client):
     def get_angles(self) -> Angles:
         """Read the joint angles.
 
-        Returns: The seven joint angles, base first (j1, j2, j3, j4, j5, j6, j7 -360..360 degree).
+        Returns: The seven joint angles, base first (j1, j2, j3, j4, j5, j6, j7 -360..360 degrees).
         Safety: query. Command id 0x20.
         """
         return self._call(messages.motion.GetAngles())
@@ -92,9 +92,9 @@ class MotionCommands(Client):
 
         Args:
             joint: Joint number; 1 is the base, 7 the flange (1..7).
-            angle: Target angle of joint 1 (for 1: -165..165 degree; for 2: -50..120 degree; for 3:
-                -165..165 degree; for 4: -165..1 degree; for 5: -165..165 degree; for 6: -75..255
-                degree; for 7: -165..165 degree).
+            angle: Target angle of joint 1 (for 1: -165..165 degrees; for 2: -50..120 degrees; for
+                3: -165..165 degrees; for 4: -165..1 degrees; for 5: -165..165 degrees; for 6:
+                -75..255 degrees; for 7: -165..165 degrees).
             speed: Speed in percent of the maximum (1..100 percent).
 
         Safety: motion. Command id 0x21.
@@ -107,8 +107,8 @@ class MotionCommands(Client):
         """Send all joints to angles.
 
         Args:
-            angles: The seven joint angles, base first (7 numbers (j1, j3, j5, j7 -165..165 degree;
-                j2 -50..120 degree; j4 -165..1 degree; j6 -75..255 degree)).
+            angles: The seven joint angles, base first (7 numbers (j1, j3, j5, j7 -165..165 degrees;
+                j2 -50..120 degrees; j4 -165..1 degrees; j6 -75..255 degrees)).
             speed: Speed in percent of the maximum (1..100 percent).
 
         Safety: motion. Command id 0x22.
@@ -161,8 +161,8 @@ class MotionCommands(Client):
         """Check whether a target is reached.
 
         Args:
-            target: The seven joint angles, base first (7 numbers (j1, j3, j5, j7 -165..165 degree;
-                j2 -50..120 degree; j4 -165..1 degree; j6 -75..255 degree)).
+            target: The seven joint angles, base first (7 numbers (j1, j3, j5, j7 -165..165 degrees;
+                j2 -50..120 degrees; j4 -165..1 degrees; j6 -75..255 degrees)).
 
         Returns: True if the arm is at the target.
         Safety: query. Command id 0x2A.
@@ -175,8 +175,8 @@ class MotionCommands(Client):
         Reports whether the arm is at a target, given as coordinates.
 
         Args:
-            target: Position and orientation of the end (6 numbers (x, y -459..459 millimetre; z
-                -300..542 millimetre; rx, ry, rz -180..180 degree)).
+            target: Position and orientation of the end (6 numbers (x, y -459..459 millimetres; z
+                -300..542 millimetres; rx, ry, rz -180..180 degrees)).
 
         Returns: True if the arm is at the target.
         Safety: query. Command id 0x2A.
@@ -198,7 +198,7 @@ class MotionCommands(Client):
 
         Reads the deflection of joint 1 in the null space.
 
-        Returns: A joint angle (-327.68..327.67 degree).
+        Returns: A joint angle (-327.68..327.67 degrees).
         Safety: query. Command id 0x35.
         """
         return self._call(messages.motion.GetSolutionAngles())
@@ -211,7 +211,7 @@ class MotionCommands(Client):
         Moves joint 1 in the null space, while the end stays where it is.
 
         Args:
-            angle: Deflection of joint 1 in the null space (-90..90 degree).
+            angle: Deflection of joint 1 in the null space (-90..90 degrees).
             speed: Speed in percent of the maximum (1..100 percent).
 
         Safety: motion. Command id 0x36.
@@ -223,9 +223,9 @@ class MotionCommands(Client):
 
         Reads the angles, the coordinates, and eight further bytes.
 
-        Returns: The seven joint angles, base first (j1, j2, j3, j4, j5, j6, j7 -360..360 degree);
-            Position and orientation of the end (x, y, z -3276.8..3276.7 millimetre; rx, ry, rz
-            -327.68..327.67 degree); Eight bytes that no source explains (byte_1, byte_2, byte_3,
+        Returns: The seven joint angles, base first (j1, j2, j3, j4, j5, j6, j7 -360..360 degrees);
+            Position and orientation of the end (x, y, z -3276.8..3276.7 millimetres; rx, ry, rz
+            -327.68..327.67 degrees); Eight bytes that no source explains (byte_1, byte_2, byte_3,
             byte_4, byte_5, byte_6, byte_7, byte_8 0..255).
         Safety: query. Command id 0xD6.
         """

@@ -35,8 +35,8 @@ class PlanningCommands(Client):
 
         Args:
             mode: What a speed or an acceleration belongs to (one of ANGLES (0), COORDS (1)).
-            speed: Highest speed of joints (for ANGLES: 1..150 degree_per_second; for COORDS: 1..200
-                millimetre_per_second).
+            speed: Highest speed of joints (for ANGLES: 1..150 degrees per second; for COORDS:
+                1..200 millimetres per second).
 
         Safety: setting. Command id 0x41.
         """
@@ -65,7 +65,7 @@ class PlanningCommands(Client):
         Args:
             mode: What a speed or an acceleration belongs to (one of ANGLES (0), COORDS (1)).
             acceleration: Highest acceleration of joints, in degrees per square second (for ANGLES:
-                1..200; for COORDS: 1..400 millimetre_per_second_squared).
+                1..200; for COORDS: 1..400 millimetres per second squared).
 
         Safety: setting. Command id 0x43.
         """
@@ -113,7 +113,7 @@ class PlanningCommands(Client):
         """Set the permitted deviation.
 
         Args:
-            angle: How far a joint may be from its target (-300..300 degree).
+            angle: How far a joint may be from its target (-300..300 degrees).
 
         Safety: setting. Command id 0xA4.
         """
@@ -122,7 +122,7 @@ class PlanningCommands(Client):
     def get_pos_over_shoot(self) -> float:
         """Read the permitted deviation.
 
-        Returns: How far a joint may be from its target (-300..300 degree).
+        Returns: How far a joint may be from its target (-300..300 degrees).
         Safety: query. Command id 0xA5.
         """
         return self._call(messages.planning.GetPosOverShoot())

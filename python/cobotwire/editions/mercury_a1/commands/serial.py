@@ -89,7 +89,7 @@ class SerialCommands(Client):
         """Set the baud rate.
 
         Args:
-            baud: Baud rate of the port at the end (1..1000000 baud; default: 115200).
+            baud: Baud rate of the port at the end (1..1000000 bauds; default: 115200).
 
         Safety: setting. Command id 0xB8.
         """
@@ -99,7 +99,7 @@ class SerialCommands(Client):
         """Set the timeout.
 
         Args:
-            timeout: Timeout of the port at the end (0..65535 millisecond).
+            timeout: Timeout of the port at the end (0..65535 milliseconds).
 
         Safety: setting. Command id 0xB9.
         """

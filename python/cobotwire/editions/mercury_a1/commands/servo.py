@@ -35,7 +35,7 @@ class ServoCommands(Client):
         Args:
             joint: Joint number; 1 is the base, 7 the flange (1..7).
 
-        Returns: Position of an encoder (-2147483648..2147483647 tick).
+        Returns: Position of an encoder (-2147483648..2147483647 ticks).
         Safety: query. Command id 0x3B.
         """
         return self._call(messages.servo.GetServoEncoder(joint))
@@ -46,7 +46,7 @@ class ServoCommands(Client):
         Reads the encoders of all joints.
 
         Returns: The positions of the seven encoders, base first (j1, j2, j3, j4, j5, j6, j7
-            -2147483648..2147483647 tick).
+            -2147483648..2147483647 ticks).
         Safety: query. Command id 0x3D.
         """
         return self._call(messages.servo.GetServoEncoders())
@@ -59,7 +59,7 @@ class ServoCommands(Client):
         Args:
             joint: Joint number; 1 is the base, 7 the flange (1..7).
 
-        Returns: A limit of a joint (-360..360 degree).
+        Returns: A limit of a joint (-360..360 degrees).
         Safety: query. Command id 0x4A.
         """
         return self._call(messages.servo.GetJointMinAngle(joint))
@@ -72,7 +72,7 @@ class ServoCommands(Client):
         Args:
             joint: Joint number; 1 is the base, 7 the flange (1..7).
 
-        Returns: A limit of a joint (-360..360 degree).
+        Returns: A limit of a joint (-360..360 degrees).
         Safety: query. Command id 0x4B.
         """
         return self._call(messages.servo.GetJointMaxAngle(joint))
@@ -86,7 +86,7 @@ class ServoCommands(Client):
 
         Args:
             joint: Joint number; 1 is the base, 7 the flange (1..7).
-            angle: A limit of a joint (-360..360 degree).
+            angle: A limit of a joint (-360..360 degrees).
 
         Safety: persistent write. Command id 0x4C.
         """
@@ -101,7 +101,7 @@ class ServoCommands(Client):
 
         Args:
             joint: Joint number; 1 is the base, 7 the flange (1..7).
-            angle: A limit of a joint (-360..360 degree).
+            angle: A limit of a joint (-360..360 degrees).
 
         Safety: persistent write. Command id 0x4D.
         """
@@ -125,7 +125,7 @@ class ServoCommands(Client):
         Reads the encoder of each joint at its zero.
 
         Returns: The positions of the seven encoders, base first (j1, j2, j3, j4, j5, j6, j7
-            -2147483648..2147483647 tick).
+            -2147483648..2147483647 ticks).
         Safety: query. Command id 0x59.
         """
         return self._call(messages.servo.GetZeroPos())
@@ -267,7 +267,7 @@ class ServoCommands(Client):
         """Read the encoders at the last loss of power.
 
         Returns: The positions of the seven encoders, base first (j1, j2, j3, j4, j5, j6, j7
-            -2147483648..2147483647 tick).
+            -2147483648..2147483647 ticks).
         Safety: query. Command id 0x96.
         """
         return self._call(messages.servo.GetDownEncoders())
@@ -318,7 +318,7 @@ class ServoCommands(Client):
         """Read the speeds of the motors.
 
         Returns: The speeds of the seven motors, base first (j1, j2, j3, j4, j5, j6, j7
-            -327.68..327.67 revolution_per_minute).
+            -327.68..327.67 revolutions per minute).
         Safety: query. Command id 0xE1.
         """
         return self._call(messages.servo.GetServoSpeeds())
@@ -327,7 +327,7 @@ class ServoCommands(Client):
         """Read the currents of the motors.
 
         Returns: The currents of the seven motors, base first (j1, j2, j3, j4, j5, j6, j7
-            -32768..32767 milliampere).
+            -32768..32767 milliamperes).
         Safety: query. Command id 0xE2.
         """
         return self._call(messages.servo.GetServoCurrents())

@@ -20,8 +20,8 @@ class BaseCommands(Client):
 
         Reads the position and orientation of the end in the frame of the waist.
 
-        Returns: Position and orientation of the end (x, y, z -3276.8..3276.7 millimetre; rx, ry, rz
-            -327.68..327.67 degree).
+        Returns: Position and orientation of the end (x, y, z -3276.8..3276.7 millimetres; rx, ry,
+            rz -327.68..327.67 degrees).
         Safety: query. Command id 0xF0.
         """
         return self._call(messages.base.GetBaseCoords())
@@ -35,8 +35,8 @@ class BaseCommands(Client):
 
         Args:
             axis: One of the six coordinates (one of X (1), Y (2), Z (3), RX (4), RY (5), RZ (6)).
-            coord: Target position along x (for X: -351.1..566.9 millimetre; for Y: -645.9..645.9
-                millimetre; for Z: -262.9..655.1 millimetre; for RX, RY, RZ: -180..180 degree).
+            coord: Target position along x (for X: -351.1..566.9 millimetres; for Y: -645.9..645.9
+                millimetres; for Z: -262.9..655.1 millimetres; for RX, RY, RZ: -180..180 degrees).
             speed: Speed in percent of the maximum (1..100 percent).
 
         Safety: motion. Command id 0xF1.
@@ -51,8 +51,9 @@ class BaseCommands(Client):
         Moves the end to a position and orientation in the frame of the waist.
 
         Args:
-            coords: Position and orientation of the end (6 numbers (x -351.1..566.9 millimetre; y
-                -645.9..645.9 millimetre; z -262.9..655.1 millimetre; rx, ry, rz -180..180 degree)).
+            coords: Position and orientation of the end (6 numbers (x -351.1..566.9 millimetres; y
+                -645.9..645.9 millimetres; z -262.9..655.1 millimetres; rx, ry, rz -180..180
+                degrees)).
             speed: Speed in percent of the maximum (1..100 percent).
 
         Safety: motion. Command id 0xF2.
@@ -65,8 +66,9 @@ class BaseCommands(Client):
         Reports whether the arm is at a target, given as coordinates in the frame of the waist.
 
         Args:
-            target: Position and orientation of the end (6 numbers (x -351.1..566.9 millimetre; y
-                -645.9..645.9 millimetre; z -262.9..655.1 millimetre; rx, ry, rz -180..180 degree)).
+            target: Position and orientation of the end (6 numbers (x -351.1..566.9 millimetres; y
+                -645.9..645.9 millimetres; z -262.9..655.1 millimetres; rx, ry, rz -180..180
+                degrees)).
 
         Returns: True if the arm is at the target.
         Safety: query. Command id 0x2A.
@@ -103,8 +105,8 @@ class BaseCommands(Client):
 
         Args:
             axis: One of the six coordinates (one of X (1), Y (2), Z (3), RX (4), RY (5), RZ (6)).
-            increment: By how much the end moves along x or y (for X, Y: -918..918 millimetre; for
-                Z: -918..918 millimetre; for RX, RY, RZ: -327.67..327.67 degree).
+            increment: By how much the end moves along x or y (for X, Y: -918..918 millimetres; for
+                Z: -918..918 millimetres; for RX, RY, RZ: -327.67..327.67 degrees).
             speed: Speed in percent of the maximum (1..100 percent).
 
         Safety: motion. Command id 0x37.

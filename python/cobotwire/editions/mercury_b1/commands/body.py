@@ -17,7 +17,7 @@ class BodyCommands(Client):
 
         Args:
             joint: Joint number of the head (one of 11, 12).
-            angle: How far a joint of the head may be from its target (0..5 degree).
+            angle: How far a joint of the head may be from its target (0..5 degrees).
 
         Safety: setting. Command id 0x0B.
         """
@@ -29,7 +29,7 @@ class BodyCommands(Client):
         Args:
             joint: Joint number of the head (one of 11, 12).
 
-        Returns: How far a joint of the head may be from its target (0..5 degree).
+        Returns: How far a joint of the head may be from its target (0..5 degrees).
         Safety: query. Command id 0x0C.
         """
         return self._call(messages.body.GetServoCw(joint))
@@ -56,8 +56,8 @@ class BodyCommands(Client):
         Turns the waist, while the arms keep the hands where they are.
 
         Args:
-            current_angle: Angle of the waist (-180..180 degree).
-            target_angle: Angle of the waist (-180..180 degree).
+            current_angle: Angle of the waist (-180..180 degrees).
+            target_angle: Angle of the waist (-180..180 degrees).
             speed: Speed in percent of the maximum (1..100 percent).
 
         Safety: motion. Command id 0x2E.

@@ -30,8 +30,8 @@ class CoordsCommands(Client):
 
         Args:
             axis: One of the six coordinates (one of X (1), Y (2), Z (3), RX (4), RY (5), RZ (6)).
-            coord: Target position along x (for X: -351.1..566.9 millimetre; for Y: -645.9..645.9
-                millimetre; for Z: -262.9..655.1 millimetre; for RX, RY, RZ: -180..180 degree).
+            coord: Target position along x (for X: -351.1..566.9 millimetres; for Y: -645.9..645.9
+                millimetres; for Z: -262.9..655.1 millimetres; for RX, RY, RZ: -180..180 degrees).
             speed: Speed in percent of the maximum (1..100 percent).
 
         Safety: motion. Command id 0x24.
@@ -44,8 +44,9 @@ class CoordsCommands(Client):
         """Send the end to coordinates.
 
         Args:
-            coords: Position and orientation of the end (6 numbers (x -351.1..566.9 millimetre; y
-                -645.9..645.9 millimetre; z -262.9..655.1 millimetre; rx, ry, rz -180..180 degree)).
+            coords: Position and orientation of the end (6 numbers (x -351.1..566.9 millimetres; y
+                -645.9..645.9 millimetres; z -262.9..655.1 millimetres; rx, ry, rz -180..180
+                degrees)).
             speed: Speed in percent of the maximum (1..100 percent).
 
         Safety: motion. Command id 0x25.
@@ -64,9 +65,10 @@ class CoordsCommands(Client):
         """Move on an arc with a radius.
 
         Args:
-            coords: Position and orientation of the end (6 numbers (x -351.1..566.9 millimetre; y
-                -645.9..645.9 millimetre; z -262.9..655.1 millimetre; rx, ry, rz -180..180 degree)).
-            radius: Radius of an arc (0..655.35 millimetre).
+            coords: Position and orientation of the end (6 numbers (x -351.1..566.9 millimetres; y
+                -645.9..645.9 millimetres; z -262.9..655.1 millimetres; rx, ry, rz -180..180
+                degrees)).
+            radius: Radius of an arc (0..655.35 millimetres).
             speed: Speed in percent of the maximum (1..100 percent).
             arc: Which of two arcs with the same radius (one of USUAL (0), MAJOR (1), MINOR (2)).
 
@@ -80,12 +82,13 @@ class CoordsCommands(Client):
         Calculates the angles near others that bring the end to coordinates.
 
         Args:
-            coords: Position and orientation of the end (6 numbers (x -351.1..566.9 millimetre; y
-                -645.9..645.9 millimetre; z -262.9..655.1 millimetre; rx, ry, rz -180..180 degree)).
-            angles: The seven joint angles, base first (7 numbers (j1, j3, j5, j7 -165..165 degree;
-                j2 -50..120 degree; j4 -165..1 degree; j6 -75..255 degree)).
+            coords: Position and orientation of the end (6 numbers (x -351.1..566.9 millimetres; y
+                -645.9..645.9 millimetres; z -262.9..655.1 millimetres; rx, ry, rz -180..180
+                degrees)).
+            angles: The seven joint angles, base first (7 numbers (j1, j3, j5, j7 -165..165 degrees;
+                j2 -50..120 degrees; j4 -165..1 degrees; j6 -75..255 degrees)).
 
-        Returns: The seven joint angles, base first (j1, j2, j3, j4, j5, j6, j7 -573..573 degree).
+        Returns: The seven joint angles, base first (j1, j2, j3, j4, j5, j6, j7 -573..573 degrees).
         Safety: query. Command id 0x8D.
         """
         return self._call(messages.coords.SolveInvKinematics(coords, angles))

@@ -42,10 +42,11 @@ class JogCommands(Client):
         Args:
             joint: Joint number; 1 to 7 are the arm, 11 and 12 head and neck, 13 the waist (one of
                 1, 2, 3, 4, 5, 6, 7, 11, 12, 13).
-            increment: By how much joint 1 turns (for 1: -327.67..327.67 degree; for 2: -170..170
-                degree; for 3: -327.67..327.67 degree; for 4: -166..166 degree; for 5:
-                -327.67..327.67 degree; for 6: -327.67..327.67 degree; for 7: -327.67..327.67
-                degree; for 11: -55..55 degree; for 12: -315..315 degree; for 13: -320..320 degree).
+            increment: By how much joint 1 turns (for 1: -327.67..327.67 degrees; for 2: -170..170
+                degrees; for 3: -327.67..327.67 degrees; for 4: -166..166 degrees; for 5:
+                -327.67..327.67 degrees; for 6: -327.67..327.67 degrees; for 7: -327.67..327.67
+                degrees; for 11: -55..55 degrees; for 12: -315..315 degrees; for 13: -320..320
+                degrees).
             speed: Speed in percent of the maximum (1..100 percent).
 
         Safety: motion. Command id 0x33.
@@ -61,8 +62,8 @@ class JogCommands(Client):
 
         Args:
             axis: One of the six coordinates (one of X (1), Y (2), Z (3), RX (4), RY (5), RZ (6)).
-            increment: By how much the end moves along x or y (for X, Y: -918..918 millimetre; for
-                Z: -918..918 millimetre; for RX, RY, RZ: -327.67..327.67 degree).
+            increment: By how much the end moves along x or y (for X, Y: -918..918 millimetres; for
+                Z: -918..918 millimetres; for RX, RY, RZ: -327.67..327.67 degrees).
             speed: Speed in percent of the maximum (1..100 percent).
 
         Safety: motion. Command id 0x34.

@@ -39,7 +39,7 @@ class MotionCommands(Client):
             joint: Joint number; 1 to 7 are the arm, 11 and 12 head and neck, 13 the waist (one of
                 1, 2, 3, 4, 5, 6, 7, 11, 12, 13).
 
-        Returns: A joint angle as the arm reports it in hundredths (-360..360 degree).
+        Returns: A joint angle as the arm reports it in hundredths (-360..360 degrees).
         Safety: query. Command id 0x1C.
         """
         return self._call(messages.motion.GetAngle(joint))
@@ -52,10 +52,10 @@ class MotionCommands(Client):
         Args:
             joint: Joint number; 1 to 7 are the arm, 11 and 12 head and neck, 13 the waist (one of
                 1, 2, 3, 4, 5, 6, 7, 11, 12, 13).
-            angle: Target angle of joint 1 (for 1: -165..165 degree; for 2: -50..120 degree; for 3:
-                -165..165 degree; for 4: -165..1 degree; for 5: -165..165 degree; for 6: -75..255
-                degree; for 7: -165..165 degree; for 11: -55..0 degree; for 12: -70..245 degree; for
-                13: -160..160 degree).
+            angle: Target angle of joint 1 (for 1: -165..165 degrees; for 2: -50..120 degrees; for
+                3: -165..165 degrees; for 4: -165..1 degrees; for 5: -165..165 degrees; for 6:
+                -75..255 degrees; for 7: -165..165 degrees; for 11: -55..0 degrees; for 12: -70..245
+                degrees; for 13: -160..160 degrees).
             speed: Speed in percent of the maximum (1..100 percent).
 
         Safety: motion. Command id 0x21.
@@ -68,8 +68,9 @@ class MotionCommands(Client):
         Reports whether the arm is at a target, given as coordinates.
 
         Args:
-            target: Position and orientation of the end (6 numbers (x -351.1..566.9 millimetre; y
-                -645.9..645.9 millimetre; z -262.9..655.1 millimetre; rx, ry, rz -180..180 degree)).
+            target: Position and orientation of the end (6 numbers (x -351.1..566.9 millimetres; y
+                -645.9..645.9 millimetres; z -262.9..655.1 millimetres; rx, ry, rz -180..180
+                degrees)).
 
         Returns: True if the arm is at the target.
         Safety: query. Command id 0x2A.

@@ -39,7 +39,7 @@ class ServoCommands(Client):
             joint: Joint number; 1 to 7 are the arm, 11 and 12 head and neck, 13 the waist (one of
                 1, 2, 3, 4, 5, 6, 7, 11, 12, 13).
 
-        Returns: Position of an encoder (-2147483648..2147483647 tick).
+        Returns: Position of an encoder (-2147483648..2147483647 ticks).
         Safety: query. Command id 0x3B.
         """
         return self._call(messages.servo.GetServoEncoder(joint))
@@ -53,7 +53,7 @@ class ServoCommands(Client):
             joint: Joint number; 1 to 7 are the arm, 11 and 12 head and neck, 13 the waist (one of
                 1, 2, 3, 4, 5, 6, 7, 11, 12, 13).
 
-        Returns: A limit of a joint (-360..360 degree).
+        Returns: A limit of a joint (-360..360 degrees).
         Safety: query. Command id 0x4A.
         """
         return self._call(messages.servo.GetJointMinAngle(joint))
@@ -67,7 +67,7 @@ class ServoCommands(Client):
             joint: Joint number; 1 to 7 are the arm, 11 and 12 head and neck, 13 the waist (one of
                 1, 2, 3, 4, 5, 6, 7, 11, 12, 13).
 
-        Returns: A limit of a joint (-360..360 degree).
+        Returns: A limit of a joint (-360..360 degrees).
         Safety: query. Command id 0x4B.
         """
         return self._call(messages.servo.GetJointMaxAngle(joint))
@@ -82,7 +82,7 @@ class ServoCommands(Client):
         Args:
             joint: Joint number; 1 to 7 are the arm, 11 and 12 head and neck, 13 the waist (one of
                 1, 2, 3, 4, 5, 6, 7, 11, 12, 13).
-            angle: A limit of a joint (-360..360 degree).
+            angle: A limit of a joint (-360..360 degrees).
 
         Safety: persistent write. Command id 0x4C.
         """
@@ -98,7 +98,7 @@ class ServoCommands(Client):
         Args:
             joint: Joint number; 1 to 7 are the arm, 11 and 12 head and neck, 13 the waist (one of
                 1, 2, 3, 4, 5, 6, 7, 11, 12, 13).
-            angle: A limit of a joint (-360..360 degree).
+            angle: A limit of a joint (-360..360 degrees).
 
         Safety: persistent write. Command id 0x4D.
         """

@@ -28,8 +28,8 @@ class CoordsCommands(Client):
 
         Args:
             axis: One of the six coordinates (one of X (1), Y (2), Z (3), RX (4), RY (5), RZ (6)).
-            coord: The coordinate's target (for X, Y: -310..310 millimetre; for Z: -140..480
-                millimetre; for RX, RY, RZ: -180..180 degree).
+            coord: The coordinate's target (for X, Y: -310..310 millimetres; for Z: -140..480
+                millimetres; for RX, RY, RZ: -180..180 degrees).
             speed: Speed in percent of the maximum (1..100 percent).
 
         Safety: motion. Command id 0x24.
@@ -50,8 +50,8 @@ class CoordsCommands(Client):
         this; no source states it.
 
         Args:
-            coords: Position and orientation of the end (6 numbers (x, y -310..310 millimetre; z
-                -140..480 millimetre; rx, ry, rz -180..180 degree)).
+            coords: Position and orientation of the end (6 numbers (x, y -310..310 millimetres; z
+                -140..480 millimetres; rx, ry, rz -180..180 degrees)).
             speed: Speed in percent of the maximum (1..100 percent).
             mode: The path to the target. Left out: that of set_movement_type (one of ANGULAR (0),
                 LINEAR (1), UNEXPLAINED (2); optional).
@@ -65,9 +65,9 @@ class CoordsCommands(Client):
 
         Reads the angles of all seven joints, and position and orientation of the end, at once.
 
-        Returns: The seven joint angles, base first (j1, j2, j3, j4, j5, j6, j7 -181..181 degree);
-            Position and orientation of the end (x, y, z -3276.8..3276.7 millimetre; rx, ry, rz
-            -327.68..327.67 degree).
+        Returns: The seven joint angles, base first (j1, j2, j3, j4, j5, j6, j7 -181..181 degrees);
+            Position and orientation of the end (x, y, z -3276.8..3276.7 millimetres; rx, ry, rz
+            -327.68..327.67 degrees).
         Safety: query. Command id 0xD5.
         """
         return self._call(messages.coords.GetAnglesCoords())

@@ -28,7 +28,7 @@ class FramesCommands(Client):
 
         Args:
             coords: Position and orientation of the tool's point in the flange's frame (6 numbers
-                (x, y, z -3276.8..3276.7 millimetre; rx, ry, rz -327.68..327.67 degree)).
+                (x, y, z -3276.8..3276.7 millimetres; rx, ry, rz -327.68..327.67 degrees)).
 
         Safety: setting. Command id 0x81.
         """
@@ -39,7 +39,7 @@ class FramesCommands(Client):
 
         Args:
             coords: Position and orientation of the pedestal in the world's frame (6 numbers (x, y,
-                z -3276.8..3276.7 millimetre; rx, ry, rz -327.68..327.67 degree)).
+                z -3276.8..3276.7 millimetres; rx, ry, rz -327.68..327.67 degrees)).
 
         Safety: setting. Command id 0x83.
         """

@@ -72,7 +72,7 @@ class GripperCommands(Client):
 
         Args:
             current: Current at which the gripper protects itself; the unit is inferred from its
-                range (1..500 milliampere).
+                range (1..500 milliamperes).
 
         Safety: persistent write. Command id 0x39.
         """

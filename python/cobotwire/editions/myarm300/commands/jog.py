@@ -56,7 +56,7 @@ class JogCommands(Client):
 
         Args:
             joint: Joint number; 1 is the base, 7 the flange (1..7).
-            increment: The step by which the joint turns (-327.68..327.67 degree).
+            increment: The step by which the joint turns (-327.68..327.67 degrees).
             speed: Speed in percent of the maximum (1..100 percent).
 
         Safety: motion. Command id 0x33.
@@ -70,9 +70,9 @@ class JogCommands(Client):
 
         Args:
             joint: Joint number; 1 is the base, 7 the flange (1..7).
-            angle: The joint's target angle (for 1: -160..160 degree; for 2: -70..115 degree; for 3:
-                -170..170 degree; for 4: -113..75 degree; for 5: -170..170 degree; for 6: -115..115
-                degree; for 7: -180..180 degree).
+            angle: The joint's target angle (for 1: -160..160 degrees; for 2: -70..115 degrees; for
+                3: -170..170 degrees; for 4: -113..75 degrees; for 5: -170..170 degrees; for 6:
+                -115..115 degrees; for 7: -180..180 degrees).
             speed: Speed in percent of the maximum (1..100 percent).
 
         Safety: motion. Command id 0x31.

@@ -38,7 +38,7 @@ class MotionCommands(Client):
     def get_angles(self) -> Angles:
         """Read the joint angles.
 
-        Returns: The seven joint angles, base first (j1, j2, j3, j4, j5, j6, j7 -181..181 degree).
+        Returns: The seven joint angles, base first (j1, j2, j3, j4, j5, j6, j7 -181..181 degrees).
         Safety: query. Command id 0x20.
         """
         return self._call(messages.motion.GetAngles())
@@ -54,9 +54,9 @@ class MotionCommands(Client):
 
         Args:
             joint: Joint number; 1 is the base, 7 the flange (1..7).
-            angle: The joint's target angle (for 1: -160..160 degree; for 2: -70..115 degree; for 3:
-                -170..170 degree; for 4: -113..75 degree; for 5: -170..170 degree; for 6: -115..115
-                degree; for 7: -180..180 degree).
+            angle: The joint's target angle (for 1: -160..160 degrees; for 2: -70..115 degrees; for
+                3: -170..170 degrees; for 4: -113..75 degrees; for 5: -170..170 degrees; for 6:
+                -115..115 degrees; for 7: -180..180 degrees).
             speed: Speed in percent of the maximum (1..100 percent).
 
         Safety: motion. Command id 0x21.
@@ -72,9 +72,9 @@ class MotionCommands(Client):
         angle.
 
         Args:
-            angles: The seven joint angles, base first (7 numbers (j1 -160..160 degree; j2 -70..115
-                degree; j3, j5 -170..170 degree; j4 -113..75 degree; j6 -115..115 degree; j7
-                -180..180 degree)).
+            angles: The seven joint angles, base first (7 numbers (j1 -160..160 degrees; j2 -70..115
+                degrees; j3, j5 -170..170 degrees; j4 -113..75 degrees; j6 -115..115 degrees; j7
+                -180..180 degrees)).
             speed: Speed in percent of the maximum (1..100 percent).
 
         Safety: motion. Command id 0x22.
@@ -118,7 +118,7 @@ class MotionCommands(Client):
 
         Args:
             target: The joint angles of the target (7 numbers (j1, j2, j3, j4, j5, j6, j7
-                -327.68..327.67 degree)).
+                -327.68..327.67 degrees)).
 
         Returns: True if the arm is at the target.
         Safety: query. Command id 0x2A.
@@ -129,7 +129,7 @@ class MotionCommands(Client):
         """Read the joint angles in radians.
 
         Returns: The seven joint angles in radians, base first (j1, j2, j3, j4, j5, j6, j7 -181..181
-            degree).
+            degrees).
         Safety: query. Command id 0x20.
         """
         return self._call(messages.motion.GetRadians())
@@ -145,8 +145,8 @@ class MotionCommands(Client):
 
         Args:
             radians: The seven joint angles in radians, base first (in radians; on the wire 7
-                numbers (j1 -160..160 degree; j2 -70..115 degree; j3, j5 -170..170 degree; j4
-                -113..75 degree; j6 -115..115 degree; j7 -180..180 degree)).
+                numbers (j1 -160..160 degrees; j2 -70..115 degrees; j3, j5 -170..170 degrees; j4
+                -113..75 degrees; j6 -115..115 degrees; j7 -180..180 degrees)).
             speed: Speed in percent of the maximum (1..100 percent).
 
         Safety: motion. Command id 0x22.
@@ -170,8 +170,8 @@ class MotionCommands(Client):
         """Check whether a pose is reached.
 
         Args:
-            target: The coordinates of the target (6 numbers (x, y, z -3276.8..3276.7 millimetre;
-                rx, ry, rz -327.68..327.67 degree)).
+            target: The coordinates of the target (6 numbers (x, y, z -3276.8..3276.7 millimetres;
+                rx, ry, rz -327.68..327.67 degrees)).
 
         Returns: True if the arm is at the target.
         Safety: query. Command id 0x2A.
@@ -183,7 +183,7 @@ class MotionCommands(Client):
 
         Reads the deflection angle in the arm's null space, in degrees.
 
-        Returns: A joint angle (-327.68..327.67 degree).
+        Returns: A joint angle (-327.68..327.67 degrees).
         Safety: query. Command id 0x2E.
         """
         return self._call(messages.motion.GetSolutionAngles())
@@ -197,7 +197,7 @@ class MotionCommands(Client):
 
         Args:
             angle: The deflection angle; the maker calls it the angle of joint 1 (-327.68..327.67
-                degree).
+                degrees).
             speed: Speed in percent of the maximum (1..100 percent).
 
         Safety: motion. Command id 0x2F.

@@ -21,7 +21,7 @@ class ServoCommands(Client):
         Args:
             joint: Servo number; 1 to 7 are the joints, 8 is the gripper (1..8).
             encoder: Servo position; 2048 is a joint's zero, 4096 ticks are one turn, and both 0 and
-                4096 can be sent (0..4096 tick).
+                4096 can be sent (0..4096 ticks).
             speed: Speed in percent of the maximum (1..100 percent).
 
         Safety: motion. Command id 0x3A.
@@ -35,7 +35,7 @@ class ServoCommands(Client):
             joint: Servo number; 1 to 7 are the joints, 8 is the gripper (1..8).
 
         Returns: Servo position as the arm reports it; 2048 is a joint's zero, 4096 ticks are one
-            turn. A servo beyond its zero reports a negative position (-32768..32767 tick).
+            turn. A servo beyond its zero reports a negative position (-32768..32767 ticks).
         Safety: query. Command id 0x3B.
         """
         return self._call(messages.servo.GetEncoder(joint))
@@ -45,7 +45,7 @@ class ServoCommands(Client):
 
         Args:
             encoders: The seven servo positions, base first (7 numbers (j1, j2, j3, j4, j5, j6, j7
-                0..4096 tick)).
+                0..4096 ticks)).
             speed: Speed in percent of the maximum (1..100 percent).
 
         Safety: motion. Command id 0x3C.
@@ -58,7 +58,7 @@ class ServoCommands(Client):
         Reads the encoder positions of all seven joints, in ticks; 2048 is a joint's zero.
 
         Returns: The seven servo positions, base first (j1, j2, j3, j4, j5, j6, j7 -32768..32767
-            tick).
+            ticks).
         Safety: query. Command id 0x3D.
         """
         return self._call(messages.servo.GetEncoders())
@@ -71,7 +71,7 @@ class ServoCommands(Client):
         Args:
             joint: Joint number; 1 is the base, 7 the flange (1..7).
 
-        Returns: A joint limit as the arm reports it (-3276.8..3276.7 degree).
+        Returns: A joint limit as the arm reports it (-3276.8..3276.7 degrees).
         Safety: query. Command id 0x4A.
         """
         return self._call(messages.servo.GetJointMinAngle(joint))
@@ -84,7 +84,7 @@ class ServoCommands(Client):
         Args:
             joint: Joint number; 1 is the base, 7 the flange (1..7).
 
-        Returns: A joint limit as the arm reports it (-3276.8..3276.7 degree).
+        Returns: A joint limit as the arm reports it (-3276.8..3276.7 degrees).
         Safety: query. Command id 0x4B.
         """
         return self._call(messages.servo.GetJointMaxAngle(joint))
@@ -98,9 +98,9 @@ class ServoCommands(Client):
 
         Args:
             joint: Joint number; 1 is the base, 7 the flange (1..7).
-            angle: The smallest allowed angle of the joint (for 1: -160..160 degree; for 2: -70..115
-                degree; for 3: -170..170 degree; for 4: -113..75 degree; for 5: -170..170 degree;
-                for 6: -115..115 degree; for 7: -180..180 degree).
+            angle: The smallest allowed angle of the joint (for 1: -160..160 degrees; for 2:
+                -70..115 degrees; for 3: -170..170 degrees; for 4: -113..75 degrees; for 5:
+                -170..170 degrees; for 6: -115..115 degrees; for 7: -180..180 degrees).
 
         Safety: persistent write. Command id 0x4C.
         """
@@ -115,9 +115,9 @@ class ServoCommands(Client):
 
         Args:
             joint: Joint number; 1 is the base, 7 the flange (1..7).
-            angle: The largest allowed angle of the joint (for 1: -160..160 degree; for 2: -70..115
-                degree; for 3: -170..170 degree; for 4: -113..75 degree; for 5: -170..170 degree;
-                for 6: -115..115 degree; for 7: -180..180 degree).
+            angle: The largest allowed angle of the joint (for 1: -160..160 degrees; for 2: -70..115
+                degrees; for 3: -170..170 degrees; for 4: -113..75 degrees; for 5: -170..170
+                degrees; for 6: -115..115 degrees; for 7: -180..180 degrees).
 
         Safety: persistent write. Command id 0x4D.
         """
@@ -249,9 +249,9 @@ class ServoCommands(Client):
 
         Args:
             encoders: The seven servo positions, base first (7 numbers (j1, j2, j3, j4, j5, j6, j7
-                0..4096 tick)).
+                0..4096 ticks)).
             speeds: The speeds of the seven servos, base first (7 numbers (j1, j2, j3, j4, j5, j6,
-                j7 0..6000 step_per_second)).
+                j7 0..6000 steps per second)).
 
         Safety: motion. Command id 0x3E.
         """
@@ -271,7 +271,7 @@ class ServoCommands(Client):
         """Read the speeds of the servos.
 
         Returns: The speeds of the seven servos, base first (j1, j2, j3, j4, j5, j6, j7
-            -32768..32767 step_per_second).
+            -32768..32767 steps per second).
         Safety: query. Command id 0xE1.
         """
         return self._call(messages.servo.GetServoSpeeds())
@@ -280,7 +280,7 @@ class ServoCommands(Client):
         """Read the voltages at the servos.
 
         Returns: The voltages at the seven servos, base first (j1, j2, j3, j4, j5, j6, j7 0..25.5
-            volt).
+            volts).
         Safety: query. Command id 0xE3.
         """
         return self._call(messages.servo.GetServoVoltages())
@@ -300,7 +300,7 @@ class ServoCommands(Client):
         """Read the temperatures of the servos.
 
         Returns: The temperatures of the seven servos, base first (j1, j2, j3, j4, j5, j6, j7 0..255
-            degree_celsius).
+            degrees Celsius).
         Safety: query. Command id 0xE5.
         """
         return self._call(messages.servo.GetServoTemps())

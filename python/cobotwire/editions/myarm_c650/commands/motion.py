@@ -18,7 +18,7 @@ class MotionCommands(Client):
         Reads the angles of all seven joints, in degrees; the seventh is the gripper.
 
         Returns: The seven joint angles, base first; the last is that of the gripper (j1, j2, j3,
-            j4, j5, j6, j7 -200..200 degree).
+            j4, j5, j6, j7 -200..200 degrees).
         Safety: query. Command id 0x20.
         """
         return self._call(messages.motion.GetAngles())
@@ -29,7 +29,7 @@ class MotionCommands(Client):
         Reads the angles of all seven joints, in degrees; the seventh is the gripper.
 
         Returns: The seven joint angles, base first; the last is that of the gripper (j1, j2, j3,
-            j4, j5, j6, j7 -200..200 degree).
+            j4, j5, j6, j7 -200..200 degrees).
         Safety: query. Command id 0x20.
         """
         return self._call(messages.motion.GetJointsAngle())
@@ -41,7 +41,7 @@ class MotionCommands(Client):
             joint: Joint number; 1 is the base, 7 the gripper (1..7).
 
         Returns: A joint angle as the arm reports it; 200 means that the servo does not communicate
-            (-200..200 degree).
+            (-200..200 degrees).
         Safety: query. Command id 0x1C.
         """
         return self._call(messages.motion.GetJointAngle(joint))
@@ -49,8 +49,8 @@ class MotionCommands(Client):
     def get_coords(self) -> Coords:
         """Read the coordinates.
 
-        Returns: Position and orientation of the end (x, y, z -3276.8..3276.7 millimetre; rx, ry, rz
-            -327.68..327.67 degree).
+        Returns: Position and orientation of the end (x, y, z -3276.8..3276.7 millimetres; rx, ry,
+            rz -327.68..327.67 degrees).
         Safety: query. Command id 0x23.
         """
         return self._call(messages.motion.GetCoords())
@@ -58,8 +58,8 @@ class MotionCommands(Client):
     def get_joints_coord(self) -> Coords:
         """Read the coordinates (the maker's name).
 
-        Returns: Position and orientation of the end (x, y, z -3276.8..3276.7 millimetre; rx, ry, rz
-            -327.68..327.67 degree).
+        Returns: Position and orientation of the end (x, y, z -3276.8..3276.7 millimetres; rx, ry,
+            rz -327.68..327.67 degrees).
         Safety: query. Command id 0x23.
         """
         return self._call(messages.motion.GetJointsCoord())
@@ -70,7 +70,7 @@ class MotionCommands(Client):
         Reads the smallest allowed angle of each joint, in degrees.
 
         Returns: The seven joint angles, base first; the last is that of the gripper (j1, j2, j3,
-            j4, j5, j6, j7 -327.68..327.67 degree).
+            j4, j5, j6, j7 -327.68..327.67 degrees).
         Safety: query. Command id 0x4A.
         """
         return self._call(messages.motion.GetJointsMin())
@@ -81,7 +81,7 @@ class MotionCommands(Client):
         Reads the largest allowed angle of each joint, in degrees.
 
         Returns: The seven joint angles, base first; the last is that of the gripper (j1, j2, j3,
-            j4, j5, j6, j7 -327.68..327.67 degree).
+            j4, j5, j6, j7 -327.68..327.67 degrees).
         Safety: query. Command id 0x4B.
         """
         return self._call(messages.motion.GetJointsMax())

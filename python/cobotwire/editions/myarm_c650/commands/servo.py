@@ -28,7 +28,7 @@ class ServoCommands(Client):
         Args:
             servo: Servo number, 1 to 8; 8 is the gripper (1..8).
 
-        Returns: Servo position as the arm reports it (-32768..32767 tick).
+        Returns: Servo position as the arm reports it (-32768..32767 ticks).
         Safety: query. Command id 0x3B.
         """
         return self._call(messages.servo.GetServoEncoder(servo))
@@ -37,7 +37,7 @@ class ServoCommands(Client):
         """Read the encoders of all servos.
 
         Returns: The eight servo positions, base first (s1, s2, s3, s4, s5, s6, s7, s8 -32768..32767
-            tick).
+            ticks).
         Safety: query. Command id 0x3D.
         """
         return self._call(messages.servo.GetServosEncoder())
@@ -48,8 +48,8 @@ class ServoCommands(Client):
         Reads the encoder positions of all eight servos, and their speeds.
 
         Returns: The eight servo positions, base first (s1, s2, s3, s4, s5, s6, s7, s8 -32768..32767
-            tick); The speeds of the eight servos, base first (s1, s2, s3, s4, s5, s6, s7, s8
-            -32768..32767 step_per_second).
+            ticks); The speeds of the eight servos, base first (s1, s2, s3, s4, s5, s6, s7, s8
+            -32768..32767 steps per second).
         Safety: query. Command id 0xEF.
         """
         return self._call(messages.servo.GetServosEncoderDrag())
@@ -93,7 +93,7 @@ class ServoCommands(Client):
         """Read the speeds of the servos.
 
         Returns: The speeds of the eight servos, base first (s1, s2, s3, s4, s5, s6, s7, s8
-            -32768..32767 step_per_second).
+            -32768..32767 steps per second).
         Safety: query. Command id 0xE1.
         """
         return self._call(messages.servo.GetServosSpeed())
@@ -102,8 +102,8 @@ class ServoCommands(Client):
         """Read the currents of the servos.
 
         Returns: The currents of the eight servos, base first (8 numbers (s1, s2, s3, s4, s5, s6,
-            s7, s8 0..255 milliampere) or 8 numbers (s1, s2, s3, s4, s5, s6, s7, s8 -32768..32767
-            milliampere)).
+            s7, s8 0..255 milliamperes) or 8 numbers (s1, s2, s3, s4, s5, s6, s7, s8 -32768..32767
+            milliamperes)).
         Safety: query. Command id 0xE2.
         """
         return self._call(messages.servo.GetServosCurrent())
@@ -112,7 +112,7 @@ class ServoCommands(Client):
         """Read the voltages at the servos.
 
         Returns: The voltages at the eight servos, base first (s1, s2, s3, s4, s5, s6, s7, s8
-            0..25.5 volt).
+            0..25.5 volts).
         Safety: query. Command id 0xE3.
         """
         return self._call(messages.servo.GetServosVoltage())
@@ -132,7 +132,7 @@ class ServoCommands(Client):
         """Read the temperatures of the servos.
 
         Returns: The temperatures of the eight servos, base first (s1, s2, s3, s4, s5, s6, s7, s8
-            0..255 degree_celsius).
+            0..255 degrees Celsius).
         Safety: query. Command id 0xE5.
         """
         return self._call(messages.servo.GetServosTemp())
@@ -143,7 +143,7 @@ class ServoCommands(Client):
         Reads the currents at which the eight servos protect themselves.
 
         Returns: The currents of the eight servos, base first (s1, s2, s3, s4, s5, s6, s7, s8
-            -32768..32767 milliampere).
+            -32768..32767 milliamperes).
         Safety: query. Command id 0xE6.
         """
         return self._call(messages.servo.GetServosProtectCurrent())

@@ -32,9 +32,9 @@ class MotionCommands(Client):
 
         Args:
             joint: Joint number; 1 is the base, 7 the gripper (1..7).
-            angle: The joint's target angle (for 1: -165..165 degree; for 2: -60..95 degree; for 3:
-                -90..75 degree; for 4: -150..150 degree; for 5: -91..88 degree; for 6: -150..150
-                degree; for 7: -118..2 degree).
+            angle: The joint's target angle (for 1: -165..165 degrees; for 2: -60..95 degrees; for
+                3: -90..75 degrees; for 4: -150..150 degrees; for 5: -91..88 degrees; for 6:
+                -150..150 degrees; for 7: -118..2 degrees).
             speed: Speed in percent of the maximum (1..100 percent).
 
         Safety: motion. Command id 0x21.
@@ -49,9 +49,9 @@ class MotionCommands(Client):
 
         Args:
             joint: Joint number; 1 is the base, 7 the gripper (1..7).
-            angle: The joint's target angle (for 1: -165..165 degree; for 2: -60..95 degree; for 3:
-                -90..75 degree; for 4: -150..150 degree; for 5: -91..88 degree; for 6: -150..150
-                degree; for 7: -118..2 degree).
+            angle: The joint's target angle (for 1: -165..165 degrees; for 2: -60..95 degrees; for
+                3: -90..75 degrees; for 4: -150..150 degrees; for 5: -91..88 degrees; for 6:
+                -150..150 degrees; for 7: -118..2 degrees).
             speed: Speed in percent of the maximum (1..100 percent).
 
         Safety: motion. Command id 0x21.
@@ -66,8 +66,8 @@ class MotionCommands(Client):
 
         Args:
             angles: The seven joint angles, base first; the last is that of the gripper (7 numbers
-                (j1 -165..165 degree; j2 -60..95 degree; j3 -90..75 degree; j4, j6 -150..150 degree;
-                j5 -91..88 degree; j7 -118..2 degree)).
+                (j1 -165..165 degrees; j2 -60..95 degrees; j3 -90..75 degrees; j4, j6 -150..150
+                degrees; j5 -91..88 degrees; j7 -118..2 degrees)).
             speed: Speed in percent of the maximum (1..100 percent).
 
         Safety: motion. Command id 0x22.
@@ -81,8 +81,8 @@ class MotionCommands(Client):
 
         Args:
             angles: The seven joint angles, base first; the last is that of the gripper (7 numbers
-                (j1 -165..165 degree; j2 -60..95 degree; j3 -90..75 degree; j4, j6 -150..150 degree;
-                j5 -91..88 degree; j7 -118..2 degree)).
+                (j1 -165..165 degrees; j2 -60..95 degrees; j3 -90..75 degrees; j4, j6 -150..150
+                degrees; j5 -91..88 degrees; j7 -118..2 degrees)).
             speed: Speed in percent of the maximum (1..100 percent).
 
         Safety: motion. Command id 0x22.

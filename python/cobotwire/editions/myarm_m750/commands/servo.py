@@ -38,9 +38,9 @@ class ServoCommands(Client):
 
         Args:
             servo: Servo number, 1 to 8; 8 is the gripper (1..8).
-            encoder: The servo's target position (for 1: 114..3981 tick; for 2: 1200..2991 tick; for
-                3: 1200..2991 tick; for 4: 1024..3002 tick; for 5: 286..3788 tick; for 6: 1013..3048
-                tick; for 7: 307..3788 tick; for 8: 706..2068 tick).
+            encoder: The servo's target position (for 1: 114..3981 ticks; for 2: 1200..2991 ticks;
+                for 3: 1200..2991 ticks; for 4: 1024..3002 ticks; for 5: 286..3788 ticks; for 6:
+                1013..3048 ticks; for 7: 307..3788 ticks; for 8: 706..2068 ticks).
             speed: Speed in percent of the maximum (1..100 percent).
 
         Safety: motion. Command id 0x3A.
@@ -55,9 +55,9 @@ class ServoCommands(Client):
         cobotwire does not check them.
 
         Args:
-            encoders: The eight servo positions, base first (8 numbers (s1 114..3981 tick; s2, s3
-                1200..2991 tick; s4 1024..3002 tick; s5 286..3788 tick; s6 1013..3048 tick; s7
-                307..3788 tick; s8 706..2068 tick)).
+            encoders: The eight servo positions, base first (8 numbers (s1 114..3981 ticks; s2, s3
+                1200..2991 ticks; s4 1024..3002 ticks; s5 286..3788 ticks; s6 1013..3048 ticks; s7
+                307..3788 ticks; s8 706..2068 ticks)).
             speed: Speed in percent of the maximum (1..100 percent).
 
         Safety: motion. Command id 0x3C.
@@ -74,11 +74,11 @@ class ServoCommands(Client):
         between the current position and the target. Start near the first point.
 
         Args:
-            encoders: The eight servo positions, base first (8 numbers (s1 114..3981 tick; s2, s3
-                1200..2991 tick; s4 1024..3002 tick; s5 286..3788 tick; s6 1013..3048 tick; s7
-                307..3788 tick; s8 706..2068 tick)).
+            encoders: The eight servo positions, base first (8 numbers (s1 114..3981 ticks; s2, s3
+                1200..2991 ticks; s4 1024..3002 ticks; s5 286..3788 ticks; s6 1013..3048 ticks; s7
+                307..3788 ticks; s8 706..2068 ticks)).
             speeds: The speeds of the eight servos, base first (8 numbers (s1, s2, s3, s4, s5, s6,
-                s7, s8 -9999..999 step_per_second)).
+                s7, s8 -9999..999 steps per second)).
 
         Safety: motion. Command id 0x3E.
         """

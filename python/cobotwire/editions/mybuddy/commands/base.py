@@ -22,11 +22,11 @@ class BaseCommands(Client):
 
         Args:
             coords: Position and orientation of the end (6 numbers (x, y, z -3276.8..3276.7
-                millimetre; rx, ry, rz -327.68..327.67 degree)).
+                millimetres; rx, ry, rz -327.68..327.67 degrees)).
             arm: One of the arms, as an argument (one of LEFT_ARM (0), RIGHT_ARM (1)).
 
-        Returns: Position and orientation of the end (x, y, z -3276.8..3276.7 millimetre; rx, ry, rz
-            -327.68..327.67 degree).
+        Returns: Position and orientation of the end (x, y, z -3276.8..3276.7 millimetres; rx, ry,
+            rz -327.68..327.67 degrees).
         Safety: query. Command id 0xF0.
         """
         return self._call(messages.base.SingleToBaseCoords(coords, arm))
@@ -38,11 +38,11 @@ class BaseCommands(Client):
 
         Args:
             coords: Position and orientation of the end (6 numbers (x, y, z -3276.8..3276.7
-                millimetre; rx, ry, rz -327.68..327.67 degree)).
+                millimetres; rx, ry, rz -327.68..327.67 degrees)).
             arm: One of the arms, as an argument (one of LEFT_ARM (0), RIGHT_ARM (1)).
 
-        Returns: Position and orientation of the end (x, y, z -3276.8..3276.7 millimetre; rx, ry, rz
-            -327.68..327.67 degree).
+        Returns: Position and orientation of the end (x, y, z -3276.8..3276.7 millimetres; rx, ry,
+            rz -327.68..327.67 degrees).
         Safety: query. Command id 0xF1.
         """
         return self._call(messages.base.BaseToSingleCoords(coords, arm))
@@ -54,9 +54,9 @@ class BaseCommands(Client):
 
         Args:
             left: The six angles of the left arm (6 numbers (j1, j2, j3, j4, j5, j6 -327.68..327.67
-                degree)).
+                degrees)).
             right: The six angles of the right arm (6 numbers (j1, j2, j3, j4, j5, j6
-                -327.68..327.67 degree)).
+                -327.68..327.67 degrees)).
 
         Returns: A byte that no source explains (0..255).
         Safety: query. Command id 0xF2.
@@ -68,8 +68,8 @@ class BaseCommands(Client):
 
         Reads the position and orientation of an arm's end, relative to the base of the robot.
 
-        Returns: Position and orientation of the end (x, y, z -3276.8..3276.7 millimetre; rx, ry, rz
-            -327.68..327.67 degree).
+        Returns: Position and orientation of the end (x, y, z -3276.8..3276.7 millimetres; rx, ry,
+            rz -327.68..327.67 degrees).
         Safety: query. Command id 0xF3.
         """
         return self._call(messages.base.GetBaseCoord())
@@ -79,9 +79,9 @@ class BaseCommands(Client):
 
         Reads the position and orientation of both arms' ends, relative to the base of the robot.
 
-        Returns: Position and orientation of the left arm's end (x, y, z -3276.8..3276.7 millimetre;
-            rx, ry, rz -327.68..327.67 degree); Position and orientation of the right arm's end (x,
-            y, z -3276.8..3276.7 millimetre; rx, ry, rz -327.68..327.67 degree).
+        Returns: Position and orientation of the left arm's end (x, y, z -3276.8..3276.7
+            millimetres; rx, ry, rz -327.68..327.67 degrees); Position and orientation of the right
+            arm's end (x, y, z -3276.8..3276.7 millimetres; rx, ry, rz -327.68..327.67 degrees).
         Safety: query. Command id 0xF4.
         """
         return self._call(messages.base.GetBaseCoords())
@@ -94,8 +94,8 @@ class BaseCommands(Client):
 
         Args:
             axis: One of the six coordinates (one of X (1), Y (2), Z (3), RX (4), RY (5), RZ (6)).
-            coord: A position along an axis (for X, Y, Z: -3276.8..3276.7 millimetre; for RX, RY,
-                RZ: -327.68..327.67 degree).
+            coord: A position along an axis (for X, Y, Z: -3276.8..3276.7 millimetres; for RX, RY,
+                RZ: -327.68..327.67 degrees).
             speed: Speed of a motion in percent of the maximum (1..100 percent).
 
         Safety: motion. Command id 0xF5.
@@ -110,7 +110,7 @@ class BaseCommands(Client):
 
         Args:
             coords: Position and orientation of the end (6 numbers (x, y, z -3276.8..3276.7
-                millimetre; rx, ry, rz -327.68..327.67 degree)).
+                millimetres; rx, ry, rz -327.68..327.67 degrees)).
             speed: Speed of a motion in percent of the maximum (1..100 percent).
 
         Safety: motion. Command id 0xF6.
@@ -125,8 +125,8 @@ class BaseCommands(Client):
 
         Args:
             axis: One of the six coordinates (one of X (1), Y (2), Z (3), RX (4), RY (5), RZ (6)).
-            increment: A position along an axis (for X, Y, Z: -3276.8..3276.7 millimetre; for RX,
-                RY, RZ: -327.68..327.67 degree).
+            increment: A position along an axis (for X, Y, Z: -3276.8..3276.7 millimetres; for RX,
+                RY, RZ: -327.68..327.67 degrees).
             speed: Speed of a motion in percent of the maximum (1..100 percent).
 
         Safety: motion. Command id 0xF7.

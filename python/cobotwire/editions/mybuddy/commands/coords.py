@@ -21,8 +21,8 @@ class CoordsCommands(Client):
         Reads the position and orientation of the end, in the selected reference frame and for the
         selected end type.
 
-        Returns: Position and orientation of the end (x, y, z -3276.8..3276.7 millimetre; rx, ry, rz
-            -327.68..327.67 degree).
+        Returns: Position and orientation of the end (x, y, z -3276.8..3276.7 millimetres; rx, ry,
+            rz -327.68..327.67 degrees).
         Safety: query. Command id 0x23.
         """
         return self._call(messages.coords.GetCoords())
@@ -35,8 +35,8 @@ class CoordsCommands(Client):
 
         Args:
             axis: One of the six coordinates (one of X (1), Y (2), Z (3), RX (4), RY (5), RZ (6)).
-            coord: The coordinate's target (for X: 0..250 millimetre; for Y: -260..260 millimetre;
-                for Z: 0..480 millimetre; for RX, RY, RZ: -180..180 degree).
+            coord: The coordinate's target (for X: 0..250 millimetres; for Y: -260..260 millimetres;
+                for Z: 0..480 millimetres; for RX, RY, RZ: -180..180 degrees).
             speed: Speed in percent of the maximum (0..100 percent).
 
         Safety: motion. Command id 0x24.
@@ -47,8 +47,8 @@ class CoordsCommands(Client):
         """Send all coordinates.
 
         Args:
-            coords: Position and orientation of an arm's end (6 numbers (x 0..250 millimetre; y
-                -260..260 millimetre; z 0..480 millimetre; rx, ry, rz -180..180 degree)).
+            coords: Position and orientation of an arm's end (6 numbers (x 0..250 millimetres; y
+                -260..260 millimetres; z 0..480 millimetres; rx, ry, rz -180..180 degrees)).
             speed: Speed in percent of the maximum (0..100 percent).
             mode: The path to a coordinate target (one of ANGULAR (0), LINEAR (1), UNEXPLAINED (2)).
 

@@ -28,7 +28,7 @@ class FramesCommands(Client):
 
         Args:
             coords: Position and orientation of the tool's point in the flange's frame (6 numbers
-                (x, y, z -3276.8..3276.7 millimetre; rx, ry, rz -327.68..327.67 degree)).
+                (x, y, z -3276.8..3276.7 millimetres; rx, ry, rz -327.68..327.67 degrees)).
 
         Safety: setting. Command id 0x81.
         """
@@ -40,7 +40,7 @@ class FramesCommands(Client):
         Reads the position of the tool's point relative to the flange, in millimetres and degrees.
 
         Returns: Position and orientation of the tool's point in the flange's frame (x, y, z
-            -3276.8..3276.7 millimetre; rx, ry, rz -327.68..327.67 degree).
+            -3276.8..3276.7 millimetres; rx, ry, rz -327.68..327.67 degrees).
         Safety: query. Command id 0x82.
         """
         return self._call(messages.frames.GetToolReference())
@@ -50,7 +50,7 @@ class FramesCommands(Client):
 
         Args:
             coords: Position and orientation of the pedestal in the world's frame (6 numbers (x, y,
-                z -3276.8..3276.7 millimetre; rx, ry, rz -327.68..327.67 degree)).
+                z -3276.8..3276.7 millimetres; rx, ry, rz -327.68..327.67 degrees)).
 
         Safety: setting. Command id 0x83.
         """
@@ -60,7 +60,7 @@ class FramesCommands(Client):
         """Read the world reference.
 
         Returns: Position and orientation of the pedestal in the world's frame (x, y, z
-            -3276.8..3276.7 millimetre; rx, ry, rz -327.68..327.67 degree).
+            -3276.8..3276.7 millimetres; rx, ry, rz -327.68..327.67 degrees).
         Safety: query. Command id 0x84.
         """
         return self._call(messages.frames.GetWorldReference())

@@ -23,8 +23,8 @@ class JogCommands(Client):
 
         Args:
             joint: Joint number; 1 is the base, 6 the flange (1..6).
-            angle: The joint's target angle (for 1, 2, 3, 4, 5: -165..165 degree; for 6: -175..175
-                degree).
+            angle: The joint's target angle (for 1, 2, 3, 4, 5: -165..165 degrees; for 6: -175..175
+                degrees).
             speed: Speed in percent of the maximum (0..100 percent).
 
         Safety: motion. Command id 0x31.

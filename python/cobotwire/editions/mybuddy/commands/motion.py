@@ -36,8 +36,8 @@ class MotionCommands(Client):
 
         Args:
             joint: Joint number; 1 is the base, 6 the flange (1..6).
-            angle: The joint's target angle (for 1, 2, 3, 4, 5: -165..165 degree; for 6: -175..175
-                degree).
+            angle: The joint's target angle (for 1, 2, 3, 4, 5: -165..165 degrees; for 6: -175..175
+                degrees).
             speed: Speed of a motion in percent of the maximum (1..100 percent).
 
         Safety: motion. Command id 0x21.
@@ -52,7 +52,7 @@ class MotionCommands(Client):
 
         Args:
             angles: The six joint angles of an arm, base first (6 numbers (j1, j2, j3, j4, j5
-                -165..165 degree; j6 -175..175 degree)).
+                -165..165 degrees; j6 -175..175 degrees)).
             speed: Speed of a motion in percent of the maximum (1..100 percent).
 
         Safety: motion. Command id 0x22.
@@ -64,8 +64,8 @@ class MotionCommands(Client):
 
         Args:
             target: Six joint angles or six coordinates, depending on the kind (for ANGLES: 6
-                numbers (j1, j2, j3, j4, j5, j6 -327.68..327.67 degree); for COORDS: 6 numbers (x,
-                y, z -3276.8..3276.7 millimetre; rx, ry, rz -327.68..327.67 degree)).
+                numbers (j1, j2, j3, j4, j5, j6 -327.68..327.67 degrees); for COORDS: 6 numbers (x,
+                y, z -3276.8..3276.7 millimetres; rx, ry, rz -327.68..327.67 degrees)).
             kind: What the six values of a target are (one of ANGLES (0), COORDS (1); default:
                 ANGLES (0)).
 
@@ -90,7 +90,7 @@ class MotionCommands(Client):
         """Read the joint angles in radians.
 
         Returns: The six joint angles of an arm in radians, base first (j1, j2, j3, j4, j5, j6
-            -181..181 degree).
+            -181..181 degrees).
         Safety: query. Command id 0x20.
         """
         return self._call(messages.motion.GetRadians())
@@ -102,7 +102,7 @@ class MotionCommands(Client):
 
         Args:
             radians: The six joint angles of an arm in radians, base first (in radians; on the wire
-                6 numbers (j1, j2, j3, j4, j5 -165..165 degree; j6 -175..175 degree)).
+                6 numbers (j1, j2, j3, j4, j5 -165..165 degrees; j6 -175..175 degrees)).
             speed: Speed of a motion in percent of the maximum (1..100 percent).
 
         Safety: motion. Command id 0x22.
@@ -114,8 +114,8 @@ class MotionCommands(Client):
 
         Args:
             target: The angle of the waist, or its coordinate; no source says what the coordinate of
-                a waist is (for ANGLES: -327.68..327.67 degree; for COORDS: -3276.8..3276.7
-                millimetre).
+                a waist is (for ANGLES: -327.68..327.67 degrees; for COORDS: -3276.8..3276.7
+                millimetres).
             kind: What the six values of a target are (one of ANGLES (0), COORDS (1)).
 
         Returns: True if the waist is at the target.
@@ -130,13 +130,13 @@ class MotionCommands(Client):
 
         Args:
             left: Six joint angles or six coordinates of the left arm, depending on the kind (for
-                ANGLES: 6 numbers (j1, j2, j3, j4, j5, j6 -327.68..327.67 degree); for COORDS: 6
-                numbers (x, y, z -3276.8..3276.7 millimetre; rx, ry, rz -327.68..327.67 degree)).
+                ANGLES: 6 numbers (j1, j2, j3, j4, j5, j6 -327.68..327.67 degrees); for COORDS: 6
+                numbers (x, y, z -3276.8..3276.7 millimetres; rx, ry, rz -327.68..327.67 degrees)).
             right: Six joint angles or six coordinates of the right arm, depending on the kind (for
-                ANGLES: 6 numbers (j1, j2, j3, j4, j5, j6 -327.68..327.67 degree); for COORDS: 6
-                numbers (x, y, z -3276.8..3276.7 millimetre; rx, ry, rz -327.68..327.67 degree)).
-            waist: The angle of the waist, or its coordinate (for ANGLES: -327.68..327.67 degree;
-                for COORDS: -3276.8..3276.7 millimetre).
+                ANGLES: 6 numbers (j1, j2, j3, j4, j5, j6 -327.68..327.67 degrees); for COORDS: 6
+                numbers (x, y, z -3276.8..3276.7 millimetres; rx, ry, rz -327.68..327.67 degrees)).
+            waist: The angle of the waist, or its coordinate (for ANGLES: -327.68..327.67 degrees;
+                for COORDS: -3276.8..3276.7 millimetres).
             kind: What the six values of a target are (one of ANGLES (0), COORDS (1)).
 
         Returns: True if both arms and the waist are at their targets.
@@ -153,7 +153,7 @@ class MotionCommands(Client):
             joint: Servo number; 1 to 6 are the joints, 7 is the gripper (1..7).
 
         Returns: A joint angle as the arm reports it. No servo can stand beyond half a turn; 180.08
-            or -180.08 means that the servo itself reported -1 (-181..181 degree).
+            or -180.08 means that the servo itself reported -1 (-181..181 degrees).
         Safety: query. Command id 0x2C.
         """
         return self._call(messages.motion.GetAngle(joint))
@@ -181,7 +181,7 @@ class MotionCommands(Client):
 
         Args:
             angles: The six joint angles of an arm, base first (6 numbers (j1, j2, j3, j4, j5
-                -165..165 degree; j6 -175..175 degree)).
+                -165..165 degrees; j6 -175..175 degrees)).
             time: How long a motion takes; no source states the unit (1..100).
 
         Safety: motion. Command id 0x2E.

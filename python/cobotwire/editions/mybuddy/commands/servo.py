@@ -34,7 +34,7 @@ class ServoCommands(Client):
         Args:
             joint: Joint number; 1 is the base, 6 the flange (1..6).
             encoder: Servo position; 2048 is a joint's zero, 4096 ticks are one turn, and both 0 and
-                4096 can be sent (0..4096 tick).
+                4096 can be sent (0..4096 ticks).
             speed: Speed in percent of the maximum (0..100 percent).
 
         Safety: motion. Command id 0x3A.
@@ -48,7 +48,7 @@ class ServoCommands(Client):
             joint: Joint number; 1 is the base, 6 the flange (1..6).
 
         Returns: Servo position as the arm reports it; 2048 is a joint's zero, 4096 ticks are one
-            turn. A servo beyond its zero reports a negative position (-32768..32767 tick).
+            turn. A servo beyond its zero reports a negative position (-32768..32767 ticks).
         Safety: query. Command id 0x3B.
         """
         return self._call(messages.servo.GetEncoder(joint))
@@ -73,10 +73,10 @@ class ServoCommands(Client):
 
         Args:
             encoders: The six servo positions, base first (6 numbers (j1, j2, j3, j4, j5, j6 0..4096
-                tick)).
+                ticks)).
             speed: Speed in percent of the maximum (0..100 percent; optional).
             speeds: The speeds of an arm's six servos, base first (6 numbers (j1, j2, j3, j4, j5, j6
-                -32768..32767 step_per_second); optional).
+                -32768..32767 steps per second); optional).
 
         Safety: motion. Command id 0x3C.
         """
@@ -87,7 +87,7 @@ class ServoCommands(Client):
 
         Reads the encoder positions of all six joints, in ticks; 2048 is a joint's zero.
 
-        Returns: The six servo positions, base first (j1, j2, j3, j4, j5, j6 -32768..32767 tick).
+        Returns: The six servo positions, base first (j1, j2, j3, j4, j5, j6 -32768..32767 ticks).
         Safety: query. Command id 0x3D.
         """
         return self._call(messages.servo.GetEncoders())
@@ -100,7 +100,7 @@ class ServoCommands(Client):
         Args:
             joint: Joint number; 1 is the base, 6 the flange (1..6).
 
-        Returns: A joint limit as the arm reports it (-3276.8..3276.7 degree).
+        Returns: A joint limit as the arm reports it (-3276.8..3276.7 degrees).
         Safety: query. Command id 0x4A.
         """
         return self._call(messages.servo.GetJointMinAngle(joint))
@@ -113,7 +113,7 @@ class ServoCommands(Client):
         Args:
             joint: Joint number; 1 is the base, 6 the flange (1..6).
 
-        Returns: A joint limit as the arm reports it (-3276.8..3276.7 degree).
+        Returns: A joint limit as the arm reports it (-3276.8..3276.7 degrees).
         Safety: query. Command id 0x4B.
         """
         return self._call(messages.servo.GetJointMaxAngle(joint))
@@ -126,7 +126,7 @@ class ServoCommands(Client):
 
         Args:
             joint: Joint number; 1 is the base, 6 the flange (1..6).
-            angle: The smallest allowed angle of the joint (-180..180 degree).
+            angle: The smallest allowed angle of the joint (-180..180 degrees).
 
         Safety: persistent write. Command id 0x4C.
         """
@@ -140,7 +140,7 @@ class ServoCommands(Client):
 
         Args:
             joint: Joint number; 1 is the base, 6 the flange (1..6).
-            angle: The largest allowed angle of the joint (-180..180 degree).
+            angle: The largest allowed angle of the joint (-180..180 degrees).
 
         Safety: persistent write. Command id 0x4D.
         """
@@ -187,9 +187,9 @@ class ServoCommands(Client):
 
         Args:
             encoders: The six servo positions, base first (6 numbers (j1, j2, j3, j4, j5, j6 0..4096
-                tick)).
+                ticks)).
             speeds: The speeds of an arm's six servos, base first (6 numbers (j1, j2, j3, j4, j5, j6
-                -32768..32767 step_per_second)).
+                -32768..32767 steps per second)).
 
         Safety: motion. Command id 0x3E.
         """
@@ -233,7 +233,7 @@ class ServoCommands(Client):
         """Read the voltages at the servos.
 
         Returns: The voltages at an arm's six servos, base first (j1, j2, j3, j4, j5, j6 0..25.5
-            volt).
+            volts).
         Safety: query. Command id 0xE3.
         """
         return self._call(messages.servo.GetServoVoltages())
@@ -252,7 +252,7 @@ class ServoCommands(Client):
         """Read the temperatures of the servos.
 
         Returns: The temperatures of an arm's six servos, base first (j1, j2, j3, j4, j5, j6 0..255
-            degree_celsius).
+            degrees Celsius).
         Safety: query. Command id 0xE5.
         """
         return self._call(messages.servo.GetServoTemps())
@@ -261,7 +261,7 @@ class ServoCommands(Client):
         """Read the speeds of the servos.
 
         Returns: The speeds of an arm's six servos, base first (j1, j2, j3, j4, j5, j6 -32768..32767
-            step_per_second).
+            steps per second).
         Safety: query. Command id 0xE7.
         """
         return self._call(messages.servo.GetServoSpeeds())

@@ -21,8 +21,8 @@ class CoordsCommands(Client):
         Reads the position and orientation of the end, in the selected reference frame and for the
         selected end type.
 
-        Returns: Position and orientation of the end (x, y, z -3253.5..3300 millimetre; rx, ry, rz
-            -325.35..330 degree).
+        Returns: Position and orientation of the end (x, y, z -3253.5..3300 millimetres; rx, ry, rz
+            -325.35..330 degrees).
         Safety: query. Command id 0x23.
         """
         return self._call(messages.coords.GetCoords())
@@ -34,8 +34,8 @@ class CoordsCommands(Client):
 
         Args:
             axis: One of the six coordinates (one of X (1), Y (2), Z (3), RX (4), RY (5), RZ (6)).
-            coord: A position along an axis (for X, Y, Z: -3253.5..3300 millimetre; for RX, RY, RZ:
-                -325.35..330 degree).
+            coord: A position along an axis (for X, Y, Z: -3253.5..3300 millimetres; for RX, RY, RZ:
+                -325.35..330 degrees).
             speed: Speed in percent of the maximum (0..100 percent).
 
         Safety: motion. Command id 0x24.
@@ -47,7 +47,7 @@ class CoordsCommands(Client):
 
         Args:
             coords: Position and orientation of the end (6 numbers (x, y, z -3253.5..3300
-                millimetre; rx, ry, rz -325.35..330 degree)).
+                millimetres; rx, ry, rz -325.35..330 degrees)).
             speed: Speed in percent of the maximum (0..100 percent).
             mode: The path to a coordinate target (one of ANGULAR (0), LINEAR (1), UNEXPLAINED (2)).
 

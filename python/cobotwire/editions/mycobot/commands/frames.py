@@ -22,7 +22,7 @@ class FramesCommands(Client):
 
         Args:
             coords: Position and orientation of the tool's point in the flange's frame (6 numbers
-                (x, y, z -325.35..330 millimetre; rx, ry, rz -325.35..330 degree)).
+                (x, y, z -325.35..330 millimetres; rx, ry, rz -325.35..330 degrees)).
 
         Safety: setting. Command id 0x81.
         """
@@ -34,7 +34,7 @@ class FramesCommands(Client):
         Reads the position of the tool's point relative to the flange, in millimetres and degrees.
 
         Returns: Position and orientation of the tool's point in the flange's frame (x, y, z
-            -325.35..330 millimetre; rx, ry, rz -325.35..330 degree).
+            -325.35..330 millimetres; rx, ry, rz -325.35..330 degrees).
         Safety: query. Command id 0x82.
         """
         return self._call(messages.frames.GetToolReference())
@@ -44,7 +44,7 @@ class FramesCommands(Client):
 
         Args:
             coords: Position and orientation of the pedestal in the world's frame (6 numbers (x, y,
-                z -325.35..330 millimetre; rx, ry, rz -325.35..330 degree)).
+                z -325.35..330 millimetres; rx, ry, rz -325.35..330 degrees)).
 
         Safety: setting. Command id 0x83.
         """
@@ -54,7 +54,7 @@ class FramesCommands(Client):
         """Read the world reference.
 
         Returns: Position and orientation of the pedestal in the world's frame (x, y, z -325.35..330
-            millimetre; rx, ry, rz -325.35..330 degree).
+            millimetres; rx, ry, rz -325.35..330 degrees).
         Safety: query. Command id 0x84.
         """
         return self._call(messages.frames.GetWorldReference())

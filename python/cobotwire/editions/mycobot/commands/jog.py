@@ -38,7 +38,7 @@ class JogCommands(Client):
 
         Args:
             joint: Joint number; 1 is the base, 6 the flange (1..6).
-            angle: A joint angle (-325.35..330 degree).
+            angle: A joint angle (-325.35..330 degrees).
             speed: Speed in percent of the maximum (0..100 percent).
 
         Safety: motion. Command id 0x31.
@@ -71,7 +71,7 @@ class JogCommands(Client):
 
         Args:
             joint: Joint number; 1 is the base, 6 the flange (1..6).
-            increment: The step by which the joint turns (-325.35..330 degree).
+            increment: The step by which the joint turns (-325.35..330 degrees).
             speed: Speed in percent of the maximum (0..100 percent).
 
         Safety: motion. Command id 0x33.

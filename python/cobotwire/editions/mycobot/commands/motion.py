@@ -31,7 +31,7 @@ class MotionCommands(Client):
     def get_angles(self) -> Angles:
         """Read the joint angles.
 
-        Returns: The six joint angles, base first (j1, j2, j3, j4, j5, j6 -181..181 degree).
+        Returns: The six joint angles, base first (j1, j2, j3, j4, j5, j6 -181..181 degrees).
         Safety: query. Command id 0x20.
         """
         return self._call(messages.motion.GetAngles())
@@ -45,7 +45,7 @@ class MotionCommands(Client):
 
         Args:
             joint: Joint number; 1 is the base, 6 the flange (1..6).
-            angle: A joint angle (-325.35..330 degree).
+            angle: A joint angle (-325.35..330 degrees).
             speed: Speed in percent of the maximum (0..100 percent).
 
         Safety: motion. Command id 0x21.
@@ -60,7 +60,7 @@ class MotionCommands(Client):
 
         Args:
             angles: The six joint angles, base first (6 numbers (j1, j2, j3, j4, j5, j6 -325.35..330
-                degree)).
+                degrees)).
             speed: Speed in percent of the maximum (0..100 percent).
 
         Safety: motion. Command id 0x22.
@@ -110,8 +110,8 @@ class MotionCommands(Client):
 
         Args:
             target: Six joint angles or six coordinates, depending on the kind (for ANGLES: 6
-                numbers (j1, j2, j3, j4, j5, j6 -325.35..330 degree); for COORDS: 6 numbers (x, y, z
-                -3253.5..3300 millimetre; rx, ry, rz -325.35..330 degree)).
+                numbers (j1, j2, j3, j4, j5, j6 -325.35..330 degrees); for COORDS: 6 numbers (x, y,
+                z -3253.5..3300 millimetres; rx, ry, rz -325.35..330 degrees)).
             kind: What the six values of a target are (one of ANGLES (0), COORDS (1); default:
                 ANGLES (0)).
 

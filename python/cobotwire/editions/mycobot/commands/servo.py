@@ -24,7 +24,8 @@ class ServoCommands(Client):
 
         Args:
             joint: Joint number; 1 is the base, 6 the flange (1..6).
-            encoder: Servo position; 2048 is a joint's zero, 4096 ticks are one turn (0..4095 tick).
+            encoder: Servo position; 2048 is a joint's zero, 4096 ticks are one turn (0..4095
+                ticks).
 
         Safety: motion. Command id 0x3A.
         """
@@ -37,7 +38,7 @@ class ServoCommands(Client):
             joint: Joint number; 1 is the base, 6 the flange (1..6).
 
         Returns: Servo position as the arm reports it; 2048 is a joint's zero, 4096 ticks are one
-            turn (0..65535 tick).
+            turn (0..65535 ticks).
         Safety: query. Command id 0x3B.
         """
         return self._call(messages.servo.GetEncoder(joint))
@@ -47,7 +48,7 @@ class ServoCommands(Client):
 
         Args:
             encoders: The six servo positions, base first (6 numbers (j1, j2, j3, j4, j5, j6 0..4095
-                tick)).
+                ticks)).
             speed: Speed in percent of the maximum (0..100 percent).
 
         Safety: motion. Command id 0x3C.
@@ -59,7 +60,7 @@ class ServoCommands(Client):
 
         Reads the encoder positions of all six joints, in ticks; 2048 is a joint's zero.
 
-        Returns: The six servo positions, base first (j1, j2, j3, j4, j5, j6 0..65535 tick).
+        Returns: The six servo positions, base first (j1, j2, j3, j4, j5, j6 0..65535 ticks).
         Safety: query. Command id 0x3D.
         """
         return self._call(messages.servo.GetEncoders())
@@ -72,7 +73,7 @@ class ServoCommands(Client):
         Args:
             joint: Joint number; 1 is the base, 6 the flange (1..6).
 
-        Returns: A joint limit as the arm reports it (-3253.5..3300 degree).
+        Returns: A joint limit as the arm reports it (-3253.5..3300 degrees).
         Safety: query. Command id 0x4A.
         """
         return self._call(messages.servo.GetJointMinAngle(joint))
@@ -85,7 +86,7 @@ class ServoCommands(Client):
         Args:
             joint: Joint number; 1 is the base, 6 the flange (1..6).
 
-        Returns: A joint limit as the arm reports it (-3253.5..3300 degree).
+        Returns: A joint limit as the arm reports it (-3253.5..3300 degrees).
         Safety: query. Command id 0x4B.
         """
         return self._call(messages.servo.GetJointMaxAngle(joint))
@@ -99,7 +100,7 @@ class ServoCommands(Client):
 
         Args:
             joint: Joint number; 1 is the base, 6 the flange (1..6).
-            angle: The smallest allowed angle of the joint (-325.35..330 degree).
+            angle: The smallest allowed angle of the joint (-325.35..330 degrees).
 
         Safety: persistent write. Command id 0x4C.
         """
@@ -114,7 +115,7 @@ class ServoCommands(Client):
 
         Args:
             joint: Joint number; 1 is the base, 6 the flange (1..6).
-            angle: The largest allowed angle of the joint (-325.35..330 degree).
+            angle: The largest allowed angle of the joint (-325.35..330 degrees).
 
         Safety: persistent write. Command id 0x4D.
         """

@@ -21,8 +21,8 @@ class CoordsCommands(Client):
         Reads the position and orientation of the end, in the selected reference frame and for the
         selected end type.
 
-        Returns: Position and orientation of the end (x, y, z -3276.8..3276.7 millimetre; rx, ry, rz
-            -327.68..327.67 degree).
+        Returns: Position and orientation of the end (x, y, z -3276.8..3276.7 millimetres; rx, ry,
+            rz -327.68..327.67 degrees).
         Safety: query. Command id 0x23.
         """
         return self._call(messages.coords.GetCoords())
@@ -36,8 +36,8 @@ class CoordsCommands(Client):
 
         Args:
             axis: One of the six coordinates (one of X (1), Y (2), Z (3), RX (4), RY (5), RZ (6)).
-            coord: The coordinate's target (for X, Y: -281.4..281.4 millimetre; for Z: -70..412.6
-                millimetre; for RX, RY, RZ: -180..180 degree).
+            coord: The coordinate's target (for X, Y: -281.4..281.4 millimetres; for Z: -70..412.6
+                millimetres; for RX, RY, RZ: -180..180 degrees).
             speed: Speed in percent of the maximum (1..100 percent).
 
         Safety: motion. Command id 0x24.
@@ -58,8 +58,8 @@ class CoordsCommands(Client):
         this; no source states it.
 
         Args:
-            coords: Position and orientation of the end (6 numbers (x, y -281.4..281.4 millimetre; z
-                -70..412.6 millimetre; rx, ry, rz -180..180 degree)).
+            coords: Position and orientation of the end (6 numbers (x, y -281.4..281.4 millimetres;
+                z -70..412.6 millimetres; rx, ry, rz -180..180 degrees)).
             speed: Speed in percent of the maximum (1..100 percent).
             mode: The path to the target. Left out: that of set_movement_type (one of ANGULAR (0),
                 LINEAR (1), UNEXPLAINED (2); optional).
@@ -73,9 +73,9 @@ class CoordsCommands(Client):
 
         Reads the angles of all six joints, and position and orientation of the end, at once.
 
-        Returns: The six joint angles, base first (j1, j2, j3, j4, j5, j6 -181..181 degree);
-            Position and orientation of the end (x, y, z -3276.8..3276.7 millimetre; rx, ry, rz
-            -327.68..327.67 degree).
+        Returns: The six joint angles, base first (j1, j2, j3, j4, j5, j6 -181..181 degrees);
+            Position and orientation of the end (x, y, z -3276.8..3276.7 millimetres; rx, ry, rz
+            -327.68..327.67 degrees).
         Safety: query. Command id 0xD5.
         """
         return self._call(messages.coords.GetAnglesCoords())
@@ -85,8 +85,8 @@ class CoordsCommands(Client):
 
         Reads the planned position and orientation of the end, in the base's frame.
 
-        Returns: Position and orientation of the end (x, y, z -3276.8..3276.7 millimetre; rx, ry, rz
-            -327.68..327.67 degree).
+        Returns: Position and orientation of the end (x, y, z -3276.8..3276.7 millimetres; rx, ry,
+            rz -327.68..327.67 degrees).
         Safety: query. Command id 0xF7.
         """
         return self._call(messages.coords.GetCoordsPlan())

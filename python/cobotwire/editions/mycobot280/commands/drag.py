@@ -44,8 +44,9 @@ class DragCommands(Client):
         Reads the next point of the recording: the position and the speed of each servo.
 
         Returns: A recorded point; position and speed of each servo in turn, base first (j1_encoder,
-            j2_encoder, j3_encoder, j4_encoder, j5_encoder, j6_encoder -32768..32767 tick; j1_speed,
-            j2_speed, j3_speed, j4_speed, j5_speed, j6_speed -32768..32767 step_per_second).
+            j2_encoder, j3_encoder, j4_encoder, j5_encoder, j6_encoder -32768..32767 ticks;
+            j1_speed, j2_speed, j3_speed, j4_speed, j5_speed, j6_speed -32768..32767 steps per
+            second).
         Safety: setting. Command id 0xF3.
         """
         return self._call(messages.drag.DragGetRecordData())

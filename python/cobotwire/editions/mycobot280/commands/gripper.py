@@ -126,7 +126,7 @@ class GripperCommands(Client):
         """Read the gripper's protective current.
 
         Returns: Current at which the gripper protects itself, as the arm reports it; the unit is
-            inferred from its range (-32768..32767 milliampere).
+            inferred from its range (-32768..32767 milliamperes).
         Safety: query. Command id 0x37.
         """
         return self._call(messages.gripper.GetGripperProtectCurrent())
@@ -150,7 +150,7 @@ class GripperCommands(Client):
 
         Args:
             current: Current at which the gripper protects itself; the unit is inferred from its
-                range (1..500 milliampere).
+                range (1..500 milliamperes).
 
         Safety: persistent write. Command id 0x39.
         """

@@ -72,7 +72,7 @@ class JogCommands(Client):
 
         Args:
             joint: Joint number; 1 is the base, 6 the flange (1..6).
-            increment: The step by which the joint turns (-327.68..327.67 degree).
+            increment: The step by which the joint turns (-327.68..327.67 degrees).
             speed: Speed in percent of the maximum (1..100 percent).
 
         Safety: motion. Command id 0x33.
@@ -128,7 +128,7 @@ class JogCommands(Client):
 
         Args:
             joint: Joint number; 1 is the base, 6 the flange (1..6).
-            increment: The step by which the joint turns (-327.68..327.67 degree).
+            increment: The step by which the joint turns (-327.68..327.67 degrees).
             speed: Speed in percent of the maximum (1..100 percent).
 
         Safety: motion. Command id 0x33.
@@ -147,8 +147,8 @@ class JogCommands(Client):
         Args:
             axis: One of the six coordinates (one of X (1), Y (2), Z (3), RX (4), RY (5), RZ (6)).
             increment: The step, in millimetres along an axis and in degrees about one (for X, Y:
-                -562.9..562.9 millimetre; for Z: -482.6..482.6 millimetre; for RX, RY, RZ:
-                -327.68..327.67 degree).
+                -562.9..562.9 millimetres; for Z: -482.6..482.6 millimetres; for RX, RY, RZ:
+                -327.68..327.67 degrees).
             speed: Speed in percent of the maximum (1..100 percent).
 
         Safety: motion. Command id 0x34.

@@ -19,10 +19,10 @@ class KinematicsCommands(Client):
 
         Args:
             angles: The six joint angles, base first (6 numbers (j1, j2, j3, j4, j5, j6
-                -327.68..327.67 degree)).
+                -327.68..327.67 degrees)).
 
-        Returns: Position and orientation of the end (x, y, z -3276.8..3276.7 millimetre; rx, ry, rz
-            -327.68..327.67 degree).
+        Returns: Position and orientation of the end (x, y, z -3276.8..3276.7 millimetres; rx, ry,
+            rz -327.68..327.67 degrees).
         Safety: query. Command id 0x23.
         """
         return self._call(messages.kinematics.AnglesToCoords(angles))
@@ -35,11 +35,11 @@ class KinematicsCommands(Client):
 
         Args:
             coords: The desired position and orientation of the end (6 numbers (x, y, z
-                -3276.8..3276.7 millimetre; rx, ry, rz -327.68..327.67 degree)).
+                -3276.8..3276.7 millimetres; rx, ry, rz -327.68..327.67 degrees)).
             angles: The angles to start from, usually the current ones (6 numbers (j1, j2, j3, j4,
-                j5, j6 -327.68..327.67 degree)).
+                j5, j6 -327.68..327.67 degrees)).
 
-        Returns: The six joint angles, base first (j1, j2, j3, j4, j5, j6 -327.68..327.67 degree).
+        Returns: The six joint angles, base first (j1, j2, j3, j4, j5, j6 -327.68..327.67 degrees).
         Safety: query. Command id 0x8D.
         """
         return self._call(messages.kinematics.SolveInvKinematics(coords, angles))

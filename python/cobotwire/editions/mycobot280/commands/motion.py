@@ -45,9 +45,9 @@ class MotionCommands(Client):
 
         Args:
             joint: Joint number; 1 is the base, 6 the flange (1..6).
-            angle: The joint's target angle (for 1: -168..168 degree; for 2: -140..140 degree; for
-                3: -150..150 degree; for 4: -150..150 degree; for 5: -155..160 degree; for 6:
-                -180..180 degree).
+            angle: The joint's target angle (for 1: -168..168 degrees; for 2: -140..140 degrees; for
+                3: -150..150 degrees; for 4: -150..150 degrees; for 5: -155..160 degrees; for 6:
+                -180..180 degrees).
             speed: Speed in percent of the maximum (1..100 percent).
 
         Safety: motion. Command id 0x21.
@@ -63,8 +63,8 @@ class MotionCommands(Client):
         angle.
 
         Args:
-            angles: The six joint angles, base first (6 numbers (j1 -168..168 degree; j2 -140..140
-                degree; j3, j4 -150..150 degree; j5 -155..160 degree; j6 -180..180 degree)).
+            angles: The six joint angles, base first (6 numbers (j1 -168..168 degrees; j2 -140..140
+                degrees; j3, j4 -150..150 degrees; j5 -155..160 degrees; j6 -180..180 degrees)).
             speed: Speed in percent of the maximum (1..100 percent).
 
         Safety: motion. Command id 0x22.
@@ -108,8 +108,8 @@ class MotionCommands(Client):
 
         Args:
             target: Six joint angles or six coordinates, depending on the kind (for ANGLES: 6
-                numbers (j1, j2, j3, j4, j5, j6 -327.68..327.67 degree); for COORDS: 6 numbers (x,
-                y, z -3276.8..3276.7 millimetre; rx, ry, rz -327.68..327.67 degree)).
+                numbers (j1, j2, j3, j4, j5, j6 -327.68..327.67 degrees); for COORDS: 6 numbers (x,
+                y, z -3276.8..3276.7 millimetres; rx, ry, rz -327.68..327.67 degrees)).
             kind: What the six values of a target are (one of ANGLES (0), COORDS (1); default:
                 ANGLES (0)).
 
@@ -165,7 +165,7 @@ class MotionCommands(Client):
         """Read the joint angles in radians.
 
         Returns: The six joint angles in radians, base first (j1, j2, j3, j4, j5, j6 -181..181
-            degree).
+            degrees).
         Safety: query. Command id 0x20.
         """
         return self._call(messages.motion.GetRadians())
@@ -181,8 +181,8 @@ class MotionCommands(Client):
 
         Args:
             radians: The six joint angles in radians, base first (in radians; on the wire 6 numbers
-                (j1 -168..168 degree; j2 -140..140 degree; j3, j4 -150..150 degree; j5 -155..160
-                degree; j6 -180..180 degree)).
+                (j1 -168..168 degrees; j2 -140..140 degrees; j3, j4 -150..150 degrees; j5 -155..160
+                degrees; j6 -180..180 degrees)).
             speed: Speed in percent of the maximum (1..100 percent).
 
         Safety: motion. Command id 0x22.
@@ -218,7 +218,7 @@ class MotionCommands(Client):
     def get_angles_plan(self) -> Angles:
         """Read the planned joint angles.
 
-        Returns: The six joint angles, base first (j1, j2, j3, j4, j5, j6 -327.68..327.67 degree).
+        Returns: The six joint angles, base first (j1, j2, j3, j4, j5, j6 -327.68..327.67 degrees).
         Safety: query. Command id 0xF6.
         """
         return self._call(messages.motion.GetAnglesPlan())

@@ -27,7 +27,7 @@ class ServoCommands(Client):
         Args:
             joint: Servo number; 1 to 6 are the joints, 7 is the gripper (1..7).
             encoder: Servo position; 2048 is a joint's zero, 4096 ticks are one turn, and both 0 and
-                4096 can be sent (0..4096 tick).
+                4096 can be sent (0..4096 ticks).
             speed: Speed in percent of the maximum (1..100 percent).
 
         Safety: motion. Command id 0x3A.
@@ -41,7 +41,7 @@ class ServoCommands(Client):
             joint: Servo number; 1 to 6 are the joints, 7 is the gripper (1..7).
 
         Returns: Servo position as the arm reports it; 2048 is a joint's zero, 4096 ticks are one
-            turn. A servo beyond its zero reports a negative position (-32768..32767 tick).
+            turn. A servo beyond its zero reports a negative position (-32768..32767 ticks).
         Safety: query. Command id 0x3B.
         """
         return self._call(messages.servo.GetEncoder(joint))
@@ -53,7 +53,7 @@ class ServoCommands(Client):
 
         Args:
             encoders: The six servo positions, base first (6 numbers (j1, j2, j3, j4, j5, j6 0..4096
-                tick)).
+                ticks)).
             speed: Speed in percent of the maximum (1..100 percent).
 
         Safety: motion. Command id 0x3C.
@@ -65,7 +65,7 @@ class ServoCommands(Client):
 
         Reads the encoder positions of all six joints, in ticks; 2048 is a joint's zero.
 
-        Returns: The six servo positions, base first (j1, j2, j3, j4, j5, j6 -32768..32767 tick).
+        Returns: The six servo positions, base first (j1, j2, j3, j4, j5, j6 -32768..32767 ticks).
         Safety: query. Command id 0x3D.
         """
         return self._call(messages.servo.GetEncoders())
@@ -78,7 +78,7 @@ class ServoCommands(Client):
         Args:
             joint: Joint number; 1 is the base, 6 the flange (1..6).
 
-        Returns: A joint limit as the arm reports it (-3276.8..3276.7 degree).
+        Returns: A joint limit as the arm reports it (-3276.8..3276.7 degrees).
         Safety: query. Command id 0x4A.
         """
         return self._call(messages.servo.GetJointMinAngle(joint))
@@ -91,7 +91,7 @@ class ServoCommands(Client):
         Args:
             joint: Joint number; 1 is the base, 6 the flange (1..6).
 
-        Returns: A joint limit as the arm reports it (-3276.8..3276.7 degree).
+        Returns: A joint limit as the arm reports it (-3276.8..3276.7 degrees).
         Safety: query. Command id 0x4B.
         """
         return self._call(messages.servo.GetJointMaxAngle(joint))
@@ -105,9 +105,9 @@ class ServoCommands(Client):
 
         Args:
             joint: Joint number; 1 is the base, 6 the flange (1..6).
-            angle: The smallest allowed angle of the joint (for 1: -168..168 degree; for 2:
-                -140..140 degree; for 3: -150..150 degree; for 4: -150..150 degree; for 5: -155..160
-                degree; for 6: -180..180 degree).
+            angle: The smallest allowed angle of the joint (for 1: -168..168 degrees; for 2:
+                -140..140 degrees; for 3: -150..150 degrees; for 4: -150..150 degrees; for 5:
+                -155..160 degrees; for 6: -180..180 degrees).
 
         Safety: persistent write. Command id 0x4C.
         """
@@ -122,9 +122,9 @@ class ServoCommands(Client):
 
         Args:
             joint: Joint number; 1 is the base, 6 the flange (1..6).
-            angle: The largest allowed angle of the joint (for 1: -168..168 degree; for 2: -140..140
-                degree; for 3: -150..150 degree; for 4: -150..150 degree; for 5: -155..160 degree;
-                for 6: -180..180 degree).
+            angle: The largest allowed angle of the joint (for 1: -168..168 degrees; for 2:
+                -140..140 degrees; for 3: -150..150 degrees; for 4: -150..150 degrees; for 5:
+                -155..160 degrees; for 6: -180..180 degrees).
 
         Safety: persistent write. Command id 0x4D.
         """
@@ -255,9 +255,9 @@ class ServoCommands(Client):
 
         Args:
             encoders: The six servo positions, base first (6 numbers (j1, j2, j3, j4, j5, j6 0..4096
-                tick)).
+                ticks)).
             speeds: The speeds of the six servos, base first (6 numbers (j1, j2, j3, j4, j5, j6
-                0..6000 step_per_second)).
+                0..6000 steps per second)).
 
         Safety: motion. Command id 0x3E.
         """
@@ -277,7 +277,7 @@ class ServoCommands(Client):
         """Read the speeds of the servos.
 
         Returns: The speeds of the six servos, base first (j1, j2, j3, j4, j5, j6 -32768..32767
-            step_per_second).
+            steps per second).
         Safety: query. Command id 0xE1.
         """
         return self._call(messages.servo.GetServoSpeeds())
@@ -285,7 +285,7 @@ class ServoCommands(Client):
     def get_servo_voltages(self) -> ServoVoltages:
         """Read the voltages at the servos.
 
-        Returns: The voltages at the six servos, base first (j1, j2, j3, j4, j5, j6 0..25.5 volt).
+        Returns: The voltages at the six servos, base first (j1, j2, j3, j4, j5, j6 0..25.5 volts).
         Safety: query. Command id 0xE3.
         """
         return self._call(messages.servo.GetServoVoltages())
@@ -305,7 +305,7 @@ class ServoCommands(Client):
         """Read the temperatures of the servos.
 
         Returns: The temperatures of the six servos, base first (j1, j2, j3, j4, j5, j6 0..255
-            degree_celsius).
+            degrees Celsius).
         Safety: query. Command id 0xE5.
         """
         return self._call(messages.servo.GetServoTemps())

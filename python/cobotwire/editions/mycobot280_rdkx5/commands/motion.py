@@ -42,9 +42,9 @@ class MotionCommands(Client):
 
         Args:
             joint: Joint number; 1 is the base, 6 the flange (1..6).
-            angle: The joint's target angle (for 1: -168..168 degree; for 2: -135..135 degree; for
-                3: -150..150 degree; for 4: -145..145 degree; for 5: -155..160 degree; for 6:
-                -180..180 degree).
+            angle: The joint's target angle (for 1: -168..168 degrees; for 2: -135..135 degrees; for
+                3: -150..150 degrees; for 4: -145..145 degrees; for 5: -155..160 degrees; for 6:
+                -180..180 degrees).
             speed: Speed in percent of the maximum (1..100 percent).
 
         Safety: motion. Command id 0x21.
@@ -60,9 +60,9 @@ class MotionCommands(Client):
         angle.
 
         Args:
-            angles: The six joint angles, base first (6 numbers (j1 -168..168 degree; j2 -135..135
-                degree; j3 -150..150 degree; j4 -145..145 degree; j5 -155..160 degree; j6 -180..180
-                degree)).
+            angles: The six joint angles, base first (6 numbers (j1 -168..168 degrees; j2 -135..135
+                degrees; j3 -150..150 degrees; j4 -145..145 degrees; j5 -155..160 degrees; j6
+                -180..180 degrees)).
             speed: Speed in percent of the maximum (1..100 percent).
 
         Safety: motion. Command id 0x22.
@@ -80,8 +80,8 @@ class MotionCommands(Client):
 
         Args:
             radians: The six joint angles in radians, base first (in radians; on the wire 6 numbers
-                (j1 -168..168 degree; j2 -135..135 degree; j3 -150..150 degree; j4 -145..145 degree;
-                j5 -155..160 degree; j6 -180..180 degree)).
+                (j1 -168..168 degrees; j2 -135..135 degrees; j3 -150..150 degrees; j4 -145..145
+                degrees; j5 -155..160 degrees; j6 -180..180 degrees)).
             speed: Speed in percent of the maximum (1..100 percent).
 
         Safety: motion. Command id 0x22.

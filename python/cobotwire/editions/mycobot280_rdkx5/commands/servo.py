@@ -39,9 +39,9 @@ class ServoCommands(Client):
 
         Args:
             joint: Joint number; 1 is the base, 6 the flange (1..6).
-            angle: The smallest allowed angle of the joint (for 1: -168..168 degree; for 2:
-                -135..135 degree; for 3: -150..150 degree; for 4: -145..145 degree; for 5: -155..160
-                degree; for 6: -180..180 degree).
+            angle: The smallest allowed angle of the joint (for 1: -168..168 degrees; for 2:
+                -135..135 degrees; for 3: -150..150 degrees; for 4: -145..145 degrees; for 5:
+                -155..160 degrees; for 6: -180..180 degrees).
 
         Safety: persistent write. Command id 0x4C.
         """
@@ -56,9 +56,9 @@ class ServoCommands(Client):
 
         Args:
             joint: Joint number; 1 is the base, 6 the flange (1..6).
-            angle: The largest allowed angle of the joint (for 1: -168..168 degree; for 2: -135..135
-                degree; for 3: -150..150 degree; for 4: -145..145 degree; for 5: -155..160 degree;
-                for 6: -180..180 degree).
+            angle: The largest allowed angle of the joint (for 1: -168..168 degrees; for 2:
+                -135..135 degrees; for 3: -150..150 degrees; for 4: -145..145 degrees; for 5:
+                -155..160 degrees; for 6: -180..180 degrees).
 
         Safety: persistent write. Command id 0x4D.
         """
@@ -126,9 +126,9 @@ class ServoCommands(Client):
 
         Args:
             encoders: The six servo positions, base first (6 numbers (j1, j2, j3, j4, j5, j6 0..4096
-                tick)).
+                ticks)).
             speeds: The speeds of the six servos, base first (6 numbers (j1, j2, j3, j4, j5, j6
-                1..10000 step_per_second)).
+                1..10000 steps per second)).
 
         Safety: motion. Command id 0x3E.
         """
@@ -148,7 +148,7 @@ class ServoCommands(Client):
         """Read the currents of the servos.
 
         Returns: The currents of the six servos, base first (j1, j2, j3, j4, j5, j6 0..255
-            milliampere).
+            milliamperes).
         Safety: query. Command id 0xE2.
         """
         return self._call(messages.servo.GetServoCurrents())

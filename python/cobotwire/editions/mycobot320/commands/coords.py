@@ -29,8 +29,8 @@ class CoordsCommands(Client):
 
         Args:
             axis: One of the six coordinates (one of X (1), Y (2), Z (3), RX (4), RY (5), RZ (6)).
-            coord: The coordinate's target (for X, Y: -350..350 millimetre; for Z: -41..523.9
-                millimetre; for RX, RY, RZ: -180..180 degree).
+            coord: The coordinate's target (for X, Y: -350..350 millimetres; for Z: -41..523.9
+                millimetres; for RX, RY, RZ: -180..180 degrees).
             speed: Speed in percent of the maximum (1..100 percent).
 
         Safety: motion. Command id 0x24.
@@ -51,8 +51,8 @@ class CoordsCommands(Client):
         this; no source states it.
 
         Args:
-            coords: Position and orientation of the end (6 numbers (x, y -350..350 millimetre; z
-                -41..523.9 millimetre; rx, ry, rz -180..180 degree)).
+            coords: Position and orientation of the end (6 numbers (x, y -350..350 millimetres; z
+                -41..523.9 millimetres; rx, ry, rz -180..180 degrees)).
             speed: Speed in percent of the maximum (1..100 percent).
             mode: The path to the target. Left out: that of set_movement_type (one of ANGULAR (0),
                 LINEAR (1), UNEXPLAINED (2); optional).

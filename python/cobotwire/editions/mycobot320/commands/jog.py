@@ -33,8 +33,8 @@ class JogCommands(Client):
         Args:
             axis: One of the six coordinates (one of X (1), Y (2), Z (3), RX (4), RY (5), RZ (6)).
             increment: The step, in millimetres along an axis and in degrees about one (for X, Y:
-                -700..700 millimetre; for Z: -564.9..564.9 millimetre; for RX, RY, RZ:
-                -327.68..327.67 degree).
+                -700..700 millimetres; for Z: -564.9..564.9 millimetres; for RX, RY, RZ:
+                -327.68..327.67 degrees).
             speed: Speed in percent of the maximum (1..100 percent).
 
         Safety: motion. Command id 0x34.

@@ -40,7 +40,7 @@ class ServoCommands(Client):
         Args:
             joint: Joint number; 1 is the base, 6 the flange (1..6).
             encoder: Servo position; 2048 is a joint's zero, 4096 ticks are one turn, and both 0 and
-                4096 can be sent (0..4096 tick).
+                4096 can be sent (0..4096 ticks).
             speed: Speed in percent of the maximum (1..100 percent).
 
         Safety: motion. Command id 0x3A.
@@ -54,7 +54,7 @@ class ServoCommands(Client):
             joint: Joint number; 1 is the base, 6 the flange (1..6).
 
         Returns: Servo position as the arm reports it; 2048 is a joint's zero, 4096 ticks are one
-            turn. A servo beyond its zero reports a negative position (-32768..32767 tick).
+            turn. A servo beyond its zero reports a negative position (-32768..32767 ticks).
         Safety: query. Command id 0x3B.
         """
         return self._call(messages.servo.GetEncoder(joint))
@@ -68,9 +68,9 @@ class ServoCommands(Client):
 
         Args:
             joint: Joint number; 1 is the base, 6 the flange (1..6).
-            angle: The smallest allowed angle of the joint (for 1: -168..168 degree; for 2:
-                -135..135 degree; for 3: -145..145 degree; for 4: -145..145 degree; for 5: -168..168
-                degree; for 6: -180..180 degree).
+            angle: The smallest allowed angle of the joint (for 1: -168..168 degrees; for 2:
+                -135..135 degrees; for 3: -145..145 degrees; for 4: -145..145 degrees; for 5:
+                -168..168 degrees; for 6: -180..180 degrees).
 
         Safety: persistent write. Command id 0x4C.
         """
@@ -85,9 +85,9 @@ class ServoCommands(Client):
 
         Args:
             joint: Joint number; 1 is the base, 6 the flange (1..6).
-            angle: The largest allowed angle of the joint (for 1: -168..168 degree; for 2: -135..135
-                degree; for 3: -145..145 degree; for 4: -145..145 degree; for 5: -168..168 degree;
-                for 6: -180..180 degree).
+            angle: The largest allowed angle of the joint (for 1: -168..168 degrees; for 2:
+                -135..135 degrees; for 3: -145..145 degrees; for 4: -145..145 degrees; for 5:
+                -168..168 degrees; for 6: -180..180 degrees).
 
         Safety: persistent write. Command id 0x4D.
         """
@@ -109,7 +109,7 @@ class ServoCommands(Client):
         """Read the currents of the servos.
 
         Returns: The currents of the six servos, base first (6 numbers (j1, j2, j3, j4, j5, j6
-            0..255 milliampere) or 6 numbers (j1, j2, j3, j4, j5, j6 -32768..32767 milliampere)).
+            0..255 milliamperes) or 6 numbers (j1, j2, j3, j4, j5, j6 -32768..32767 milliamperes)).
         Safety: query. Command id 0xE2.
         """
         return self._call(messages.servo.GetServoCurrents())

@@ -16,7 +16,7 @@ class AccessoriesCommands(Client):
 
         Reads the distance that a time-of-flight sensor measures, in millimetres.
 
-        Returns: Distance from the sensor to the nearest object (-32768..32767 millimetre).
+        Returns: Distance from the sensor to the nearest object (-32768..32767 millimetres).
         Safety: query. Command id 0xC0.
         """
         return self._call(messages.accessories.GetTofDistance())

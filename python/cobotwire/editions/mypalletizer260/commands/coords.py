@@ -22,7 +22,7 @@ class CoordsCommands(Client):
         selected end type.
 
         Returns: Position of the end, and its rotation about the vertical axis (x, y, z
-            -3276.8..3276.7 millimetre; theta -327.68..327.67 degree).
+            -3276.8..3276.7 millimetres; theta -327.68..327.67 degrees).
         Safety: query. Command id 0x23.
         """
         return self._call(messages.coords.GetCoords())
@@ -34,8 +34,8 @@ class CoordsCommands(Client):
 
         Args:
             axis: One of the four coordinates (one of X (1), Y (2), Z (3), THETA (4)).
-            coord: The coordinate's target (for X, Y: -260..260 millimetre; for Z: -15..357.5
-                millimetre; for THETA: -180..180 degree).
+            coord: The coordinate's target (for X, Y: -260..260 millimetres; for Z: -15..357.5
+                millimetres; for THETA: -180..180 degrees).
             speed: Speed in percent of the maximum (1..100 percent).
 
         Safety: motion. Command id 0x24.
@@ -49,7 +49,7 @@ class CoordsCommands(Client):
 
         Args:
             coords: Position of the end, and its rotation about the vertical axis (4 numbers (x, y
-                -260..260 millimetre; z -15..357.5 millimetre; theta -180..180 degree)).
+                -260..260 millimetres; z -15..357.5 millimetres; theta -180..180 degrees)).
             speed: Speed in percent of the maximum (1..100 percent).
 
         Safety: motion. Command id 0x25.

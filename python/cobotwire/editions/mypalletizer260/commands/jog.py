@@ -37,8 +37,8 @@ class JogCommands(Client):
 
         Args:
             joint: Joint number; 1 is the base, 4 the flange (1..4).
-            angle: The joint's target angle (for 1: -162..162 degree; for 2: -2..90 degree; for 3:
-                -92..60 degree; for 4: -180..180 degree).
+            angle: The joint's target angle (for 1: -162..162 degrees; for 2: -2..90 degrees; for 3:
+                -92..60 degrees; for 4: -180..180 degrees).
             speed: Speed in percent of the maximum (1..100 percent).
 
         Safety: motion. Command id 0x31.
@@ -71,7 +71,7 @@ class JogCommands(Client):
 
         Args:
             joint: Joint number; 1 is the base, 4 the flange (1..4).
-            increment: The step by which the joint turns (-327.68..327.67 degree).
+            increment: The step by which the joint turns (-327.68..327.67 degrees).
             speed: Speed in percent of the maximum (1..100 percent).
 
         Safety: motion. Command id 0x33.

@@ -26,7 +26,7 @@ class MotionCommands(Client):
     def get_angles(self) -> Angles:
         """Read the joint angles.
 
-        Returns: The four joint angles, base first (j1, j2, j3, j4 -181..181 degree).
+        Returns: The four joint angles, base first (j1, j2, j3, j4 -181..181 degrees).
         Safety: query. Command id 0x20.
         """
         return self._call(messages.motion.GetAngles())
@@ -40,8 +40,8 @@ class MotionCommands(Client):
 
         Args:
             joint: Joint number; 1 is the base, 4 the flange (1..4).
-            angle: The joint's target angle (for 1: -162..162 degree; for 2: -2..90 degree; for 3:
-                -92..60 degree; for 4: -180..180 degree).
+            angle: The joint's target angle (for 1: -162..162 degrees; for 2: -2..90 degrees; for 3:
+                -92..60 degrees; for 4: -180..180 degrees).
             speed: Speed in percent of the maximum (1..100 percent).
 
         Safety: motion. Command id 0x21.
@@ -55,8 +55,8 @@ class MotionCommands(Client):
         angle.
 
         Args:
-            angles: The four joint angles, base first (4 numbers (j1 -162..162 degree; j2 -2..90
-                degree; j3 -92..60 degree; j4 -180..180 degree)).
+            angles: The four joint angles, base first (4 numbers (j1 -162..162 degrees; j2 -2..90
+                degrees; j3 -92..60 degrees; j4 -180..180 degrees)).
             speed: Speed in percent of the maximum (1..100 percent).
 
         Safety: motion. Command id 0x22.
@@ -68,8 +68,8 @@ class MotionCommands(Client):
 
         Args:
             target: Four joint angles or four coordinates, depending on the kind (for ANGLES: 4
-                numbers (j1, j2, j3, j4 -327.68..327.67 degree); for COORDS: 4 numbers (x, y, z
-                -3276.8..3276.7 millimetre; theta -327.68..327.67 degree)).
+                numbers (j1, j2, j3, j4 -327.68..327.67 degrees); for COORDS: 4 numbers (x, y, z
+                -3276.8..3276.7 millimetres; theta -327.68..327.67 degrees)).
             kind: What the four values of a target are (one of ANGLES (0), COORDS (1); default:
                 ANGLES (0)).
 
@@ -101,7 +101,7 @@ class MotionCommands(Client):
     def get_radians(self) -> Radians:
         """Read the joint angles in radians.
 
-        Returns: The four joint angles in radians, base first (j1, j2, j3, j4 -181..181 degree).
+        Returns: The four joint angles in radians, base first (j1, j2, j3, j4 -181..181 degrees).
         Safety: query. Command id 0x20.
         """
         return self._call(messages.motion.GetRadians())
@@ -115,7 +115,8 @@ class MotionCommands(Client):
 
         Args:
             radians: The four joint angles in radians, base first (in radians; on the wire 4 numbers
-                (j1 -162..162 degree; j2 -2..90 degree; j3 -92..60 degree; j4 -180..180 degree)).
+                (j1 -162..162 degrees; j2 -2..90 degrees; j3 -92..60 degrees; j4 -180..180
+                degrees)).
             speed: Speed in percent of the maximum (1..100 percent).
 
         Safety: motion. Command id 0x22.

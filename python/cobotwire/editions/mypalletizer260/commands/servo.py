@@ -25,7 +25,7 @@ class ServoCommands(Client):
         Args:
             joint: Servo number; 1 to 4 are the joints, 7 is the gripper (one of 1, 2, 3, 4, 7).
             encoder: Servo position; 2048 is a joint's zero, 4096 ticks are one turn, and both 0 and
-                4096 can be sent (0..4096 tick).
+                4096 can be sent (0..4096 ticks).
             speed: Speed in percent of the maximum (1..100 percent).
 
         Safety: motion. Command id 0x3A.
@@ -39,7 +39,7 @@ class ServoCommands(Client):
             joint: Servo number; 1 to 4 are the joints, 7 is the gripper (one of 1, 2, 3, 4, 7).
 
         Returns: Servo position as the arm reports it; 2048 is a joint's zero, 4096 ticks are one
-            turn. A servo beyond its zero reports a negative position (-32768..32767 tick).
+            turn. A servo beyond its zero reports a negative position (-32768..32767 ticks).
         Safety: query. Command id 0x3B.
         """
         return self._call(messages.servo.GetEncoder(joint))
@@ -51,7 +51,7 @@ class ServoCommands(Client):
 
         Args:
             encoders: The four servo positions, base first (4 numbers (j1, j2, j3, j4 0..4096
-                tick)).
+                ticks)).
             speed: Speed in percent of the maximum (1..100 percent).
 
         Safety: motion. Command id 0x3C.
@@ -63,7 +63,7 @@ class ServoCommands(Client):
 
         The positions of all four servos in ticks; 2048 is a joint's zero.
 
-        Returns: The four servo positions, base first (j1, j2, j3, j4 -32768..32767 tick).
+        Returns: The four servo positions, base first (j1, j2, j3, j4 -32768..32767 ticks).
         Safety: query. Command id 0x3D.
         """
         return self._call(messages.servo.GetEncoders())
@@ -76,7 +76,7 @@ class ServoCommands(Client):
         Args:
             joint: Joint number; 1 is the base, 4 the flange (1..4).
 
-        Returns: A joint limit as the arm reports it (-3276.8..3276.7 degree).
+        Returns: A joint limit as the arm reports it (-3276.8..3276.7 degrees).
         Safety: query. Command id 0x4A.
         """
         return self._call(messages.servo.GetJointMinAngle(joint))
@@ -89,7 +89,7 @@ class ServoCommands(Client):
         Args:
             joint: Joint number; 1 is the base, 4 the flange (1..4).
 
-        Returns: A joint limit as the arm reports it (-3276.8..3276.7 degree).
+        Returns: A joint limit as the arm reports it (-3276.8..3276.7 degrees).
         Safety: query. Command id 0x4B.
         """
         return self._call(messages.servo.GetJointMaxAngle(joint))
@@ -102,8 +102,8 @@ class ServoCommands(Client):
 
         Args:
             joint: Joint number; 1 is the base, 4 the flange (1..4).
-            angle: The smallest allowed angle of the joint (for 1: -162..162 degree; for 2: -2..90
-                degree; for 3: -92..60 degree; for 4: -180..180 degree).
+            angle: The smallest allowed angle of the joint (for 1: -162..162 degrees; for 2: -2..90
+                degrees; for 3: -92..60 degrees; for 4: -180..180 degrees).
 
         Safety: persistent write. Command id 0x4C.
         """
@@ -117,8 +117,8 @@ class ServoCommands(Client):
 
         Args:
             joint: Joint number; 1 is the base, 4 the flange (1..4).
-            angle: The largest allowed angle of the joint (for 1: -162..162 degree; for 2: -2..90
-                degree; for 3: -92..60 degree; for 4: -180..180 degree).
+            angle: The largest allowed angle of the joint (for 1: -162..162 degrees; for 2: -2..90
+                degrees; for 3: -92..60 degrees; for 4: -180..180 degrees).
 
         Safety: persistent write. Command id 0x4D.
         """
@@ -239,9 +239,9 @@ class ServoCommands(Client):
 
         Args:
             encoders: The four servo positions, base first (4 numbers (j1, j2, j3, j4 0..4096
-                tick)).
+                ticks)).
             speeds: The speeds of the four servos, base first (4 numbers (j1, j2, j3, j4 0..6000
-                step_per_second)).
+                steps per second)).
 
         Safety: motion. Command id 0x3E.
         """

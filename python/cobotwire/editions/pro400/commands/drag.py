@@ -28,7 +28,7 @@ class DragCommands(Client):
 
         Reads the next recorded point and removes it.
 
-        Returns: The six joint angles, base first (j1, j2, j3, j4, j5, j6 -360..360 degree).
+        Returns: The six joint angles, base first (j1, j2, j3, j4, j5, j6 -360..360 degrees).
         Safety: setting. Command id 0x44.
         """
         return self._call(messages.drag.GetDragFifo())
@@ -40,7 +40,7 @@ class DragCommands(Client):
 
         Args:
             angles: The six joint angles, base first (6 numbers (j1, j2, j3, j4, j5, j6
-                -327.68..327.67 degree)).
+                -327.68..327.67 degrees)).
 
         Safety: setting. Command id 0x45.
         """

@@ -34,7 +34,7 @@ class MotionCommands(Client):
         Args:
             joint: Joint number; 1 is the base, 6 the flange (1..6).
 
-        Returns: A joint angle as the arm reports it in hundredths (-360..360 degree).
+        Returns: A joint angle as the arm reports it in hundredths (-360..360 degrees).
         Safety: query. Command id 0x1C.
         """
         return self._call(messages.motion.GetAngle(joint))
@@ -42,7 +42,7 @@ class MotionCommands(Client):
     def get_angles(self) -> Angles:
         """Read the joint angles.
 
-        Returns: The six joint angles, base first (j1, j2, j3, j4, j5, j6 -360..360 degree).
+        Returns: The six joint angles, base first (j1, j2, j3, j4, j5, j6 -360..360 degrees).
         Safety: query. Command id 0x20.
         """
         return self._call(messages.motion.GetAngles())
@@ -54,9 +54,9 @@ class MotionCommands(Client):
 
         Args:
             joint: Joint number; 1 is the base, 6 the flange (1..6).
-            angle: Target angle of joint 1 (for 1: -327.68..327.67 degree; for 2: -327.68..327.67
-                degree; for 3: -327.68..327.67 degree; for 4: -327.68..327.67 degree; for 5:
-                -327.68..327.67 degree; for 6: -327.68..327.67 degree).
+            angle: Target angle of joint 1 (for 1: -327.68..327.67 degrees; for 2: -327.68..327.67
+                degrees; for 3: -327.68..327.67 degrees; for 4: -327.68..327.67 degrees; for 5:
+                -327.68..327.67 degrees; for 6: -327.68..327.67 degrees).
             speed: Speed in percent of the maximum (1..100 percent).
 
         Safety: motion. Command id 0x21.
@@ -70,7 +70,7 @@ class MotionCommands(Client):
 
         Args:
             angles: The six joint angles, base first (6 numbers (j1, j2, j3, j4, j5, j6
-                -327.68..327.67 degree)).
+                -327.68..327.67 degrees)).
             speed: Speed in percent of the maximum (1..100 percent).
 
         Safety: motion. Command id 0x22.
@@ -82,7 +82,7 @@ class MotionCommands(Client):
 
         Args:
             target: The six joint angles, base first (6 numbers (j1, j2, j3, j4, j5, j6
-                -327.68..327.67 degree)).
+                -327.68..327.67 degrees)).
 
         Returns: True if the arm is at the target.
         Safety: query. Command id 0x2A.
@@ -96,7 +96,7 @@ class MotionCommands(Client):
 
         Args:
             target: Position and orientation of the end (6 numbers (x, y, z -3276.8..3276.7
-                millimetre; rx, ry, rz -180..180 degree)).
+                millimetres; rx, ry, rz -180..180 degrees)).
 
         Returns: True if the arm is at the target.
         Safety: query. Command id 0x2A.
@@ -108,9 +108,9 @@ class MotionCommands(Client):
 
         Reads the angles, the coordinates, and eight further bytes.
 
-        Returns: The six joint angles, base first (j1, j2, j3, j4, j5, j6 -360..360 degree);
-            Position and orientation of the end (x, y, z -3276.8..3276.7 millimetre; rx, ry, rz
-            -327.68..327.67 degree); Eight bytes that no source explains (byte_1, byte_2, byte_3,
+        Returns: The six joint angles, base first (j1, j2, j3, j4, j5, j6 -360..360 degrees);
+            Position and orientation of the end (x, y, z -3276.8..3276.7 millimetres; rx, ry, rz
+            -327.68..327.67 degrees); Eight bytes that no source explains (byte_1, byte_2, byte_3,
             byte_4, byte_5, byte_6, byte_7, byte_8 0..255).
         Safety: query. Command id 0xD6.
         """

@@ -24,11 +24,11 @@ class CoordsCommands(Client):
         """Calculate coordinates.
 
         Args:
-            angles: The six joint angles, base first (6 numbers (j1, j4, j5 -162..162 degree; j2
-                -125..125 degree; j3 -154..154 degree; j6 -165..165 degree)).
+            angles: The six joint angles, base first (6 numbers (j1, j4, j5 -162..162 degrees; j2
+                -125..125 degrees; j3 -154..154 degrees; j6 -165..165 degrees)).
 
-        Returns: Position and orientation of the end (x, y, z -3276.8..3276.7 millimetre; rx, ry, rz
-            -327.68..327.67 degree).
+        Returns: Position and orientation of the end (x, y, z -3276.8..3276.7 millimetres; rx, ry,
+            rz -327.68..327.67 degrees).
         Safety: query. Command id 0x23.
         """
         return self._call(messages.coords.AnglesToCoords(angles))
@@ -42,8 +42,8 @@ class CoordsCommands(Client):
 
         Args:
             axis: One of the six coordinates (one of X (1), Y (2), Z (3), RX (4), RY (5), RZ (6)).
-            coord: Target position along x or y (for X, Y: -474..474 millimetre; for Z: -180..677
-                millimetre; for RX, RY, RZ: -180..180 degree).
+            coord: Target position along x or y (for X, Y: -474..474 millimetres; for Z: -180..677
+                millimetres; for RX, RY, RZ: -180..180 degrees).
             speed: Speed in percent of the maximum (1..100 percent).
 
         Safety: motion. Command id 0x24.
@@ -56,8 +56,8 @@ class CoordsCommands(Client):
         """Send the end to coordinates.
 
         Args:
-            coords: Position and orientation of the end (6 numbers (x, y -474..474 millimetre; z
-                -180..677 millimetre; rx, ry, rz -180..180 degree)).
+            coords: Position and orientation of the end (6 numbers (x, y -474..474 millimetres; z
+                -180..677 millimetres; rx, ry, rz -180..180 degrees)).
             speed: Speed in percent of the maximum (1..100 percent).
 
         Safety: motion. Command id 0x25.
@@ -70,12 +70,12 @@ class CoordsCommands(Client):
         Calculates the angles near others that bring the end to coordinates.
 
         Args:
-            coords: Position and orientation of the end (6 numbers (x, y -474..474 millimetre; z
-                -180..677 millimetre; rx, ry, rz -180..180 degree)).
-            angles: The six joint angles, base first (6 numbers (j1, j4, j5 -162..162 degree; j2
-                -125..125 degree; j3 -154..154 degree; j6 -165..165 degree)).
+            coords: Position and orientation of the end (6 numbers (x, y -474..474 millimetres; z
+                -180..677 millimetres; rx, ry, rz -180..180 degrees)).
+            angles: The six joint angles, base first (6 numbers (j1, j4, j5 -162..162 degrees; j2
+                -125..125 degrees; j3 -154..154 degrees; j6 -165..165 degrees)).
 
-        Returns: The six joint angles, base first (j1, j2, j3, j4, j5, j6 -573..573 degree).
+        Returns: The six joint angles, base first (j1, j2, j3, j4, j5, j6 -573..573 degrees).
         Safety: query. Command id 0x8D.
         """
         return self._call(messages.coords.SolveInvKinematics(coords, angles))

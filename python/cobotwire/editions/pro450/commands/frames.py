@@ -30,8 +30,8 @@ class FramesCommands(Client):
         Sets where the tool is on the flange.
 
         Args:
-            coords: Position and orientation of a frame (6 numbers (x, y, z -1000..1000 millimetre;
-                rx, ry, rz -180..180 degree)).
+            coords: Position and orientation of a frame (6 numbers (x, y, z -1000..1000 millimetres;
+                rx, ry, rz -180..180 degrees)).
 
         Safety: setting. Command id 0x81.
         """
@@ -45,8 +45,8 @@ class FramesCommands(Client):
         Sets where the base is in the world.
 
         Args:
-            coords: Position and orientation of a frame (6 numbers (x, y, z -1000..1000 millimetre;
-                rx, ry, rz -180..180 degree)).
+            coords: Position and orientation of a frame (6 numbers (x, y, z -1000..1000 millimetres;
+                rx, ry, rz -180..180 degrees)).
 
         Safety: setting. Command id 0x83.
         """

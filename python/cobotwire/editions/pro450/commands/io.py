@@ -74,8 +74,8 @@ class IoCommands(Client):
 
         Args:
             bus: A bus at the base (one of RS485 (1), CAN (2)).
-            baud: Baud rate of the bus at the base (0..4294967295 baud).
-            timeout: Timeout of the bus at the base (1..10000 millisecond).
+            baud: Baud rate of the bus at the base (0..4294967295 bauds).
+            timeout: Timeout of the bus at the base (1..10000 milliseconds).
 
         Safety: setting. Command id 0x65.
         """
@@ -100,7 +100,7 @@ class IoCommands(Client):
         Reads which bus at the base is used, and how.
 
         Returns: A bus at the base (one of RS485 (1), CAN (2)); Baud rate of the bus at the base
-            (0..4294967295 baud); Timeout of the bus at the base (1..10000 millisecond).
+            (0..4294967295 bauds); Timeout of the bus at the base (1..10000 milliseconds).
         Safety: query. Command id 0x67.
         """
         return self._call(messages.io.GetBaseExternalConfig())

@@ -32,7 +32,7 @@ class MotionCommands(Client):
         Args:
             joint: Joint number; 1 is the base, 6 the flange (1..6).
 
-        Returns: A joint angle as the arm reports it in hundredths (-360..360 degree).
+        Returns: A joint angle as the arm reports it in hundredths (-360..360 degrees).
         Safety: query. Command id 0x1C.
         """
         return self._call(messages.motion.GetAngle(joint))
@@ -40,7 +40,7 @@ class MotionCommands(Client):
     def get_angles(self) -> Angles:
         """Read the joint angles.
 
-        Returns: The six joint angles, base first (j1, j2, j3, j4, j5, j6 -360..360 degree).
+        Returns: The six joint angles, base first (j1, j2, j3, j4, j5, j6 -360..360 degrees).
         Safety: query. Command id 0x20.
         """
         return self._call(messages.motion.GetAngles())
@@ -52,9 +52,9 @@ class MotionCommands(Client):
 
         Args:
             joint: Joint number; 1 is the base, 6 the flange (1..6).
-            angle: Target angle of joint 1 (for 1: -162..162 degree; for 2: -125..125 degree; for 3:
-                -154..154 degree; for 4: -162..162 degree; for 5: -162..162 degree; for 6: -165..165
-                degree).
+            angle: Target angle of joint 1 (for 1: -162..162 degrees; for 2: -125..125 degrees; for
+                3: -154..154 degrees; for 4: -162..162 degrees; for 5: -162..162 degrees; for 6:
+                -165..165 degrees).
             speed: Speed in percent of the maximum (1..100 percent).
 
         Safety: motion. Command id 0x21.
@@ -67,8 +67,8 @@ class MotionCommands(Client):
         """Send all joints to angles.
 
         Args:
-            angles: The six joint angles, base first (6 numbers (j1, j4, j5 -162..162 degree; j2
-                -125..125 degree; j3 -154..154 degree; j6 -165..165 degree)).
+            angles: The six joint angles, base first (6 numbers (j1, j4, j5 -162..162 degrees; j2
+                -125..125 degrees; j3 -154..154 degrees; j6 -165..165 degrees)).
             speed: Speed in percent of the maximum (1..100 percent).
 
         Safety: motion. Command id 0x22.
@@ -88,8 +88,8 @@ class MotionCommands(Client):
         """Check whether a target is reached.
 
         Args:
-            target: The six joint angles, base first (6 numbers (j1, j4, j5 -162..162 degree; j2
-                -125..125 degree; j3 -154..154 degree; j6 -165..165 degree)).
+            target: The six joint angles, base first (6 numbers (j1, j4, j5 -162..162 degrees; j2
+                -125..125 degrees; j3 -154..154 degrees; j6 -165..165 degrees)).
 
         Returns: True if the arm is at the target.
         Safety: query. Command id 0x2A.
@@ -102,8 +102,8 @@ class MotionCommands(Client):
         Reports whether the arm is at a target, given as coordinates.
 
         Args:
-            target: Position and orientation of the end (6 numbers (x, y -474..474 millimetre; z
-                -180..677 millimetre; rx, ry, rz -180..180 degree)).
+            target: Position and orientation of the end (6 numbers (x, y -474..474 millimetres; z
+                -180..677 millimetres; rx, ry, rz -180..180 degrees)).
 
         Returns: True if the arm is at the target.
         Safety: query. Command id 0x2A.

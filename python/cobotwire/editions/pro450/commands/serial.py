@@ -29,7 +29,7 @@ class SerialCommands(Client):
         """Set the timeout.
 
         Args:
-            timeout: Timeout of the port at the end (1..10000 millisecond).
+            timeout: Timeout of the port at the end (1..10000 milliseconds).
 
         Safety: setting. Command id 0xB9.
         """
@@ -52,7 +52,7 @@ class SerialCommands(Client):
         """Read how the port is set up.
 
         Returns: Baud rate of the port at the end (one of 115200, 1000000, 2000000); Timeout of the
-            port at the end (1..10000 millisecond).
+            port at the end (1..10000 milliseconds).
         Safety: query. Command id 0xBA.
         """
         return self._call(messages.serial.GetToolConfig())

@@ -40,9 +40,9 @@ class JogCommands(Client):
 
         Args:
             joint: Joint number; 1 is the base, 6 the flange (1..6).
-            increment: By how much joint 1 turns (for 1: -327.67..327.67 degree; for 2: -270..270
-                degree; for 3: -327.67..327.67 degree; for 4: -327.67..327.67 degree; for 5:
-                -327.67..327.67 degree; for 6: -327.67..327.67 degree).
+            increment: By how much joint 1 turns (for 1: -327.67..327.67 degrees; for 2: -270..270
+                degrees; for 3: -327.67..327.67 degrees; for 4: -327.67..327.67 degrees; for 5:
+                -327.67..327.67 degrees; for 6: -327.67..327.67 degrees).
             speed: Speed in percent of the maximum (1..100 percent).
 
         Safety: motion. Command id 0x33.
@@ -58,8 +58,8 @@ class JogCommands(Client):
 
         Args:
             axis: One of the six coordinates (one of X (1), Y (2), Z (3), RX (4), RY (5), RZ (6)).
-            increment: By how much the end moves along x or y (for X, Y: -1260..1260 millimetre; for
-                Z: -1260..1260 millimetre; for RX, RY, RZ: -327.67..327.67 degree).
+            increment: By how much the end moves along x or y (for X, Y: -1260..1260 millimetres;
+                for Z: -1260..1260 millimetres; for RX, RY, RZ: -327.67..327.67 degrees).
             speed: Speed in percent of the maximum (1..100 percent).
 
         Safety: motion. Command id 0x34.

@@ -33,7 +33,7 @@ class MotionCommands(Client):
         Args:
             joint: Joint number; 1 is the base, 6 the flange (1..6).
 
-        Returns: A joint angle as the arm reports it in hundredths (-360..360 degree).
+        Returns: A joint angle as the arm reports it in hundredths (-360..360 degrees).
         Safety: query. Command id 0x1C.
         """
         return self._call(messages.motion.GetAngle(joint))
@@ -41,7 +41,7 @@ class MotionCommands(Client):
     def get_angles(self) -> Angles:
         """Read the joint angles.
 
-        Returns: The six joint angles, base first (j1, j2, j3, j4, j5, j6 -360..360 degree).
+        Returns: The six joint angles, base first (j1, j2, j3, j4, j5, j6 -360..360 degrees).
         Safety: query. Command id 0x20.
         """
         return self._call(messages.motion.GetAngles())
@@ -53,9 +53,9 @@ class MotionCommands(Client):
 
         Args:
             joint: Joint number; 1 is the base, 6 the flange (1..6).
-            angle: Target angle of joint 1 (for 1: -180..180 degree; for 2: -45..225 degree; for 3:
-                -165..165 degree; for 4: -90..270 degree; for 5: -180..180 degree; for 6: -180..180
-                degree).
+            angle: Target angle of joint 1 (for 1: -180..180 degrees; for 2: -45..225 degrees; for
+                3: -165..165 degrees; for 4: -90..270 degrees; for 5: -180..180 degrees; for 6:
+                -180..180 degrees).
             speed: Speed in percent of the maximum (1..100 percent).
 
         Safety: motion. Command id 0x21.
@@ -68,8 +68,8 @@ class MotionCommands(Client):
         """Send all joints to angles.
 
         Args:
-            angles: The six joint angles, base first (6 numbers (j1, j5, j6 -180..180 degree; j2
-                -45..225 degree; j3 -165..165 degree; j4 -90..270 degree)).
+            angles: The six joint angles, base first (6 numbers (j1, j5, j6 -180..180 degrees; j2
+                -45..225 degrees; j3 -165..165 degrees; j4 -90..270 degrees)).
             speed: Speed in percent of the maximum (1..100 percent).
 
         Safety: motion. Command id 0x22.
@@ -80,8 +80,8 @@ class MotionCommands(Client):
         """Check whether a target is reached.
 
         Args:
-            target: The six joint angles, base first (6 numbers (j1, j5, j6 -180..180 degree; j2
-                -45..225 degree; j3 -165..165 degree; j4 -90..270 degree)).
+            target: The six joint angles, base first (6 numbers (j1, j5, j6 -180..180 degrees; j2
+                -45..225 degrees; j3 -165..165 degrees; j4 -90..270 degrees)).
 
         Returns: True if the arm is at the target.
         Safety: query. Command id 0x2A.
@@ -94,8 +94,8 @@ class MotionCommands(Client):
         Reports whether the arm is at a target, given as coordinates.
 
         Args:
-            target: Position and orientation of the end (6 numbers (x, y -630..630 millimetre; z
-                -425..835 millimetre; rx, ry, rz -180..180 degree)).
+            target: Position and orientation of the end (6 numbers (x, y -630..630 millimetres; z
+                -425..835 millimetres; rx, ry, rz -180..180 degrees)).
 
         Returns: True if the arm is at the target.
         Safety: query. Command id 0x2A.
@@ -107,9 +107,9 @@ class MotionCommands(Client):
 
         Reads the angles, the coordinates, and eight further bytes.
 
-        Returns: The six joint angles, base first (j1, j2, j3, j4, j5, j6 -360..360 degree);
-            Position and orientation of the end (x, y, z -3276.8..3276.7 millimetre; rx, ry, rz
-            -327.68..327.67 degree); Eight bytes that no source explains (byte_1, byte_2, byte_3,
+        Returns: The six joint angles, base first (j1, j2, j3, j4, j5, j6 -360..360 degrees);
+            Position and orientation of the end (x, y, z -3276.8..3276.7 millimetres; rx, ry, rz
+            -327.68..327.67 degrees); Eight bytes that no source explains (byte_1, byte_2, byte_3,
             byte_4, byte_5, byte_6, byte_7, byte_8 0..255).
         Safety: query. Command id 0xD6.
         """

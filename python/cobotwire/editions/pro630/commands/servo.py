@@ -37,7 +37,7 @@ class ServoCommands(Client):
         Args:
             joint: Joint number; 1 is the base, 6 the flange (1..6).
 
-        Returns: Position of an encoder (-2147483648..2147483647 tick).
+        Returns: Position of an encoder (-2147483648..2147483647 ticks).
         Safety: query. Command id 0x3B.
         """
         return self._call(messages.servo.GetServoEncoder(joint))
@@ -48,7 +48,7 @@ class ServoCommands(Client):
         Reads the encoders of all joints.
 
         Returns: The positions of the six encoders, base first (j1, j2, j3, j4, j5, j6
-            -2147483648..2147483647 tick).
+            -2147483648..2147483647 ticks).
         Safety: query. Command id 0x3D.
         """
         return self._call(messages.servo.GetServoEncoders())
@@ -61,7 +61,7 @@ class ServoCommands(Client):
         Args:
             joint: Joint number; 1 is the base, 6 the flange (1..6).
 
-        Returns: A limit of a joint (-360..360 degree).
+        Returns: A limit of a joint (-360..360 degrees).
         Safety: query. Command id 0x4A.
         """
         return self._call(messages.servo.GetJointMinAngle(joint))
@@ -74,7 +74,7 @@ class ServoCommands(Client):
         Args:
             joint: Joint number; 1 is the base, 6 the flange (1..6).
 
-        Returns: A limit of a joint (-360..360 degree).
+        Returns: A limit of a joint (-360..360 degrees).
         Safety: query. Command id 0x4B.
         """
         return self._call(messages.servo.GetJointMaxAngle(joint))
@@ -88,7 +88,7 @@ class ServoCommands(Client):
 
         Args:
             joint: Joint number; 1 is the base, 6 the flange (1..6).
-            angle: A limit of a joint (-360..360 degree).
+            angle: A limit of a joint (-360..360 degrees).
 
         Safety: persistent write. Command id 0x4C.
         """
@@ -103,7 +103,7 @@ class ServoCommands(Client):
 
         Args:
             joint: Joint number; 1 is the base, 6 the flange (1..6).
-            angle: A limit of a joint (-360..360 degree).
+            angle: A limit of a joint (-360..360 degrees).
 
         Safety: persistent write. Command id 0x4D.
         """
@@ -127,7 +127,7 @@ class ServoCommands(Client):
         Reads the encoder of each joint at its zero.
 
         Returns: The positions of the six encoders, base first (j1, j2, j3, j4, j5, j6
-            -2147483648..2147483647 tick).
+            -2147483648..2147483647 ticks).
         Safety: query. Command id 0x59.
         """
         return self._call(messages.servo.GetZeroPos())
@@ -226,7 +226,7 @@ class ServoCommands(Client):
         """Read the encoders at the last loss of power.
 
         Returns: The positions of the six encoders, base first (j1, j2, j3, j4, j5, j6
-            -2147483648..2147483647 tick).
+            -2147483648..2147483647 ticks).
         Safety: query. Command id 0x96.
         """
         return self._call(messages.servo.GetDownEncoders())
@@ -235,7 +235,7 @@ class ServoCommands(Client):
         """Read the speeds of the motors.
 
         Returns: The speeds of the six motors, base first (j1, j2, j3, j4, j5, j6 -327.68..327.67
-            revolution_per_minute).
+            revolutions per minute).
         Safety: query. Command id 0xE1.
         """
         return self._call(messages.servo.GetServoSpeeds())
@@ -244,7 +244,7 @@ class ServoCommands(Client):
         """Read the currents of the motors.
 
         Returns: The currents of the six motors, base first (j1, j2, j3, j4, j5, j6 -32768..32767
-            milliampere).
+            milliamperes).
         Safety: query. Command id 0xE2.
         """
         return self._call(messages.servo.GetServoCurrents())
