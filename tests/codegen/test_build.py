@@ -58,7 +58,7 @@ def test_output_is_the_same_in_every_folder(tmp_path: Path) -> None:
         (own / "own.yaml").write_text(OWN)
         (own.parent / "more.yaml").write_text(MORE)
         at = own.relative_to(tmp_path / folder / start).as_posix()
-        options = (f"--{name}={at}/{name}" for name in ("out", "docs", "c", "wireshark"))
+        options = (f"--{name}={at}/{name}" for name in ("out", "docs", "c", "wireshark", "vectors"))
         ended = run(tmp_path / folder / start, "build", f"{at}/own.yaml", *options)
         assert ended.returncode == 0, ended.stderr
         run(tmp_path / folder / start, "model", f"{at}/own.yaml", "--out", f"{at}/model.json")
@@ -67,6 +67,7 @@ def test_output_is_the_same_in_every_folder(tmp_path: Path) -> None:
     first, second = outputs
     assert len(first) > 40
     assert {name for name in first if first[name] != second.get(name)} == set()
+    assert {"vectors/own.json", "vectors/schema.json"} < {*first}
     assert [name for name, data in first.items() if str(tmp_path).encode() in data] == []
     places = {
         each["name"]: each["place"] for each in json.loads(first["out/edition.json"])["commands"]

@@ -24,6 +24,7 @@ from cobotwire_codegen.emit import Target, foreign
 from cobotwire_codegen.model import Edition
 from cobotwire_codegen.render import Files, render_python, render_reference
 from cobotwire_codegen.targets.c import render_c
+from cobotwire_codegen.targets.vectors import render_shared_vectors
 from cobotwire_codegen.targets.wireshark import render_wireshark
 
 # What is generated into the folder of each option.
@@ -32,9 +33,10 @@ RENDERERS: dict[str, Callable[[Edition, Path | None], Files]] = {
     "--docs": render_reference,
     "--c": render_c,
     "--wireshark": lambda edition, own: render_wireshark([edition], own),
+    "--vectors": lambda edition, own: render_shared_vectors([edition]),
 }
-# Wireshark's folder for plugins may contain other files.
-SHARED = ("--wireshark",)
+# Wireshark's folder for plugins may contain other files, and JSON files have no mark of their own.
+SHARED = ("--wireshark", "--vectors")
 
 
 @click.command()
@@ -52,6 +54,11 @@ SHARED = ("--wireshark",)
     help="Also write a Wireshark dissector, to this folder; it may contain other files.",
 )
 @click.option(
+    "--vectors",
+    type=click.Path(file_okay=False),
+    help="Also write vectors in JSON, to this folder; it may contain other files.",
+)
+@click.option(
     "--templates",
     type=click.Path(exists=True, file_okay=False),
     help="Templates of your own; each replaces the built-in one of the same name. Templates are "
@@ -65,6 +72,7 @@ def build(
     docs: str | None,
     c: str | None,
     wireshark: str | None,
+    vectors: str | None,
     templates: str | None,
     check_only: bool,
     variant: str,
@@ -75,7 +83,13 @@ def build(
     (`cobotwire --edition PACKAGE`). The folders of package and reference must contain nothing else.
     """
     path = edition_path(file)
-    given = {"--out": out, "--docs": docs, "--c": c, "--wireshark": wireshark}
+    given = {
+        "--out": out,
+        "--docs": docs,
+        "--c": c,
+        "--wireshark": wireshark,
+        "--vectors": vectors,
+    }
     folders = {option: Path(folder) for option, folder in given.items() if folder}
     _check_folders(folders)
     with report_problems(variant):
