@@ -14,7 +14,7 @@ from cobotwire_codegen import language
 from cobotwire_codegen.build import build_edition
 from cobotwire_codegen.errors import Problem, SpecError
 from cobotwire_codegen.language.edition import FILES
-from cobotwire_codegen.language.limits import LIMITS
+from cobotwire_codegen.language.limits import COMMAND_LIMITS, LIMITS, Limit
 from cobotwire_codegen.language.records import Choice, Key, Record
 from cobotwire_codegen.language.reference import language_page
 from cobotwire_codegen.language.schema import editor_schema, records
@@ -107,6 +107,15 @@ def test_bytes_are_read_as_they_are_written_although_yaml_reads_some_as_numbers(
     found = reader.get(language.Frame.footer)
     assert found == (expected if expected is None else bytes.fromhex(expected))
     assert [problem.code for problem in problems[known:]] == ["bad-hex"] * (expected is None)
+
+
+@pytest.mark.parametrize("limit", COMMAND_LIMITS, ids=lambda limit: limit.heading)
+def test_command_that_the_language_cannot_state_is_refused_by_name(limit: Limit) -> None:
+    for key in limit.keys:
+        problems: list[Problem] = []
+        Reader(parse(f"{key}: x", "a.yaml"), language.Command, "the command", problems)
+        assert [p.message for p in problems if p.code == "cannot-say"] == [limit.message]
+    assert f"### {limit.heading}\n" in language_page()
 
 
 def _refusals(frame: dict[str, Any]) -> list[str]:

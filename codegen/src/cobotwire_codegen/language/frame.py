@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-from types import MappingProxyType
-
 from cobotwire_codegen.catalogue import CRCS
 from cobotwire_codegen.language import facts
-from cobotwire_codegen.language.limits import LIMITS
+from cobotwire_codegen.language.limits import LIMITS, messages_by_key
 from cobotwire_codegen.language.names import ADDRESS
 from cobotwire_codegen.language.number_shapes import Range, Whole
 from cobotwire_codegen.language.records import Named, Part, Record, optional, required
@@ -98,7 +96,7 @@ class Frame(Record):
         Range(), "Further addresses, from the lowest to the highest; each is named by its number."
     )
     source = facts.source()
-    LIMITS = MappingProxyType({key: limit.message for limit in LIMITS for key in limit.keys})
+    LIMITS = messages_by_key(LIMITS)
     EXAMPLE = """\
 header: FE FE
 footer: FA

@@ -8,6 +8,8 @@ Basicmicro, "RoboClaw Series User Manual" (its CRC); Benewake, "TFmini Plus" dat
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from types import MappingProxyType
 from typing import NamedTuple
 
 PAGE = "https://cobotwire.github.io/cobotwire/reference/language.html"
@@ -16,7 +18,7 @@ PAGE = "https://cobotwire.github.io/cobotwire/reference/language.html"
 class Limit(NamedTuple):
     """One thing that a spec cannot say: its heading, examples, what it is, and what to do instead.
 
-    ``keys`` are those that authors of a frame format try; the language has none of them.
+    ``keys`` are those that authors try; the language has none of them.
     """
 
     heading: str
@@ -106,3 +108,40 @@ LIMITS = (
     OTHER_CHECK,
     CHARACTER,
 )
+# The keys of these are those that authors of a command try.
+OTHER_ACK = Limit(
+    "An acknowledgement with another id",
+    "UBX-ACK-ACK and UBX-ACK-NAK",
+    "An acknowledgement carries the id of its request: this alone says to which request it belongs "
+    "when several are under way. State a message that acknowledges all requests as a command with "
+    "`event: true`, whose fields name the request. `ack_within` does not wait for it; a program "
+    "waits with `events()` and compares the fields.",
+    "state it as an event",
+    ("acknowledged_by", "ack_by", "ack_id", "nack", "nack_id", "reply_id", "reply_command"),
+)
+TWO_ACKS = Limit(
+    "Two acknowledgements of one request",
+    "a receipt at once, and a result at the end of a motion",
+    "A request has one acknowledgement, and `ack_within` returns at the first frame that is legal "
+    "as it. If the second one has an id of its own, state it as a command with `event: true`, at "
+    "the end of a motion with `role: motion ended`: then waited motions end with it. If it has the "
+    "same id, one variant of both is the acknowledgement, and the second is reported as a frame "
+    "that nobody waits for.",
+    "state the first as the reply with `ack: true`, the second as an event",
+    ("acks", "ack_stages", "second_ack", "final_ack", "completion", "completed_by"),
+)
+REPLY_AND_PUSH = Limit(
+    "One command for a reply and a push",
+    "a UBX message that is polled and also sent periodically",
+    "A query has a method and a deadline, and an event has neither. State two commands with one "
+    "id: the query, and one with `event: true` and `shares_id` with the query. A frame that comes "
+    "while a call waits is its reply; at other times it is the event.",
+    "state a query, and an event that shares its id",
+    ("push", "pushed", "poll", "polled", "periodic", "unsolicited"),
+)
+COMMAND_LIMITS = (OTHER_ACK, TWO_ACKS, REPLY_AND_PUSH)
+
+
+def messages_by_key(limits: tuple[Limit, ...]) -> Mapping[str, str]:
+    """Return the messages of limits by the keys that authors try."""
+    return MappingProxyType({key: limit.message for limit in limits for key in limit.keys})

@@ -16,7 +16,7 @@ from cobotwire_codegen.language.edition import Acks, DeltaEdition, WholeEdition
 from cobotwire_codegen.language.effects import ANY_EFFECT, State
 from cobotwire_codegen.language.facts import Dispute, Evidence
 from cobotwire_codegen.language.frame import Address, Frame, FrameFile, Transport
-from cobotwire_codegen.language.limits import LIMITS
+from cobotwire_codegen.language.limits import COMMAND_LIMITS, LIMITS
 from cobotwire_codegen.language.messages import (
     ANY_REPLY_FIELD,
     ANY_REQUEST_FIELD,
@@ -81,7 +81,7 @@ def language_page() -> str:
             settable = ", ".join(f"`{name}`" for name in SETTABLE)
             lines += ["", f"Of it, a command can store or set {settable}."]
     lines += ["", "## What the language cannot say", "", _LIMITS]
-    for limit in LIMITS:
+    for limit in (*LIMITS, *COMMAND_LIMITS):
         lines += ["", f"### {limit.heading}", "", f"Examples: {limit.examples}.", "", limit.doc]
         lines += ["", f"Instead: {limit.advice}."]
     return "\n".join(lines) + "\n"
