@@ -66,7 +66,7 @@ def typical_values(edition: Edition, command: Command, variant: Variant) -> dict
         for flag in (False, True)
     }
     for length in (3, 2, 1, 0):
-        values = {}
+        values: dict[str, object] = {}
         for field in sorted(variant, key=lambda field: bool(field.selector)):
             cases = {member.name: type for member, type in field.cases}
             type = cases.get(str(values.get(field.selector)), field.type)
