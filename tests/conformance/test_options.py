@@ -10,10 +10,11 @@ from cobotwire.conformance.device import RunOptions
 from cobotwire.conformance.options import Options
 from cobotwire.protocol.errors import UsageError
 
+KNOWN = {"expected": "a/* why", "expected_name": "known.txt"}
 GIVEN = [
-    ClientOptions("lost", 4, 2.5, 40.0, True, "get_angles", "calls.txt"),
-    CodecOptions("./codec --stdio", "a/* why", "known.txt", "decode-*", 0.5, 2),
-    RunOptions("setting", 30, "-10:10", 2, 1, "get_color", "LEFT", 50.5, 115200),
+    ClientOptions("lost", 4, 2.5, 40.0, True, "get_angles", "calls.txt", **KNOWN),
+    CodecOptions("./codec --stdio", "decode-*", 0.5, 2, **KNOWN),
+    RunOptions("setting", 30, "-10:10", 2, 1, "get_color", "LEFT", 50.5, 115200, **KNOWN),
 ]
 
 

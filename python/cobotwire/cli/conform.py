@@ -12,6 +12,8 @@ VERBS = {
     "client": "Serve an arm, and check the client that controls it.",
     "codec": "Test a codec, which COMMAND runs, against an edition.",
     "compare": "Compare two reports on the same subject.",
+    "matrix": "Show several implementations side by side.",
+    "verify": "Check the digest and the signature of a report.",
     "cases": "List the test cases and the permissions.",
     "statement": "Write the template of a statement about a device.",
 }

@@ -5,19 +5,18 @@ from __future__ import annotations
 import shlex
 import time
 from collections.abc import Callable, Iterator
-from pathlib import Path
 from urllib.parse import urlsplit
 
 import click
 
 from cobotwire import editions
-from cobotwire.capture.file_errors import unusable_file
 from cobotwire.cli.shared.arm_options import parse_address
 from cobotwire.cli.shared.conform_report import (
-    ReportFiles,
+    ReportOptions,
     conclude,
     exit_if_not_testable,
     report_options,
+    text_of_file,
 )
 from cobotwire.cli.shared.earlier_reports import earlier_report
 from cobotwire.cli.shared.edition_option import uses_edition
@@ -95,7 +94,7 @@ def client(
     idle: float | None,
     command: str | None,
     again: str | None,
-    files: ReportFiles,
+    wanted: ReportOptions,
 ) -> None:
     """Serve an arm, and check the client that controls it.
 
@@ -112,11 +111,22 @@ def client(
     """  # noqa: D301  (click keeps the lines of a paragraph that starts with the character \b)
     with exit_if_not_testable():
         table = editions.load(edition).TABLE
-        text = "" if expect is None else _text(expect)
-        options = ClientOptions(misbehave, every, delay, patience, no_acks, text, expect or "")
+        text = "" if expect is None else text_of_file("expect", expect)
+        options = ClientOptions(
+            misbehave,
+            every,
+            delay,
+            patience,
+            no_acks,
+            text,
+            expect or "",
+            expected=wanted.expected,
+            expected_name=wanted.expected_name,
+        )
         earlier = earlier_report(None, again, options.for_report(), edition, "client")
         if earlier is not None:
             options = ClientOptions.of_report(earlier.options)
+        known = options.known_failures()
         referee = Referee(
             table,
             subject=f"client on {listen}" if command is None else f"command {command}",
@@ -133,7 +143,7 @@ def client(
             ending = _Ending(server, referee, seconds, idle, ended)
             serve(server, between=[ending.check])
             referee.report.stopped = ending.why
-    conclude(referee.finish(), files)
+    conclude(referee.finish(), wanted, known)
 
 
 class _Ending:
@@ -188,13 +198,6 @@ def _server(listen: str, referee: Referee) -> Server:
         text = f"anyone who can reach {host} can connect, and is checked as the client"
         click.echo(f"cobotwire: {text}", err=True)
     return server
-
-
-def _text(path: str) -> str:
-    try:
-        return Path(path).read_text(encoding="utf-8")
-    except (OSError, UnicodeError) as error:
-        raise unusable_file("expect", path, error) from error
 
 
 def _script(table: Table, options: ClientOptions) -> list[ScriptLine] | None:

@@ -3,21 +3,20 @@
 from __future__ import annotations
 
 import shlex
-from pathlib import Path
+from dataclasses import replace
 
 import click
 
 from cobotwire import editions
-from cobotwire.capture.file_errors import unusable_file
 from cobotwire.cli.shared.conform_report import (
-    ReportFiles,
+    ReportOptions,
     conclude,
     exit_if_not_testable,
     report_options,
 )
 from cobotwire.cli.shared.earlier_reports import earlier_report
 from cobotwire.cli.shared.edition_option import uses_edition
-from cobotwire.conformance.codec import CodecOptions, Program, Run, read_expectations
+from cobotwire.conformance.codec import CodecOptions, Program, Run
 from cobotwire.conformance.provenance import identify
 from cobotwire.conformance.sources import spec_lines
 from cobotwire.protocol.errors import UsageError
@@ -26,12 +25,6 @@ from cobotwire.protocol.errors import UsageError
 # Our options come before COMMAND; everything after it belongs to COMMAND.
 @click.command(context_settings={"allow_interspersed_args": False})
 @click.argument("command", nargs=-1)
-@click.option(
-    "--expected",
-    type=click.Path(),
-    metavar="FILE",
-    help="Known failures: a name and a reason per line.",
-)
 @click.option("--only", metavar="PATTERN", help="Send only questions with a matching name.")
 @click.option(
     "--timeout", type=float, default=10.0, show_default=True, help="Seconds to wait for an answer."
@@ -50,12 +43,11 @@ from cobotwire.protocol.errors import UsageError
 def codec(
     edition: str,
     command: tuple[str, ...],
-    expected: str | None,
     only: str | None,
     timeout: float,
     repeat: int,
     again: str | None,
-    files: ReportFiles,
+    wanted: ReportOptions,
 ) -> None:
     """Test a codec, which COMMAND runs, against an edition.
 
@@ -67,17 +59,23 @@ def codec(
       cobotwire --edition mycobot280 conform codec -- ./my-codec --stdio
     """  # noqa: D301  (click keeps the lines of a paragraph that starts with the character \b)
     with exit_if_not_testable():
-        text = "" if expected is None else _text(expected)
         words = shlex.join(command)
-        options = CodecOptions(words, text, expected or "", only or "", timeout, repeat)
-        earlier = earlier_report(None, again, options.for_report(), edition, "codec")
+        known_text, name = wanted.expected, wanted.expected_name
+        options = CodecOptions(
+            words, only or "", timeout, repeat, expected=known_text, expected_name=name
+        )
+        given = options.for_report()
+        # A report has no folder of the machine, so a command may have to be given again.
+        given.pop("command", None)
+        earlier = earlier_report(None, again, given, edition, "codec")
         if earlier is not None:
             options = CodecOptions.of_report(earlier.options)
+            options = replace(options, command=words or options.command)
         if not options.command:
             raise UsageError("COMMAND", message="name the command that runs the codec, after --")
         if options.repeat < 1:
             raise UsageError("repeat", options.repeat, "a whole number from 1")
-        known = read_expectations(options.expected, options.expected_name)
+        known = options.known_failures()
         table = editions.load(edition).TABLE
         with Program(options.words, timeout=options.timeout) as program:
             lines = spec_lines(edition)
@@ -88,11 +86,4 @@ def codec(
                 run.ask_all(options.questions(table))
             except KeyboardInterrupt:
                 click.echo("interrupted", err=True)
-    conclude(run.report, files)
-
-
-def _text(path: str) -> str:
-    try:
-        return Path(path).read_text(encoding="utf-8")
-    except (OSError, UnicodeError) as error:
-        raise unusable_file("expected", path, error) from error
+    conclude(run.report, wanted)

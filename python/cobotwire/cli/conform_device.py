@@ -14,7 +14,7 @@ from cobotwire import editions
 from cobotwire.cli.shared.arm_options import address_option, baudrate_option
 from cobotwire.cli.shared.completers import complete_ports
 from cobotwire.cli.shared.conform_report import (
-    ReportFiles,
+    ReportOptions,
     conclude,
     exit_if_not_testable,
     report_options,
@@ -114,7 +114,7 @@ def device(
     statement: str | None,
     resume: str | None,
     again: str | None,
-    files: ReportFiles,
+    wanted: ReportOptions,
 ) -> None:
     """Test the arm at URL against an edition.
 
@@ -130,7 +130,17 @@ def device(
     with exit_if_not_testable():
         table = editions.load(edition).TABLE
         options = RunOptions(
-            allow, max_speed, workspace, repeat, retries, optional, address, linger, baudrate
+            allow,
+            max_speed,
+            workspace,
+            repeat,
+            retries,
+            optional,
+            address,
+            linger,
+            baudrate,
+            expected=wanted.expected,
+            expected_name=wanted.expected_name,
         )
         subject = Subject(port, command, attach, simulated, baudrate)
         given = options.for_report() | ({"statement": statement} if statement else {})
@@ -144,6 +154,7 @@ def device(
             text = earlier.statement
             declared = read_statement(text, table, "the report") if text else Statement()
         options.validate(table)
+        known = options.known_failures()
         lacking = Lacking(table)
         subject = replace(subject, baudrate=options.baudrate)
         with connected(table, subject, lacking) as connection:
@@ -154,7 +165,7 @@ def device(
             if subject.command is not None:
                 tester.device.await_start(STARTING)
             _run(tester, plan)
-    conclude(tester.report, files)
+    conclude(tester.report, wanted, known)
 
 
 def _run(tester: Tester, plan: Plan) -> None:

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, field, fields
 from typing import Any, ClassVar, Self
 
+from cobotwire.conformance.expected import Expectation, read_expectations
 from cobotwire.conformance.report import Kind
 from cobotwire.protocol.errors import UsageError
 
@@ -15,9 +16,23 @@ READERS: Mapping[str, type] = {"int": int, "float": float, "bool": bool}
 
 @dataclass(frozen=True, slots=True)
 class Options:
-    """What a caller chooses for a run, in the words of the command line."""
+    """What a caller chooses for a run, in the words of the command line.
+
+    ``expected`` is the text of the file of known failures, and ``expected_name`` its name.
+    """
 
     kind: ClassVar[Kind]
+
+    expected: str = field(default="", kw_only=True)
+    expected_name: str = field(default="", kw_only=True)
+
+    def known_failures(self) -> list[Expectation]:
+        """Return the lines of the file of known failures.
+
+        Raises:
+            UsageError: a line has no reason, or repeats the name of another line.
+        """
+        return read_expectations(self.expected, self.expected_name)
 
     @classmethod
     def of_report(cls, options: Mapping[str, Any]) -> Self:

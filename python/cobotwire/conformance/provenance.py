@@ -12,6 +12,7 @@ from importlib.resources.abc import Traversable
 import cobotwire
 from cobotwire import editions
 from cobotwire.conformance.catalogue import VERSION
+from cobotwire.conformance.privacy import hashed
 from cobotwire.conformance.report import Environment, Report
 from cobotwire.protocol.loading import stored_file
 
@@ -31,7 +32,7 @@ def identify(report: Report, edition: str, *, port: str = "") -> None:
     report.catalogue = f"{VERSION}"
     report.code_digest = code_digest()
     report.environment = Environment(
-        host=platform.node(),
+        host=hashed(platform.node()),
         system=platform.platform(),
         python=f"{platform.python_implementation()} {platform.python_version()}",
         package=cobotwire.__version__,

@@ -73,6 +73,8 @@ class Result:
     ``reason`` a sentence that states what was expected and what came. ``further`` states the same
     of the next failures of the test case on the command; ``reason`` counts them all. ``group`` is
     the group of test cases that was run; empty if the subject's groups are checked together.
+    ``load`` is the load of the host for each processor, if the verdict depends on time; 0: it does
+    not, or the load is unknown.
     """
 
     case: str
@@ -84,6 +86,13 @@ class Result:
     cause: Cause = Cause.NONE
     further: tuple[str, ...] = ()
     group: str = ""
+    load: float = 0.0
+
+    @property
+    def explained(self) -> str:
+        """The reason, with the load of the host if that may be one."""
+        beside = self.load and self.verdict is not Verdict.PASS
+        return f"{self.reason} (host load {self.load:.2f} a processor)" if beside else self.reason
 
     @property
     def outcome(self) -> str:
@@ -93,7 +102,10 @@ class Result:
 
 @dataclass(frozen=True, slots=True)
 class Environment:
-    """The machine and the programs of a run; ``port`` is what leads to the subject."""
+    """The machine and the programs of a run; ``port`` is what leads to the subject.
+
+    ``host`` is a hash of the machine's name, which is often that of a person.
+    """
 
     host: str = ""
     system: str = ""
@@ -101,6 +113,19 @@ class Environment:
     package: str = ""
     codec: str = ""
     port: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Host:
+    """How long a run took by two clocks of the host, and the load for each of its processors.
+
+    The times of a report are those of the monotonic clock. A load of 0 is unknown.
+    """
+
+    monotonic_seconds: float = 0.0
+    wall_seconds: float = 0.0
+    load_at_start: float = 0.0
+    load_at_end: float = 0.0
 
 
 def _now() -> str:
@@ -116,7 +141,9 @@ class Report:
     ``options`` are those of the command line, without the subject: a run is repeated with them, in
     the order of the results. ``statement`` is the text of the subject's implementation conformance
     statement. ``catalogue`` is the version of the catalogue of test cases; the digests are those of
-    the edition's table and of the code that checks.
+    the edition's table and of the code that checks. ``clauses`` has the number of each test case in
+    the catalogue. ``tester`` is who is responsible for the run, ``serial`` a hash of the device's
+    serial number.
     """
 
     kind: Kind
@@ -135,7 +162,11 @@ class Report:
     catalogue: str = ""
     edition_digest: str = ""
     code_digest: str = ""
+    clauses: dict[str, int] = field(default_factory=dict)
+    tester: str = ""
+    serial: str = ""
     environment: Environment = field(default_factory=Environment)
+    host: Host = field(default_factory=Host)
     seconds: float = 0.0
 
     @property

@@ -30,7 +30,8 @@ class TestCase:
 
     ``id`` is stable, because reports are compared by it. ``purpose`` states the requirement in one
     sentence. ``source`` says where it comes from; if a line of the spec states it, reports show
-    that line instead. ``applies`` selects the commands on which it can be checked.
+    that line instead. ``applies`` selects the commands on which it can be checked. ``timed``: its
+    verdict depends on time, so a busy host may cause a failure.
     """
 
     # pytest would take the class for a class of tests.
@@ -40,6 +41,15 @@ class TestCase:
     purpose: str
     source: str = ""
     applies: Callable[[Command], bool] = every_command
+    timed: bool = False
+
+
+# Every suite has this one: a run may have a file of known failures.
+EXPECTED_FAILURE = TestCase(
+    "expected-failure",
+    "What the file of known failures names fails.",
+    "docs/conformance.md",
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,4 +83,5 @@ class Suite(Generic[Body]):
     @property
     def cases(self) -> tuple[TestCase, ...]:
         """Every test case once, in the order of the groups."""
-        return tuple(dict.fromkeys(case for group in self.groups for case in group.cases))
+        cases = (case for group in self.groups for case in group.cases)
+        return tuple(dict.fromkeys((*cases, EXPECTED_FAILURE)))

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
+from cobotwire.conformance.host import load
 from cobotwire.conformance.report import Cause, Exchange, Result, Verdict
 from cobotwire.conformance.suite import TestCase
 
@@ -120,7 +121,11 @@ class Tally:
         self, case: TestCase, command: str, count: _Count, evidence: Evidence, unobserved: str
     ) -> Result:
         source = self._sources.get(command) or case.source
-        result = Result(case.id, command, Verdict.INCONCLUSIVE, count.excuse, (), source)
+        timed = case.timed or count.cause is Cause.NOT_TIMED
+        shown = load() if timed and (count.observed or count.excuse) else 0.0
+        result = Result(
+            case.id, command, Verdict.INCONCLUSIVE, count.excuse, (), source, load=shown
+        )
         if count.failed:
             often = f" ({count.failed} of {count.observed} failed)" if count.observed > 1 else ""
             return replace(

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import sys
 from collections import Counter
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import partial, wraps
+from pathlib import Path
 from typing import Any
 
 import click
@@ -15,9 +16,13 @@ import click
 from cobotwire.capture.file_errors import unusable_file
 from cobotwire.cli.shared.output import fold, report_written
 from cobotwire.conformance import Report
+from cobotwire.conformance.expected import Expectation, with_known
 from cobotwire.conformance.hex_text import exchanged
+from cobotwire.conformance.host import HostWatch, clock_mistake
+from cobotwire.conformance.privacy import anonymous, hashed
 from cobotwire.conformance.reports import to_html, to_json, to_junit
-from cobotwire.protocol.errors import CobotwireError
+from cobotwire.conformance.seal import Signer, load_signer
+from cobotwire.protocol.errors import CobotwireError, UsageError
 from cobotwire.protocol.printable import printable
 
 CONFORMS, DOES_NOT, NOT_TESTABLE = 0, 1, 2
@@ -36,33 +41,68 @@ def exit_if_not_testable() -> Iterator[None]:
 
 
 @dataclass(frozen=True, slots=True)
-class ReportFiles:
-    """The names of the files for the report; ``-`` is standard output."""
+class ReportOptions:
+    """What the caller wants of the report, and what it states of the run.
+
+    ``json``, ``html`` and ``junit`` are names of files; ``-`` is standard output. ``expected`` is
+    the text of the file of known failures. ``watch`` observes the host since the verb began.
+    """
 
     json: str | None = None
     html: str | None = None
     junit: str | None = None
-
-
-NO_FILES = ReportFiles()
-FORMATS: dict[str, Callable[[Report], str]] = {"json": to_json, "html": to_html, "junit": to_junit}
+    tester: str = ""
+    serial: str = ""
+    signer: Signer | None = None
+    expected: str = ""
+    expected_name: str = ""
+    watch: HostWatch = field(default_factory=HostWatch)
 
 
 def report_options(verb: Callable[..., Any]) -> Callable[..., Any]:
-    """Add the options for report files; the verb gets them as ``files``."""
+    """Add the options for reports; the verb gets them as ``wanted``."""
 
     @wraps(verb)
-    def with_files(
-        *words: Any, json: str | None, html: str | None, junit: str | None, **options: Any
+    def with_report(
+        *words: Any,
+        json: str | None,
+        html: str | None,
+        junit: str | None,
+        tester: str,
+        serial: str,
+        sign: str | None,
+        expected: str | None,
+        **options: Any,
     ) -> Any:
-        return verb(*words, files=ReportFiles(json, html, junit), **options)
+        with exit_if_not_testable():
+            if sign is not None and json is None:
+                raise UsageError("sign", sign, message="--sign needs --json")
+            signer = None if sign is None else load_signer(sign)
+            known = "" if expected is None else text_of_file("expected", expected)
+        wanted = ReportOptions(json, html, junit, tester, serial, signer, known, expected or "")
+        return verb(*words, wanted=wanted, **options)
 
+    details = {
+        "--sign": "With --json: sign the report with this private key (Ed25519).",
+        "--serial": "The serial number of the subject; the report has a hash of it.",
+        "--tester": "Who is responsible for the run.",
+        "--expected": "Known failures: a name and a reason per line.",
+    }
+    files = ("--sign", "--expected")
+    found: Callable[..., Any] = with_report
+    for name, text in details.items():
+        found = click.option(
+            name,
+            type=click.Path() if name in files else str,
+            metavar={"--sign": "KEY", "--expected": "FILE"}.get(name, "TEXT"),
+            default=None if name in files else "",
+            help=text,
+        )(found)
     help = {
         "--junit": "Write the report as JUnit XML, for build servers",
         "--html": "Write the report as an HTML page with a matrix and the evidence",
         "--json": "Write the report as JSON, for programs and `conform compare`",
     }
-    found: Callable[..., Any] = with_files
     for name, text in help.items():
         if name == "--json":
             # As in every other verb, --json alone prints JSON.
@@ -82,14 +122,31 @@ def report_options(verb: Callable[..., Any]) -> Callable[..., Any]:
     return found
 
 
-def write_reports(report: Report, files: ReportFiles) -> None:
+def text_of_file(argument: str, path: str) -> str:
+    """Return the text of a file.
+
+    Raises:
+        UsageError: it cannot be read.
+    """
+    try:
+        return Path(path).read_text(encoding="utf-8")
+    except (OSError, UnicodeError) as error:
+        raise unusable_file(argument, path, error) from error
+
+
+def write_reports(report: Report, wanted: ReportOptions) -> None:
     """Write the report in every requested format.
 
     Raises:
         UsageError: a file cannot be written.
     """
-    for format, text_of in FORMATS.items():
-        name = getattr(files, format)
+    formats: dict[str, Callable[[Report], str]] = {
+        "json": partial(to_json, sign=wanted.signer),
+        "html": to_html,
+        "junit": to_junit,
+    }
+    for format, text_of in formats.items():
+        name = getattr(wanted, format)
         if name is None:
             continue
         try:
@@ -101,11 +158,18 @@ def write_reports(report: Report, files: ReportFiles) -> None:
             report_written(name)
 
 
-def conclude(report: Report, files: ReportFiles = NO_FILES) -> None:
-    """Write the reports, print the failures and counts, and exit with the verdict's code."""
+def conclude(report: Report, wanted: ReportOptions, known: Sequence[Expectation] = ()) -> None:
+    """Write the reports, print the failures and counts, and exit with the verdict's code.
+
+    ``known`` are the failures that are excused, if the run has not done so.
+    """
+    report.results = with_known(known, report.results)
+    report.tester, report.serial = wanted.tester, hashed(wanted.serial)
+    report.host = wanted.watch.host()
+    report = anonymous(report)
     with exit_if_not_testable():
-        write_reports(report, files)
-    _print_summary(report, to_stderr="-" in (files.json, files.html, files.junit))
+        write_reports(report, wanted)
+    _print_summary(report, to_stderr="-" in (wanted.json, wanted.html, wanted.junit))
     if not report.finished:
         sys.exit(DOES_NOT if report.failures else NOT_TESTABLE)
     sys.exit(CONFORMS if report.conforms else DOES_NOT)
@@ -115,7 +179,7 @@ def _print_summary(report: Report, to_stderr: bool) -> None:
     echo = partial(click.echo, err=to_stderr)
     for result in report.failures:
         echo(f"{result.outcome.upper():8} {result.case:20} {result.command:24}")
-        echo(f"         {printable(result.reason)}")
+        echo(f"         {printable(result.explained)}")
         for also in result.further:
             echo(f"         also, {printable(also)}")
         for exchange in result.evidence:
@@ -128,6 +192,8 @@ def _print_summary(report: Report, to_stderr: bool) -> None:
     )
     if report.untested:
         echo(printable(report.untested))
+    if mistake := clock_mistake(report.host):
+        echo(mistake)
     if not report.finished:
         why = f": {printable(report.stopped)}" if report.stopped else ""
         echo(f"The run is incomplete{why}.")

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from pathlib import Path
 
-from cobotwire.capture.file_errors import unusable_file
+from cobotwire.cli.shared.conform_report import text_of_file
 from cobotwire.conformance import Report
 from cobotwire.conformance.reports import from_json
 from cobotwire.protocol.errors import UsageError
@@ -17,11 +16,7 @@ def read_report(argument: str, path: str) -> Report:
     Raises:
         UsageError: the file cannot be read, or is not a report.
     """
-    try:
-        text = Path(path).read_text(encoding="utf-8")
-    except (OSError, UnicodeError) as error:
-        raise unusable_file(argument, path, error) from error
-    return from_json(text)
+    return from_json(text_of_file(argument, path))
 
 
 def earlier_report(

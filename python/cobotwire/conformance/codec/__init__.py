@@ -1,11 +1,11 @@
 """Test whether a codec, in any language, conforms to an edition, over its standard input."""
 
-from cobotwire.conformance.codec.expected import Expectation, read_expectations
 from cobotwire.conformance.codec.implementation import Implementation, NoAnswer, Program
 from cobotwire.conformance.codec.options import CodecOptions
 from cobotwire.conformance.codec.questions.question import Question
 from cobotwire.conformance.codec.runner import Run
 from cobotwire.conformance.codec.suite import SUITE, derive_questions
+from cobotwire.conformance.expected import Expectation, read_expectations
 
 __all__ = [
     "SUITE",

@@ -17,15 +17,12 @@ from cobotwire.protocol.table import Table
 class CodecOptions(Options):
     """What a caller chooses for a run.
 
-    ``command`` runs the codec. ``expected`` is the text of the file of known failures, and
-    ``expected_name`` its name. ``only`` is a pattern of the questions that are asked.
+    ``command`` runs the codec. ``only`` is a pattern of the questions that are asked.
     """
 
     kind = "codec"
 
     command: str = ""
-    expected: str = ""
-    expected_name: str = ""
     only: str = ""
     timeout: float = 10.0
     repeat: int = 1

@@ -8,11 +8,11 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 from cobotwire.conformance.codec.check import ABILITIES, check
-from cobotwire.conformance.codec.expected import Expectation, expectation_of
 from cobotwire.conformance.codec.implementation import Implementation, NoAnswer
 from cobotwire.conformance.codec.questions.question import Question
-from cobotwire.conformance.codec.suite import ANSWERS, EXPECTED_FAILURE
-from cobotwire.conformance.report import Cause, Exchange, Report, Result, Verdict
+from cobotwire.conformance.codec.suite import ANSWERS
+from cobotwire.conformance.expected import Expectation, excuse, outdated
+from cobotwire.conformance.report import Cause, Exchange, Report, Result
 from cobotwire.conformance.suite import TestCase
 from cobotwire.conformance.tally import Evidence, Observation, Tally
 from cobotwire.protocol.errors import UsageError
@@ -162,16 +162,10 @@ class Run:
         self, question: Question, found: Sequence[Observation], evidence: Evidence
     ) -> None:
         failed = any(observation.complaint for observation in found)
-        known = expectation_of(self._expected, question.name) if self._expected else None
-        if known is not None and found:
-            if failed:
-                known.met += 1
-            else:
-                known.passed.append(question.name)
+        reason = excuse(self._expected, question.name, failed=failed) if found else ""
         for case, complaint, _ in found:
             command = "" if case is ANSWERS else question.command
-            if complaint and known is not None:
-                reason = f"expected to fail ({known.place}): {known.reason}"
+            if complaint and reason:
                 self._tally.excuse(case, command, Cause.NOT_SUPPORTED, reason)
             else:
                 text = f"{question.name}: {complaint}" if complaint else ""
@@ -182,7 +176,7 @@ class Run:
         for case, ability in ABILITIES.items():
             if ability not in self.greeting.can:
                 results.append(_lacking(case, f"it does not offer to report {ability}"))
-        return results + [_outdated(known) for known in self._expected if _wrong(known)]
+        return [*results, *outdated(self._expected)]
 
 
 def _lacking(case: TestCase, reason: str) -> Result:
@@ -192,16 +186,3 @@ def _lacking(case: TestCase, reason: str) -> Result:
 
 def _in_words(found: Sequence[Observation]) -> str:
     return ", ".join(o.complaint for o in found if o.complaint) or "no complaint"
-
-
-def _wrong(known: Expectation) -> bool:
-    return bool(known.passed) or not known.met
-
-
-def _outdated(known: Expectation) -> Result:
-    """Return a failure, because an outdated line would hide the next failure."""
-    if known.passed:
-        reason = f"{known.place}: {len(known.passed)} passed, among them {known.passed[0]}"
-    else:
-        reason = f"{known.place}: no question that was asked matches {known.pattern}"
-    return Result(EXPECTED_FAILURE.id, "", Verdict.FAIL, reason, (), known.place)

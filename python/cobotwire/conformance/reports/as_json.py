@@ -8,40 +8,74 @@ from enum import StrEnum
 from math import isfinite
 from typing import Any, Literal, get_args, get_origin, get_type_hints
 
-from cobotwire.conformance.report import Environment, Exchange, Report, Result
+from cobotwire.conformance.report import Environment, Exchange, Host, Report, Result
+from cobotwire.conformance.seal import Signer, digest_of, sealed
 from cobotwire.protocol.errors import UsageError
 
 FORMAT = "cobotwire-conformance"
 # Counts up when a reader of the old version could misread the new one.
-VERSION = 3
-RECORDS = (Report, Result, Environment, Exchange)
+VERSION = 4
+WRONG = (ArithmeticError, LookupError, RecursionError, TypeError, ValueError)
+RECORDS = (Report, Result, Environment, Host, Exchange)
 
 
-def to_json(report: Report) -> str:
-    """Return a report as JSON text; bytes are hex, times are seconds."""
+def to_json(report: Report, sign: Signer | None = None) -> str:
+    """Return a report as JSON text, sealed; bytes are hex, times are seconds."""
+    return json.dumps(sealed(_document(report), sign), indent=1) + "\n"
+
+
+def report_digest(report: Report) -> str:
+    """Return the digest that the report in JSON has."""
+    return digest_of(_document(report))
+
+
+def _document(report: Report) -> dict[str, Any]:
     head = {"format": FORMAT, "version": VERSION, "conforms": report.conforms}
-    data = {**head, **_plain(report), "seconds": round(report.seconds, 3)}
-    return json.dumps(data, indent=1) + "\n"
+    return {**head, **_plain(report), "seconds": round(report.seconds, 3)}
 
 
 def from_json(text: str) -> Report:
     """Return the report that a JSON text holds.
 
     Raises:
-        UsageError: the text is not a report, or is one of another version.
+        UsageError: the text is not a report, or is one of another version, or was changed after it
+            was written. A report without a digest is read as it is.
+    """
+    data = document_of(text)
+    try:
+        report: Report = _read(Report, data)
+        if "digest" in data and data["digest"] != digest_of(data):
+            message = (
+                "the report was changed after it was written: its digest is not that of its "
+                "contents (`conform verify`); to use it all the same, remove the key digest"
+            )
+            raise UsageError("report", message=message)
+        return report
+    except WRONG as error:
+        raise _unreadable(error) from error
+
+
+def document_of(text: str) -> dict[str, Any]:
+    """Return the JSON object of a report, of which only format and version are checked.
+
+    Raises:
+        UsageError: the text is not JSON, or is of another format or version.
     """
     try:
-        data = json.loads(text)
+        data: dict[str, Any] = _checked(json.loads(text), dict)
         if data["format"] != FORMAT or data["version"] != VERSION:
             given = f"{data['format']}, version {data['version']}"
             message = f"the report is in the format {given}; needed: {FORMAT}, version {VERSION}"
             raise UsageError("report", given, message=message)
-        report: Report = _read(Report, data)
-        return report
-    except (ArithmeticError, LookupError, RecursionError, TypeError, ValueError) as error:
-        if isinstance(error, UsageError):
-            raise
-        raise UsageError("report", message=f"this is not a report in JSON: {error!r}") from error
+        return data
+    except WRONG as error:
+        raise _unreadable(error) from error
+
+
+def _unreadable(error: Exception) -> UsageError:
+    if isinstance(error, UsageError):
+        return error
+    return UsageError("report", message=f"this is not a report in JSON: {error!r}")
 
 
 def _plain(value: Any) -> Any:

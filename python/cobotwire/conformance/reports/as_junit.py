@@ -56,7 +56,7 @@ def _suite(report: Report, case: str, found: Sequence[Result]) -> Element:
 def _outcome(report: Report, shown: Result) -> Iterator[Element]:
     if shown.verdict is Verdict.FAIL:
         source = [f"required by {shown.source}"] if shown.source else []
-        lines = [shown.reason, *source, *evidence_lines(report.kind, shown)]
+        lines = [shown.explained, *source, *evidence_lines(report.kind, shown)]
         failure = element("failure", message=shown.reason, type=shown.outcome)
         # XML cannot express control characters at all.
         failure.text = "\n".join(map(printable, lines))

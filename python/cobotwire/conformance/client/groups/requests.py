@@ -21,14 +21,19 @@ AWAITED = TestCase(
     "reply-awaited",
     "While a request awaits its reply, no other request with a reply is sent.",
     NOTES,
+    timed=True,
 )
 GIVEN_TIME = TestCase(
-    "reply-given-time", "A request is not repeated before its reply can have come.", NOTES
+    "reply-given-time",
+    "A request is not repeated before its reply can have come.",
+    NOTES,
+    timed=True,
 )
 LATE_EXPECTED = TestCase(
     "late-reply-expected",
     "No request is sent while a late reply could be mistaken for its reply.",
     "field notes: a reply was seen 727 ms after its request",
+    timed=True,
 )
 
 # Libraries that repeat a request do so within this time; people take longer.

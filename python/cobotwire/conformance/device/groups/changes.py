@@ -39,6 +39,7 @@ REPLIED = TestCase(
     "change-replied",
     "A change that has a reply is replied to once, legally and in time.",
     applies=_is_replied_to,
+    timed=True,
 )
 ALIKE = TestCase(
     "acknowledgements-alike",

@@ -25,9 +25,11 @@ from cobotwire.protocol.table import Command, Table
 
 ARRIVES = TestCase("arrives", "The arm goes where it was sent, and its other joints stay.")
 REACHED = TestCase("reached", "The arm reports that it is where it was sent, and nowhere else.")
-MOVING = TestCase("moving", "The arm reports that it moves while it does, and not at rest.")
+MOVING = TestCase(
+    "moving", "The arm reports that it moves while it does, and not at rest.", timed=True
+)
 KEEPS = TestCase("limits-kept", "No joint moves beyond the limit that is set for it.")
-STOPS = TestCase("stops", "A stop ends the motion, and the arm stays at rest.")
+STOPS = TestCase("stops", "A stop ends the motion, and the arm stays at rest.", timed=True)
 
 # The tolerance between sent and read values, by unit: one tick, and the end's motion within it.
 NEAR = {"millimetre": 1.5, "tick": 1.0, "percent": 1.0}

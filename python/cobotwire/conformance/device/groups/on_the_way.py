@@ -29,12 +29,13 @@ from cobotwire.protocol.effects import Does, Reports
 from cobotwire.protocol.table import Command, Table
 
 PAUSES = TestCase(
-    "pauses", "A pause holds the arm where it is, short of its target, and is reported."
+    "pauses", "A pause holds the arm where it is, short of its target, and is reported.", timed=True
 )
-FASTER = TestCase("faster", "A higher speed moves the arm faster.")
+FASTER = TestCase("faster", "A higher speed moves the arm faster.", timed=True)
 REPORTED = TestCase(
     "speeds-reported",
     "The speeds that a query reports are near zero at rest; on the way they fit the angles.",
+    timed=True,
 )
 
 # The fast speed is SHARE times the slow one; the slow motion must take at least LONGER times as

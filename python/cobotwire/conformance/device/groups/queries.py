@@ -35,7 +35,7 @@ def _is_framed(command: Command) -> bool:
     return bool(command.reply)
 
 
-REPLIED = TestCase("query-replied", "A query is replied to within its deadline.")
+REPLIED = TestCase("query-replied", "A query is replied to within its deadline.", timed=True)
 FRAME = TestCase(
     "reply-frame",
     "A reply is a whole frame: header, address, LEN, id, footer as the edition defines them.",

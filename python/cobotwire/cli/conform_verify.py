@@ -1,0 +1,61 @@
+"""``cobotwire conform verify``: check the digest and the signature of a report."""
+
+from __future__ import annotations
+
+import json
+import sys
+
+import click
+
+from cobotwire.cli.shared.conform_report import (
+    CONFORMS,
+    DOES_NOT,
+    exit_if_not_testable,
+    text_of_file,
+)
+from cobotwire.conformance.reports import document_of
+from cobotwire.conformance.seal import Seal, check_seal, load_public_key
+from cobotwire.protocol.printable import printable
+
+
+@click.command()
+@click.argument("report", type=click.Path())
+@click.option(
+    "--key", type=click.Path(), help="The public key that must have signed the report (Ed25519)."
+)
+@click.option("--json", "as_json", is_flag=True, help="Print a JSON object.")
+def verify(report: str, key: str | None, as_json: bool) -> None:
+    """Check that REPORT (JSON) is as it was written, and who signed it.
+
+    A right signature shows that the owner of the printed key signed the report. Whose key it is,
+    only --key shows: with the public key that you got from the tester.
+
+    Exit codes: 0 the report is as it was written, and with --key, that key signed it; 1 it is not;
+    2 the file is not a report.
+    """
+    with exit_if_not_testable():
+        wanted = None if key is None else load_public_key(key)
+        seal = check_seal(document_of(text_of_file("report", report)))
+    mistake = _mistake(seal, wanted)
+    if as_json:
+        found = {"right": not mistake, "mistake": mistake, **seal._asdict()}
+        click.echo(json.dumps(found, indent=1))
+    else:
+        signed = f"signed with the key {seal.key}" if seal.key else "not signed"
+        click.echo(mistake or f"{printable(report)} is as it was written; it is {signed}.")
+    sys.exit(DOES_NOT if mistake else CONFORMS)
+
+
+def _mistake(seal: Seal, wanted: str | None) -> str:
+    """Return what is wrong with a report; empty: nothing."""
+    if not seal.stated:
+        return "The report has no digest, so changes cannot be noticed."
+    if seal.digest != seal.stated:
+        return f"The report was changed: its digest is {seal.digest}, not {printable(seal.stated)}."
+    if seal.signature == "wrong":
+        return "The signature is wrong: another report was signed, or with another key."
+    if wanted is not None and not seal.key:
+        return "The report is not signed."
+    if wanted is not None and seal.key != wanted:
+        return f"The report is signed with another key: {seal.key}."
+    return ""
