@@ -6,7 +6,7 @@ import json
 
 import click
 
-from cobotwire.conformance.catalogue import VERSION
+from cobotwire.conformance.catalogue import NUMBERS, VERSION
 from cobotwire.conformance.client import SUITE as CLIENTS
 from cobotwire.conformance.codec import SUITE as CODECS
 from cobotwire.conformance.device import PERMISSIONS
@@ -24,7 +24,12 @@ CASES: dict[str, dict[str, str]] = {
 def cases(as_json: bool) -> None:
     """List the test cases for each subject, and the permissions for a run on a device."""
     if as_json:
-        listed = {"catalogue": VERSION, "cases": CASES, "permissions": PERMISSIONS}
+        listed = {
+            "catalogue": VERSION,
+            "cases": CASES,
+            "clauses": NUMBERS,
+            "permissions": PERMISSIONS,
+        }
         click.echo(json.dumps(listed, indent=1))
         return
     click.echo(f"catalogue version {VERSION}")
@@ -36,4 +41,4 @@ def cases(as_json: bool) -> None:
 def _list(title: str, lines: dict[str, str]) -> None:
     click.echo(title)
     for name, text in lines.items():
-        click.echo(f"  {name:22} {text}")
+        click.echo(f"{NUMBERS.get(name, ''):>4}  {name:22} {text}")

@@ -11,7 +11,7 @@ from importlib.resources.abc import Traversable
 
 import cobotwire
 from cobotwire import editions
-from cobotwire.conformance.catalogue import VERSION
+from cobotwire.conformance.catalogue import NUMBERS, VERSION
 from cobotwire.conformance.privacy import hashed
 from cobotwire.conformance.report import Environment, Report
 from cobotwire.protocol.loading import stored_file
@@ -30,6 +30,7 @@ def identify(report: Report, edition: str, *, port: str = "") -> None:
     """
     report.edition_digest = edition_digest(edition)
     report.catalogue = f"{VERSION}"
+    report.clauses = dict(NUMBERS)
     report.code_digest = code_digest()
     report.environment = Environment(
         host=hashed(platform.node()),

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from hashlib import sha256
 from typing import Any, NamedTuple
 
-from cobotwire.conformance.catalogue.history import HISTORY
+from cobotwire.conformance.catalogue.history import CLAUSES, HISTORY, NUMBERS
 from cobotwire.conformance.client import SUITE as CLIENTS
 from cobotwire.conformance.codec import SUITE as CODECS
 from cobotwire.conformance.device import SUITE as DEVICES
@@ -46,21 +46,46 @@ def selected(table: Table) -> Iterator[Selected]:
 
 def digest() -> str:
     """Return the digest of the catalogue: it changes with every word of every test case."""
-    listed = [[suite.kind, [_listed(group) for group in suite.groups]] for suite in SUITES]
+    listed = [
+        [suite.kind, [_listed(group) for group in suite.groups], _cases(suite.cases)]
+        for suite in SUITES
+    ]
+    return _digest(listed)
+
+
+def _digest(listed: object) -> str:
     return sha256(json.dumps(listed).encode()).hexdigest()[:SHOWN]
 
 
 def _listed(group: Group[Any]) -> list[object]:
-    cases = [[case.id, case.purpose, case.source] for case in group.cases]
-    return [group.name, sorted(group.permission), group.sends, group.subject, cases]
+    permission = sorted(group.permission)
+    return [group.name, permission, group.sends, group.subject, _cases(group.cases)]
+
+
+def _cases(cases: Iterable[TestCase]) -> list[list[str]]:
+    return [[case.id, case.purpose, case.source] for case in cases]
+
+
+def misnumbered() -> str:
+    """Return what is wrong with the numbers of the clauses; empty: nothing."""
+    for each in HISTORY:
+        if each.clauses is not None and _digest(CLAUSES[: each.clauses]) != each.of_clauses:
+            return f"the first {each.clauses} clauses are not those of version {each.number}"
+    for case in (case.id for suite in SUITES for case in suite.cases):
+        if case not in NUMBERS:
+            return f"add {case} at the end of CLAUSES in catalogue/history.py"
+    return "" if len(NUMBERS) == len(CLAUSES) else "a test case has two clauses"
 
 
 def outdated() -> str:
     """Return what must be done because the test cases have changed; empty if they have not."""
+    if mistake := misnumbered():
+        return mistake
     last, now = HISTORY[-1], digest()
     if last.digest == now:
         return ""
-    entry = f'CatalogueVersion({last.number + 1}, "{now}", "what has changed")'
+    clauses = f'{len(CLAUSES)}, "{_digest(CLAUSES)}"'
+    entry = f'CatalogueVersion({last.number + 1}, "{now}", "what has changed", {clauses})'
     return (
         f"the test cases have changed since version {last.number} of the catalogue; add this entry "
         f"to python/cobotwire/conformance/catalogue/history.py: {entry}"

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from cobotwire import editions
-from cobotwire.conformance.catalogue.history import HISTORY, VERSION
+from cobotwire.conformance.catalogue.history import HISTORY, NUMBERS, VERSION
 from cobotwire.conformance.catalogue.listing import SUITES, Selected, selected
 from cobotwire.conformance.device.permissions import PERMISSIONS
 from cobotwire.conformance.suite import Group, Suite
@@ -20,7 +20,8 @@ ABOUT = """\
 *For people who read a report of `cobotwire conform`, or want to know what it tests.*
 
 [Conformance](../../conformance.md) describes the runs. The id of a test case on a command has both
-names: `reply-once/get_angles`. A report states the version of the catalogue, and the digest of the
+names: `reply-once/get_angles`. The number of its clause stays the same in later
+versions. A report states the version of the catalogue, and the digest of the
 code that checked. A requirement without a source comes from the spec of the command. A permission
 is needed besides that of the command."""
 OF_EDITION = """\
@@ -54,10 +55,10 @@ def _suite(suite: Suite[Any]) -> Iterator[str]:
     for group in suite.groups:
         cases = ", ".join(f"`{case.id}`" for case in group.cases)
         yield f"- **{group.name.capitalize()}** ({cases}). {' '.join(_facts(group))}"
-    yield from ("", *_table("test case", "purpose"))
+    yield from ("", *_table("clause", "test case", "purpose"))
     for case in suite.cases:
         source = f" ({PAGE.sub(LINK, case.source)})" if case.source else ""
-        yield f"| `{case.id}` | {case.purpose.removesuffix('.')}{source} |"
+        yield f"| {NUMBERS[case.id]} | `{case.id}` | {case.purpose.removesuffix('.')}{source} |"
     yield ""
 
 

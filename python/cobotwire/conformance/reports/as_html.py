@@ -11,7 +11,9 @@ from importlib.resources import files
 from xml.etree.ElementTree import Element
 
 from cobotwire.conformance.catalogue.listing import SUITES
+from cobotwire.conformance.host import clock_mistake
 from cobotwire.conformance.report import Kind, Report, Result, Verdict
+from cobotwire.conformance.reports.as_json import report_digest
 from cobotwire.conformance.reports.element import Child, element, page
 from cobotwire.conformance.reports.grouped import by_cause, title_of
 from cobotwire.conformance.reports.html_results import (
@@ -46,8 +48,8 @@ def to_html(report: Report) -> str:
         element("title", title),
         element("style", style),
     )
-    parts = [*_head(report, title), *_causes(report), *_origin(report), *matrix_of(report)]
-    parts += [*by_command(report), *_times(report), *_cases(report)]
+    parts = [*_head(report, title), *_causes(report), *_origin(report), *_statement(report)]
+    parts += [*matrix_of(report), *by_command(report), *_times(report), *_cases(report)]
     titles = [part for part in parts if part.tag == "h2"]
     # After the facts, which come first.
     parts.insert([part.tag for part in parts].index("dl") + 1, _navigation(titles))
@@ -79,6 +81,9 @@ def _head(report: Report, title: str) -> Iterator[Element]:
         "firmware": (report.firmware or "not reported") if report.kind == "device" else "",
         "started": f"{report.started}, {report.seconds:.1f} s",
         "catalogue": f"version {report.catalogue}" if report.catalogue else "",
+        "tester": report.tester,
+        "serial number": report.serial and f"{report.serial} (a hash)",
+        "clocks": clock_mistake(report.host),
         "options": _options(report) or "none: only what needs no permission",
     }
     yield _terms(facts)
@@ -153,22 +158,30 @@ def _names(commands: Sequence[str]) -> str:
 
 def _origin(report: Report) -> Iterator[Element]:
     """Yield what is needed to understand and repeat the run."""
-    environment = report.environment
+    if not report.code_digest:
+        return
+    environment, host = report.environment, report.host
     subject = "device URL" if report.kind == "device" else report.kind
     facts = {
         "edition": f"{report.edition}, SHA-256 {report.edition_digest}",
-        "code": f"SHA-256 {report.code_digest}" if report.code_digest else "",
+        "code": f"SHA-256 {report.code_digest}",
         "host": environment.host,
         "system": environment.system,
         "Python": environment.python,
         "cobotwire": f"{environment.package}, {environment.codec} codec",
         "port": environment.port,
+        "host load": f"{host.load_at_start:.2f} at the start, {host.load_at_end:.2f} at the end",
+        "run time": f"{host.monotonic_seconds} s by the monotonic clock, {host.wall_seconds} s by "
+        "the wall clock",
+        "report": f"SHA-256 {report_digest(report)}: the digest of the report in JSON",
         "order": "as listed; nothing is drawn at random",
         "repeat": f"cobotwire --edition {report.edition} conform {subject} --again REPORT.json",
     }
-    if report.code_digest:
-        summary = element("summary", "Where this report comes from, and how to repeat the run")
-        yield element("details", summary, _terms(facts))
+    summary = element("summary", "Where this report comes from, and how to repeat the run")
+    yield element("details", summary, _terms(facts))
+
+
+def _statement(report: Report) -> Iterator[Element]:
     if report.statement:
         summary = element("summary", "Implementation conformance statement")
         lines = report.statement.splitlines()
@@ -182,7 +195,8 @@ def _cases(report: Report) -> Iterator[Element]:
     ids = dict.fromkeys(result.case for result in report.results)
     if any(id in known for id in ids):
         yield heading("cases", "Test cases")
-        yield _terms({id: known.get(id, "") for id in ids})
+        clauses = {id: f"{report.clauses[id]} {id}" if id in report.clauses else id for id in ids}
+        yield _terms({clauses[id]: known.get(id, "") for id in ids})
 
 
 def _times(report: Report) -> Iterator[Element]:
