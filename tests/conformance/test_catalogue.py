@@ -44,6 +44,24 @@ def test_changed_test_case_needs_a_new_version(
     assert f"CatalogueVersion({VERSION + 1}, " in listing.outdated()
 
 
+def test_clause_is_never_given_to_another_test_case(monkeypatch: pytest.MonkeyPatch) -> None:
+    clauses = listing.CLAUSES
+    numbers = {case: number for number, case in enumerate(clauses, 1)}
+    for changed, message in (
+        ((clauses[1], clauses[0], *clauses[2:]), "are not those of version 7"),
+        (clauses[1:], "are not those of version 7"),
+        ((*clauses, clauses[0]), "a test case has two clauses"),
+        ((*clauses, "later"), ""),
+    ):
+        monkeypatch.setattr(listing, "CLAUSES", changed)
+        monkeypatch.setattr(listing, "NUMBERS", dict.fromkeys(changed, 0))
+        assert message in listing.misnumbered()
+    monkeypatch.setattr(listing, "CLAUSES", clauses)
+    numbers.pop("stops")
+    monkeypatch.setattr(listing, "NUMBERS", numbers)
+    assert listing.misnumbered() == "add stops at the end of CLAUSES in catalogue/history.py"
+
+
 def test_every_group_says_what_it_tests_and_sends() -> None:
     for suite in listing.SUITES:
         for group in suite.groups:

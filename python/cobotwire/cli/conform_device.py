@@ -32,7 +32,12 @@ from cobotwire.conformance.device import (
 )
 from cobotwire.conformance.provenance import identify
 from cobotwire.conformance.sources import spec_lines
-from cobotwire.conformance.statement import Statement, load_statement, read_statement
+from cobotwire.conformance.statement import (
+    Statement,
+    load_statement,
+    read_statement,
+    with_deadlines,
+)
 from cobotwire.protocol.errors import LinkError
 
 
@@ -153,6 +158,8 @@ def device(
             plan = Plan(earlier, resume=resume is not None)
             text = earlier.statement
             declared = read_statement(text, table, "the report") if text else Statement()
+        options = options.completed(declared.ixit)
+        table = with_deadlines(table, declared.deadlines)
         options.validate(table)
         known = options.known_failures()
         lacking = Lacking(table)

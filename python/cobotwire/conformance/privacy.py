@@ -22,7 +22,7 @@ PATHS = re.compile(
     rf"(?<![\w./:~\\-])/(?!dev/)(?:{PART}/)+({PART})?|(?<![\w\\])[A-Za-z]:\\(?:{PART}\\)*({PART})?"
 )
 # Names that udev and macOS make from the serial number of an adapter.
-SERIAL = re.compile(r"(?<=/by-id/)[^\s'\"]+|(?<=\busbserial-)\w+")
+SERIAL = re.compile(r"(?<=/by-id/)(?!#)[^\s'\"]+|(?<=\busbserial-)\w+")
 
 
 def hashed(text: str) -> str:

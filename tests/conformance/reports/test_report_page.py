@@ -117,6 +117,7 @@ def test_text_of_a_device_is_never_markup(text: str) -> None:
     report = failing(1)
     report.subject = report.firmware = report.stopped = report.statement = text
     report.options = {text: text}
+    report.tester = report.serial = text
     report.environment = Environment(text, text, text, text, text, text)
     exchange = Exchange(0.1, "received", b"<b>", text)
     report.results = [

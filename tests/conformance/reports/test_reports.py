@@ -129,6 +129,8 @@ def test_report_with_a_wrong_value_is_rejected_or_can_be_compared(
     report: Report, wrong: object, data: st.DataObject
 ) -> None:
     document = json.loads(to_json(report))
+    # With it, each change is rejected.
+    del document["digest"]
     place = document
     while data.draw(st.booleans()):
         inner = [place[key] for key in (place if isinstance(place, dict) else range(len(place)))]

@@ -10,12 +10,14 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from cobotwire import editions
+from cobotwire.conformance.device import RunOptions
 from cobotwire.conformance.statement import (
     Acknowledgements,
     Support,
     load_statement,
     read_statement,
     statement_template,
+    with_deadlines,
 )
 from cobotwire.protocol.errors import StatementError, UsageError
 
@@ -49,6 +51,16 @@ def test_statement_holds_what_its_file_declares(tmp_path: Path) -> None:
     assert "absent" in found.deselected(TABLE.command("get_tof_distance"))
     assert found.deselected(TABLE.command("get_angles")) == ""
     assert found.text == path.read_text()
+
+
+def test_extra_information_completes_the_options_of_a_run() -> None:
+    text = HEAD + "ixit: {linger: 6, workspace: '-9:9', max_speed: 20, deadlines: {get_angles: 80}}"
+    found = read_statement(text, TABLE)
+    options = RunOptions(workspace="-5:5").completed(found.ixit)
+    assert (options.linger, options.workspace, options.max_speed) == (6, "-5:5", 20)
+    table = with_deadlines(TABLE, found.deadlines)
+    changed = [(a.name, b.deadline_ms) for a, b in zip(TABLE.commands, table.commands) if a != b]
+    assert changed == [("get_angles", 80)]
 
 
 # A statement, and what the error says.
@@ -86,6 +98,21 @@ MISTAKES = {
         HEAD + "firmware: 1.0",
         "arm.yaml:3:11: firmware is 1.0; allowed: text, in quotes",
     ),
+    "no workspace": (
+        HEAD + "ixit: {workspace: '9'}",
+        "arm.yaml:3:19: workspace is 9; allowed: LOW",
+    ),
+    "linger": (HEAD + "ixit: {linger: -1}", "linger is -1; allowed: 0..60000 milliseconds"),
+    "speed": (HEAD + "ixit: {max_speed: true}", "max_speed is true; allowed: 1..100 percent"),
+    "address": (HEAD + "ixit: {address: LEFT}", "address is LEFT; edition mycobot280 has no"),
+    "deadline": (
+        HEAD + "ixit: {deadlines: {get_angles: 501}}",
+        "arm.yaml:3:32: get_angles is 501; allowed: 1..500 milliseconds",
+    ),
+    "deadline of a one-way request": (
+        HEAD + "ixit: {deadlines: {stop: 1}}",
+        "deadlines has no key",
+    ),
     "list": ("[1]", "arm.yaml:1:1: a statement is a list; allowed: a mapping"),
     "key twice": (
         HEAD + "maker: a\nmaker: b\n",
@@ -120,12 +147,18 @@ VALUES = st.recursive(
     lambda inner: (
         st.lists(inner, max_size=3).map(lambda xs: f"[{', '.join(xs)}]")
         | st.dictionaries(
-            st.sampled_from(["stop", "gripper", "get_angles", "a b"]), inner, max_size=3
+            st.sampled_from(
+                ["stop", "gripper", "get_angles", "a b", "deadlines", "address", "workspace"]
+            ),
+            inner,
+            max_size=3,
         ).map(lambda d: "{" + ", ".join(f"{k}: {v}" for k, v in d.items()) + "}")
     ),
     max_leaves=8,
 )
-KEYS = st.sampled_from(["maker", "firmware", "acknowledgements", "fitted", "commands", "edition"])
+KEYS = st.sampled_from(
+    ["maker", "firmware", "acknowledgements", "fitted", "commands", "edition", "ixit"]
+)
 
 
 @given(

@@ -6,14 +6,13 @@ from cobotwire.conformance.device.permissions import (
     ALL_PERMISSIONS,
     PERMISSIONS,
     Permissions,
-    parse_workspace,
-    words,
 )
 from cobotwire.conformance.device.plan import Plan, Step
 from cobotwire.conformance.device.requester import Timing
 from cobotwire.conformance.device.started import ATTACH, StartedDevice, parse_command
 from cobotwire.conformance.device.suite import SUITE
 from cobotwire.conformance.device.tester import Tester
+from cobotwire.conformance.workspace import parse_workspace, words
 
 __all__ = [
     "ALL_PERMISSIONS",

@@ -7,8 +7,8 @@ from functools import partial
 from typing import Any
 
 from cobotwire.conformance.device.device import Device, NotSupported
-from cobotwire.conformance.device.permissions import Range
 from cobotwire.conformance.device.read_back import setter_of
+from cobotwire.conformance.workspace import Range
 from cobotwire.protocol.messages import Request
 from cobotwire.protocol.roles import row_index, targets_request
 from cobotwire.protocol.table import Command, Role, Table

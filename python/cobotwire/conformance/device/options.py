@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import Any
 
 from cobotwire.conformance.device.connection import DeviceConnection
-from cobotwire.conformance.device.permissions import Permissions, parse_workspace, words
+from cobotwire.conformance.device.permissions import Permissions
 from cobotwire.conformance.device.requester import Timing
 from cobotwire.conformance.device.tester import Tester
 from cobotwire.conformance.options import Options
 from cobotwire.conformance.statement import Statement
+from cobotwire.conformance.workspace import parse_workspace, words
 from cobotwire.protocol.errors import UsageError
 from cobotwire.protocol.table import Table
 
@@ -33,6 +35,10 @@ class RunOptions(Options):
     address: str | None = None
     linger: float | None = None
     baudrate: int | None = None
+
+    def completed(self, ixit: Mapping[str, Any]) -> RunOptions:
+        """Return the options; a statement gives those that the caller did not choose."""
+        return replace(self, **{n: v for n, v in ixit.items() if getattr(self, n) is None})
 
     def validate(self, table: Table) -> None:
         """Check the options before a port is opened.

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
+from cobotwire.conformance.workspace import Range
 from cobotwire.protocol.errors import UsageError
 from cobotwire.protocol.table import Command
 
@@ -19,8 +20,6 @@ PERMISSIONS: dict[str, str] = {
 }
 ALL_PERMISSIONS = frozenset(PERMISSIONS)
 SPEEDS = range(1, 101)
-
-Range = tuple[float, float]
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,29 +76,3 @@ def class_of(command: Command) -> frozenset[str]:
     return (
         frozenset() if command.safety == "query" else frozenset({command.safety.replace(" ", "-")})
     )
-
-
-def words(text: str) -> list[str]:
-    """Return the words of a comma-separated list."""
-    return [word.strip() for word in text.split(",") if word.strip()]
-
-
-def parse_workspace(text: str, joints: int) -> dict[int, Range]:
-    """Parse a workspace: one range for all joints, or ``JOINT=LOW:HIGH`` for each.
-
-    Raises:
-        UsageError: the text has neither form.
-    """
-    found: dict[int, Range] = {}
-    for word in words(text):
-        joint, equals, span = word.rpartition("=")
-        low, colon, high = span.partition(":")
-        try:
-            if not colon:
-                raise ValueError(span)
-            which = [int(joint)] if equals else list(range(1, joints + 1))
-            found |= dict.fromkeys(which, (float(low), float(high)))
-        except ValueError:
-            allowed = "LOW:HIGH in degrees, or JOINT=LOW:HIGH for each joint"
-            raise UsageError("workspace", word, allowed) from None
-    return found

@@ -7,6 +7,7 @@ from cobotwire.conformance.statement.statement import (
     Support,
     is_mandatory,
     statement_template,
+    with_deadlines,
     without,
 )
 
@@ -18,5 +19,6 @@ __all__ = [
     "load_statement",
     "read_statement",
     "statement_template",
+    "with_deadlines",
     "without",
 ]

@@ -16,6 +16,8 @@ from cobotwire.conformance.statement.statement import (
     equipment,
     is_mandatory,
 )
+from cobotwire.conformance.workspace import parse_workspace
+from cobotwire.protocol.addresses import find_address
 from cobotwire.protocol.errors import StatementError, UsageError, did_you_mean
 from cobotwire.protocol.table import Command, Table
 from cobotwire.simulator.faults.nodes import Node, Place, parse
@@ -24,6 +26,8 @@ WHAT = "statements"
 SHOWN = 60
 # Returns the value of a key as a statement holds it. A ValueError says what is wrong with it.
 Rule = Callable[[Any], object]
+# The rule of each key; a mapping has rules of its own.
+Rules = Mapping[str, "Rule | Rules"]
 
 
 def load_statement(path: str | Path, table: Table) -> Statement:
@@ -52,10 +56,11 @@ def read_statement(text: str, table: Table, name: str = "statement") -> Statemen
     if problems:
         raise StatementError([f"{place}: {message}" for place, message in sorted(set(problems))])
     del given["statement"]
-    return Statement(**given, text=text)
+    ixit = given.pop("ixit", {})
+    return Statement(**given, deadlines=ixit.pop("deadlines", {}), ixit=ixit, text=text)
 
 
-def _rules(table: Table) -> dict[str, Rule | Mapping[str, Rule]]:
+def _rules(table: Table) -> Rules:
     """Return the rules for the keys of a statement; a mapping has a rule for each of its keys."""
     return {
         "statement": partial(_exactly, FORMAT),
@@ -64,6 +69,18 @@ def _rules(table: Table) -> dict[str, Rule | Mapping[str, Rule]]:
         "product": _text,
         "firmware": _text,
         "acknowledgements": partial(_word, Acknowledgements),
+        "ixit": {
+            "linger": partial(_between, 0, 60_000, "milliseconds"),
+            "workspace": partial(_workspace, table.joints),
+            "max_speed": partial(_between, 1, 100, "percent"),
+            "baudrate": partial(_between, 1, 100_000_000, "baud"),
+            "address": partial(_address, table),
+            "deadlines": {
+                c.name: partial(_between, 1, c.deadline_ms, "milliseconds")
+                for c in table.commands
+                if c.requires_reply
+            },
+        },
         "fitted": dict.fromkeys(equipment(table), _flag),
         "commands": {command.name: partial(_support, command) for command in table.commands},
     }
@@ -72,7 +89,7 @@ def _rules(table: Table) -> dict[str, Rule | Mapping[str, Rule]]:
 def _mapping(
     node: Node,
     what: str,
-    rules: Mapping[str, Rule | Mapping[str, Rule]],
+    rules: Rules,
     problems: list[tuple[Place, str]],
 ) -> dict[str, Any]:
     """Return the values of a mapping; add its mistakes to ``problems``."""
@@ -111,6 +128,29 @@ def _flag(value: Any) -> bool:
     if not isinstance(value, bool):
         raise ValueError("; allowed: true, false")
     return value
+
+
+def _between(least: int, most: int, unit: str, value: Any) -> int:
+    if type(value) is not int or not least <= value <= most:
+        raise ValueError(f"; allowed: {least}..{most} {unit}")
+    return value
+
+
+def _workspace(joints: int, value: Any) -> str:
+    try:
+        parse_workspace(_text(value), joints)
+    except UsageError as error:
+        raise ValueError(f"; allowed: {error.allowed}") from None
+    return _text(value)
+
+
+def _address(table: Table, value: Any) -> str:
+    text = str(value) if type(value) is int else _text(value)
+    try:
+        find_address(table, int(text) if text.isascii() and text.isdigit() else text)
+    except UsageError as error:
+        raise ValueError(f"; {error}") from None
+    return text
 
 
 def _word(words: type[StrEnum], value: Any) -> StrEnum:

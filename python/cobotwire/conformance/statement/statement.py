@@ -6,6 +6,7 @@ from collections.abc import Callable, Container, Iterator, Mapping
 from dataclasses import dataclass, field
 from enum import StrEnum
 from itertools import groupby
+from typing import Any
 
 from cobotwire.protocol.table import Command, Role, Table
 
@@ -37,6 +38,19 @@ product: ""
 firmware: ""
 # Whether changes are acknowledged, where the edition allows it: all, none, unknown.
 acknowledgements: unknown
+"""
+IXIT = """\
+# Implementation extra information for testing (IXIT): what a run must know of the device. Options
+# of the command line come first. Remove the # before what you state.
+ixit:
+  # linger: 4            # milliseconds to listen after a reply
+  # workspace: "-30:30"  # degrees in which the arm may move; moving also needs --allow motion
+  # max_speed: 20        # percent
+  # baudrate: {baudrate}
+  # address: ""          # of the device, by its number or name
+  # Milliseconds in which a query is replied to, at most those of the edition: they are tested.
+  deadlines:
+    # {query}: {deadline}
 """
 COMMANDS = """\
 # implemented: tested. optional: tested, but silence is no failure. absent: not tested, except that
@@ -70,7 +84,8 @@ class Statement:
 
     ``firmware`` is as the device reports it; empty: not declared. ``fitted`` says by family of
     commands whether the equipment is there. ``commands`` has the commands that are declared; the
-    others are implemented. ``text`` is the whole file.
+    others are implemented. ``ixit`` has options of a run, ``deadlines`` the milliseconds in which
+    queries are replied to. ``text`` is the whole file.
     """
 
     edition: str = ""
@@ -80,6 +95,8 @@ class Statement:
     acknowledgements: Acknowledgements = Acknowledgements.UNKNOWN
     fitted: Mapping[str, bool] = field(default_factory=dict)
     commands: Mapping[str, Support] = field(default_factory=dict)
+    ixit: Mapping[str, Any] = field(default_factory=dict)
+    deadlines: Mapping[str, int] = field(default_factory=dict)
     text: str = ""
 
     @property
@@ -111,6 +128,12 @@ class Statement:
                 f"The statement declares that there is no equipment of the kind {command.family}."
             )
         return ""
+
+
+def with_deadlines(table: Table, deadlines: Mapping[str, int]) -> Table:
+    """Return an edition with the deadlines that a device keeps."""
+    kept = (c._replace(deadline_ms=deadlines.get(c.name, c.deadline_ms)) for c in table.commands)
+    return table._replace(commands=tuple(kept)) if deadlines else table
 
 
 def without(table: Table, lacks: Callable[[Command], object]) -> Table:
@@ -152,6 +175,8 @@ def statement_template(table: Table) -> str:
     if families:
         text += "# Equipment that is not there is not tested.\nfitted:\n"
         text += "".join(f"  {family}: true\n" for family in families)
+    query = next(command for command in table.commands if command.requires_reply)
+    text += IXIT.format(baudrate=table.baudrate, query=query.name, deadline=query.deadline_ms)
     return text + COMMANDS + "".join(f"{line}\n" for line in _commands(table))
 
 
