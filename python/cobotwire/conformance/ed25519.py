@@ -16,7 +16,8 @@ from cryptography.hazmat.primitives.serialization import (
     load_ssh_public_key,
 )
 
-PrivateKey, PublicKey = Ed25519PrivateKey, Ed25519PublicKey
+PrivateKey = Ed25519PrivateKey
+PublicKey = Ed25519PublicKey
 
 
 def is_signed(key: bytes, signature: bytes, text: bytes) -> bool:
@@ -28,7 +29,7 @@ def is_signed(key: bytes, signature: bytes, text: bytes) -> bool:
     return True
 
 
-def read_key(data: bytes, kind: type[PrivateKey | PublicKey]) -> Any:
+def read_key(data: bytes, kind: type[PrivateKey] | type[PublicKey]) -> Any:
     """Return the key in a file: PEM, or the format of OpenSSH; not encrypted.
 
     Raises:
