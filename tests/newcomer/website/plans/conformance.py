@@ -49,5 +49,8 @@ END
         "cobotwire --edition mycobot280 conform codec -- python -m"
         " cobotwire.conformance.codec.adapter native": Expected(r"\d+ pass"),
         "cobotwire conform compare monday.json tuesday.json": Expected(),
+        'ssh-keygen -t ed25519 -N "" -f laboratory': Expected(),
+        "cobotwire conform device --simulated --json report.json --sign laboratory": PASSED,
+        "cobotwire conform verify report.json --key laboratory.pub": Expected("signed with the key"),
     },
 )
