@@ -304,7 +304,7 @@ class AsyncClient:
         if longest is not None:
             wait = self._settings.at_most(longest, encoded.command)
         done = await self._connection.request(encoded, retry, wait)
-        return request.result_of(done.result())
+        return request.result_of(self._connection.firmware.result(done))
 
     async def _send(
         self,

@@ -11,6 +11,7 @@ from math import inf
 
 from cobotwire.client.aio_polling import AsyncPoller
 from cobotwire.client.aio_steps import FULL_SECONDS, AsyncSteps
+from cobotwire.client.firmware import ReportedFirmware
 from cobotwire.client.opening import OpenPort, PortOpener
 from cobotwire.client.persisted_state import PortMemory
 from cobotwire.client.traffic import TrafficListener, TrafficListeners
@@ -52,6 +53,7 @@ class AsyncConnection:
         self._opener = opener
         self._port: OpenPort | None = None
         self.url = port if isinstance(port, str) else port.url
+        self.firmware = ReportedFirmware()
         self.listeners = TrafficListeners(trace, self.url)
         self._exchange = exchange
         self._deadline = deadline
@@ -102,7 +104,7 @@ class AsyncConnection:
             steps.turn()
             if pending is not None:
                 await self._wait(pending)
-                pending.result()
+                self.firmware.result(pending)
         finally:
             if pending is not None:
                 steps.exchange.give_up(pending)

@@ -327,7 +327,7 @@ class Client:
         if longest is not None:
             wait = self._settings.at_most(longest, encoded.command)
         done = self._connection.request(encoded, retry, wait)
-        return request.result_of(done.result())
+        return request.result_of(self._connection.firmware.result(done))
 
     def _send(
         self,

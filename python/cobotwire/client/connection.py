@@ -6,6 +6,7 @@ import time
 from collections.abc import Callable
 from math import inf
 
+from cobotwire.client.firmware import ReportedFirmware
 from cobotwire.client.leading import CHECK_SECONDS
 from cobotwire.client.opening import PortOpener
 from cobotwire.client.persisted_state import PortMemory
@@ -40,6 +41,7 @@ class Connection:
         self._transport = self._port.transport
         self.url = self._transport.url
         self.now, self.sleep, _ = times_of(self._transport)
+        self.firmware = ReportedFirmware()
         self.listeners = TrafficListeners(trace, self.url, self.now)
         self._exchange = exchange
         self._deadline = deadline
@@ -72,7 +74,7 @@ class Connection:
                 steps.wait(pending)
             finally:
                 steps.leave(pending)
-            pending.result()
+            self.firmware.result(pending)
             return
         try:
             if steps.leading.take_lead():

@@ -220,6 +220,7 @@ class _Reader:
             tuple(get("accepted", ())),
             self._package,
             get("effect"),
+            get("firmware"),
         )
 
     def _variants(self, records: list[list[Record]]) -> tuple[Variant, ...]:

@@ -128,6 +128,7 @@ class _CommandFields(NamedTuple):
     accepted: tuple[int, ...] = ()
     package: str = ""
     stated_effect: Mapping[str, Any] | None = None
+    firmware: Mapping[str, float] | None = None
 
 
 class Command(_CommandFields):
@@ -144,6 +145,9 @@ class Command(_CommandFields):
     ``package`` is the generated package with the message types; empty for a table without one.
     ``stated_effect`` is what the command does, as in ``edition.json``
     (:func:`cobotwire.protocol.effects.effect_of`).
+    ``firmware`` holds the versions on which it depends, as far as sources know them: ``since`` the
+    first one that has the command, ``until`` the first one that lacks it again, ``reply_since`` the
+    first one that replies to it.
     """
 
     def __hash__(self) -> int:

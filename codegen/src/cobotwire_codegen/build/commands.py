@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import replace
 
 from cobotwire_codegen import language
@@ -10,11 +11,11 @@ from cobotwire_codegen.build.fields import build_field, build_variants
 from cobotwire_codegen.build.parts import FamilyParts, Parts
 from cobotwire_codegen.build.read_back import build_samples
 from cobotwire_codegen.build.text import build_reply_text, build_request_text
-from cobotwire_codegen.build.types import Types, disputes
+from cobotwire_codegen.build.types import Types, disputes, evidence
 from cobotwire_codegen.errors import Place, Problem
 from cobotwire_codegen.language.shapes import items_of
 from cobotwire_codegen.load import Node, Scalar
-from cobotwire_codegen.model import Command, Family, Variant
+from cobotwire_codegen.model import Command, Family, Firmware, Variant
 from cobotwire_codegen.model.commands import NoId
 from cobotwire_codegen.reader import Reader
 
@@ -118,6 +119,7 @@ def _command(
     else:
         accepted = build_accepted(reader.get(spec.accepted), replies, reader)
     event = reader.get(spec.event)
+    firmware = _firmware(reader)
     command = Command(
         place=place,
         id=_id(reader),
@@ -140,10 +142,40 @@ def _command(
         read_by=None,
         samples=build_samples(reader),
         agrees_with=reader.get(spec.agrees_with),
-        notes=reader.get(spec.notes),
+        notes=(*reader.get(spec.notes), *_firmware_notes(firmware)),
         disputed=disputes(reader, spec.disputed),
         changes=tuple(parts.changes.get(name, ())),
         arguments=reader.get(spec.arguments),
+        firmware=firmware,
     )
     effect = build_effect(reader.get(spec.effect), command, problems)
     return replace(command, effect=effect)
+
+
+# What each version of a command means, for people.
+FIRMWARE_WORDS = {
+    "since": "It needs firmware {} or later",
+    "until": "It is gone since firmware {}",
+    "reply_since": "It is replied to since firmware {}",
+}
+
+
+def _firmware(outer: Reader) -> Firmware | None:
+    node = outer.get(language.Command.firmware)
+    if node is None:
+        return None
+    spec = language.Firmware
+    reader = Reader(node, spec, f"the firmware of {outer.what}", outer.problems)
+    given = {key: reader.get(getattr(spec, key)) for key in FIRMWARE_WORDS}
+    versions = {key: version for key, version in given.items() if version}
+    if not versions:
+        reader.problem("missing-key", f"{reader.what} lacks one of {', '.join(FIRMWARE_WORDS)}")
+    return Firmware(versions, evidence(reader, spec.evidence))
+
+
+def _firmware_notes(firmware: Firmware | None) -> Iterator[str]:
+    """Yield a sentence for each version, with what the sources state."""
+    if firmware is not None:
+        sources = "; ".join(f"{each.source}: {each.says}" for each in firmware.evidence)
+        for key, version in firmware.versions.items():
+            yield f"{FIRMWARE_WORDS[key].format(f'{float(version):.1f}')} ({sources})."

@@ -11,7 +11,7 @@ from cobotwire_codegen.build.delta import apply_changes
 from cobotwire_codegen.build.effects import build_state
 from cobotwire_codegen.build.frame import build_frame_format
 from cobotwire_codegen.build.inherit import carried
-from cobotwire_codegen.build.parts import Files, Inherited, Parts, Texts, add_own
+from cobotwire_codegen.build.parts import Files, Inherited, Parts, Texts, add_own, drop_firmware
 from cobotwire_codegen.build.read_back import with_read_back
 from cobotwire_codegen.build.robot import build_robot
 from cobotwire_codegen.build.types import Types
@@ -77,6 +77,7 @@ def _collect(
         parts.inherited = [Inherited(each, each.command) for each in parts.base.vectors]
         # The base's errata are about the base's document, its changes about its own base.
         parts.errata, parts.changes, parts.general_changes, parts.gone = [], {}, [], {}
+        drop_firmware(parts)
         for node in files.listed(reader, language.DeltaEdition.changes):
             apply_changes(parts, node, problems)
     add_own(parts, reader, files)

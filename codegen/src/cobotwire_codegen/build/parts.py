@@ -198,6 +198,15 @@ def add_own(parts: Parts, reader: Reader, files: Files) -> None:
         parts.errata += _listed(files.content(item), language.ErrataFile.errata, reader.problems)
 
 
+def drop_firmware(parts: Parts) -> None:
+    """Drop the versions of firmware that the base states: another robot has firmware of its own."""
+    for family in parts.families.values():
+        for name, (place, node) in family.commands.items():
+            if isinstance(node, Mapping) and language.Command.firmware.name in node.entries:
+                kept = {k: v for k, v in node.entries.items() if k != "firmware"}
+                family.commands[name] = (place, Mapping(node.place, kept, node.keys))
+
+
 def _add_robot(parts: Parts, reader: Reader) -> None:
     spec = language.WholeEdition
     unknown = reader.get(spec.geometry_unknown)

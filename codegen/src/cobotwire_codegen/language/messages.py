@@ -6,7 +6,7 @@ from cobotwire_codegen.language import facts
 from cobotwire_codegen.language.effects import ANY_EFFECT_PART
 from cobotwire_codegen.language.limits import COMMAND_LIMITS, messages_by_key
 from cobotwire_codegen.language.names import CASE, CLASS, LOWER, METHOD
-from cobotwire_codegen.language.number_shapes import Numbers, Range, Whole, WholeOrMember
+from cobotwire_codegen.language.number_shapes import Numbers, Range, Real, Whole, WholeOrMember
 from cobotwire_codegen.language.records import (
     Choice,
     Key,
@@ -152,6 +152,22 @@ fields:
 """
 
 
+class Firmware(Record):
+    """The versions of the device's firmware on which a command depends."""
+
+    since = optional(Real(), "The first version that has the command.")
+    until = optional(Real(), "The first version that lacks it again.")
+    reply_since = optional(Real(), "The first version that replies to it.")
+    evidence = required(
+        Listed(facts.Evidence, facts.NO_EVIDENCE), "What each source states.", facts.NO_EVIDENCE[0]
+    )
+    EXAMPLE = """\
+since: 7.4
+evidence:
+  - {source: the maker's library 4.0.7, says: "needs 7.4"}
+"""
+
+
 def accepted_key() -> Key[Node | None]:
     """Return the key for the status values that mean success."""
     return optional(
@@ -232,6 +248,10 @@ class Command(Record):
         Whole(1), "How long a client waits for the reply. Left out: as the transport states.", 0
     )
     notes = optional(Texts(), "Sentences for the reference.")
+    firmware = optional(
+        Part(Firmware),
+        "The firmware that it needs. A delta inherits none. Left out: no source names a version.",
+    )
     disputed = facts.disputed()
     EXCLUSIVE = (
         ("request", "request_variants"),

@@ -21,7 +21,7 @@ from cobotwire_codegen.model.edition import (
     Vector,
 )
 from cobotwire_codegen.model.effects import Effect, State
-from cobotwire_codegen.model.facts import Change, Dispute, Evidence, Lines
+from cobotwire_codegen.model.facts import Change, Dispute, Evidence, Firmware, Lines
 from cobotwire_codegen.model.frame import Address, Frame, FrameCheck, FrameNumber
 from cobotwire_codegen.model.robot import (
     Encoders,
@@ -62,6 +62,7 @@ __all__ = [
     "Evidence",
     "Family",
     "Field",
+    "Firmware",
     "Flag",
     "Frame",
     "FrameCheck",

@@ -7,7 +7,7 @@ from typing import Literal
 
 from cobotwire_codegen.errors import Place
 from cobotwire_codegen.model.effects import Effect
-from cobotwire_codegen.model.facts import Change, Dispute, Lines
+from cobotwire_codegen.model.facts import Change, Dispute, Firmware, Lines
 from cobotwire_codegen.model.shapes import Type
 from cobotwire_codegen.model.types import Member
 
@@ -100,6 +100,7 @@ class Command:
     harmless; ``agrees_with`` lists queries that report the same values while the arm rests.
     The device sends the reply of an ``event`` without a request. ``accepted`` lists the raw values
     of the last field of a reply that report success.
+    ``firmware`` is what it needs; its notes say so too.
     ``arguments`` is the order of the method's arguments, if it is not that of the wire.
     """
 
@@ -129,6 +130,7 @@ class Command:
     changes: tuple[Change, ...]
     arguments: tuple[str, ...] = ()
     effect: Effect | None = None
+    firmware: Firmware | None = None
 
     @property
     def reply(self) -> Variant:

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+from fractions import Fraction
 
 from cobotwire_codegen.errors import Place
 
@@ -17,6 +19,17 @@ class Evidence:
     source: str
     lines: Lines
     says: str
+
+
+@dataclass(frozen=True, slots=True)
+class Firmware:
+    """The versions of a device's firmware on which a command depends, each with its meaning.
+
+    ``versions`` has the keys ``since``, ``until`` and ``reply_since``, as far as they are known.
+    """
+
+    versions: Mapping[str, Fraction]
+    evidence: tuple[Evidence, ...]
 
 
 @dataclass(frozen=True, slots=True)

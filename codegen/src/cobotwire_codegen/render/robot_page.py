@@ -30,6 +30,7 @@ def robot_pages(editions: Sequence[Edition]) -> Files:
             speed=_speed(edition),
             seen=list(_seen(edition)),
             captured=_captured(edition),
+            history=_history(edition),
             disputed=[command.name for command in edition.commands if command.disputed],
         )
         made[PurePosixPath(f"{edition.name}.md")] = text
@@ -65,6 +66,21 @@ def _seen(edition: Edition) -> Iterator[tuple[str, Dispute, str]]:
             shown = [_words(each) for each in dispute.evidence if _REAL_ARM.search(each.source)]
             if shown:
                 yield thing.name, dispute, "; ".join(shown)
+
+
+# What happened to a command with a version of the firmware.
+_CHANGES = {"since": "new", "until": "removed", "reply_since": "is replied to"}
+
+
+def _history(edition: Edition) -> list[tuple[str, str, str, str]]:
+    """Return version, command, change and source of what is known of the firmware, by version."""
+    stated = [(each.name, each.firmware) for each in edition.commands if each.firmware]
+    found = sorted(
+        (version, name, _CHANGES[key], "; ".join(map(_words, firmware.evidence)))
+        for name, firmware in stated
+        for key, version in firmware.versions.items()
+    )
+    return [(f"{float(version):.1f}", *rest) for version, *rest in found]
 
 
 def _words(evidence: Evidence) -> str:

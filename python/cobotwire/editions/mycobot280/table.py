@@ -3,4 +3,4 @@
 
 from cobotwire.protocol.loading import load_table
 
-TABLE = load_table(__package__, checksum="50ad1803")
+TABLE = load_table(__package__, checksum="92b77cb5")

@@ -8,7 +8,6 @@ from typing import ClassVar
 from cobotwire.client.moving import MovingClient
 from cobotwire.editions.mycobot280.commands.drag import DragCommands
 from cobotwire.editions.mycobot280.commands.frames import FramesCommands
-from cobotwire.editions.mycobot280.commands.jog import JogCommands
 from cobotwire.editions.mycobot280.commands.kinematics import KinematicsCommands
 from cobotwire.protocol.table import Table
 
@@ -16,6 +15,7 @@ from .commands.accessories import AccessoriesCommands
 from .commands.coords import CoordsCommands
 from .commands.gripper import GripperCommands
 from .commands.io import IoCommands
+from .commands.jog import JogCommands
 from .commands.motion import MotionCommands
 from .commands.power import PowerCommands
 from .commands.servo import ServoCommands

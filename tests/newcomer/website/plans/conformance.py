@@ -51,6 +51,8 @@ END
         "cobotwire conform compare monday.json tuesday.json": Expected(),
         'ssh-keygen -t ed25519 -N "" -f laboratory': Expected(),
         "cobotwire conform device --simulated --json report.json --sign laboratory": PASSED,
-        "cobotwire conform verify report.json --key laboratory.pub": Expected("signed with the key"),
+        "cobotwire conform verify report.json --key laboratory.pub": Expected(
+            "signed with the key"
+        ),
     },
 )

@@ -20,7 +20,6 @@ class MotionCommands(Client):
     pause = shared(Base.pause)
     is_paused = shared(Base.is_paused)
     resume = shared(Base.resume)
-    stop = shared(Base.stop)
     is_in_position = shared(Base.is_in_position)
     is_moving = shared(Base.is_moving)
     clear_queue = shared(Base.clear_queue)
@@ -68,6 +67,18 @@ class MotionCommands(Client):
         Safety: motion. Command id 0x22.
         """
         return self._send(messages.motion.SendAngles(angles, speed), ack_within)
+
+    def stop(self, *, ack_within: float | None = None) -> None:
+        """Stop.
+
+        Stops the motion. The acknowledgement may be late or never come; check with is_moving before
+        relying on it. It is not an emergency stop, since a frame can be lost in transit; keep a
+        power switch within reach. It ends jogging too. Use it instead of jog_stop, which newer
+        firmware may ignore.
+
+        Safety: motion. Command id 0x29.
+        """
+        return self._send(messages.motion.Stop(), ack_within)
 
     def send_radians(
         self, radians: Sequence[float], speed: int, *, ack_within: float | None = None

@@ -315,8 +315,8 @@ class ServoCommands(Client):
 
         Saves the parameters of one servo, or of all (254), so that they can be restored. The saved
         parameters replace those that were saved before, even if the servo is misconfigured. Make
-        sure that the current parameters work. The maker says that the firmware must be newer than
-        7.4.0.
+        sure that the current parameters work. It needs firmware 7.4 or later (the maker's library
+        4.0.7: the firmware must be newer than 7.4.0).
 
         Args:
             servo: Servo number, 1 to 6; 254 is all of them (one of 1, 2, 3, 4, 5, 6, 254).
@@ -330,8 +330,8 @@ class ServoCommands(Client):
 
         Restores the saved parameters of one servo, or of all (254). It overwrites the servo's
         current parameters. No source says what it writes if nothing was saved, nor whether the zero
-        position is among them; support the arm first. The maker says that the firmware must be
-        newer than 7.4.0.
+        position is among them; support the arm first. It needs firmware 7.4 or later (the maker's
+        library 4.0.7: the firmware must be newer than 7.4.0).
 
         Args:
             servo: Servo number, 1 to 6; 254 is all of them (one of 1, 2, 3, 4, 5, 6, 254).

@@ -17,9 +17,20 @@ class JogCommands(Client):
     jog_angle = shared(Base.jog_angle)
     jog_coord = shared(Base.jog_coord)
     jog_increment = shared(Base.jog_increment)
-    jog_stop = shared(Base.jog_stop)
     jog_rpy = shared(Base.jog_rpy)
     jog_increment_angle = shared(Base.jog_increment_angle)
+
+    def jog_stop(self) -> None:
+        """Stop jogging.
+
+        Stops a motion that jog_angle or jog_coord started. Use stop (0x29) instead. Newer firmware
+        may ignore this request, and the arm then keeps moving. The same id with data is
+        jog_increment_coord, a step along an axis; the length tells them apart. There is no reply
+        and no acknowledgement.
+
+        Safety: motion. Command id 0x34.
+        """
+        return self._send(messages.jog.JogStop())
 
     def jog_increment_coord(
         self, axis: Axis | int, increment: float, speed: int, *, ack_within: float | None = None
