@@ -80,7 +80,7 @@ def _history(edition: Edition) -> list[tuple[str, str, str, str]]:
         for name, firmware in stated
         for key, version in firmware.versions.items()
     )
-    return [(f"{float(version):.1f}", *rest) for version, *rest in found]
+    return [(f"{float(v):.1f}", name, change, source) for v, name, change, source in found]
 
 
 def _words(evidence: Evidence) -> str:
