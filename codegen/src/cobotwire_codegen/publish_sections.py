@@ -78,6 +78,7 @@ def _sources(edition: Edition) -> Iterator[Record]:
             place=thing.place,
             lines=getattr(thing, "source", ()),
             disputed=getattr(thing, "disputed", ()),
+            firmware=thing.firmware if kind == "command" else None,
             changes=() if kind == "edition" else getattr(thing, "changes", ()),
         )
 

@@ -166,11 +166,15 @@ def _firmware(outer: Reader) -> Firmware | None:
         return None
     spec = language.Firmware
     reader = Reader(node, spec, f"the firmware of {outer.what}", outer.problems)
-    given = {key: reader.get(getattr(spec, key)) for key in FIRMWARE_WORDS}
-    versions = {key: version for key, version in given.items() if version}
-    if not versions:
+    found = Firmware(
+        reader.get(spec.since),
+        reader.get(spec.until),
+        reader.get(spec.reply_since),
+        evidence(reader, spec.evidence),
+    )
+    if not found.versions:
         reader.problem("missing-key", f"{reader.what} lacks one of {', '.join(FIRMWARE_WORDS)}")
-    return Firmware(versions, evidence(reader, spec.evidence))
+    return found
 
 
 def _firmware_notes(firmware: Firmware | None) -> Iterator[str]:

@@ -89,6 +89,8 @@ def _command(where: str, old: Command, new: Command) -> Iterator[Finding]:
     yield from prose.doc(where, old.doc, new.doc)
     yield from prose.source(where, old.source, new.source)
     yield from prose.notes(where, old.notes, new.notes)
+    if old.firmware != new.firmware:
+        yield finding("versions-changed", where, *map(words.firmware, (old.firmware, new.firmware)))
     yield from prose.disputes(where, old.disputed, new.disputed)
     yield from prose.history(where, old.changes, new.changes)
 

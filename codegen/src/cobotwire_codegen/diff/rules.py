@@ -166,6 +166,7 @@ _DOCS = {
     "type-removed": "the type {old} was removed",
     "type-renamed": "the type {old} is now called {new}, only in the spec",
     "type-replaced": "used {old}, uses {new}; the effects are listed separately",
+    "versions-changed": "the firmware that it needs was ({old}), is ({new})",
     "vector-added": "a vector for {new} was added",
     "vector-changed": "the vector changed: {new}",
     "vector-removed": "a vector for {old} was removed",

@@ -9,6 +9,7 @@ from cobotwire_codegen.model import (
     Address,
     Command,
     Effect,
+    Firmware,
     Frame,
     Member,
     Quantity,
@@ -25,6 +26,7 @@ __all__ = [
     "address_range",
     "choices",
     "effect",
+    "firmware",
     "frame_check",
     "layout",
     "lines",
@@ -44,6 +46,14 @@ __all__ = [
 def short(text: str) -> str:
     """Return a text, cut to its first characters if it is long; the spec has the full text."""
     return text if len(text) <= LONGEST else text[: LONGEST - 3].rstrip() + "..."
+
+
+def firmware(stated: Firmware | None) -> str:
+    """Return the versions of the firmware that a command needs, and who says so."""
+    versions = stated.versions.items() if stated else ()
+    sources = stated.evidence if stated else ()
+    parts = [f"{name} {decimal(version)}" for name, version in versions]
+    return short(", ".join([*parts, *(f"{s.source}: {s.says}" for s in sources)])) or "none"
 
 
 def frame_check(frame: Frame) -> str:

@@ -23,6 +23,7 @@ from cobotwire_codegen.language.messages import (
     Case,
     Command,
     CommandsFile,
+    Firmware,
     ReplyText,
     RequestText,
     TextField,
@@ -60,7 +61,7 @@ _CHAPTERS: tuple[tuple[str, tuple[Described, ...]], ...] = (
     ("Fields", (ANY_REQUEST_FIELD, ANY_REPLY_FIELD, Case)),
     ("Text outside any frame", (RequestText, ReplyText, TextField)),
     ("Changes of a delta", (ChangesFile, CHANGE, REQUEST_CHANGE, REPLY_CHANGE)),
-    ("Disputes", (Dispute, Evidence)),
+    ("Disputes and firmware", (Dispute, Firmware, Evidence)),
     ("Vectors and errata", (VectorsFile, VECTOR, Rejection, ErrataFile, Erratum)),
 )
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 
@@ -23,13 +22,22 @@ class Evidence:
 
 @dataclass(frozen=True, slots=True)
 class Firmware:
-    """The versions of a device's firmware on which a command depends, each with its meaning.
+    """The versions of a device's firmware on which a command depends; 0: no source names one.
 
-    ``versions`` has the keys ``since``, ``until`` and ``reply_since``, as far as they are known.
+    ``since`` is the first version that has it, ``until`` the first one that lacks it again, and
+    ``reply_since`` the first one that replies to it.
     """
 
-    versions: Mapping[str, Fraction]
+    since: Fraction
+    until: Fraction
+    reply_since: Fraction
     evidence: tuple[Evidence, ...]
+
+    @property
+    def versions(self) -> dict[str, Fraction]:
+        """The versions that are known, by their names."""
+        names = ("since", "until", "reply_since")
+        return {name: version for name in names if (version := getattr(self, name))}
 
 
 @dataclass(frozen=True, slots=True)
