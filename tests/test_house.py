@@ -53,7 +53,7 @@ ONE_IMPORTER = {
     "fsspec": ["capture/export/inputs.py"],
     "pymycobot": ["conformance/codec/adapter/pymycobot.py"],
     "libcst": ["pymycobot/migrate/"],
-    "cryptography": ["conformance/ed25519.py"],
+    "cryptography": ["inspect/ed25519.py"],
     "ruamel": ["simulator/faults/nodes.py"],
     "starlette": ["studio/app.py", "studio/feed.py", "studio/serving.py"],
     "uvicorn": ["studio/accepting.py", "studio/serving.py"],

@@ -14,7 +14,7 @@ from cobotwire.cli.shared.conform_report import (
     text_of_file,
 )
 from cobotwire.conformance.reports import document_of
-from cobotwire.conformance.seal import Seal, check_seal, load_public_key
+from cobotwire.inspect.seal import Seal, check_seal, load_public_key
 from cobotwire.protocol.printable import printable
 
 

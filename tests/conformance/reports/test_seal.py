@@ -24,7 +24,7 @@ import in_process
 from cobotwire.cli.app import app
 from cobotwire.conformance import Report
 from cobotwire.conformance.reports import from_json, to_json
-from cobotwire.conformance.seal import check_seal, digest_of, load_signer, sealed
+from cobotwire.inspect.seal import check_seal, digest_of, load_signer, sealed
 from cobotwire.protocol.errors import UsageError
 
 JSON = st.recursive(

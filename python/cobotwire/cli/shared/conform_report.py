@@ -21,7 +21,7 @@ from cobotwire.conformance.hex_text import exchanged
 from cobotwire.conformance.host import HostWatch, clock_mistake
 from cobotwire.conformance.privacy import anonymous, hashed
 from cobotwire.conformance.reports import to_html, to_json, to_junit
-from cobotwire.conformance.seal import Signer, load_signer
+from cobotwire.inspect.seal import Signer, load_signer
 from cobotwire.protocol.errors import CobotwireError, UsageError
 from cobotwire.protocol.printable import printable
 

@@ -66,90 +66,19 @@ HISTORY = (
 VERSION = HISTORY[-1].number
 
 # The test cases by the number of their clause, from 1.
-CLAUSES = (
-    "query-replied",
-    "reply-frame",
-    "reply-fields",
-    "reply-echo",
-    "reply-once",
-    "reply-repeats",
-    "declared-absent",
-    "geometry",
-    "reached",
-    "limits",
-    "wrong-length",
-    "wrong-footer",
-    "cut-request",
-    "recovers",
-    "state-kept",
-    "out-of-range",
-    "request-in-pieces",
-    "two-in-one-write",
-    "noise-before",
-    "replies-in-order",
-    "unknown-id",
-    "read-back",
-    "neighbours-stay",
-    "restored",
-    "one-way-silent",
-    "acknowledgement",
-    "change-replied",
-    "set-is-reported",
-    "points-in-order",
-    "others-stay",
-    "reference-shifts",
-    "arrives",
-    "moving",
-    "stops",
-    "motion-ended",
-    "others-rest",
-    "pauses",
-    "faster",
-    "speeds-reported",
-    "limits-kept",
-    "effect",
-    "acknowledged-done",
-    "agrees",
-    "acknowledgements-alike",
-    "declared-firmware",
-    "declared-acknowledgements",
-    "expected-failure",
-    "frame-length",
-    "frame-id",
-    "frame-footer",
-    "frame-address",
-    "frame-whole",
-    "stray-bytes",
-    "interleaved-write",
-    "text-follows",
-    "motion-resent",
-    "change-resent",
-    "motion-powered",
-    "reply-awaited",
-    "reply-given-time",
-    "late-reply-expected",
-    "value-range",
-    "value-listed",
-    "sent-scale",
-    "sent-sign",
-    "sent-byte-order",
-    "sent-order",
-    "sent-rounded",
-    "sent-value",
-    "sent-address",
-    "sent-variant",
-    "sent-once",
-    "sent-all",
-    "sent-nothing-else",
-    "encode-bytes",
-    "encode-rejects",
-    "decode-values",
-    "decode-rejects",
-    "rejection-reason",
-    "stream-frames",
-    "stream-chunks",
-    "stream-noise",
-    "noise-reason",
-    "answers",
-)
+_NUMBERED = """
+query-replied reply-frame reply-fields reply-echo reply-once reply-repeats declared-absent
+geometry reached limits wrong-length wrong-footer cut-request recovers state-kept out-of-range
+request-in-pieces two-in-one-write noise-before replies-in-order unknown-id read-back
+neighbours-stay restored one-way-silent acknowledgement change-replied set-is-reported
+points-in-order others-stay reference-shifts arrives moving stops motion-ended others-rest pauses
+faster speeds-reported limits-kept effect acknowledged-done agrees acknowledgements-alike
+declared-firmware declared-acknowledgements expected-failure frame-length frame-id frame-footer
+frame-address frame-whole stray-bytes interleaved-write text-follows motion-resent change-resent
+motion-powered reply-awaited reply-given-time late-reply-expected value-range value-listed
+sent-scale sent-sign sent-byte-order sent-order sent-rounded sent-value sent-address sent-variant
+sent-once sent-all sent-nothing-else encode-bytes encode-rejects decode-values decode-rejects
+rejection-reason stream-frames stream-chunks stream-noise noise-reason answers
+"""
+CLAUSES = tuple(_NUMBERED.split())
 NUMBERS = {case: number for number, case in enumerate(CLAUSES, 1)}

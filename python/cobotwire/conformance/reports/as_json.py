@@ -9,7 +9,7 @@ from math import isfinite
 from typing import Any, Literal, get_args, get_origin, get_type_hints
 
 from cobotwire.conformance.report import Environment, Exchange, Host, Report, Result
-from cobotwire.conformance.seal import Signer, digest_of, sealed
+from cobotwire.inspect.seal import Signer, digest_of, sealed
 from cobotwire.protocol.errors import UsageError
 
 FORMAT = "cobotwire-conformance"

@@ -126,7 +126,7 @@ def _load(path: str, kind: type, argument: str) -> Any:
 
 def _library() -> ModuleType:
     try:
-        from cobotwire.conformance import ed25519
+        from cobotwire.inspect import ed25519
     except ImportError as error:
         message = "signatures need cryptography: pip install 'cobotwire[sign]'"
         raise UsageError("cryptography", message=message) from error
