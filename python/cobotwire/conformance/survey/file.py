@@ -1,0 +1,105 @@
+"""The file of a survey: a zip of ``survey.json`` and ``recording.pcapng``."""
+
+from __future__ import annotations
+
+import io
+import json
+import platform
+import zipfile
+from collections.abc import Mapping
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import Any, BinaryIO
+
+import cobotwire
+from cobotwire.capture.file_errors import unusable_file
+from cobotwire.conformance.provenance import edition_digest
+from cobotwire.conformance.survey.survey import Survey
+from cobotwire.protocol.errors import UsageError
+from cobotwire.protocol.printable import printable
+
+FORMAT, VERSION = "cobotwire-survey", 1
+JSON, RECORDING = "survey.json", "recording.pcapng"
+# The most bytes of the file and of its members.
+MOST_FILE, MOST = 20 << 20, {JSON: 2 << 20, RECORDING: 50 << 20}
+MOST_NAME = 80
+
+
+def content_of(survey: Survey, package: str, robot: str) -> dict[str, object]:
+    """Return what the file states: no name of a host, user, port or folder."""
+    return {
+        "format": FORMAT,
+        "version": VERSION,
+        "edition": survey.table.edition,
+        "edition_digest": edition_digest(package),
+        "robot": printable(robot)[:MOST_NAME],
+        "firmware": survey.firmware,
+        "date": datetime.now(UTC).strftime("%Y-%m-%dT%H:%M:%SZ"),
+        "cobotwire": cobotwire.__version__,
+        "codec": cobotwire.codec_in_use(),
+        "level": survey.level,
+        "host": {"system": platform.system(), "python": platform.python_version()},
+        "hashed": survey.hashed,
+        "finished": survey.finished,
+        "facts": [fact.as_json() for fact in survey.facts.values()],
+    }
+
+
+def write_survey(file: BinaryIO, content: Mapping[str, object], recording: bytes) -> None:
+    """Write the file of a survey; ``recording`` is a pcapng file."""
+    with zipfile.ZipFile(file, "w", zipfile.ZIP_DEFLATED) as archive:
+        archive.writestr(JSON, json.dumps(content, indent=1))
+        archive.writestr(RECORDING, recording)
+
+
+def read_survey(path: str | Path) -> tuple[dict[str, Any], bytes]:
+    """Return the content and the recording of a survey's file.
+
+    Raises:
+        UsageError: the file cannot be read, or is not the file of a survey.
+    """
+    try:
+        with open(path, "rb") as file:
+            data = file.read(MOST_FILE + 1)
+    except (OSError, ValueError) as error:
+        raise unusable_file("survey", path, error) from None
+    try:
+        if len(data) > MOST_FILE:
+            raise ValueError(f"it has more than {MOST_FILE} bytes")
+        text, recording = _members(data)
+        content = json.loads(text)
+        _check(content)
+    # Damaged archives raise errors of many kinds, among them those of the decompressors.
+    except Exception as error:
+        message = f"{printable(str(path))} is not the file of a survey: {printable(str(error))}"
+        raise UsageError("survey", str(path), message=message) from None
+    return content, recording
+
+
+def _members(data: bytes) -> list[bytes]:
+    with zipfile.ZipFile(io.BytesIO(data)) as archive:
+        if sorted(archive.namelist()) != sorted(MOST):
+            raise ValueError(f"its members are not {' and '.join(MOST)}")
+        found = []
+        for name, most in MOST.items():
+            with archive.open(name) as member:
+                found.append(member.read(most + 1))
+            if len(found[-1]) > most:
+                raise ValueError(f"{name} has more than {most} bytes")
+        return found
+
+
+def _check(content: Any) -> None:
+    """Check what a continued survey uses of the file; ``cobotwire-gen`` checks all of it."""
+    if not isinstance(content, dict) or content.get("format") != FORMAT:
+        raise ValueError(f"{JSON} does not have the format {FORMAT!r}")
+    facts = content.get("facts")
+    if content.get("version") != VERSION or not isinstance(facts, list):
+        raise ValueError(f"{JSON} is not of version {VERSION}, or lists no facts")
+    for fact in facts:
+        texts = [fact.get(name) for name in ("fact", "verdict", "why")]
+        frames = [*fact["frames"]]
+        if not all(isinstance(text, str) and text.isprintable() for text in texts):
+            raise ValueError("a fact has no name, verdict or reason")
+        for frame in frames:
+            bytes.fromhex(frame["sent"]), bytes.fromhex(frame["received"])

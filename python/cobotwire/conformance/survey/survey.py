@@ -1,0 +1,302 @@
+"""The course of a survey: which test cases run, in which order, and what is read in between."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Container, Mapping
+from dataclasses import replace
+from functools import cached_property
+
+from cobotwire import editions
+from cobotwire.client import Client
+from cobotwire.conformance.device import DeviceConnection, Permissions, Step, Tester
+from cobotwire.conformance.device.groups import (
+    agreement,
+    at_rest,
+    motion,
+    on_the_way,
+    queries,
+    references,
+    settings,
+)
+from cobotwire.conformance.device.mover import POLL, Mover
+from cobotwire.conformance.device.probe import Body, Probe
+from cobotwire.conformance.device.requests import as_row, request_of
+from cobotwire.conformance.report import Result
+from cobotwire.conformance.suite import Group
+from cobotwire.conformance.survey.facts import Facts, Frames
+from cobotwire.conformance.survey.judging import Judge
+from cobotwire.inspect.cross_checks import CrossChecks, Mistake
+from cobotwire.inspect.identification import other_edition
+from cobotwire.inspect.readings import Key, Row, Source, sources, target_of
+from cobotwire.protocol.effects import Reports, effect_of
+from cobotwire.protocol.table import Command, Table
+from cobotwire.simulator.start import joint_limits
+from cobotwire.transport.tapped import borrowed
+
+QUERIES = (queries.QUERIES, at_rest.REACHED_AT_REST, agreement.CALCULATION)
+SETTINGS = (settings.SETTINGS, settings.SHOWN_AMONG, references.REFERENCES)
+MOTIONS = (motion.POSES, motion.JOINTS, on_the_way.STOPPING)
+# The time that an arm has for a query by which its edition is recognised, in seconds.
+EDITION_SECONDS = 0.5
+# How far from its present pose the arm moves, the first step, and from where on that one is
+# stopped, in degrees; and the speed in percent.
+AROUND, FIRST, TOO_FAR = 5.0, 1.0, 3.0
+SPEED = 10
+# What a query reports that is nobody else's business: it is not requested.
+PRIVATE = frozenset({"ssid", "password"})
+# What names a single device: its bytes are replaced by their hash.
+SERIAL = frozenset({"serial", "serial_number", "mac", "uid", "uuid"})
+
+Progress = Callable[[str, int, int], None]
+
+
+class Survey:
+    """Surveys the arm at the other end of a connection; ``facts`` holds what is found so far."""
+
+    def __init__(
+        self,
+        connection: DeviceConnection,
+        table: Table,
+        *,
+        package: str = "",
+        settings: bool = False,
+        motion: bool = False,
+        done: Container[str] = (),
+        sources: Mapping[str, str] | None = None,
+        on_private: Callable[[bool], object] = bool,
+    ) -> None:
+        """Prepare a survey; nothing is sent.
+
+        Args:
+            connection: the connection to the arm.
+            table: the edition that the arm speaks.
+            package: the name by which ``editions.load`` finds the edition.
+            settings: whether settings are stored and restored.
+            motion: whether the arm makes a few small motions.
+            done: the names of facts that an earlier part of the survey has decided.
+            sources: where the spec defines each command, by name.
+            on_private: called with True before replies come that name a device, False after them.
+        """
+        self.table, self.facts = table, Facts(table)
+        self.hashed: list[str] = []
+        self.firmware: dict[str, str] = {}
+        self.finished = False
+        # Why the arm was not moved, or not surveyed at all; empty: it was, or need not be.
+        self.obstacle = ""
+        self.mistakes: list[Mistake] = []
+        self._package, self._motion, self._done = package or table.edition, motion, done
+        self._settings, self._on_private = settings, on_private
+        allowed = Permissions(frozenset({"setting"} if settings else ()))
+        self._tester = Tester(connection, table, permissions=allowed, sources=sources)
+        self._judge = Judge(table, self._tester.device, self.facts)
+        self._snapshots: list[dict[Key, Row]] = []
+        self._evidence: dict[Key, list[Frames]] = {}
+        self._results: list[Result] = []
+
+    @cached_property
+    def _checks(self) -> CrossChecks:
+        return CrossChecks(self.table)
+
+    @property
+    def level(self) -> int:
+        """The level: 1 queries, 2 settings, too, 3 motion, too."""
+        return 3 if self._motion else 2 if self._settings else 1
+
+    def run(self, progress: Progress = lambda name, done, count: None) -> None:
+        """Run the whole survey; what was changed is restored, however it ends.
+
+        Raises:
+            LinkError: the connection is lost; the facts hold what was found until then.
+            KeyboardInterrupt: the same; the arm was stopped.
+        """
+        progress("which edition the arm speaks", 0, 1)
+        if self._is_other_edition():
+            self.finished = True
+            return
+        try:
+            self._run_steps([*self._steps(QUERIES), *self._steps(SETTINGS)], progress)
+            self._read_now(progress)
+            if self._motion:
+                self._move(progress)
+            self.finished = not self._tester.report.stopped
+        finally:
+            try:
+                self._tester.end()
+            finally:
+                self._conclude()
+
+    def _is_other_edition(self) -> bool:
+        """Note that the arm speaks another edition; only editions of this package are told apart."""
+        if self.table.edition not in editions.names():
+            return False
+        client_type: type[Client] = editions.load(self._package).CLIENT
+        transport = self._tester.connection.transport
+        with client_type(borrowed(transport), timeout=EDITION_SECONDS) as client:
+            own, other = other_edition(client, self.table, transport, timeout=EDITION_SECONDS)
+        if other is None:
+            return False
+        self.obstacle = (
+            f"the arm speaks edition {other.edition}, not {self.table.edition}: it replies to "
+            f"{other.query}, but not to {own.query}"
+        )
+        place = own.query, "command", "present"
+        self.facts.note(place, "contradicted", f"Another robot: {self.obstacle}.")
+        return True
+
+    def _steps(self, groups: tuple[Group[Body], ...]) -> list[Step]:
+        """Return the steps of the groups; first those of the commands that have a role."""
+        order = [group.name for group in groups]
+        found = [
+            step
+            for step in self._tester.steps()
+            if step.group.name in order
+            and not self._tester.missing(step)
+            and step.command is not None
+            and not PRIVATE & {*_states(step.command)}
+            and self.facts.name(step.command.name, "command", _decides(step)) not in self._done
+        ]
+        return sorted(found, key=lambda s: (order.index(s.group.name), not s.command.role))  # type: ignore[union-attr]
+
+    def _run_steps(self, steps: list[Step], progress: Progress) -> None:
+        for at, step in enumerate(steps):
+            progress(step.name, at, len(steps))
+            private = step.command is not None and bool(SERIAL & {*_states(step.command)})
+            if private and step.command is not None:
+                self.hashed.append(step.command.name)
+                self._on_private(True)
+            try:
+                found = self._tester.results(step)
+            finally:
+                self._on_private(False)
+            # The bytes of what names a device are no evidence for others.
+            self._results += [replace(r, evidence=()) if private else r for r in found]
+
+    def _read_now(self, progress: Progress) -> None:
+        self._run_steps([Step(Group("readings", (), self._read), None)], progress)
+        self.mistakes = self._checks.mistakes(self._snapshots)
+
+    def _read(self, probe: Probe, sent: Row = ()) -> None:
+        """Read all states that can be compared, and whose queries have replies."""
+        replied, row = probe.device.noticed.reply_seconds, dict[Key, Row]()
+        for source in sources(self.table):
+            present = self.facts.name(source.query.name, "command", "present") in self._done
+            compared = source.key in self._checks.keys or _is_version(source)
+            if not compared or not (present or replied.get(source.query.name)):
+                continue
+            joints = range(1, self.table.joints + 1)
+            arguments = [(joint,) for joint in joints] if source.of_joint else [()]
+            requests = [request_of(source.query, *given) for given in arguments]
+            values: list[float] = []
+            for request in requests:
+                response = probe.device.request(request)
+                if response.valid is not None and response.valid.decoded is not None:
+                    values += as_row(response.valid.decoded.fields[source.field.name])
+                    frames = Frames(response.request.frame, response.valid.data)
+                    self._evidence.setdefault(source.key, []).append(frames)
+            if len(values) == len(source.numbers):
+                row[source.key] = tuple(values)
+        if sent and (target := target_of(self.table)):
+            row[target[0]] = sent
+        self._snapshots.append(row)
+
+    def _move(self, progress: Progress) -> None:
+        """Make a few small slow motions around the present pose; first a single small step."""
+        if self.mistakes:
+            self.obstacle = "no motion: the readings contradict the edition already"
+            return
+        around = self._around()
+        if not around:
+            self.obstacle = "no motion: the edition or the arm does not report the joints' angles"
+            return
+        device = self._tester.device
+        classes = device.permissions.classes | {"motion", "power"}
+        device.permissions = Permissions(classes, SPEED, around)
+        for body in (self._first_step, self._poses):
+            self._run_steps([Step(Group("first motions", (), body), None)], progress)
+            self.mistakes = self._checks.mistakes(self._snapshots)
+            if self.mistakes or self.obstacle:
+                self.obstacle = self.obstacle or "no further motion: the first ones show a mistake"
+                return
+        self._run_steps(self._steps(MOTIONS), progress)
+
+    def _around(self) -> tuple[tuple[float, float], ...]:
+        """Return the range of each joint around the present pose; empty if it is not known."""
+        query, found = self.table.find_role("joints"), list[tuple[float, float]]()
+        key = query and (query.name, f"reply.{query.reply[0].fields[0].name}")
+        stated = joint_limits(self.table) or ((-180.0, 180.0),) * self.table.joints
+        for angle, (low, high) in zip(self._snapshots[-1].get(key, ()) if key else (), stated):
+            middle = min(max(angle, low + AROUND), high - AROUND)
+            found.append((middle - AROUND, middle + AROUND))
+        return tuple(found)
+
+    def _first_step(self, probe: Probe) -> None:
+        """Move the joint that is nearest to zero by a degree; stop the arm if anything goes far."""
+        mover, device = Mover(probe.device), probe.device
+        start = mover.angles()
+        at = min(range(len(start)), key=lambda joint: abs(start[joint]))
+        low, high = device.permissions.workspace[at]
+        by = FIRST if start[at] + FIRST <= high else -FIRST
+        target = (*start[:at], round(start[at] + by, 2), *start[at + 1 :])
+        device.request(mover.to(target))
+        until, rest = device.connection.now + 20 * POLL, False
+        while not rest or device.connection.now < until:
+            here = mover.angles()
+            if any(abs(now - then) > TOO_FAR for now, then in zip(here, start)):
+                stop = device.command("stop")
+                if stop is not None:
+                    device.request(stop.request_type())
+                self.obstacle = f"no further motion: sent to move joint {at + 1} by {by:g} degree"
+                self.obstacle += ", the arm went further"
+                why = f"Sent from {start} to {target}, the arm was at {here}, and was stopped."
+                place = mover.targets.name, "command", "effect"
+                self.facts.note(place, "contradicted", why)
+                return
+            moving = device.command("moving")
+            rest = moving is None or device.is_set(moving.request_type()) is not True
+            mover.rest(POLL)
+        self._read(probe, target)
+
+    def _poses(self, probe: Probe) -> None:
+        """Go to poses in which no two joints are alike, and read what the arm reports there."""
+        mover = Mover(probe.device)
+        for which in (0, 1):
+            mover.go(mover.pose(which))
+            self._read(probe, mover.pose(which))
+
+    def _conclude(self) -> None:
+        """Turn all that was seen into facts."""
+        self._read_firmware()
+        firmware = ", ".join(self.firmware.values())
+        self.mistakes = self._judge.judge_readings(self._checks, self._snapshots, self._evidence)
+        place_known = not any(_is_place(self.table, mistake) for mistake in self.mistakes)
+        self._judge.judge_results(self._results, place_known=place_known)
+        self._judge.judge_silence(f" {firmware}" if firmware else "")
+        self._judge.judge_acknowledgements()
+
+    def _read_firmware(self) -> None:
+        rows = dict(entry for snapshot in self._snapshots for entry in snapshot.items())
+        for source in sources(self.table):
+            if _is_version(source) and source.key in rows:
+                self.firmware[source.query.name] = ".".join(f"{v:g}" for v in rows[source.key])
+
+
+def _states(command: Command) -> tuple[str, ...]:
+    """Return the names of what a query reports, as state and as field."""
+    effect = effect_of(command)
+    named = tuple(effect.values.values()) if isinstance(effect, Reports) else ()
+    return (*named, *(field.name for variant in command.reply for field in variant.fields))
+
+
+def _decides(step: Step) -> str:
+    """Return the aspect of the fact that shows, in an earlier file, that a step has been run."""
+    return "present" if step.group is queries.QUERIES else "effect"
+
+
+def _is_version(source: Source) -> bool:
+    return source.query.role == "version" or source.state.endswith(("version", "revision"))
+
+
+def _is_place(table: Table, mistake: Mistake) -> bool:
+    """Return whether a mistake is about where the arm is, or where it is sent."""
+    commands = {table.command(command) for command, _ in mistake.keys}
+    return any(command.role in ("joints", "coordinates", "joint targets") for command in commands)

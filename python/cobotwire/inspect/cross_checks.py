@@ -1,0 +1,202 @@
+"""Find the mistake that explains readings which do not fit, and which mistakes they exclude.
+
+A hypothesis is a mistake of the edition, such as tenths taken for hundredths, with what corrects the
+readings. One that makes all relations of a reading hold explains it. If the relations hold as the
+edition is, and no hypothesis about an aspect keeps them, the readings confirm that aspect.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from functools import cached_property
+from itertools import combinations
+from math import pi
+from typing import NamedTuple
+
+from cobotwire.inspect.readings import Key, Relation, Row, Snapshot, relations, sources, target_of
+from cobotwire.protocol.numbers import Number
+from cobotwire.protocol.table import Table
+
+FACTORS = (10.0, 0.1, 100.0, 0.01)
+FRACTIONS = {1: "whole units", 10: "tenths", 100: "hundredths", 1000: "thousandths"}
+# Longer rows, such as registers, are not taken for joints.
+MOST_JOINTS = 14
+# How many mistakes of one arm are looked for.
+MOST = 6
+
+
+class Hypothesis(NamedTuple):
+    """A mistake about an aspect of a reading; ``correct`` turns a reading into what is meant."""
+
+    aspect: str
+    text: str
+    correct: Callable[[Row], Row]
+
+
+class Mistake(NamedTuple):
+    """What is wrong with readings: the aspect, which readings, in which relations it shows."""
+
+    aspect: str
+    keys: tuple[Key, ...]
+    text: str
+    relations: tuple[Relation, ...]
+
+
+def hypotheses(numbers: Sequence[Number]) -> Iterator[Hypothesis]:
+    """Yield the mistakes that can be made about a row, likely ones first."""
+    joints = len(numbers) if len(numbers) <= MOST_JOINTS else 0
+    if any(number.unit for number in numbers):
+        for factor in FACTORS:
+            yield Hypothesis("scale", _scale_text(numbers[0], factor), _times(1 / factor))
+    if {number.unit for number in numbers} == {"degree"}:
+        text = "the readings are the expected in radians, not degrees"
+        yield Hypothesis("unit", text, _times(180 / pi))
+    if any(number.minimum < 0 and number.unit != "tick" for number in numbers):
+        for at in range(joints):
+            text = f"number {at + 1} of the row has the other sign"
+            yield Hypothesis("sign", text, _negated(range(at, at + 1)))
+        yield Hypothesis("sign", "all numbers have the other sign", _negated(range(joints)))
+    orders = list(range(joints))
+    for a, b in combinations(orders, 2):
+        text = f"numbers {a + 1} and {b + 1} of the row are swapped"
+        yield Hypothesis("order", text, _ordered([b if i == a else a if i == b else i for i in orders]))
+    if joints > 2:
+        text = "the row is in reverse order"
+        yield Hypothesis("order", text, _ordered(orders[::-1]))
+        for by, side in ((1, "later"), (-1, "earlier")):
+            text = f"each number of the row stands one place {side} than stated"
+            yield Hypothesis("order", text, _ordered([(i + by) % joints for i in orders]))
+    if any(n.width > 1 and n.encoding == "integer" and not n.bits for n in numbers):
+        text = "the bytes of each number are in the other order (endianness)"
+        yield Hypothesis("byte-order", text, lambda row: tuple(map(_other_bytes, numbers, row)))
+
+
+class CrossChecks:
+    """The relations of an edition, and what readings of an arm show by them."""
+
+    def __init__(self, table: Table) -> None:
+        self._numbers = {source.key: source.numbers for source in sources(table)}
+        self._numbers |= [target] if (target := target_of(table)) else []
+        self._relations = relations(table)
+
+    @property
+    def keys(self) -> set[Key]:
+        """The readings that are compared with anything."""
+        return {key for relation in self._relations for key in relation.keys}
+
+    @cached_property
+    def _hypotheses(self) -> dict[Key, list[Hypothesis]]:
+        return {key: list(hypotheses(numbers)) for key, numbers in self._numbers.items()}
+
+    def mistakes(self, snapshots: Sequence[Snapshot]) -> list[Mistake]:
+        """Return what is wrong: each mistake that explains readings, then what none explains."""
+        rows, found = [dict(snapshot) for snapshot in snapshots], list[Mistake]()
+        while (broken := self._broken(rows, self._relations)) and len(found) < MOST:
+            best = self._best(rows, broken)
+            if not best:
+                break
+            found.append(self._mistake(best, broken))
+            for subject, hypothesis in best[:1]:
+                rows = [_corrected(row, subject, hypothesis) for row in rows]
+        for relation in self._broken(rows, self._relations):
+            text = f"the readings contradict that {relation.text}"
+            found.append(Mistake(relation.aspect, relation.keys, text, (relation,)))
+        return found
+
+    def confirmed(self, snapshots: Sequence[Snapshot]) -> Iterator[tuple[Key, str]]:
+        """Yield the aspects of readings for which every mistake would show, and none does."""
+        wrong = {key for relation in self._broken(snapshots, self._relations) for key in relation.keys}
+        for key in self._numbers:
+            own = [r for r in self._relations if key in r.keys and r.independent]
+            if key in wrong or not any(key in snapshot for snapshot in snapshots):
+                continue
+            excluded: dict[str, list[bool]] = {}
+            for each in self._hypotheses[key] if own else ():
+                verdicts = excluded.setdefault(each.aspect, [])
+                # One that is not excluded decides: the rest of the aspect need not be compared.
+                if all(verdicts):
+                    changed = [_corrected(row, (key,), each) for row in snapshots]
+                    verdicts.append(any(self._broken(changed, own)))
+            yield from ((key, aspect) for aspect, verdicts in excluded.items() if all(verdicts))
+            if any(self._applies(r, row) for r in self._relations for row in snapshots if key in r.keys):
+                yield key, "agreement"
+
+    def _applies(self, relation: Relation, row: Snapshot) -> bool:
+        return len(relation.keys) > 1 and all(key in row for key in relation.keys)
+
+    def _broken(self, rows: Sequence[Snapshot], among: Sequence[Relation]) -> list[Relation]:
+        return [
+            relation
+            for relation in among
+            if any(
+                all(key in row for key in relation.keys)
+                and not relation.holds(*(row[key] for key in relation.keys))
+                for row in rows
+            )
+        ]
+
+    def _best(
+        self, rows: Sequence[Snapshot], broken: list[Relation]
+    ) -> list[tuple[tuple[Key, ...], Hypothesis]]:
+        """Return the explanations that repair the most relations by changing the fewest readings."""
+        best, most = list[tuple[tuple[Key, ...], Hypothesis]](), (0, 0)
+        for subject in self._subjects(broken):
+            own = [r for r in self._relations if {*subject} & {*r.keys}]
+            repaired = len([r for r in own if r in broken]), -len(subject)
+            if repaired < most:
+                continue
+            for each in self._hypotheses[subject[0]]:
+                if not self._broken([_corrected(row, subject, each) for row in rows], own):
+                    best, most = (best if repaired == most else []) + [(subject, each)], repaired
+                    break
+        return best
+
+    def _subjects(self, broken: list[Relation]) -> list[tuple[Key, ...]]:
+        """Return the readings that may be wrong: each alone, and all that are sent alike."""
+        involved = dict.fromkeys(k for r in broken for k in r.keys if k in self._numbers)
+        alike: dict[object, list[Key]] = {}
+        for key in involved:
+            numbers = self._numbers[key]
+            alike.setdefault(tuple((n.unit, n.divide) for n in numbers), []).append(key)
+        groups = [tuple(keys) for keys in alike.values() if len(keys) > 1]
+        return [*((key,) for key in involved), *groups]
+
+    def _mistake(
+        self, best: list[tuple[tuple[Key, ...], Hypothesis]], broken: list[Relation]
+    ) -> Mistake:
+        """Name the mistake; several explanations that are as good leave it open which is right."""
+        texts = [f"{', '.join(map('.'.join, subject))}: {h.text}" for subject, h in best]
+        keys = tuple(dict.fromkeys(key for subject, _ in best for key in subject))
+        shown = tuple(r for r in broken if {*keys} & {*r.keys})
+        aspect = best[0][1].aspect if len(best) == 1 else "agreement"
+        return Mistake(aspect, keys, "; or ".join(texts), shown)
+
+
+def _corrected(row: Snapshot, subject: Sequence[Key], hypothesis: Hypothesis) -> dict[Key, Row]:
+    return {**row, **{key: hypothesis.correct(row[key]) for key in subject if key in row}}
+
+
+def _scale_text(number: Number, factor: float) -> str:
+    text = f"the readings are {factor:g} x the expected"
+    stated = number.divide / number.multiply
+    sent = round(stated * factor, 3)
+    if sent in FRACTIONS and stated in FRACTIONS:
+        text += f": the arm sends {FRACTIONS[sent]}, the edition states {FRACTIONS[stated]}"
+    return text
+
+
+def _times(factor: float) -> Callable[[Row], Row]:
+    return lambda row: tuple(value * factor for value in row)
+
+
+def _negated(which: range) -> Callable[[Row], Row]:
+    return lambda row: tuple(-v if at in which else v for at, v in enumerate(row))
+
+
+def _ordered(order: Sequence[int]) -> Callable[[Row], Row]:
+    return lambda row: tuple(row[at] for at in order)
+
+
+def _other_bytes(number: Number, value: float) -> float:
+    raw = round(number.steps(value))
+    return number.physical(number.unpack(number.pack(raw)[::-1]))
