@@ -78,11 +78,12 @@ class CrossChecks:
         self._numbers = {source.key: source.numbers for source in sources(table)}
         self._numbers |= [target] if (target := target_of(table)) else []
         self._relations = relations(table)
+        self._ids = {command.name: command.id for command in table.commands}
 
     @property
     def keys(self) -> set[Key]:
         """The readings that are compared with anything."""
-        return {key for relation in self._relations for key in relation.keys}
+        return {key for r in self._relations for key in (*r.keys, *r.conditions)}
 
     @cached_property
     def _hypotheses(self) -> dict[Key, list[Hypothesis]]:
@@ -99,7 +100,9 @@ class CrossChecks:
             for subject, hypothesis in best[:1]:
                 rows = [_corrected(row, subject, hypothesis) for row in rows]
         for relation in self._broken(rows, self._relations):
-            text = f"the readings contradict that {relation.text}"
+            row = next(row for row in snapshots if relation.fails(row))
+            came = (f"{'.'.join(key)} is {_short(row[key])}" for key in relation.keys)
+            text = f"{'; '.join(came)}"
             found.append(Mistake(relation.aspect, relation.keys, text, (relation,)))
         return found
 
@@ -128,11 +131,7 @@ class CrossChecks:
         return [
             relation
             for relation in among
-            if any(
-                all(key in row for key in relation.keys)
-                and not relation.holds(*(row[key] for key in relation.keys))
-                for row in rows
-            )
+            if any(map(relation.fails, rows))
         ]
 
     def _best(
@@ -142,7 +141,9 @@ class CrossChecks:
         best, most = list[tuple[tuple[Key, ...], Hypothesis]](), (0, 0)
         for subject in self._subjects(broken):
             own = [r for r in self._relations if {*subject} & {*r.keys}]
-            repaired = len([r for r in own if r in broken]), -len(subject)
+            # Of one id there is one reading, whatever names it has.
+            size = len({self._ids[name] for name, _ in subject})
+            repaired = len([r for r in own if r in broken]), -size
             if repaired < most:
                 continue
             for each in self._hypotheses[subject[0]]:
@@ -152,14 +153,20 @@ class CrossChecks:
         return best
 
     def _subjects(self, broken: list[Relation]) -> list[tuple[Key, ...]]:
-        """Return the readings that may be wrong: each alone, and all that are sent alike."""
+        """Return the readings that may be wrong: those of one id alone, and all that are sent alike.
+
+        Several commands may have the same id, and name its reply in different ways.
+        """
         involved = dict.fromkeys(k for r in broken for k in r.keys if k in self._numbers)
-        alike: dict[object, list[Key]] = {}
+        groups: dict[object, list[Key]] = {}
         for key in involved:
-            numbers = self._numbers[key]
-            alike.setdefault(tuple((n.unit, n.divide) for n in numbers), []).append(key)
-        groups = [tuple(keys) for keys in alike.values() if len(keys) > 1]
-        return [*((key,) for key in involved), *groups]
+            groups.setdefault((self._ids[key[0]], key[1].partition(".")[0], self._alike(key)), []).append(key)
+        for key in involved:
+            groups.setdefault(self._alike(key), []).append(key)
+        return list(dict.fromkeys(map(tuple, groups.values())))
+
+    def _alike(self, key: Key) -> tuple[object, ...]:
+        return tuple((number.unit, number.divide) for number in self._numbers[key])
 
     def _mistake(
         self, best: list[tuple[tuple[Key, ...], Hypothesis]], broken: list[Relation]
@@ -174,6 +181,10 @@ class CrossChecks:
 
 def _corrected(row: Snapshot, subject: Sequence[Key], hypothesis: Hypothesis) -> dict[Key, Row]:
     return {**row, **{key: hypothesis.correct(row[key]) for key in subject if key in row}}
+
+
+def _short(row: Row) -> str:
+    return ", ".join(f"{value:.6g}" for value in row)
 
 
 def _scale_text(number: Number, factor: float) -> str:

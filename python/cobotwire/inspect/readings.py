@@ -67,9 +67,9 @@ class Source(NamedTuple):
 class Relation(NamedTuple):
     """What holds between readings if the edition is right.
 
-    ``holds`` takes the rows of the ``keys``. ``independent`` is whether the readings differ in kind,
-    so that a mistake which all of one kind share shows, too. ``aspect`` is what is wrong if no
-    single mistake explains that it does not hold.
+    ``holds`` takes the rows of the ``keys``, then those of ``conditions``, which are not judged by
+    it. ``independent`` is whether the readings differ in kind, so that a mistake which all of one
+    kind share shows, too. ``aspect`` is what is wrong if no mistake explains that it does not hold.
     """
 
     keys: tuple[Key, ...]
@@ -77,6 +77,12 @@ class Relation(NamedTuple):
     holds: Callable[..., bool]
     independent: bool = True
     aspect: str = "agreement"
+    conditions: tuple[Key, ...] = ()
+
+    def fails(self, snapshot: Snapshot) -> bool:
+        """Return whether it does not hold; False if a reading is missing."""
+        rows = [snapshot.get(key) for key in (*self.keys, *self.conditions)]
+        return None not in rows and not self.holds(*rows)
 
 
 def sources(table: Table) -> list[Source]:
@@ -175,7 +181,7 @@ def _of_geometry(table: Table, every: list[Source]) -> Iterator[Relation]:
     geometry = geometry_of(table)
     angles = [s for s in every if s.query.role == "joints" and s.state == "angles"]
     coords = [s for s in every if s.query.role == "coordinates" and s.state == "coords"]
-    frames = [source.key for source in every if source.state in FRAMES]
+    frames = tuple(source.key for source in every if source.state in FRAMES)
     for one, two in zip(angles[:1] if geometry else (), coords[:1]):
         assert geometry is not None
 
@@ -187,7 +193,7 @@ def _of_geometry(table: Table, every: list[Source]) -> Iterator[Relation]:
 
         if two.units == ("millimetre",) * 3 + ("degree",) * 3:
             text = f"{two.query.name} follows from {one.query.name} by the stated links"
-            yield Relation((one.key, two.key, *frames), text, holds)
+            yield Relation((one.key, two.key), text, holds, conditions=frames)
 
 
 def _of_limits(table: Table, every: list[Source]) -> Iterator[Relation]:

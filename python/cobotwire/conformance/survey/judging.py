@@ -5,13 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 
 from cobotwire import codec as codecs
+from cobotwire.codec.interface import Frame
 from cobotwire.conformance.device.device import Device
 from cobotwire.conformance.report import Result, Verdict
 from cobotwire.conformance.survey.facts import Facts, Found, Frames, frames_of
 from cobotwire.inspect.cross_checks import CrossChecks, Mistake
 from cobotwire.inspect.readings import Key, Snapshot
 from cobotwire.protocol.printable import printable
-from cobotwire.protocol.table import Command, Table
+from cobotwire.protocol.table import Command, Direction, Table
 
 # The facts that each test case shows.
 SHOWN = {
@@ -37,6 +38,8 @@ class Judge:
     def __init__(self, table: Table, device: Device, facts: Facts) -> None:
         self._table, self._device, self.facts = table, device, facts
         self._silent: dict[str, list[Frames]] = {}
+        # What no fact is right or wrong about, but a person should know.
+        self.questions: list[str] = []
 
     def judge_results(self, results: Sequence[Result], *, place_known: bool) -> None:
         """Note what the verdicts show.
@@ -57,13 +60,20 @@ class Judge:
         command = self._table.command(result.command)
         part, aspect = SHOWN.get(result.case, (("", ""),))[0]
         if result.case == "query-replied":
-            if any(frame.received for frame in frames) and "ms" in result.reason.partition(";")[2]:
+            if result.reason.partition("; ")[2].startswith("the reply came after"):
                 aspect = "deadline"
+            elif command.name in self._device.noticed.reply_seconds:
+                why = f"It was replied to, but not each time: {result.reason}"
+                return self._note(command.name, part, aspect, "confirmed", why, frames)
             elif words := _words(frames):
                 why = f"The device says instead of a reply: {words}"
+                self.questions.append(f"{command.name}: {why}")
                 return self._note(command.name, part, "present", "not seen", why, frames)
             else:
-                self._silent[command.name] = frames
+                # The evidence may go on with a query that was replied to.
+                own = [f for f in frames if command.id in self._ids("request", f.sent)]
+                if not any(frame.received for frame in own):
+                    self._silent[command.name] = own
                 return None
         elif result.case == "reply-frame":
             aspect = "id" if self._has_other_id(command, frames) else "length"
@@ -77,14 +87,13 @@ class Judge:
 
     def _has_other_id(self, command: Command, frames: Sequence[Frames]) -> bool:
         """Return whether a whole frame came that has another id than the command's."""
-        frame = self._table.frame
-        if not frame.reply_has_id:
-            return False
-        framer = codecs.load(self._table).framer("reply")
-        received = b"".join(each.received for each in frames)
-        events = [*framer.feed(received), *framer.flush()]
-        ids = {getattr(event, "command", command.id) for event in events}
-        return bool(ids - {command.id})
+        received = b"".join(frame.received for frame in frames)
+        return self._table.frame.reply_has_id and bool(self._ids("reply", received) - {command.id})
+
+    def _ids(self, direction: Direction, data: bytes) -> set[int]:
+        """Return the ids of the frames in some bytes."""
+        framer = codecs.load(self._table).framer(direction)
+        return {e.command for e in (*framer.feed(data), *framer.flush()) if isinstance(e, Frame)}
 
     def judge_silence(self, firmware: str) -> None:
         """Note which commands have no reply, and what they have in common."""
@@ -96,13 +105,14 @@ class Judge:
             if len(alike) < SEVERAL or others:
                 continue
             why = (
-                f"No command with the argument {argument} has a reply, all others have: the "
-                f"device has another {argument} than those that were sent."
+                f"No command with the argument {argument} has a reply: the arm has another "
+                f"{argument} than those that were sent, or none."
             )
+            self.questions.append(f"{', '.join(c.name for c in alike)}: {why}")
             for command in alike:
-                frames = self._silent.pop(command.name)
-                place = command.name, f"request.{argument}", "range"
-                self.facts.note(place, "contradicted", why, frames)
+                self._note(
+                    command.name, "command", "present", "not seen", why, self._silent.pop(command.name)
+                )
         for name, frames in self._silent.items():
             more = len(self._silent) - 1
             also = f", nor have {more} other commands" if more else ""

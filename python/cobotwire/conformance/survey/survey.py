@@ -111,7 +111,6 @@ class Survey:
         """
         progress("which edition the arm speaks", 0, 1)
         if self._is_other_edition():
-            self.finished = True
             return
         try:
             self._run_steps([*self._steps(QUERIES), *self._steps(SETTINGS)], progress)
@@ -126,7 +125,10 @@ class Survey:
                 self._conclude()
 
     def _is_other_edition(self) -> bool:
-        """Note that the arm speaks another edition; only editions of this package are told apart."""
+        """Return whether the arm speaks another edition, as far as this package has it.
+
+        Then nothing is found out about the facts of this one.
+        """
         if self.table.edition not in editions.names():
             return False
         client_type: type[Client] = editions.load(self._package).CLIENT
@@ -137,10 +139,8 @@ class Survey:
             return False
         self.obstacle = (
             f"the arm speaks edition {other.edition}, not {self.table.edition}: it replies to "
-            f"{other.query}, but not to {own.query}"
+            f"{other.query}{own.query and f', but not to {own.query}'}"
         )
-        place = own.query, "command", "present"
-        self.facts.note(place, "contradicted", f"Another robot: {self.obstacle}.")
         return True
 
     def _steps(self, groups: tuple[Group[Body], ...]) -> list[Step]:
@@ -266,7 +266,8 @@ class Survey:
     def _conclude(self) -> None:
         """Turn all that was seen into facts."""
         self._read_firmware()
-        firmware = ", ".join(self.firmware.values())
+        version = self.table.find_role("version")
+        firmware = self.firmware.get(version.name, "") if version else ""
         self.mistakes = self._judge.judge_readings(self._checks, self._snapshots, self._evidence)
         place_known = not any(_is_place(self.table, mistake) for mistake in self.mistakes)
         self._judge.judge_results(self._results, place_known=place_known)

@@ -1,0 +1,181 @@
+"""Simulated arms that differ from their edition in one place, as a robot may; in stepped time."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import partial
+
+from cobotwire import codec as codecs
+from cobotwire import editions
+from cobotwire.codec.interface import Frame
+from cobotwire.conformance.device import DeviceConnection
+from cobotwire.protocol.table import Command, Field, Number, Table, Variant
+from cobotwire.simulator import SimulatedArm
+from cobotwire.simulator.clock import SteppedClock
+from cobotwire.simulator.faults import Late, Scenario
+from cobotwire.simulator.memory import MemoryTransport
+from cobotwire.simulator.peer import Peer
+
+# No two joints are alike, none is at zero, and the arm is bent.
+POSE = (20.0, -35.0, 50.0, -15.0, 40.0, 70.0)
+Change = Callable[[Table], Table]
+
+
+@dataclass(frozen=True)
+class WrongArm:
+    """An arm that differs from ``edition``, and the fact that a survey must name.
+
+    ``change`` makes the table that the arm speaks. ``row`` changes the data bytes of the replies of
+    ``command``.
+    """
+
+    name: str
+    fact: str
+    words: str
+    change: Change = staticmethod(lambda table: table)
+    edition: str = "mycobot280"
+    command: str = ""
+    row: Callable[[bytes], bytes] | None = None
+    late: str = ""
+    level: int = 1
+
+
+def connected(table: Table, *, wrong: WrongArm | None = None, at: tuple[float, ...] = ()) -> DeviceConnection:
+    """Return the connection to a simulated arm of a table, perhaps a wrong one, at a pose."""
+    spoken = table if wrong is None else wrong.change(table)
+    if at and spoken.joints == len(at):
+        spoken = spoken._replace(robot=spoken.robot._replace(start_angles=at))
+    clock = SteppedClock()
+    peer: Peer = SimulatedArm(spoken, clock=clock)
+    if wrong is not None and wrong.late:
+        late = Late(seconds=0.7, commands=(wrong.late,))
+        peer = Scenario(name="late", faults=(late,)).wrap(peer, codecs.load(spoken), clock=clock)
+    transport = MemoryTransport(peer, clock)
+    if wrong is not None and wrong.row is not None:
+        transport.read = partial(_changed, wrong, table, transport.read)  # type: ignore[method-assign]
+    return DeviceConnection(transport, clock, "wrong arm")
+
+
+def _changed(
+    wrong: WrongArm, table: Table, read: Callable[[float], bytes], timeout: float
+) -> bytes:
+    """Change the replies of a command, in frames without a check."""
+    framer, found = codecs.load(table).framer("reply"), b""
+    for event in (*framer.feed(read(timeout)), *framer.flush()):
+        data = event.data
+        if isinstance(event, Frame) and event.command == table.command(wrong.command).id:
+            assert wrong.row is not None
+            row = wrong.row(data[4:-1])
+            data = data[:2] + bytes([len(row) + 2]) + data[3:4] + row + data[-1:]
+        found += data
+    return found
+
+
+def with_command(table: Table, name: str, change: Callable[[Command], Command | None]) -> Table:
+    """Return a table with one command changed, or without it."""
+    commands = (change(c) if c.name == name else c for c in table.commands)
+    return table._replace(commands=tuple(c for c in commands if c is not None))
+
+
+def with_reply(table: Table, name: str, change: Callable[[Number], Number]) -> Table:
+    """Return a table in which the numbers of a reply are changed."""
+
+    def field(old: Field) -> Field:
+        cases = tuple(c._replace(numbers=tuple(map(change, c.numbers))) for c in old.cases)
+        return old._replace(cases=cases)
+
+    def variant(old: Variant) -> Variant:
+        return old._replace(fields=tuple(map(field, old.fields)))
+
+    return with_command(
+        table, name, lambda c: c._replace(reply=tuple(map(variant, c.reply)), package="")
+    )
+
+
+def swapped(row: bytes) -> bytes:
+    """Swap the second and the third joint."""
+    return row[:2] + row[4:6] + row[2:4] + row[6:]
+
+
+def other_sign(row: bytes) -> bytes:
+    """Change the sign of the second joint."""
+    value = -int.from_bytes(row[2:4], "big", signed=True)
+    return row[:2] + value.to_bytes(2, "big", signed=True) + row[4:]
+
+
+def other_limits(table: Table) -> Table:
+    """Return a table with narrower targets, which are the limits of the simulated arm."""
+
+    def field(old: Field) -> Field:
+        if not old.many:
+            return old
+        numbers = tuple(n._replace(minimum=n.minimum // 2, maximum=n.maximum // 2) for n in old.cases[0].numbers)
+        return old._replace(cases=(old.cases[0]._replace(numbers=numbers),))
+
+    def change(command: Command) -> Command:
+        variants = (v._replace(fields=tuple(map(field, v.fields))) for v in command.request)
+        return command._replace(request=tuple(variants))
+
+    return with_command(table, "send_angles", change)
+
+
+NEWER = ("get_servo_speeds", "get_servo_voltages", "get_servo_temps", "get_reboot_count")
+
+
+def older_firmware(table: Table) -> Table:
+    """Return a table without the commands that an older firmware lacks."""
+    return table._replace(commands=tuple(c for c in table.commands if c.name not in NEWER))
+
+
+WRONG_ARMS = (
+    WrongArm(
+        "tenths",
+        "get_angles/reply.angles/scale",
+        "the arm sends tenths, the edition states hundredths",
+        lambda t: with_reply(t, "get_angles", lambda n: n._replace(divide=10)),
+        "mycobot320",
+    ),
+    WrongArm(
+        "swapped joints", "get_angles/reply.angles/order", "2 and 3 of the row are swapped",
+        command="get_angles", row=swapped,
+    ),
+    WrongArm(
+        "reversed sign", "get_angles/reply.angles/sign", "number 2 of the row has the other sign",
+        command="get_angles", row=other_sign,
+    ),
+    WrongArm(
+        "shifted id", "get_coords/command/present", "or has it under another id",
+        lambda t: with_command(t, "get_coords", lambda c: c._replace(id=c.id + 0x80)),
+    ),
+    WrongArm(
+        "other endianness", "get_encoders/reply.encoders/byte-order", "endianness",
+        lambda t: with_reply(t, "get_encoders", lambda n: n._replace(order="little")),
+    ),
+    WrongArm(
+        "joint limits", "get_joint_max_angle/reply.angle/limits", "stated limits", other_limits,
+    ),
+    WrongArm(
+        "missing command", "get_servo_temps/command/present", "lacks it",
+        lambda t: with_command(t, "get_servo_temps", lambda c: None),
+    ),
+    WrongArm(
+        "gripper id", "get_pro_gripper_angle/command/present", "has another gripper_id",
+        lambda t: t._replace(commands=tuple(c for c in t.commands if not any(f.name == "gripper_id" for f in c.request[0].fields))),
+        "mycobot320",
+    ),
+    WrongArm(
+        "status list", "get_servo_status/reply/length", "expected a whole frame",
+        command="get_servo_status", row=lambda row: row + b"\0",
+    ),
+    WrongArm(
+        "late acknowledgement", "set_fresh_mode/command/deadline", "took 7", late="set_fresh_mode", level=2,
+    ),
+    WrongArm(
+        "other firmware", "get_reboot_count/command/present", "nor have 3 other commands", older_firmware,
+    ),
+    WrongArm(
+        "other robot", "", "the arm speaks edition mycobot, not mycobot280",
+        lambda t: editions.load("mycobot").TABLE,
+    ),
+)  # fmt: skip
