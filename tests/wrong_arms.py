@@ -33,7 +33,7 @@ class WrongArm:
     name: str
     fact: str
     words: str
-    change: Change = staticmethod(lambda table: table)
+    change: Change | None = None
     edition: str = "mycobot280"
     command: str = ""
     row: Callable[[bytes], bytes] | None = None
@@ -41,9 +41,11 @@ class WrongArm:
     level: int = 1
 
 
-def connected(table: Table, *, wrong: WrongArm | None = None, at: tuple[float, ...] = ()) -> DeviceConnection:
+def connected(
+    table: Table, *, wrong: WrongArm | None = None, at: tuple[float, ...] = ()
+) -> DeviceConnection:
     """Return the connection to a simulated arm of a table, perhaps a wrong one, at a pose."""
-    spoken = table if wrong is None else wrong.change(table)
+    spoken = wrong.change(table) if wrong is not None and wrong.change else table
     if at and spoken.joints == len(at):
         spoken = spoken._replace(robot=spoken.robot._replace(start_angles=at))
     clock = SteppedClock()
@@ -110,8 +112,9 @@ def other_limits(table: Table) -> Table:
     def field(old: Field) -> Field:
         if not old.many:
             return old
-        numbers = tuple(n._replace(minimum=n.minimum // 2, maximum=n.maximum // 2) for n in old.cases[0].numbers)
-        return old._replace(cases=(old.cases[0]._replace(numbers=numbers),))
+        [case] = old.cases
+        halved = (n._replace(minimum=n.minimum // 2, maximum=n.maximum // 2) for n in case.numbers)
+        return old._replace(cases=(case._replace(numbers=tuple(halved)),))
 
     def change(command: Command) -> Command:
         variants = (v._replace(fields=tuple(map(field, v.fields))) for v in command.request)
@@ -128,6 +131,12 @@ def older_firmware(table: Table) -> Table:
     return table._replace(commands=tuple(c for c in table.commands if c.name not in NEWER))
 
 
+def without_gripper(table: Table) -> Table:
+    """Return a table of an arm whose gripper has an id that nobody sends."""
+    kept = (c for c in table.commands if all(f.name != "gripper_id" for f in c.request[0].fields))
+    return table._replace(commands=tuple(kept))
+
+
 WRONG_ARMS = (
     WrongArm(
         "tenths",
@@ -137,45 +146,74 @@ WRONG_ARMS = (
         "mycobot320",
     ),
     WrongArm(
-        "swapped joints", "get_angles/reply.angles/order", "2 and 3 of the row are swapped",
-        command="get_angles", row=swapped,
+        "swapped joints",
+        "get_angles/reply.angles/order",
+        "2 and 3 of the row are swapped",
+        command="get_angles",
+        row=swapped,
     ),
     WrongArm(
-        "reversed sign", "get_angles/reply.angles/sign", "number 2 of the row has the other sign",
-        command="get_angles", row=other_sign,
+        "reversed sign",
+        "get_angles/reply.angles/sign",
+        "number 2 of the row has the other sign",
+        command="get_angles",
+        row=other_sign,
     ),
     WrongArm(
-        "shifted id", "get_coords/command/present", "or has it under another id",
+        "shifted id",
+        "get_coords/command/present",
+        "or has it under another id",
         lambda t: with_command(t, "get_coords", lambda c: c._replace(id=c.id + 0x80)),
     ),
     WrongArm(
-        "other endianness", "get_encoders/reply.encoders/byte-order", "endianness",
+        "other endianness",
+        "get_encoders/reply.encoders/byte-order",
+        "endianness",
         lambda t: with_reply(t, "get_encoders", lambda n: n._replace(order="little")),
     ),
     WrongArm(
-        "joint limits", "get_joint_max_angle/reply.angle/limits", "stated limits", other_limits,
+        "joint limits",
+        "get_joint_max_angle/reply.angle/limits",
+        "stated limits",
+        other_limits,
     ),
     WrongArm(
-        "missing command", "get_servo_temps/command/present", "lacks it",
+        "missing command",
+        "get_servo_temps/command/present",
+        "lacks it",
         lambda t: with_command(t, "get_servo_temps", lambda c: None),
     ),
     WrongArm(
-        "gripper id", "get_pro_gripper_angle/command/present", "has another gripper_id",
-        lambda t: t._replace(commands=tuple(c for c in t.commands if not any(f.name == "gripper_id" for f in c.request[0].fields))),
+        "gripper id",
+        "get_pro_gripper_angle/command/present",
+        "has another gripper_id",
+        without_gripper,
         "mycobot320",
     ),
     WrongArm(
-        "status list", "get_servo_status/reply/length", "expected a whole frame",
-        command="get_servo_status", row=lambda row: row + b"\0",
+        "status list",
+        "get_servo_status/reply/length",
+        "expected a whole frame",
+        command="get_servo_status",
+        row=lambda row: row + b"\0",
     ),
     WrongArm(
-        "late acknowledgement", "set_fresh_mode/command/deadline", "took 7", late="set_fresh_mode", level=2,
+        "late acknowledgement",
+        "set_fresh_mode/command/deadline",
+        "took 7",
+        late="set_fresh_mode",
+        level=2,
     ),
     WrongArm(
-        "other firmware", "get_reboot_count/command/present", "nor have 3 other commands", older_firmware,
+        "other firmware",
+        "get_reboot_count/command/present",
+        "nor have 3 other commands",
+        older_firmware,
     ),
     WrongArm(
-        "other robot", "", "the arm speaks edition mycobot, not mycobot280",
+        "other robot",
+        "",
+        "the arm speaks edition mycobot, not mycobot280",
         lambda t: editions.load("mycobot").TABLE,
     ),
-)  # fmt: skip
+)

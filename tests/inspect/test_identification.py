@@ -108,7 +108,8 @@ def test_identify_sends_few_queries_and_none_that_changes_something(edition: str
     assert found.edition == ("" if len(several) > 1 else edition)
     assert found.candidates == several
     assert {table.command(name).safety for name in received} == {"query"}
-    assert len(received) <= 6
+    # The last ones read where the arm is, to compare angles with coordinates.
+    assert len(received) <= 8
     assert len(found.evidence) <= 8
 
 

@@ -18,6 +18,7 @@ VERBS = {
     "ports": "List serial ports, likely ones first.",
     "identify": "Find out which edition an arm speaks.",
     "doctor": "Examine an arm and its port; give advice.",
+    "survey": "Find out which facts a real arm confirms.",
     "monitor": "Show joints, coordinates, rate, errors.",
     "call": "Send one command; print the result.",
     "run": "Run a program written for pymycobot.",

@@ -44,7 +44,11 @@ def _lines(found: Identification) -> list[str]:
     if not found.edition and found.candidates:
         what += f"; its replies allow {', '.join(found.candidates)}"
     firmware = f", firmware {found.firmware}" if found.firmware else ""
-    return [f"{found.url}: {what}{firmware}", *map(_line, found.evidence)]
+    return [
+        f"{found.url}: {what}{firmware}",
+        *map(_line, found.evidence),
+        *(f"! {doubt}" for doubt in found.doubts),
+    ]
 
 
 def _line(evidence: Evidence) -> str:

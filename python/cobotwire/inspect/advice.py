@@ -28,6 +28,7 @@ LOST = "retries make up for it; fix the other problems listed here, then check c
 NO_COORDS = "a simulated arm sends no coordinates then; from a real arm, the reply was lost"
 LATE = "the arm is busy or the line is slow: use a longer timeout=, or send fewer requests"
 ILLEGAL = "the firmware may use another edition: cobotwire identify URL finds out"
+VALUES = "do not move the arm with this edition; cobotwire survey URL -o survey.zip shows more"
 OTHER_EDITION = "use cobotwire --edition {edition}; in a program, cobotwire.connect(port)"
 LATENCY_TIMER = "echo 1 | sudo tee {path}   (cobotwire tried this when it opened the port)"
 SLOW = "if this is a USB adapter, its latency timer may be 16 ms; set it to 1 ms"

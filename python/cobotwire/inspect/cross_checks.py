@@ -1,17 +1,17 @@
 """Find the mistake that explains readings which do not fit, and which mistakes they exclude.
 
-A hypothesis is a mistake of the edition, such as tenths taken for hundredths, with what corrects the
-readings. One that makes all relations of a reading hold explains it. If the relations hold as the
-edition is, and no hypothesis about an aspect keeps them, the readings confirm that aspect.
+A hypothesis is a mistake of the edition, such as tenths taken for hundredths, with what corrects
+the readings. It explains them if all relations of the corrected readings hold. If the relations
+hold as the edition is, and no hypothesis about an aspect keeps them, that aspect is confirmed.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import cached_property
 from itertools import combinations
 from math import pi
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from cobotwire.inspect.readings import Key, Relation, Row, Snapshot, relations, sources, target_of
 from cobotwire.protocol.numbers import Number
@@ -59,7 +59,9 @@ def hypotheses(numbers: Sequence[Number]) -> Iterator[Hypothesis]:
     orders = list(range(joints))
     for a, b in combinations(orders, 2):
         text = f"numbers {a + 1} and {b + 1} of the row are swapped"
-        yield Hypothesis("order", text, _ordered([b if i == a else a if i == b else i for i in orders]))
+        yield Hypothesis(
+            "order", text, _ordered([b if i == a else a if i == b else i for i in orders])
+        )
     if joints > 2:
         text = "the row is in reverse order"
         yield Hypothesis("order", text, _ordered(orders[::-1]))
@@ -69,6 +71,26 @@ def hypotheses(numbers: Sequence[Number]) -> Iterator[Hypothesis]:
     if any(n.width > 1 and n.encoding == "integer" and not n.bits for n in numbers):
         text = "the bytes of each number are in the other order (endianness)"
         yield Hypothesis("byte-order", text, lambda row: tuple(map(_other_bytes, numbers, row)))
+
+
+def doubts(table: Table, results: Mapping[str, Any]) -> list[str]:
+    """Return the mistakes that explain the results of a few queries, by name, of an arm at rest.
+
+    Without a mistake that explains them nothing is said: the arm may use another reference frame.
+    """
+    row: dict[Key, Row] = {}
+    for source in sources(table):
+        value = results.get(source.query.name)
+        if source.of_joint or len(source.query.reply[0].fields) > 1 or value is None:
+            continue
+        row[source.key] = tuple(value) if source.field.many else (value,)
+    moving = table.find_role("moving")
+    if moving is not None and results.get(moving.name):
+        return []
+    checks = CrossChecks(table)
+    frames = {key: (0.0,) for key in checks.conditions}
+    found = checks.mistakes([{**frames, **row}])
+    return [mistake.text for mistake in found if mistake.aspect not in ("agreement", "limits")]
 
 
 class CrossChecks:
@@ -84,6 +106,11 @@ class CrossChecks:
     def keys(self) -> set[Key]:
         """The readings that are compared with anything."""
         return {key for r in self._relations for key in (*r.keys, *r.conditions)}
+
+    @property
+    def conditions(self) -> set[Key]:
+        """The readings that decide whether a relation applies."""
+        return {key for relation in self._relations for key in relation.conditions}
 
     @cached_property
     def _hypotheses(self) -> dict[Key, list[Hypothesis]]:
@@ -108,7 +135,9 @@ class CrossChecks:
 
     def confirmed(self, snapshots: Sequence[Snapshot]) -> Iterator[tuple[Key, str]]:
         """Yield the aspects of readings for which every mistake would show, and none does."""
-        wrong = {key for relation in self._broken(snapshots, self._relations) for key in relation.keys}
+        wrong = {
+            key for relation in self._broken(snapshots, self._relations) for key in relation.keys
+        }
         for key in self._numbers:
             own = [r for r in self._relations if key in r.keys and r.independent]
             if key in wrong or not any(key in snapshot for snapshot in snapshots):
@@ -121,23 +150,21 @@ class CrossChecks:
                     changed = [_corrected(row, (key,), each) for row in snapshots]
                     verdicts.append(any(self._broken(changed, own)))
             yield from ((key, aspect) for aspect, verdicts in excluded.items() if all(verdicts))
-            if any(self._applies(r, row) for r in self._relations for row in snapshots if key in r.keys):
+            if any(
+                self._applies(r, row) for r in self._relations for row in snapshots if key in r.keys
+            ):
                 yield key, "agreement"
 
     def _applies(self, relation: Relation, row: Snapshot) -> bool:
         return len(relation.keys) > 1 and all(key in row for key in relation.keys)
 
     def _broken(self, rows: Sequence[Snapshot], among: Sequence[Relation]) -> list[Relation]:
-        return [
-            relation
-            for relation in among
-            if any(map(relation.fails, rows))
-        ]
+        return [relation for relation in among if any(map(relation.fails, rows))]
 
     def _best(
         self, rows: Sequence[Snapshot], broken: list[Relation]
     ) -> list[tuple[tuple[Key, ...], Hypothesis]]:
-        """Return the explanations that repair the most relations by changing the fewest readings."""
+        """Return the explanations that repair most relations by changing the fewest readings."""
         best, most = list[tuple[tuple[Key, ...], Hypothesis]](), (0, 0)
         for subject in self._subjects(broken):
             own = [r for r in self._relations if {*subject} & {*r.keys}]
@@ -153,14 +180,16 @@ class CrossChecks:
         return best
 
     def _subjects(self, broken: list[Relation]) -> list[tuple[Key, ...]]:
-        """Return the readings that may be wrong: those of one id alone, and all that are sent alike.
+        """Return the readings that may be wrong: those of one id, and all that are sent alike.
 
         Several commands may have the same id, and name its reply in different ways.
         """
         involved = dict.fromkeys(k for r in broken for k in r.keys if k in self._numbers)
         groups: dict[object, list[Key]] = {}
         for key in involved:
-            groups.setdefault((self._ids[key[0]], key[1].partition(".")[0], self._alike(key)), []).append(key)
+            groups.setdefault(
+                (self._ids[key[0]], key[1].partition(".")[0], self._alike(key)), []
+            ).append(key)
         for key in involved:
             groups.setdefault(self._alike(key), []).append(key)
         return list(dict.fromkeys(map(tuple, groups.values())))
@@ -190,9 +219,10 @@ def _short(row: Row) -> str:
 def _scale_text(number: Number, factor: float) -> str:
     text = f"the readings are {factor:g} x the expected"
     stated = number.divide / number.multiply
-    sent = round(stated * factor, 3)
-    if sent in FRACTIONS and stated in FRACTIONS:
-        text += f": the arm sends {FRACTIONS[sent]}, the edition states {FRACTIONS[stated]}"
+    sent = stated * factor
+    names = [FRACTIONS.get(round(each)) for each in (sent, stated)]
+    if all(names) and sent >= 1:
+        text += f": the arm sends {names[0]}, the edition states {names[1]}"
     return text
 
 

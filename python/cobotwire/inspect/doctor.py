@@ -11,6 +11,7 @@ from cobotwire.client import Client
 from cobotwire.codec.interface import Codec
 from cobotwire.inspect import advice, readiness
 from cobotwire.inspect.advice import Problem
+from cobotwire.inspect.cross_checks import doubts
 from cobotwire.inspect.identification import other_edition
 from cobotwire.inspect.latency_timer import latency_timer
 from cobotwire.inspect.traffic_listener import DiagnosingListener
@@ -183,6 +184,8 @@ class Doctor:
         if report.late:
             text = f"replies after their deadline: {report.late}"
             found.append(Problem("late-replies", text, advice.LATE))
+        for text in doubts(self._table, report.values):
+            found.append(Problem("values", text, advice.VALUES))
         states = {command.role: report.values.get(command.name) for command in self._queries}
         return found + readiness.problems(self._table, states)
 

@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from cobotwire import editions
 from cobotwire.client.opening import open_port
 from cobotwire.client.persisted_state import PortMemory
+from cobotwire.inspect.cross_checks import doubts
 from cobotwire.inspect.evidence import (
     Candidates,
     Evidence,
@@ -27,7 +28,7 @@ from cobotwire.inspect.evidence import (
 )
 from cobotwire.inspect.frame_families import Probes, families, with_same_frames
 from cobotwire.protocol.errors import EditionUnknown
-from cobotwire.protocol.table import Command, Table
+from cobotwire.protocol.table import Command, Role, Table
 from cobotwire.session.outstanding import merged
 from cobotwire.transport import Transport
 from cobotwire.transport.tapped import borrowed
@@ -35,6 +36,10 @@ from cobotwire.transport.tapped import borrowed
 if TYPE_CHECKING:
     from cobotwire.client import Client
     from cobotwire.editions.clients import AnyAsyncClient, AnyClient
+
+
+# The queries that show whether an arm at rest is where it reports.
+PLACE: tuple[Role, ...] = ("moving", "joints", "coordinates")
 
 
 class Identification(NamedTuple):
@@ -47,6 +52,7 @@ class Identification(NamedTuple):
         firmware: the version of the firmware, such as ``7.3``; empty if the arm does not report it.
         evidence: the queries in the order in which they were sent.
         baudrate: the bits a second at which they were sent last; 0 if the transport was open.
+        doubts: the mistakes of the edition that explain what the arm reports.
     """
 
     url: str
@@ -55,6 +61,7 @@ class Identification(NamedTuple):
     firmware: str
     evidence: tuple[Evidence, ...]
     baudrate: int = 0
+    doubts: tuple[str, ...] = ()
 
     @property
     def replied(self) -> bool:
@@ -236,8 +243,23 @@ def identify(
         LinkError: the port does not exist, cannot be opened, or disappears.
     """
     found, transport = _found(port, baudrate, timeout)
-    transport.close()
-    return found
+    try:
+        return found._replace(doubts=tuple(_doubts(found, transport, timeout)))
+    finally:
+        transport.close()
+
+
+def _doubts(found: Identification, transport: Transport, timeout: float | None) -> list[str]:
+    """Return what does not fit in the place that an arm of a known edition reports."""
+    table = editions.load(found.edition).TABLE if found.edition else None
+    if table is None or table.robot.geometry is None:
+        return []
+    results = {evidence.query: evidence.result for evidence in found.evidence}
+    for command in filter(None, map(table.find_role, PLACE)):
+        if results.get(command.name) is None:
+            evidence = _asked(transport, found.edition, command, timeout=timeout)
+            results[command.name] = evidence.result
+    return doubts(table, results)
 
 
 def connect(port: str, *, baudrate: int | None = None, **options: Any) -> AnyClient:

@@ -7,6 +7,7 @@ links, encoders and limits that the edition states.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
+from functools import partial
 from itertools import combinations
 from typing import NamedTuple
 
@@ -197,7 +198,7 @@ def _of_geometry(table: Table, every: list[Source]) -> Iterator[Relation]:
 
 
 def _of_limits(table: Table, every: list[Source]) -> Iterator[Relation]:
-    """Yield what holds between angles, the limits that the arm reports and those that are stated."""
+    """Yield what holds between angles, limits that the arm reports and limits that are stated."""
     stated, degrees = joint_limits(table), ("degree",) * table.joints
     by_state = {
         state: [source for source in every if source.state == state and source.units == degrees]
@@ -217,13 +218,11 @@ def _of_limits(table: Table, every: list[Source]) -> Iterator[Relation]:
         yield Relation(
             (angles.key,), text, lambda row: _between(lowest, row, highest), aspect="limits"
         )
+    near = [LIMIT_APART] * table.joints
     for state, side in (("lowest", lowest), ("highest", highest)):
         for source in by_state[state]:
             text = f"{source.query.name} reports the stated limits {_short(side)}"
-            near = [LIMIT_APART] * len(side)
-            yield Relation(
-                (source.key,), text, lambda row, s=side: _close(row, s, near), aspect="limits"
-            )
+            yield Relation((source.key,), text, partial(_close, side, near=near), aspect="limits")
 
 
 def _plausible(source: Source) -> Relation:

@@ -9,7 +9,7 @@ import zipfile
 from collections.abc import Mapping
 from datetime import UTC, datetime
 from pathlib import Path
-from typing import Any, BinaryIO
+from typing import Any
 
 import cobotwire
 from cobotwire.capture.file_errors import unusable_file
@@ -25,7 +25,7 @@ MOST_FILE, MOST = 20 << 20, {JSON: 2 << 20, RECORDING: 50 << 20}
 MOST_NAME = 80
 
 
-def content_of(survey: Survey, package: str, robot: str) -> dict[str, object]:
+def content_of(survey: Survey, package: str, robot: str) -> dict[str, Any]:
     """Return what the file states: no name of a host, user, port or folder."""
     return {
         "format": FORMAT,
@@ -45,11 +45,34 @@ def content_of(survey: Survey, package: str, robot: str) -> dict[str, object]:
     }
 
 
-def write_survey(file: BinaryIO, content: Mapping[str, object], recording: bytes) -> None:
-    """Write the file of a survey; ``recording`` is a pcapng file."""
+def continued(
+    earlier: tuple[Mapping[str, Any], bytes], content: dict[str, Any], recording: bytes
+) -> tuple[dict[str, Any], bytes]:
+    """Return the content and the recording of a survey that goes on with an earlier one.
+
+    A recording may have several sections, so one follows the other.
+    """
+    old, recorded = earlier
+    decided = {f["fact"]: f for f in old["facts"] if f["verdict"] != "not seen"}
+    for fact in content["facts"]:
+        if (
+            fact["verdict"] != "not seen"
+            and decided.get(fact["fact"], fact)["verdict"] != "contradicted"
+        ):
+            decided[fact["fact"]] = fact
+    merged = [decided.get(fact["fact"], fact) for fact in content["facts"]]
+    hashed = list(dict.fromkeys([*old.get("hashed", ()), *content["hashed"]]))
+    level = max(old.get("level", 1), content["level"])
+    return {**content, "facts": merged, "hashed": hashed, "level": level}, recorded + recording
+
+
+def survey_file(content: Mapping[str, object], recording: bytes) -> bytes:
+    """Return the file of a survey; ``recording`` is a pcapng file."""
+    file = io.BytesIO()
     with zipfile.ZipFile(file, "w", zipfile.ZIP_DEFLATED) as archive:
         archive.writestr(JSON, json.dumps(content, indent=1))
         archive.writestr(RECORDING, recording)
+    return file.getvalue()
 
 
 def read_survey(path: str | Path) -> tuple[dict[str, Any], bytes]:

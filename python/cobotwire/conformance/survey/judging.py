@@ -19,7 +19,15 @@ SHOWN = {
     "query-replied": (("command", "present"), ("command", "deadline")),
     "reply-frame": (("reply", "id"), ("reply", "length")),
     **dict.fromkeys(
-        ("read-back", "set-is-reported", "reference-shifts", "reached", "arrives", "stops", "moving"),
+        (
+            "read-back",
+            "set-is-reported",
+            "reference-shifts",
+            "reached",
+            "arrives",
+            "stops",
+            "moving",
+        ),
         (("command", "effect"),),
     ),
     "agrees": (("reply", "agreement"),),
@@ -111,7 +119,12 @@ class Judge:
             self.questions.append(f"{', '.join(c.name for c in alike)}: {why}")
             for command in alike:
                 self._note(
-                    command.name, "command", "present", "not seen", why, self._silent.pop(command.name)
+                    command.name,
+                    "command",
+                    "present",
+                    "not seen",
+                    why,
+                    self._silent.pop(command.name),
                 )
         for name, frames in self._silent.items():
             more = len(self._silent) - 1
@@ -148,7 +161,9 @@ class Judge:
             frames += [f for r in mistake.relations for k in r.keys for f in evidence.get(k, [])]
             for command, part in mistake.keys:
                 why = f"{mistake.text}. It does not hold that {shows}."
-                self._note(command, part, mistake.aspect, "contradicted", why, dict.fromkeys(frames))
+                self._note(
+                    command, part, mistake.aspect, "contradicted", why, dict.fromkeys(frames)
+                )
         for (command, part), aspect in checks.confirmed(snapshots):
             why = "Other readings fit only if this is right."
             if aspect == "agreement":

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Container, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from functools import cached_property
+from typing import Any
 
 from cobotwire import editions
 from cobotwire.client import Client
@@ -61,7 +62,7 @@ class Survey:
         package: str = "",
         settings: bool = False,
         motion: bool = False,
-        done: Container[str] = (),
+        earlier: Mapping[str, Any] | None = None,
         sources: Mapping[str, str] | None = None,
         on_private: Callable[[bool], object] = bool,
     ) -> None:
@@ -73,7 +74,8 @@ class Survey:
             package: the name by which ``editions.load`` finds the edition.
             settings: whether settings are stored and restored.
             motion: whether the arm makes a few small motions.
-            done: the names of facts that an earlier part of the survey has decided.
+            earlier: the content of the file of an interrupted survey: what it decided is not
+                found out again.
             sources: where the spec defines each command, by name.
             on_private: called with True before replies come that name a device, False after them.
         """
@@ -83,8 +85,12 @@ class Survey:
         self.finished = False
         # Why the arm was not moved, or not surveyed at all; empty: it was, or need not be.
         self.obstacle = ""
+        # Whether the arm is another one than the edition's.
+        self.other = False
         self.mistakes: list[Mistake] = []
-        self._package, self._motion, self._done = package or table.edition, motion, done
+        self._package, self._motion = package or table.edition, motion
+        facts = earlier["facts"] if earlier else ()
+        self._done = {f["fact"] for f in facts if f["verdict"] != "not seen"}
         self._settings, self._on_private = settings, on_private
         allowed = Permissions(frozenset({"setting"} if settings else ()))
         self._tester = Tester(connection, table, permissions=allowed, sources=sources)
@@ -102,6 +108,19 @@ class Survey:
         """The level: 1 queries, 2 settings, too, 3 motion, too."""
         return 3 if self._motion else 2 if self._settings else 1
 
+    @property
+    def contradicted(self) -> list[str]:
+        """What is contradicted, each reason once, after the names of the facts."""
+        names: dict[str, list[str]] = {}
+        for fact in self.facts.with_verdict("contradicted"):
+            names.setdefault(fact.why, []).append(fact.fact.partition("/")[2])
+        return [f"{', '.join(facts)}: {why}" for why, facts in names.items()]
+
+    @property
+    def questions(self) -> list[str]:
+        """What is neither right nor wrong about a fact, but the owner can explain."""
+        return self._judge.questions
+
     def run(self, progress: Progress = lambda name, done, count: None) -> None:
         """Run the whole survey; what was changed is restored, however it ends.
 
@@ -110,7 +129,8 @@ class Survey:
             KeyboardInterrupt: the same; the arm was stopped.
         """
         progress("which edition the arm speaks", 0, 1)
-        if self._is_other_edition():
+        self.other = self._is_other_edition()
+        if self.other:
             return
         try:
             self._run_steps([*self._steps(QUERIES), *self._steps(SETTINGS)], progress)
@@ -234,7 +254,7 @@ class Survey:
         mover, device = Mover(probe.device), probe.device
         start = mover.angles()
         at = min(range(len(start)), key=lambda joint: abs(start[joint]))
-        low, high = device.permissions.workspace[at]
+        high = device.permissions.workspace[at][1]
         by = FIRST if start[at] + FIRST <= high else -FIRST
         target = (*start[:at], round(start[at] + by, 2), *start[at + 1 :])
         device.request(mover.to(target))

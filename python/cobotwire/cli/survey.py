@@ -1,0 +1,205 @@
+"""``cobotwire survey``: find out which facts of an edition a real arm confirms and contradicts."""
+
+from __future__ import annotations
+
+import json
+import sys
+import tempfile
+from collections import Counter
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from hashlib import sha256
+from pathlib import Path
+from typing import Any, Literal
+
+import click
+from rich.console import Console
+from rich.progress import Progress
+
+from cobotwire import codec as codecs
+from cobotwire import editions
+from cobotwire.capture import Recording
+from cobotwire.capture.export.atomic_file import AtomicFile
+from cobotwire.cli.shared.any_key import interrupted_by_any_key
+from cobotwire.cli.shared.arm_options import baudrate_option
+from cobotwire.cli.shared.completers import complete_ports
+from cobotwire.cli.shared.edition_option import uses_edition
+from cobotwire.cli.shared.exit_codes import INTERRUPTED, LINK_FAILED
+from cobotwire.cli.shared.output import fold, report_written
+from cobotwire.cli.shared.subject_connection import Lacking, Subject, connected
+from cobotwire.conformance.device import DeviceConnection
+from cobotwire.conformance.sources import spec_lines
+from cobotwire.conformance.survey import Survey, read_survey, survey_file
+from cobotwire.conformance.survey.file import RECORDING, content_of, continued
+from cobotwire.protocol.errors import LinkError, UsageError
+from cobotwire.protocol.table import Table
+from cobotwire.transport.tapped import tapped
+
+WORKSPACE = (
+    "The arm will make a few small slow motions, up to 5 degrees from where each joint is; a fact "
+    "that is wrong may make one larger. Any key stops it. Is the workspace clear, the emergency "
+    "stop within reach, and the gripper empty?"
+)
+
+VERDICTS = ("confirmed", "contradicted", "not seen")
+
+
+@click.command()
+@click.argument("port", metavar="URL", required=False, shell_complete=complete_ports)
+@click.option("-o", "--output", type=click.Path(), required=True, help="The file to write, a zip.")
+@click.option("--robot", default="", help="What robot it is: the words on its label.")
+@click.option("--settings", is_flag=True, help="Store some settings, too, and restore them.")
+@click.option("--allow-motion", is_flag=True, help="Make a few small slow motions, too.")
+@click.option("--yes-workspace-is-clear", is_flag=True, help="Do not ask before the motions.")
+@click.option("--continue", "resume", is_flag=True, help="Continue the interrupted survey of -o.")
+@click.option("--simulated", is_flag=True, help="Survey a simulated arm instead of URL.")
+@click.option("--json", "as_json", is_flag=True, help="Print what was found as JSON.")
+@baudrate_option
+@uses_edition
+def survey(
+    edition: str,
+    port: str | None,
+    output: str,
+    robot: str,
+    settings: bool,
+    allow_motion: bool,
+    yes_workspace_is_clear: bool,
+    resume: bool,
+    simulated: bool,
+    as_json: bool,
+    baudrate: int | None,
+) -> None:
+    """Survey the arm at URL: which facts of the edition it confirms, and which it contradicts.
+
+    It takes at most ten minutes. At first only queries are sent, and what the arm reports is
+    compared: encoders with angles, angles with coordinates, targets with readings. --settings
+    also changes settings that a power cycle resets, and restores them. --allow-motion also moves
+    the arm, after a question; any key stops it.
+
+    The file holds the recording and each fact with its bytes. It names no port, host or user;
+    passwords are not requested, and serial numbers are replaced by their hash. If the survey is
+    interrupted, the same command with --continue goes on.
+
+    Exit codes: 0 nothing is contradicted; 1 a fact is contradicted, or the arm is another one;
+    3 the port failed; 130 interrupted.
+    """
+    table = editions.load(edition).TABLE
+    subject = Subject(port, None, None, simulated, baudrate)
+    subject.validate()
+    earlier = read_survey(output) if resume else None
+    if earlier is not None and earlier[0].get("edition") != table.edition:
+        message = f"{output} is the survey of edition {earlier[0].get('edition')!r}"
+        raise UsageError("continue", output, message=message)
+    if allow_motion and not yes_workspace_is_clear:
+        if not sys.stdin.isatty():
+            message = (
+                "--allow-motion needs a terminal for its question, or --yes-workspace-is-clear"
+            )
+            raise UsageError("allow_motion", message=message)
+        click.confirm(fold(WORKSPACE, err=True), abort=True, err=True)
+    if not resume and Path(output).exists():
+        message = f"{output} exists already; --continue goes on with an interrupted survey"
+        raise UsageError("output", output, message=message)
+    file = AtomicFile(Path(output), overwrite=resume)
+    try:
+        with tempfile.TemporaryDirectory(prefix="cobotwire-") as folder:
+            recording = Path(folder) / RECORDING
+            found, stopped = _run(
+                table, edition, subject, recording, earlier, settings, allow_motion
+            )
+            content = content_of(found, edition, robot)
+            recorded = recording.read_bytes()
+        if earlier is not None:
+            content, recorded = continued(earlier, content, recorded)
+        click.echo(
+            json.dumps(content, indent=1) if as_json else fold("\n".join(_lines(found, content)))
+        )
+        if found.other:
+            # It says nothing about the edition.
+            sys.exit(1)
+        file.file.write(survey_file(content, recorded))
+        file.publish()
+    finally:
+        file.discard()
+    report_written(output)
+    sys.exit(stopped or int(bool(found.contradicted)))
+
+
+def _run(
+    table: Table,
+    edition: str,
+    subject: Subject,
+    path: Path,
+    earlier: tuple[dict[str, Any], bytes] | None,
+    settings: bool,
+    motion: bool,
+) -> tuple[Survey, int]:
+    """Return the survey, and the exit code if it was interrupted; 0 if not."""
+    tap = _Tap(Recording(path, codecs.load(table), baudrate=subject.baudrate or table.baudrate))
+    with connected(table, subject, Lacking(table)) as opened:
+        transport = tapped(opened.transport, tap)
+        found = Survey(
+            DeviceConnection(transport, opened.clock, opened.name),
+            table,
+            package=edition,
+            settings=settings,
+            motion=motion,
+            earlier=earlier and earlier[0],
+            sources=spec_lines(edition),
+            on_private=tap.hide,
+        )
+        try:
+            with _progress() as show, interrupted_by_any_key(motion):
+                found.run(show)
+        except KeyboardInterrupt:
+            click.echo("interrupted: the arm was stopped, and its settings were restored", err=True)
+            return found, INTERRUPTED
+        except LinkError as error:
+            click.echo(fold(f"cobotwire: {error}", err=True), err=True)
+            return found, LINK_FAILED
+        finally:
+            tap.recording.close()
+    return found, 0
+
+
+class _Tap:
+    """Records what passes; while it is to be hidden, received bytes are replaced by their hash."""
+
+    def __init__(self, recording: Recording) -> None:
+        self.recording, self._hidden = recording, False
+
+    def hide(self, hidden: bool) -> None:
+        """Begin or end to hide what is received."""
+        self._hidden = hidden
+
+    def __call__(self, direction: Literal["sent", "received"], data: bytes, at: float) -> None:
+        if self._hidden and direction == "received":
+            data = sha256(data).digest()
+        self.recording.record(direction, data, at)
+
+
+@contextmanager
+def _progress() -> Iterator[Callable[[str, int, int], None]]:
+    """Yield a function that shows the current step on standard error, if that is a terminal."""
+    console = Console(stderr=True)
+    with Progress(console=console, transient=True, disable=not console.is_terminal) as bar:
+        task = bar.add_task("")
+        yield lambda name, done, count: bar.update(
+            task, description=name, completed=done, total=count
+        )
+
+
+def _lines(found: Survey, content: dict[str, Any]) -> Iterator[str]:
+    """Yield what was found, and what the file holds of the arm and its owner."""
+    firmware = ", ".join(f"{name} {value}" for name, value in found.firmware.items())
+    yield f"edition {found.table.edition}{firmware and f'; {firmware}'}"
+    yield from (f"! {each}" for each in found.contradicted)
+    yield from (f"- {question}" for question in found.questions)
+    if found.obstacle:
+        yield f"{'!' if found.other else '-'} {found.obstacle}"
+    verdicts = Counter(fact["verdict"] for fact in content["facts"])
+    yield "facts: " + ", ".join(f"{verdicts[v]} {v}" for v in VERDICTS)
+    hashed = ", ".join(found.hashed)
+    yield "the file names no port, host or user; " + (
+        f"hashed are the replies to {hashed}" if hashed else "no serial number was reported"
+    )
