@@ -191,7 +191,7 @@ nightly: .venv/.tools .venv/.native ## run the long searches one after another, 
 
 every-edition: set-up ## test all editions where `make test` tests a sample
 	EVERY_EDITION=1 $(BIN)/python -m pytest tests/codec/test_message_tables.py tests/docs/test_site.py \
-		tests/docs/test_robot_pages.py tests/mutation/test_mutants.py
+		tests/docs/test_robot_pages.py tests/mutation/test_mutants.py tests/conformance/survey
 
 archives: .venv/.tools .venv/.native ## export and query archives on a Dask cluster and an S3 server
 	$(BIN)/python -m pytest tests/capture/archive -o python_files='test_*.py on_*.py'

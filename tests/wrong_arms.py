@@ -80,19 +80,22 @@ def with_command(table: Table, name: str, change: Callable[[Command], Command | 
     return table._replace(commands=tuple(c for c in commands if c is not None))
 
 
-def with_reply(table: Table, name: str, change: Callable[[Number], Number]) -> Table:
-    """Return a table in which the numbers of a reply are changed."""
+def with_numbers(command: Command, change: Callable[[Number], Number]) -> Command:
+    """Return a command with all numbers of its messages changed."""
 
     def field(old: Field) -> Field:
         cases = tuple(c._replace(numbers=tuple(map(change, c.numbers))) for c in old.cases)
         return old._replace(cases=cases)
 
-    def variant(old: Variant) -> Variant:
-        return old._replace(fields=tuple(map(field, old.fields)))
+    def changed(variants: tuple[Variant, ...]) -> tuple[Variant, ...]:
+        return tuple(v._replace(fields=tuple(map(field, v.fields))) for v in variants)
 
-    return with_command(
-        table, name, lambda c: c._replace(reply=tuple(map(variant, c.reply)), package="")
-    )
+    return command._replace(request=changed(command.request), reply=changed(command.reply))
+
+
+def with_reply(table: Table, name: str, change: Callable[[Number], Number]) -> Table:
+    """Return a table in which the numbers of a query's reply are changed."""
+    return with_command(table, name, lambda command: with_numbers(command, change))
 
 
 def swapped(row: bytes) -> bytes:

@@ -7,7 +7,7 @@ hold as the edition is, and no hypothesis about an aspect keeps them, that aspec
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Container, Iterator, Mapping, Sequence
 from functools import cached_property
 from itertools import combinations
 from math import pi
@@ -123,7 +123,7 @@ class CrossChecks:
             best = self._best(rows, broken)
             if not best:
                 break
-            found.append(self._mistake(best, broken))
+            found.append(self._mistake(best, broken, {key for row in rows for key in row}))
             for subject, hypothesis in best[:1]:
                 rows = [_corrected(row, subject, hypothesis) for row in rows]
         for relation in self._broken(rows, self._relations):
@@ -184,25 +184,29 @@ class CrossChecks:
 
         Several commands may have the same id, and name its reply in different ways.
         """
-        involved = dict.fromkeys(k for r in broken for k in r.keys if k in self._numbers)
+        involved = {key for relation in broken for key in relation.keys}
         groups: dict[object, list[Key]] = {}
-        for key in involved:
-            groups.setdefault(
-                (self._ids[key[0]], key[1].partition(".")[0], self._alike(key)), []
-            ).append(key)
-        for key in involved:
+        for key in self._numbers:
+            of_id = self._ids[key[0]], key[1].partition(".")[0], self._alike(key)
+            groups.setdefault(of_id, []).append(key)
+        for key in self._numbers:
             groups.setdefault(self._alike(key), []).append(key)
+        groups = {name: keys for name, keys in groups.items() if involved & {*keys}}
         return list(dict.fromkeys(map(tuple, groups.values())))
 
     def _alike(self, key: Key) -> tuple[object, ...]:
         return tuple((number.unit, number.divide) for number in self._numbers[key])
 
     def _mistake(
-        self, best: list[tuple[tuple[Key, ...], Hypothesis]], broken: list[Relation]
+        self,
+        best: list[tuple[tuple[Key, ...], Hypothesis]],
+        broken: list[Relation],
+        read: Container[Key],
     ) -> Mistake:
         """Name the mistake; several explanations that are as good leave it open which is right."""
-        texts = [f"{', '.join(map('.'.join, subject))}: {h.text}" for subject, h in best]
-        keys = tuple(dict.fromkeys(key for subject, _ in best for key in subject))
+        found = [([key for key in subject if key in read], h) for subject, h in best]
+        texts = [f"{', '.join(map('.'.join, subject))}: {h.text}" for subject, h in found]
+        keys = tuple(dict.fromkeys(key for subject, _ in found for key in subject))
         shown = tuple(r for r in broken if {*keys} & {*r.keys})
         aspect = best[0][1].aspect if len(best) == 1 else "agreement"
         return Mistake(aspect, keys, "; or ".join(texts), shown)

@@ -137,7 +137,7 @@ def target_of(table: Table) -> tuple[Key, tuple[Number, ...]] | None:
 def _of_targets(table: Table) -> Iterator[Relation]:
     """Yield that an arm at rest is where it was sent."""
     target, query = target_of(table), table.find_role("joints")
-    if target is not None and query is not None:
+    if target is not None and query is not None and query.reply:
         angles = query.name, f"reply.{query.reply[0].fields[0].name}"
         near, text = [2 * APART["degree"]] * len(target[1]), f"{query.name} reports the target"
         yield Relation((target[0], angles), text, lambda a, b: _close(a, b, near), False)
@@ -210,7 +210,7 @@ def _of_limits(table: Table, every: list[Source]) -> Iterator[Relation]:
         for angles in by_state["angles"][:1]:
             text = f"{angles.query.name} is within {low.query.name} and {high.query.name}"
             yield Relation((low.key, angles.key, high.key), text, _between, aspect="limits")
-    if len(stated) != table.joints:
+    if not stated or len(stated) != table.joints:
         return
     lowest, highest = zip(*stated)
     for angles in by_state["angles"]:

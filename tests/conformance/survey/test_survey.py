@@ -1,3 +1,104 @@
-"""A survey names what is wrong with an arm, says nothing wrong of a correct one, and resumes."""
+"""A survey names what is wrong with an arm, and says nothing wrong about a correct one."""
 
 from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+import small_specs
+from cobotwire import editions
+from cobotwire.conformance.survey import Survey
+from cobotwire.protocol.table import Number, Table
+from targets.specs import edition_of
+from vectors import sampled
+from wrong_arms import POSE, WRONG_ARMS, WrongArm, connected, with_numbers
+
+SMALL = editions.load("mycobot280").TABLE
+
+
+def survey_of(edition: str, wrong: WrongArm | None = None, **options: bool) -> Survey:
+    table = editions.load(edition).TABLE
+    at = () if options.get("motion") else POSE
+    survey = Survey(connected(table, wrong=wrong, at=at), table, **options)
+    survey.run()
+    return survey
+
+
+@pytest.mark.parametrize("edition", sampled())
+def test_survey_of_a_correct_arm_contradicts_nothing(edition: str) -> None:
+    survey = survey_of(edition, settings=True, motion=True)
+    assert survey.finished
+    assert survey.contradicted == []
+    confirmed = {fact.fact.rpartition("/")[2] for fact in survey.facts.with_verdict("confirmed")}
+    assert confirmed >= {"present", "deadline", "id", "length", "effect"}
+
+
+def test_motion_confirms_scale_sign_and_order_of_angles() -> None:
+    facts = survey_of("mycobot280", motion=True).facts
+    for aspect in ("scale", "sign", "order", "byte-order", "agreement"):
+        assert facts[f"mycobot280/get_angles/reply.angles/{aspect}"].verdict == "confirmed", aspect
+    # At zero nothing moves, and no scale shows.
+    at_rest = Survey(connected(SMALL), SMALL)
+    at_rest.run()
+    assert at_rest.facts["mycobot280/get_angles/reply.angles/scale"].verdict == "not seen"
+
+
+@pytest.mark.parametrize("wrong", WRONG_ARMS, ids=lambda wrong: wrong.name)
+def test_survey_names_what_is_wrong_with_an_arm(wrong: WrongArm) -> None:
+    survey = survey_of(wrong.edition, wrong, settings=wrong.level > 1)
+    if not wrong.fact:
+        assert survey.other
+        assert wrong.words in survey.obstacle
+        return
+    fact = survey.facts[f"{wrong.edition}/{wrong.fact}"]
+    assert wrong.words in fact.why
+    # An arm may lack a gripper: that contradicts nothing.
+    assert fact.verdict == ("not seen" if wrong.name == "gripper id" else "contradicted")
+    assert fact.frames
+    # Nothing else is called wrong: other commands of the same id, or of the same kind.
+    others = {f.fact for f in survey.facts.with_verdict("contradicted")} - {fact.fact}
+    aspect = fact.fact.rpartition("/")[2]
+    assert all(other.endswith(aspect) for other in others)
+    assert len(others) <= 3
+
+
+def tenths(number: Number) -> Number:
+    """Return an angle that is sent in tenths of a degree."""
+    if (number.unit, number.divide) != ("degree", 100) or number.name.startswith("r"):
+        return number
+    ends = number.minimum // 10, number.maximum // 10
+    return number._replace(divide=10, minimum=ends[0], maximum=ends[1])
+
+
+def in_tenths(*names: str) -> WrongArm:
+    """Return an arm that sends and receives angles in tenths, in all commands or these."""
+
+    def change(table: Table) -> Table:
+        chosen = (c.name in names or not names for c in table.commands)
+        every = zip(table.commands, chosen)
+        return table._replace(commands=tuple(with_numbers(c, tenths) if y else c for c, y in every))
+
+    return WrongArm("", "", "", change)
+
+
+def test_wrong_scale_of_all_angles_shows_by_encoders_after_the_first_motion() -> None:
+    survey = survey_of("mycobot280", in_tenths(), motion=True)
+    assert "no further motion" in survey.obstacle
+    assert "tenths" in survey.facts["mycobot280/get_angles/reply.angles/scale"].why
+
+
+def test_arm_that_goes_further_than_sent_is_stopped() -> None:
+    survey = survey_of("mycobot280", in_tenths("send_angles"), motion=True)
+    assert "the arm went further" in survey.obstacle
+    [why] = [why for why in survey.contradicted if "send_angles/command/effect" in why]
+    assert "was stopped" in why
+
+
+@pytest.mark.parametrize("name", ["feetech", "ublox"])
+def test_survey_of_an_own_protocol_contradicts_nothing(name: str, tmp_path: Path) -> None:
+    table = small_specs.package(tmp_path, edition_of(name)).TABLE
+    survey = Survey(connected(table), table, settings=True, motion=True)
+    survey.run()
+    assert survey.contradicted == []
+    assert survey.facts.with_verdict("confirmed")

@@ -103,6 +103,10 @@ class Survey:
     def _checks(self) -> CrossChecks:
         return CrossChecks(self.table)
 
+    @cached_property
+    def _every_step(self) -> list[Step]:
+        return list(self._tester.steps())
+
     @property
     def level(self) -> int:
         """The level: 1 queries, 2 settings, too, 3 motion, too."""
@@ -168,7 +172,7 @@ class Survey:
         order = [group.name for group in groups]
         found = [
             step
-            for step in self._tester.steps()
+            for step in self._every_step
             if step.group.name in order
             and not self._tester.missing(step)
             and step.command is not None

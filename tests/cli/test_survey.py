@@ -1,0 +1,141 @@
+"""Run ``cobotwire survey``: its file, its question, a key that stops it, and what is continued."""
+
+from __future__ import annotations
+
+import json
+import os
+import platform
+import sys
+import zipfile
+from io import BytesIO
+from pathlib import Path
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from cobotwire import editions
+from cobotwire.capture import read
+from cobotwire.conformance.survey import ASPECTS, read_survey, survey_file
+from cobotwire.protocol.errors import UsageError
+from cobotwire.session.device import DeviceEvent, RequestReceived
+from cobotwire.simulator import PtyServer, SimulatedArm
+from in_process import cobotwire
+from wrong_arms import POSE, WRONG_ARMS
+
+TABLE = editions.load("mycobot280").TABLE
+
+
+def test_file_holds_facts_with_frames_and_recording_but_nothing_personal(tmp_path: Path) -> None:
+    path = tmp_path / "survey.zip"
+    done = cobotwire("survey", "--simulated", "-o", path, "--robot", "280 M5\x1b[2J")
+    assert (done.returncode, done.stderr) == (0, f"wrote {path}\n")
+    assert "facts: " in done.stdout
+    with zipfile.ZipFile(path) as archive:
+        assert archive.namelist() == ["survey.json", "recording.pcapng"]
+        recording = archive.read("recording.pcapng")
+    content, recorded = read_survey(path)
+    assert recorded == recording
+    assert content["robot"] == "280 M5\\x1b[2J"
+    assert content["finished"] is True
+    assert {fact["fact"].rpartition("/")[2] for fact in content["facts"]} <= {*ASPECTS}
+    (tmp_path / "recording.pcapng").write_bytes(recording)
+    sent = {packet.data for packet in read(tmp_path / "recording.pcapng")}
+    seen = [fact for fact in content["facts"] if fact["verdict"] == "confirmed"]
+    assert all(bytes.fromhex(f["frames"][0]["sent"]) in sent for f in seen if f["frames"])
+    text = json.dumps(content) + recording.decode("latin-1")
+    secret = TABLE.command("get_ssid_pwd")
+    assert secret.id not in {data[3] for data in sent}
+    for private in (platform.node(), str(tmp_path), os.environ.get("USER", "?!")):
+        assert private not in text
+    again = cobotwire("survey", "--simulated", "-o", path)
+    assert (again.returncode, "exists already" in again.stderr) == (2, True)
+
+
+def test_motion_needs_an_answer_before_a_byte_is_sent(tmp_path: Path) -> None:
+    done = cobotwire("survey", "--simulated", "--allow-motion", "-o", tmp_path / "survey.zip")
+    assert done.returncode == 2
+    assert "--yes-workspace-is-clear" in done.stderr
+    assert not list(tmp_path.iterdir())
+
+
+def test_survey_continues_an_interrupted_one(tmp_path: Path) -> None:
+    path = tmp_path / "survey.zip"
+    cobotwire("survey", "--simulated", "-o", path)
+    content, recording = read_survey(path)
+    known = "mycobot280/get_angles/command/present"
+    cut = [f for f in content["facts"] if f["fact"] == known or "get_angles" not in f["fact"]]
+    path.write_bytes(survey_file({**content, "finished": False, "facts": cut}, recording))
+    done = cobotwire("survey", "--simulated", "--settings", "--continue", "-o", path)
+    assert done.returncode == 0, done.stderr
+    after, recorded = read_survey(path)
+    assert recorded.startswith(recording)
+    # What is known is not requested again, unless it is compared.
+    request = b"\xfe\xfe\x02" + bytes([TABLE.command("get_reboot_count").id]) + b"\xfa"
+    assert recorded.count(request) == recording.count(request)
+    found = {fact["fact"]: fact["verdict"] for fact in after["facts"]}
+    assert found[known] == "confirmed"
+    assert found["mycobot280/set_fresh_mode/command/effect"] == "confirmed"
+    assert after["level"] == 2
+    other = cobotwire("--edition", "mycobot", "survey", "--simulated", "--continue", "-o", path)
+    assert "is the survey of edition 'mycobot280'" in other.stderr
+
+
+def _archive(head: bytes, data: bytes) -> bytes:
+    file = BytesIO()
+    with zipfile.ZipFile(file, "w") as archive:
+        archive.writestr("survey.json", head + data)
+        archive.writestr("recording.pcapng", data)
+    return file.getvalue()
+
+
+HEAD = b'{"format": "cobotwire-survey", "version": 1, "facts": ['
+
+
+@given(st.binary(max_size=200), st.sampled_from([None, b"", HEAD]))
+def test_any_file_is_read_or_rejected_by_name(
+    tmp_path_factory: pytest.TempPathFactory, data: bytes, head: bytes | None
+) -> None:
+    path = tmp_path_factory.getbasetemp() / "hostile.zip"
+    path.write_bytes(data if head is None else _archive(head, data))
+    with pytest.raises(UsageError, match="is not the file of a survey"):
+        read_survey(path)
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="the terminal is a pseudo-terminal")
+def test_any_key_stops_the_motion_and_the_file_holds_what_was_found(tmp_path: Path) -> None:
+    from terminal import Terminal
+
+    path, stopped = tmp_path / "survey.zip", []
+
+    def note(event: DeviceEvent, reply: bytes) -> None:
+        if isinstance(event, RequestReceived) and event.message.command.role == "stop":
+            stopped.append(event)
+
+    words = ("--edition", "mycobot280", "--allow-motion", "-o", str(path))
+    with (
+        PtyServer(SimulatedArm(TABLE, on_event=note)) as server,
+        Terminal("survey", server.url, *words, columns=80, lines=24) as terminal,
+    ):
+        terminal.until(lambda: "gripperempty?[y/N]" in terminal.text())
+        terminal.press(b"y\n")
+        terminal.until(lambda: "firstmotions" in terminal.text())
+        terminal.press(b"x")
+        assert terminal.finish() == 130
+        assert "interrupted:thearmwasstopped" in terminal.text()
+    assert stopped
+    content, _ = read_survey(path)
+    assert (content["finished"], content["level"]) == (False, 3)
+    assert any(fact["verdict"] == "confirmed" for fact in content["facts"])
+
+
+@pytest.mark.parametrize("verb", ["doctor", "identify"])
+def test_verb_names_tenths_of_degrees_by_the_coordinates(verb: str) -> None:
+    table = editions.load("mycobot320").TABLE
+    [wrong] = [arm for arm in WRONG_ARMS if arm.name == "tenths" and arm.change]
+    shown = []
+    for spoken in (table, wrong.change(table)):
+        robot = spoken.robot._replace(start_angles=POSE)
+        with PtyServer(SimulatedArm(spoken._replace(robot=robot))) as server:
+            shown.append(cobotwire("--edition", "mycobot320", verb, server.url).stdout)
+    assert ["tenths" in text for text in shown] == [False, True]
