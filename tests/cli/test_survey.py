@@ -132,9 +132,9 @@ def test_any_key_stops_the_motion_and_the_file_holds_what_was_found(tmp_path: Pa
 @pytest.mark.parametrize("verb", ["doctor", "identify"])
 def test_verb_names_tenths_of_degrees_by_the_coordinates(verb: str) -> None:
     table = editions.load("mycobot320").TABLE
-    [wrong] = [arm for arm in WRONG_ARMS if arm.name == "tenths" and arm.change]
+    [change] = [arm.change for arm in WRONG_ARMS if arm.name == "tenths" and arm.change]
     shown = []
-    for spoken in (table, wrong.change(table)):
+    for spoken in (table, change(table)):
         robot = spoken.robot._replace(start_angles=POSE)
         with PtyServer(SimulatedArm(spoken._replace(robot=robot))) as server:
             shown.append(cobotwire("--edition", "mycobot320", verb, server.url).stdout)

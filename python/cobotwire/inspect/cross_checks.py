@@ -90,7 +90,8 @@ def doubts(table: Table, results: Mapping[str, Any]) -> list[str]:
     checks = CrossChecks(table)
     frames = {key: (0.0,) for key in checks.conditions}
     found = checks.mistakes([{**frames, **row}])
-    return [mistake.text for mistake in found if mistake.aspect not in ("agreement", "limits")]
+    named = (each for each in found if each.aspect not in ("agreement", "limits"))
+    return [f"{_names(each.keys)}: {each.text}" for each in named]
 
 
 class CrossChecks:
@@ -205,7 +206,9 @@ class CrossChecks:
     ) -> Mistake:
         """Name the mistake; several explanations that are as good leave it open which is right."""
         found = [([key for key in subject if key in read], h) for subject, h in best]
-        texts = [f"{', '.join(map('.'.join, subject))}: {h.text}" for subject, h in found]
+        texts = [h.text for _, h in found]
+        if len(found) > 1:
+            texts = [f"{_names(subject)}: {h.text}" for subject, h in found]
         keys = tuple(dict.fromkeys(key for subject, _ in found for key in subject))
         shown = tuple(r for r in broken if {*keys} & {*r.keys})
         aspect = best[0][1].aspect if len(best) == 1 else "agreement"
@@ -214,6 +217,10 @@ class CrossChecks:
 
 def _corrected(row: Snapshot, subject: Sequence[Key], hypothesis: Hypothesis) -> dict[Key, Row]:
     return {**row, **{key: hypothesis.correct(row[key]) for key in subject if key in row}}
+
+
+def _names(keys: Sequence[Key]) -> str:
+    return ", ".join(f"{command} {part}" for command, part in keys)
 
 
 def _short(row: Row) -> str:

@@ -17,10 +17,12 @@ from wrong_arms import POSE, WRONG_ARMS, WrongArm, connected, with_numbers
 SMALL = editions.load("mycobot280").TABLE
 
 
-def survey_of(edition: str, wrong: WrongArm | None = None, **options: bool) -> Survey:
+def survey_of(
+    edition: str, wrong: WrongArm | None = None, *, settings: bool = False, motion: bool = False
+) -> Survey:
     table = editions.load(edition).TABLE
-    at = () if options.get("motion") else POSE
-    survey = Survey(connected(table, wrong=wrong, at=at), table, **options)
+    connection = connected(table, wrong=wrong, at=() if motion else POSE)
+    survey = Survey(connection, table, settings=settings, motion=motion)
     survey.run()
     return survey
 
@@ -101,4 +103,22 @@ def test_survey_of_an_own_protocol_contradicts_nothing(name: str, tmp_path: Path
     survey = Survey(connected(table), table, settings=True, motion=True)
     survey.run()
     assert survey.contradicted == []
+    assert survey.facts.with_verdict("confirmed")
+
+
+def test_survey_of_an_arm_that_falls_silent_ends_and_keeps_what_it_found() -> None:
+    connection, sent = connected(SMALL), 0
+    write = connection.transport.write
+
+    def write_until_silent(data: bytes) -> None:
+        nonlocal sent
+        sent += 1
+        if sent < 20:
+            write(data)
+
+    connection.transport.write = write_until_silent  # type: ignore[method-assign]
+    survey = Survey(connection, SMALL, motion=True)
+    survey.run()
+    assert "the device does not reply" in survey.obstacle
+    assert not survey.finished
     assert survey.facts.with_verdict("confirmed")

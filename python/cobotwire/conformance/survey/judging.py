@@ -36,6 +36,8 @@ SHOWN = {
 BY_PLACE = ("reached", "arrives", "stops", "moving", "agrees")
 # Text of this length in a reply's place is what a device says instead.
 WORDS = 8
+# How many relations that do not hold a reason lists.
+MOST_SHOWN = 3
 # An argument that all silent commands share, if so many are silent, is what is wrong.
 SEVERAL = 2
 
@@ -156,11 +158,13 @@ class Judge:
         """Compare the readings with each other; return the mistakes that they show."""
         mistakes = checks.mistakes(snapshots)
         for mistake in mistakes:
-            shows = "; ".join(dict.fromkeys(relation.text for relation in mistake.relations))
+            broken = list(dict.fromkeys(relation.text for relation in mistake.relations))
+            more = f"; and {len(broken) - MOST_SHOWN} more" if len(broken) > MOST_SHOWN else ""
+            shows = "; ".join(broken[:MOST_SHOWN]) + more
             frames = [frame for key in mistake.keys for frame in evidence.get(key, [])]
             frames += [f for r in mistake.relations for k in r.keys for f in evidence.get(k, [])]
             for command, part in mistake.keys:
-                why = f"{mistake.text}. It does not hold that {shows}."
+                why = f"{mistake.text}. Contradicted: {shows}."
                 self._note(
                     command, part, mistake.aspect, "contradicted", why, dict.fromkeys(frames)
                 )

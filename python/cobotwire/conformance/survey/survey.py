@@ -22,7 +22,7 @@ from cobotwire.conformance.device.groups import (
 from cobotwire.conformance.device.mover import POLL, Mover
 from cobotwire.conformance.device.probe import Body, Probe
 from cobotwire.conformance.device.requests import as_row, request_of
-from cobotwire.conformance.report import Result
+from cobotwire.conformance.report import Cause, Result
 from cobotwire.conformance.suite import Group
 from cobotwire.conformance.survey.facts import Facts, Frames
 from cobotwire.conformance.survey.judging import Judge
@@ -43,6 +43,8 @@ EDITION_SECONDS = 0.5
 # stopped, in degrees; and the speed in percent.
 AROUND, FIRST, TOO_FAR = 5.0, 1.0, 3.0
 SPEED = 10
+# How long a survey lasts at most, in seconds.
+LONGEST = 600.0
 # What a query reports that is nobody else's business: it is not requested.
 PRIVATE = frozenset({"ssid", "password"})
 # What names a single device: its bytes are replaced by their hash.
@@ -98,6 +100,8 @@ class Survey:
         self._snapshots: list[dict[Key, Row]] = []
         self._evidence: dict[Key, list[Frames]] = {}
         self._results: list[Result] = []
+        # Why the survey ended early: the arm stopped replying, or it took too long.
+        self._ended = ""
 
     @cached_property
     def _checks(self) -> CrossChecks:
@@ -141,7 +145,7 @@ class Survey:
             self._read_now(progress)
             if self._motion:
                 self._move(progress)
-            self.finished = not self._tester.report.stopped
+            self.finished = not self._ended
         finally:
             try:
                 self._tester.end()
@@ -183,6 +187,11 @@ class Survey:
 
     def _run_steps(self, steps: list[Step], progress: Progress) -> None:
         for at, step in enumerate(steps):
+            if self._tester.connection.now > LONGEST:
+                self._ended = f"it has taken {LONGEST:g} s"
+            if self._ended:
+                self.obstacle = f"the survey ended early: {self._ended}; --continue goes on"
+                return
             progress(step.name, at, len(steps))
             private = step.command is not None and bool(SERIAL & {*_states(step.command)})
             if private and step.command is not None:
@@ -192,6 +201,8 @@ class Survey:
                 found = self._tester.results(step)
             finally:
                 self._on_private(False)
+            silent = (result.reason for result in found if result.cause is Cause.RUN_ENDED)
+            self._ended = next(silent, "").rstrip(".")
             # The bytes of what names a device are no evidence for others.
             self._results += [replace(r, evidence=()) if private else r for r in found]
 
@@ -225,6 +236,8 @@ class Survey:
 
     def _move(self, progress: Progress) -> None:
         """Make a few small slow motions around the present pose; first a single small step."""
+        if self._ended:
+            return
         if self.mistakes:
             self.obstacle = "no motion: the readings contradict the edition already"
             return

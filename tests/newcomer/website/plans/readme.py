@@ -38,6 +38,7 @@ CLI = Plan(
         "cobotwire ports": Expected(code=ANY),  # 1 if no port is likely
         f"cobotwire identify {PORT}": Expected(r"mycobot280"),
         f"cobotwire doctor {PORT}": Expected(r"mycobot280|firmware|version"),
+        f"cobotwire survey {PORT} -o survey.zip": Expected(r"facts: \d+ confirmed, 0 contradicted"),
         "cobotwire studio": Expected(r"http://127\.0\.0\.1:\d+", served=True),
         f"cobotwire monitor {PORT} --record arm.pcapng": Expected(r"get_angles", served=True),
         "cobotwire replay arm.pcapng": Expected(r"get_angles"),

@@ -11,6 +11,7 @@ from cobotwire.conformance.device.requests import request_of, units
 from cobotwire.conformance.device.selection import reported, reporters
 from cobotwire.conformance.mistakes import Pair, likely_mistake
 from cobotwire.conformance.suite import Group, TestCase
+from cobotwire.inspect.readings import LINKS_APART, LINKS_TURNED
 from cobotwire.protocol.roles import ANGLES, COORDS, KINDS, as_reached_query
 from cobotwire.protocol.table import Command, Table
 from cobotwire.simulator.kinematics.forward import coords_of
@@ -23,8 +24,7 @@ GEOMETRY = TestCase(
 LIMITS = TestCase("limits", "The joints' limits have the scale of those that the edition states.")
 
 COORDINATES = (*3 * ("millimetre",), *3 * ("degree",))
-# The links of an arm differ a little from those that the edition states.
-NEAR = {"millimetre": 15.0, "degree": 5.0}
+NEAR = {"millimetre": LINKS_APART, "degree": LINKS_TURNED}
 # Far from the present value, in the units of angles and of coordinates.
 FAR = {"degree": 25.0, "millimetre": 60.0}
 LIMIT_STATES = {"lowest", "highest"}
