@@ -74,10 +74,16 @@ def _changed(
     return found
 
 
-def with_command(table: Table, name: str, change: Callable[[Command], Command | None]) -> Table:
-    """Return a table with one command changed, or without it."""
-    commands = (change(c) if c.name == name else c for c in table.commands)
-    return table._replace(commands=tuple(c for c in commands if c is not None))
+def with_command(table: Table, name: str, change: Callable[[Command], Command]) -> Table:
+    """Return a table with one command changed."""
+    return table._replace(
+        commands=tuple(change(c) if c.name == name else c for c in table.commands)
+    )
+
+
+def without(table: Table, absent: Callable[[Command], bool]) -> Table:
+    """Return a table without some commands."""
+    return table._replace(commands=tuple(c for c in table.commands if not absent(c)))
 
 
 def with_numbers(command: Command, change: Callable[[Number], Number]) -> Command:
@@ -110,113 +116,49 @@ def other_sign(row: bytes) -> bytes:
 
 
 def other_limits(table: Table) -> Table:
-    """Return a table with narrower targets, which are the limits of the simulated arm."""
+    """Return a table with half the targets, which are the limits of the simulated arm."""
 
-    def field(old: Field) -> Field:
-        if not old.many:
-            return old
-        [case] = old.cases
-        halved = (n._replace(minimum=n.minimum // 2, maximum=n.maximum // 2) for n in case.numbers)
-        return old._replace(cases=(case._replace(numbers=tuple(halved)),))
+    def halved(number: Number) -> Number:
+        half = number.minimum // 2, number.maximum // 2
+        return number._replace(minimum=half[0], maximum=half[1]) if number.unit else number
 
-    def change(command: Command) -> Command:
-        variants = (v._replace(fields=tuple(map(field, v.fields))) for v in command.request)
-        return command._replace(request=tuple(variants))
-
-    return with_command(table, "send_angles", change)
+    return with_reply(table, "send_angles", halved)
 
 
 NEWER = ("get_servo_speeds", "get_servo_voltages", "get_servo_temps", "get_reboot_count")
 
 
-def older_firmware(table: Table) -> Table:
-    """Return a table without the commands that an older firmware lacks."""
-    return table._replace(commands=tuple(c for c in table.commands if c.name not in NEWER))
+def takes_gripper_id(command: Command) -> bool:
+    """Return whether a command is for a gripper of an id."""
+    return any(field.name == "gripper_id" for field in command.request[0].fields)
 
 
-def without_gripper(table: Table) -> Table:
-    """Return a table of an arm whose gripper has an id that nobody sends."""
-    kept = (c for c in table.commands if all(f.name != "gripper_id" for f in c.request[0].fields))
-    return table._replace(commands=tuple(kept))
-
-
+# fmt: off
 WRONG_ARMS = (
-    WrongArm(
-        "tenths",
-        "get_angles/reply.angles/scale",
-        "the arm sends tenths, the edition states hundredths",
-        lambda t: with_reply(t, "get_angles", lambda n: n._replace(divide=10)),
-        "mycobot320",
-    ),
-    WrongArm(
-        "swapped joints",
-        "get_angles/reply.angles/order",
-        "2 and 3 of the row are swapped",
-        command="get_angles",
-        row=swapped,
-    ),
-    WrongArm(
-        "reversed sign",
-        "get_angles/reply.angles/sign",
-        "number 2 of the row has the other sign",
-        command="get_angles",
-        row=other_sign,
-    ),
-    WrongArm(
-        "shifted id",
-        "get_coords/command/present",
-        "or has it under another id",
-        lambda t: with_command(t, "get_coords", lambda c: c._replace(id=c.id + 0x80)),
-    ),
-    WrongArm(
-        "other endianness",
-        "get_encoders/reply.encoders/byte-order",
-        "endianness",
-        lambda t: with_reply(t, "get_encoders", lambda n: n._replace(order="little")),
-    ),
-    WrongArm(
-        "joint limits",
-        "get_joint_max_angle/reply.angle/limits",
-        "stated limits",
-        other_limits,
-    ),
-    WrongArm(
-        "missing command",
-        "get_servo_temps/command/present",
-        "lacks it",
-        lambda t: with_command(t, "get_servo_temps", lambda c: None),
-    ),
-    WrongArm(
-        "gripper id",
-        "get_pro_gripper_angle/command/present",
-        "has another gripper_id",
-        without_gripper,
-        "mycobot320",
-    ),
-    WrongArm(
-        "status list",
-        "get_servo_status/reply/length",
-        "expected a whole frame",
-        command="get_servo_status",
-        row=lambda row: row + b"\0",
-    ),
-    WrongArm(
-        "late acknowledgement",
-        "set_fresh_mode/command/deadline",
-        "took 7",
-        late="set_fresh_mode",
-        level=2,
-    ),
-    WrongArm(
-        "other firmware",
-        "get_reboot_count/command/present",
-        "nor have 3 other commands",
-        older_firmware,
-    ),
-    WrongArm(
-        "other robot",
-        "",
-        "the arm speaks edition mycobot, not mycobot280",
-        lambda t: editions.load("mycobot").TABLE,
-    ),
+    WrongArm("tenths", "get_angles/reply.angles/scale",
+             "the arm sends tenths, the edition states hundredths",
+             lambda t: with_reply(t, "get_angles", lambda n: n._replace(divide=10)), "mycobot320"),
+    WrongArm("swapped joints", "get_angles/reply.angles/order", "2 and 3 of the row are swapped",
+             command="get_angles", row=swapped),
+    WrongArm("reversed sign", "get_angles/reply.angles/sign",
+             "number 2 of the row has the other sign", command="get_angles", row=other_sign),
+    WrongArm("shifted id", "get_coords/command/present", "or has it under another id",
+             lambda t: with_command(t, "get_coords", lambda c: c._replace(id=c.id + 0x80))),
+    WrongArm("other endianness", "get_encoders/reply.encoders/byte-order", "endianness",
+             lambda t: with_reply(t, "get_encoders", lambda n: n._replace(order="little"))),
+    WrongArm("joint limits", "get_joint_max_angle/reply.angle/limits", "stated limits",
+             other_limits),
+    WrongArm("missing command", "get_servo_temps/command/present", "lacks it",
+             lambda t: without(t, lambda c: c.name == "get_servo_temps")),
+    WrongArm("gripper id", "get_pro_gripper_angle/command/present", "has another gripper_id",
+             lambda t: without(t, takes_gripper_id), "mycobot320"),
+    WrongArm("status list", "get_servo_status/reply/length", "expected a whole frame",
+             command="get_servo_status", row=lambda row: row + b"\0"),
+    WrongArm("late acknowledgement", "set_fresh_mode/command/deadline", "took 7",
+             late="set_fresh_mode", level=2),
+    WrongArm("other firmware", "get_reboot_count/command/present", "nor have 3 other commands",
+             lambda t: without(t, lambda c: c.name in NEWER)),
+    WrongArm("other robot", "", "the arm speaks edition mycobot, not mycobot280",
+             lambda t: editions.load("mycobot").TABLE),
 )
+# fmt: on

@@ -2,13 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
 from dataclasses import replace
 
 import click
-from rich.console import Console
-from rich.progress import Progress
 
 from cobotwire import editions
 from cobotwire.cli.shared.arm_options import address_option, baudrate_option
@@ -21,13 +17,13 @@ from cobotwire.cli.shared.conform_report import (
 )
 from cobotwire.cli.shared.earlier_reports import earlier_report
 from cobotwire.cli.shared.edition_option import uses_edition
+from cobotwire.cli.shared.progress_bar import step_progress
 from cobotwire.cli.shared.subject_connection import STARTING, Lacking, Subject, connected
 from cobotwire.conformance.device import (
     ATTACH,
     PERMISSIONS,
     Plan,
     RunOptions,
-    Step,
     Tester,
 )
 from cobotwire.conformance.provenance import identify
@@ -178,22 +174,9 @@ def device(
 def _run(tester: Tester, plan: Plan) -> None:
     """Run with a progress bar; if the run is interrupted, the report holds what was tested."""
     try:
-        with _progress() as show_step:
-            tester.run(show_step, plan)
+        with step_progress() as show:
+            tester.run(lambda step, done, count: show(step.name, done, count), plan)
     except KeyboardInterrupt:
         click.echo("interrupted: the arm was stopped, and its settings were restored", err=True)
     except LinkError as error:
         click.echo(f"cobotwire: {error}", err=True)
-
-
-@contextmanager
-def _progress() -> Iterator[Callable[[Step, int, int], None]]:
-    """Yield a function that shows the current step on standard error, if that is a terminal."""
-    console = Console(stderr=True)
-    with Progress(console=console, transient=True, disable=not console.is_terminal) as bar:
-        task = bar.add_task("")
-
-        def show_step(step: Step, index: int, count: int) -> None:
-            bar.update(task, description=step.name, completed=index, total=count)
-
-        yield show_step

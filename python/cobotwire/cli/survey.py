@@ -6,15 +6,12 @@ import json
 import sys
 import tempfile
 from collections import Counter
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Iterator
 from hashlib import sha256
 from pathlib import Path
 from typing import Any, Literal
 
 import click
-from rich.console import Console
-from rich.progress import Progress
 
 from cobotwire import codec as codecs
 from cobotwire import editions
@@ -26,6 +23,7 @@ from cobotwire.cli.shared.completers import complete_ports
 from cobotwire.cli.shared.edition_option import uses_edition
 from cobotwire.cli.shared.exit_codes import INTERRUPTED, LINK_FAILED
 from cobotwire.cli.shared.output import fold, report_written
+from cobotwire.cli.shared.progress_bar import step_progress
 from cobotwire.cli.shared.subject_connection import Lacking, Subject, connected
 from cobotwire.conformance.device import DeviceConnection
 from cobotwire.conformance.sources import spec_lines
@@ -149,7 +147,7 @@ def _run(
             on_private=tap.hide,
         )
         try:
-            with _progress() as show, interrupted_by_any_key(motion):
+            with step_progress() as show, interrupted_by_any_key(motion):
                 found.run(show)
         except KeyboardInterrupt:
             click.echo("interrupted: the arm was stopped, and its settings were restored", err=True)
@@ -176,17 +174,6 @@ class _Tap:
         if self._hidden and direction == "received":
             data = sha256(data).digest()
         self.recording.record(direction, data, at)
-
-
-@contextmanager
-def _progress() -> Iterator[Callable[[str, int, int], None]]:
-    """Yield a function that shows the current step on standard error, if that is a terminal."""
-    console = Console(stderr=True)
-    with Progress(console=console, transient=True, disable=not console.is_terminal) as bar:
-        task = bar.add_task("")
-        yield lambda name, done, count: bar.update(
-            task, description=name, completed=done, total=count
-        )
 
 
 def _lines(found: Survey, content: dict[str, Any]) -> Iterator[str]:

@@ -1,4 +1,4 @@
-"""Show how much of the input was read, on a terminal."""
+"""Show how much of the input was read, or how many steps were run, on a terminal."""
 
 from __future__ import annotations
 
@@ -24,3 +24,14 @@ def progress_bar(
     with Progress(*columns, console=console, disable=hidden, transient=True) as bar:
         task = bar.add_task(work, total=size)
         yield lambda read: bar.advance(task, read)
+
+
+@contextmanager
+def step_progress() -> Iterator[Callable[[str, int, int], None]]:
+    """Yield a function that shows a step, how many are done, and how many there are."""
+    console = Console(stderr=True)
+    with Progress(console=console, transient=True, disable=not console.is_terminal) as bar:
+        task = bar.add_task("")
+        yield lambda name, done, count: bar.update(
+            task, description=name, completed=done, total=count
+        )

@@ -23,6 +23,8 @@ JSON, RECORDING = "survey.json", "recording.pcapng"
 # The most bytes of the file and of its members.
 MOST_FILE, MOST = 20 << 20, {JSON: 2 << 20, RECORDING: 50 << 20}
 MOST_NAME = 80
+# The texts of a fact.
+FACT = ("fact", "verdict", "why")
 
 
 def content_of(survey: Survey, package: str, robot: str) -> dict[str, Any]:
@@ -120,9 +122,7 @@ def _check(content: Any) -> None:
     if content.get("version") != VERSION or not isinstance(facts, list):
         raise ValueError(f"{JSON} is not of version {VERSION}, or lists no facts")
     for fact in facts:
-        texts = [fact.get(name) for name in ("fact", "verdict", "why")]
-        frames = [*fact["frames"]]
-        if not all(isinstance(text, str) and text.isprintable() for text in texts):
+        if not all(isinstance(fact[k], str) and fact[k].isprintable() for k in FACT):
             raise ValueError("a fact has no name, verdict or reason")
-        for frame in frames:
-            bytes.fromhex(frame["sent"]), bytes.fromhex(frame["received"])
+        for frame in fact["frames"]:
+            bytes.fromhex(frame["sent"] + frame["received"])
