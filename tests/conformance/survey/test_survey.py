@@ -9,10 +9,10 @@ import pytest
 import small_specs
 from cobotwire import editions
 from cobotwire.conformance.survey import Survey
-from cobotwire.protocol.table import Number, Table
+from cobotwire.protocol.table import Command, Number, Table
 from targets.specs import edition_of
 from vectors import sampled
-from wrong_arms import POSE, WRONG_ARMS, WrongArm, connected, with_numbers
+from wrong_arms import POSE, WRONG_ARMS, WrongArm, connected, with_command, with_numbers
 
 SMALL = editions.load("mycobot280").TABLE
 
@@ -122,3 +122,18 @@ def test_survey_of_an_arm_that_falls_silent_ends_and_keeps_what_it_found() -> No
     assert "the device does not reply" in survey.obstacle
     assert not survey.finished
     assert survey.facts.with_verdict("confirmed")
+
+
+def test_replies_that_name_a_device_are_hidden_and_no_evidence() -> None:
+    def renamed(command: Command) -> Command:
+        [variant] = command.reply
+        fields = tuple(field._replace(name="serial") for field in variant.fields)
+        return command._replace(reply=(variant._replace(fields=fields),), package="")
+
+    table, hidden = with_command(SMALL, "get_reboot_count", renamed), list[bool]()
+    survey = Survey(connected(SMALL), table, on_private=hidden.append)
+    survey.run()
+    assert survey.hashed == ["get_reboot_count"]
+    assert hidden.count(True) == 1
+    fact = survey.facts["mycobot280/get_reboot_count/command/present"]
+    assert (fact.verdict, fact.frames) == ("confirmed", ())
