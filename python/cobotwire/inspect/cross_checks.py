@@ -171,10 +171,14 @@ class CrossChecks:
             own = [r for r in self._relations if {*subject} & {*r.keys}]
             # Of one id there is one reading, whatever names it has.
             size = len({self._ids[name] for name, _ in subject})
-            repaired = len([r for r in own if r in broken]), -size
+            shown = [relation for relation in own if relation in broken]
+            repaired = len(shown), -size
             if repaired < most:
                 continue
+            exact = any(relation.exact for relation in shown)
             for each in self._hypotheses[subject[0]]:
+                if not exact and each.aspect in ("sign", "order"):
+                    continue
                 if not self._broken([_corrected(row, subject, each) for row in rows], own):
                     best, most = (best if repaired == most else []) + [(subject, each)], repaired
                     break

@@ -71,6 +71,7 @@ class Relation(NamedTuple):
     ``holds`` takes the rows of the ``keys``, then those of ``conditions``, which are not judged by
     it. ``independent`` is whether the readings differ in kind, so that a mistake which all of one
     kind share shows, too. ``aspect`` is what is wrong if no mistake explains that it does not hold.
+    One that is not ``exact`` gives only a range: that shows no sign and no order.
     """
 
     keys: tuple[Key, ...]
@@ -79,6 +80,7 @@ class Relation(NamedTuple):
     independent: bool = True
     aspect: str = "agreement"
     conditions: tuple[Key, ...] = ()
+    exact: bool = True
 
     def fails(self, snapshot: Snapshot) -> bool:
         """Return whether it does not hold; False if a reading is missing."""
@@ -206,18 +208,18 @@ def _of_limits(table: Table, every: list[Source]) -> Iterator[Relation]:
     }
     for low, high in zip(by_state["lowest"], by_state["highest"]):
         text = f"{low.query.name} is below {high.query.name}"
-        yield Relation((low.key, high.key), text, _below, aspect="limits")
+        yield Relation((low.key, high.key), text, _below, aspect="limits", exact=False)
         for angles in by_state["angles"][:1]:
             text = f"{angles.query.name} is within {low.query.name} and {high.query.name}"
-            yield Relation((low.key, angles.key, high.key), text, _between, aspect="limits")
+            keys = low.key, angles.key, high.key
+            yield Relation(keys, text, _between, aspect="limits", exact=False)
     if not stated or len(stated) != table.joints:
         return
     lowest, highest = zip(*stated)
+    within = partial(_inside, lowest, highest)
     for angles in by_state["angles"]:
         text = f"{angles.query.name} is within the stated limits"
-        yield Relation(
-            (angles.key,), text, lambda row: _between(lowest, row, highest), aspect="limits"
-        )
+        yield Relation((angles.key,), text, within, aspect="limits", exact=False)
     near = [LIMIT_APART] * table.joints
     for state, side in (("lowest", lowest), ("highest", highest)):
         for source in by_state[state]:
@@ -228,7 +230,11 @@ def _of_limits(table: Table, every: list[Source]) -> Iterator[Relation]:
 def _plausible(source: Source) -> Relation:
     low, high = PLAUSIBLE[next(unit for unit in source.units if unit in PLAUSIBLE)]
     text = f"{source.query.name} reports {low:g} to {high:g} {source.numbers[0].units}"
-    return Relation((source.key,), text, lambda row: all(not v or low <= v <= high for v in row))
+
+    def holds(row: Row) -> bool:
+        return all(not value or low <= value <= high for value in row)
+
+    return Relation((source.key,), text, holds, exact=False)
 
 
 def _close(one: Row, two: Row, near: list[float]) -> bool:
@@ -241,6 +247,10 @@ def _below(low: Row, high: Row) -> bool:
 
 def _between(low: Row, row: Row, high: Row) -> bool:
     return all(a - BEYOND <= v <= b + BEYOND for a, v, b in zip(low, row, high))
+
+
+def _inside(low: Row, high: Row, row: Row) -> bool:
+    return _between(low, row, high)
 
 
 def _short(row: Row) -> str:

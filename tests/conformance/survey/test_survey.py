@@ -137,3 +137,11 @@ def test_replies_that_name_a_device_are_hidden_and_no_evidence() -> None:
     assert hidden.count(True) == 1
     fact = survey.facts["mycobot280/get_reboot_count/command/present"]
     assert (fact.verdict, fact.frames) == ("confirmed", ())
+
+
+def test_angle_beyond_a_limit_contradicts_the_limit_but_no_sign() -> None:
+    table = editions.load("mypalletizer260").TABLE
+    survey = Survey(connected(table, at=(10.0, 20.0, 95.0, -9.0)), table)
+    survey.run()
+    wrong = {fact.fact.rpartition("/")[2] for fact in survey.facts.with_verdict("contradicted")}
+    assert wrong == {"limits"}
