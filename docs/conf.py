@@ -13,7 +13,7 @@ from docutils import nodes
 from sphinx.application import Sphinx
 
 from cobotwire_codegen.emit import write
-from cobotwire_codegen.project import SITE, editions, products
+from cobotwire_codegen.project import SITE, confirmed_table, editions, products
 
 sys.path.insert(0, str(Path(__file__).parent))
 from robot_picture import picture
@@ -58,6 +58,7 @@ html_static_path = ["_static", "pictures"]
 html_css_files = ["site.css"]
 ROOT = Path(__file__).parents[1]
 EDITIONS = editions(ROOT)
+CONFIRMED = confirmed_table(ROOT, EDITIONS)
 COMMANDS = {each.name: each.by_name for each in EDITIONS}
 _PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))
 REPOSITORY = _PROJECT["project"]["urls"]["Repository"]
@@ -88,8 +89,9 @@ def _lead_on(app: Sphinx, error: Exception | None) -> None:
 
 
 def _add_robots(app: Sphinx, page: str, source: list[str]) -> None:
-    """List the page of each robot below their overview, and draw the arm of each."""
+    """Complete the overview of robots, list their pages below it, and draw the arm of each."""
     if page == "robots":
+        source[0] = source[0].replace("<!-- confirmed -->", CONFIRMED)
         source[0] += "\n```{toctree}\n:hidden:\n:glob:\n\nrobots/mycobot280\nrobots/*\n```\n"
     if page.startswith("robots/"):
         name = page.rpartition("/")[2]

@@ -21,6 +21,15 @@ firmware: Firmware 1.
 errata:
   - {line: 3, kind: text, commands: [tell], says: Tells., read: It tells., why: It does.}
   - {line: 4, kind: text, says: Frames., read: Bytes., why: They are.}
+evidence:
+  - evidence: lamp
+    kind: survey
+    robot: A lamp.
+    firmware: "1"
+    date: "2026-11-24"
+    digest: abc
+    facts:
+      - {fact: tell/reply/length, verdict: contradicted, why: It is longer., frames: [FE FE]}
 """
 COMMAND = """
 id: 0x50

@@ -32,7 +32,7 @@ from codegen import hostile
 SPEC = hostile.spec()
 SLOTS = list(hostile.slots(SPEC))
 # Texts that name something, or that have a grammar of their own.
-REFERENCES = {"after", "change", "remove", "rename", "length_counts", "commands", "text"}
+REFERENCES = {"after", "change", "fact", "remove", "rename", "length_counts", "commands", "text"}
 C_TEXT = re.compile(r'/\*.*?\*/|"(?:\\.|[^"\\\n])*"|//[^\n]*', re.DOTALL)
 LUA_TEXT = re.compile(r'"(?:\\.|[^"\\\n])*"|--[^\n]*')
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
-from pathlib import Path
 from typing import NamedTuple
 
 import pytest
@@ -17,7 +16,7 @@ from cobotwire.protocol.frame_index import FrameIndex
 from cobotwire.protocol.table import Direction, Table
 from cobotwire_codegen.model import Command, Dispute, Quantity
 
-PAGES = Path(__file__).with_name("public_pages.txt")
+PAGES = vectors.ROOT / "spec" / "public_pages.txt"
 FRAME = re.compile(r"((?:[0-9A-F]{2} )+)([<>]) (\S+)(?: (.+))?")
 SIZES = re.compile(r"([0-9A-F]{2}) (\d+|-) (\d+|-) (\S+)(?: (.+))?")
 DIRECTIONS: dict[str, Direction] = {">": "request", "<": "reply"}

@@ -9,6 +9,7 @@ from cobotwire_codegen.build import Built, build_edition
 from cobotwire_codegen.check import check
 from cobotwire_codegen.emit import Target
 from cobotwire_codegen.errors import Place, Problem, SpecError
+from cobotwire_codegen.facts import SOURCES, Sources, bar, confirmed, counts, facts_of_pages
 from cobotwire_codegen.language.reference import language_page
 from cobotwire_codegen.language.schema import schema_json
 from cobotwire_codegen.library import Library, build_library, render_library, render_page
@@ -102,6 +103,58 @@ def _library(root: Path, found: Sequence[Edition]) -> Library | None:
     return build_library(path, root, [*found]) if path.is_file() else None
 
 
+def second_sources(root: Path, found: Sequence[Edition]) -> dict[str, Sources]:
+    """Return what the maker's library and pages confirm of each edition.
+
+    Of a command that an edition has as its base has it, they confirm what they confirm there; so
+    does the library, unless it has a class for the edition.
+    """
+    library, pages = _in_library(root, found), root / "spec" / "public_pages.txt"
+    stated = facts_of_pages(pages.read_text(encoding="utf-8")) if pages.is_file() else {}
+    made: dict[str, Sources] = {}
+    editions = {edition.name: edition for edition in found}
+
+    def of(edition: Edition) -> Sources:
+        if edition.name not in made:
+            base = editions.get(edition.base)
+            above = of(base) if base else Sources()
+            before = base.by_name if base else {}
+            same = {each.name for each in edition.commands if before.get(each.name) == each}
+            made[edition.name] = Sources(
+                library.get(edition.name, above.library & same),
+                frozenset(stated.get(edition.name, ()))
+                | {fact for fact in above.pages if fact.partition("/")[0] in same},
+            )
+        return made[edition.name]
+
+    return {edition.name: of(edition) for edition in found}
+
+
+def confirmed_table(root: Path, found: Sequence[Edition]) -> str:
+    """Return the share of each edition's facts that each source confirms, as a Markdown table."""
+    sources = second_sources(root, found)
+    rows = [
+        "| edition | facts | " + " | ".join(SOURCES) + " |",
+        "|---|--:|" + "---|" * len(SOURCES),
+    ]
+    for edition in found:
+        counted = counts(confirmed(edition, sources[edition.name]))
+        bars = " | ".join(bar(counted[source], counted["facts"]) for source in SOURCES)
+        rows.append(f"| `{edition.name}` | {counted['facts']} | {bars} |")
+    return "\n".join(rows)
+
+
+def _in_library(root: Path, found: Sequence[Edition]) -> dict[str, frozenset[str]]:
+    """Return the commands that the maker's library has, for each edition with a class there."""
+    library = _library(root, found)
+    names: dict[str, frozenset[str]] = {}
+    for each in library.classes if library else ():
+        sent = {method.command.name for method in each.methods}
+        for edition in (each.edition, each.elsewhere):
+            names[edition.name] = names.get(edition.name, frozenset()) | sent
+    return names
+
+
 def _servo_bus(root: Path) -> list[Target]:
     """Return the table by which the diagnosis of noise reads packets of the servo bus."""
     path = root / SERVO_BUS
@@ -135,6 +188,12 @@ def _reference(root: Path, found: Sequence[Edition]) -> Files:
     return made | suite_pages(root)
 
 
+def _robots(root: Path, found: Sequence[Edition]) -> Files:
+    """Return the page of each robot."""
+    sources = second_sources(root, found)
+    return robot_pages([(each, confirmed(each, sources[each.name])) for each in found])
+
+
 RUST_DATA = "rust/core/tests/data"
 REFERENCE = "docs/reference"
 ROBOTS = "docs/robots"
@@ -143,7 +202,7 @@ SITE = (REFERENCE, ROBOTS, "docs/_static/decoder/editions")
 # Build products by their folder. Git ignores them; users generate the ones that they need.
 PRODUCTS: dict[str, Callable[[Path, Sequence[Edition]], Files]] = {
     REFERENCE: _reference,
-    ROBOTS: lambda _, found: robot_pages(found),
+    ROBOTS: _robots,
     "docs/_static/decoder/editions": lambda _, found: render_decoder(found),
     RUST_DATA: lambda _, found: _every_vectors(found),
     "targets/c": lambda _, found: _every_c(found),

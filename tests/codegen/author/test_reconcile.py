@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 import vectors
 from cobotwire_codegen.author.guess import guess
-from cobotwire_codegen.author.reconcile import capture_bytes, reconcile
+from cobotwire_codegen.author.reconcile import capture_bytes, draft_lines, reconcile
 from cobotwire_codegen.author.scan import known_variants, scan
 from cobotwire_codegen.build import build_edition
 from codegen.author import samples
@@ -98,10 +98,28 @@ def test_reconcile_prints_drafts_and_exits_with_1() -> None:
     result = samples.run(vectors.ROOT, "reconcile", "-", given=line)
     assert result.returncode == 1
     assert "# GUESSED from 40 frame(s); the id is unknown." in result.stdout
-    assert "{name: word_2, type: angle}  # guess: a big-endian word" in result.stdout
+    assert "; fits measured_angle: 0..89.96 degree, scale 1/100, signed" in result.stdout
     assert "40 frame(s), 1 unknown variant(s)" in result.stderr
     known = samples.run(vectors.ROOT, "reconcile", "-", given=b"".join(FRAMES))
     assert (known.returncode, known.stdout) == (0, "")
+
+
+def test_drafts_have_the_types_that_values_fit_and_the_effects_that_pairs_show() -> None:
+    line = b""
+    for i in range(20):
+        word = int(9000 * math.sin(i / 5)).to_bytes(2, "big", signed=True)
+        # Angles, what repeats the first one, and a setting that is read back.
+        line += _frame(0x20, word * 6) + _frame(0xEE, word + bytes([i % 2, 20 + 3 * i]))
+        line += _frame(0xEA, bytes([7 * i])) + _frame(0xEB, b"") + _frame(0xEB, bytes([7 * i]))
+    _, found = reconcile(EDITION, line, "both")
+    shown = ["\n".join(draft_lines(EDITION, news, "both")) for news in found]
+    stored, _, reported, measured = shown
+    assert "equals get_angles.angles[0]: -55.06..89.96 degree, scale 1/100, signed" in measured
+    assert "{name: flag_2, type: flag}" in measured
+    assert "type: speed}  # guess: 20..77; fits speed: 20..77 percent" in measured
+    assert "    stores:\n      byte_0: state_ea_0" in stored
+    assert "safety: query  # its values are always those that 0xEA has set" in reported
+    assert "    reports:\n      byte_0: state_ea_0" in reported
 
 
 def test_reconcile_prints_drafts_as_json() -> None:

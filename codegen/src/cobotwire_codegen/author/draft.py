@@ -77,21 +77,37 @@ def vector_lines(
 def read(
     edition: Edition, command: Command, direction: Direction, frame: bytes
 ) -> dict[str, object]:
-    """Return the values that a frame carries; it must be the message's full variant.
+    """Return the values that a frame carries, read as the first variant that it fits.
 
     Raises:
         ValueError: the frame is not that message.
     """
-    variant = command.variants(direction)[0]
-    widths = [field.type.size for field in variant]
-    start = len(frame) - edition.frame.check_size - sum(widths)
-    values: dict[str, object] = {}
-    for field, width in zip(variant, widths):
-        values[field.name] = field.type.read(frame[max(start, 0) : max(start, 0) + width])
-        start += width
-    if build_frame(edition.frame, command, direction, values) != frame:
-        raise ValueError(f"{frame.hex(' ').upper()} is not the described {direction}")
-    return values
+    for variant in command.variants(direction):
+        widths = [field.type.size for field in variant]
+        start = len(frame) - edition.frame.check_size - sum(widths)
+        if start < 0:
+            continue
+        values: dict[str, object] = {}
+        for field, width in zip(variant, widths):
+            values[field.name] = field.type.read(frame[start : start + width])
+            start += width
+        address = edition.frame.address_in(frame)
+        if _encodes(edition, command, direction, values, address) == frame:
+            return values
+    raise ValueError(f"{frame.hex(' ').upper()} is not the described {direction}")
+
+
+def _encodes(
+    edition: Edition,
+    command: Command,
+    direction: Direction,
+    values: dict[str, object],
+    address: int | None,
+) -> bytes | None:
+    try:
+        return build_frame(edition.frame, command, direction, values, address)
+    except ValueError:
+        return None
 
 
 def _value(value: object) -> str:

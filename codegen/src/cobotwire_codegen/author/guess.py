@@ -65,7 +65,9 @@ def _smooth(payloads: Sequence[bytes], first: int, length: int) -> bool:
     low = {payload[first + 1] for payload in payloads}
     jumps = [abs(b - a) for a, b in pairwise(_signed(payload, first) for payload in payloads)]
     varied = len(high) > 1 and len(low) > max(len(high), _FEW)
-    return varied and max(jumps) < _SMOOTH
+    # A flag before a byte looks like a word that jumps by 256 each time.
+    flag = len(high) == 2 and min(jumps) > 128
+    return varied and max(jumps) < _SMOOTH and not flag
 
 
 def _signed(payload: bytes, first: int) -> int:

@@ -9,6 +9,7 @@ from typing import Any
 
 from cobotwire_codegen.author.guess import Guess, guess
 from cobotwire_codegen.author.scan import Seen, known_variants, scan
+from cobotwire_codegen.author.values import fitting, known_values, pairs
 from cobotwire_codegen.model import Edition
 
 _HEX = re.compile(rb"[0-9A-Fa-fxX\s,]*\Z")
@@ -22,6 +23,11 @@ class News:
     why: str
     frames: tuple[Seen, ...]
     guesses: tuple[Guess, ...]
+    # For each guess, the type that its values fit, and why.
+    types: tuple[tuple[str, str], ...]
+    # Whether it ``stores`` what another message reports or ``reports`` what another one stores.
+    effect: str
+    other: int
 
     @property
     def id(self) -> int:
@@ -56,17 +62,24 @@ def reconcile(edition: Edition, line: bytes, direction: str) -> tuple[int, list[
     known = known_variants(edition, direction)
     ids = {command.id: command.name for command in edition.commands}
     groups: dict[tuple[int, int], list[Seen]] = {}
-    count = 0
-    for seen in scan(edition, line, known):
-        count += 1
+    frames = list(scan(edition, line, known))
+    for seen in frames:
         if (seen.id, len(seen.data)) not in known:
             groups.setdefault((seen.id, len(seen.data)), []).append(seen)
+    values = known_values(edition, frames) if groups else {}
+    effects: dict[tuple[int, int], tuple[str, int]] = {}
+    for stored, reported, size in pairs([*groups.values()]):
+        effects.setdefault((stored, size), ("stores", reported))
+        effects.setdefault((reported, size), ("reports", stored))
     found = []
-    for (id, _), frames in sorted(groups.items()):
-        why = f"{ids[id]} has no such length" if id in ids else "the id is unknown"
-        guesses = guess([seen.data for seen in frames])
-        found.append(News(why, tuple(frames), tuple(guesses)))
-    return count, found
+    for key, seen_frames in sorted(groups.items()):
+        why = f"{ids[key[0]]} has no such length" if key[0] in ids else "the id is unknown"
+        guesses = guess([seen.data for seen in seen_frames])
+        types = tuple(fitting(edition, item, seen_frames, values) for item in guesses)
+        effect, other = effects.get(key, ("", 0))
+        news = News(why, tuple(seen_frames), tuple(guesses), types, effect, other)
+        found.append(news)
+    return len(frames), found
 
 
 def draft_lines(edition: Edition, news: News, direction: str) -> Iterator[str]:
@@ -77,31 +90,40 @@ def draft_lines(edition: Edition, news: News, direction: str) -> Iterator[str]:
     yield f"  id: 0x{news.id:02X}"
     yield f"  title: Unknown 0x{news.id:02X}"
     yield "  doc: Unknown."
-    yield "  safety: persistent write  # the strictest class, until it is known"
+    if news.effect == "reports":
+        yield f"  safety: query  # its values are always those that 0x{news.other:02X} has set"
+    else:
+        yield "  safety: persistent write  # the strictest class, until it is known"
+    if news.effect:
+        yield from _effect(news)
     if news.guesses:
-        note = "  # or reply: the capture does not show which" if direction == "both" else ""
-        yield f"  {'reply' if direction == 'reply' else 'request'}:{note}"
-    yield from (line for item in news.guesses for line in _fields(edition, item))
+        reply = direction == "reply" or news.effect == "reports"
+        unsure = direction == "both" and not news.effect
+        note = "  # or reply: the capture does not show which" if unsure else ""
+        yield f"  {'reply' if reply else 'request'}:{note}"
+    yield from (line for pair in zip(news.guesses, news.types) for line in _fields(edition, *pair))
 
 
-def _fields(edition: Edition, item: Guess) -> Iterator[str]:
+def _effect(news: News) -> Iterator[str]:
+    """Yield the effect of a message that sets or reports what another one reports or sets."""
+    state = min(news.id, news.other)
+    yield f"  effect:  # GUESSED; declare the state, see 0x{news.other:02X}"
+    yield f"    {news.effect}:"
+    for item in news.guesses:
+        name = f"{item.kind if item.kind != 'text' else 'byte'}_{item.first}"
+        yield f"      {name}: state_{state:02x}_{item.first}"
+
+
+def _fields(edition: Edition, item: Guess, typed: tuple[str, str]) -> Iterator[str]:
     kind, width = (item.kind, item.width) if item.kind != "text" else ("byte", 1)
+    type, why = typed
     for first in range(item.first, item.first + item.width, width):
         const = item.says.removeprefix("always ") if kind == "constant" else ""
         more = f", const: {const}" if const else ""
         name = f"{kind}_{first}"
-        yield f"    - {{name: {name}, type: {_type(edition, kind)}{more}}}  # guess: {item.says}"
-
-
-def _type(edition: Edition, kind: str) -> str:
-    """Return a type of the edition that fits, or a name that the checker will report."""
-    width = 2 if kind == "word" else 1
-    for type in edition.types:
-        if kind == type.kind == "flag":
-            return type.name
-        if kind != "flag" and type.can_hold_any(width):
-            return type.name
-    return "unknown_word" if kind == "word" else "unknown_byte"
+        chosen = type or ("unknown_word" if kind == "word" else "unknown_byte")
+        says = f"{item.says}; {why}" if why else item.says
+        yield f"    - {{name: {name}, type: {chosen}{more}}}  # guess: {says}"
 
 
 def plain(news: News, draft: list[str]) -> dict[str, Any]:
@@ -115,7 +137,8 @@ def plain(news: News, draft: list[str]) -> dict[str, Any]:
         "examples": news.examples,
         "guesses": [
             {"first": item.first, "width": item.width, "kind": item.kind, "says": item.says}
-            for item in news.guesses
+            | {"type": type, "why": why}
+            for item, (type, why) in zip(news.guesses, news.types)
         ],
         "draft": "\n".join(draft),
     }

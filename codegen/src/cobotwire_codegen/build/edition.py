@@ -9,6 +9,7 @@ from cobotwire_codegen import language
 from cobotwire_codegen.build.commands import build_family
 from cobotwire_codegen.build.delta import apply_changes
 from cobotwire_codegen.build.effects import build_state
+from cobotwire_codegen.build.evidence import build_evidence, with_disputes
 from cobotwire_codegen.build.frame import build_frame_format
 from cobotwire_codegen.build.inherit import carried
 from cobotwire_codegen.build.parts import Files, Inherited, Parts, Texts, add_own, drop_firmware
@@ -74,10 +75,17 @@ def _collect(
         base_reader, parts = _collect(base_path, texts, problems, above, built)
         parts.base = _built(base_path, base_reader, parts, problems, built)
         parts.vectors = []
-        parts.inherited = [Inherited(each, each.command) for each in parts.base.vectors]
-        # The base's errata are about the base's document, its changes about its own base.
+        observed = {name for each in parts.base.observed for name in each.vectors}
+        parts.inherited = [
+            Inherited(each, each.command)
+            for each in parts.base.vectors
+            if each.name not in observed
+        ]
+        # The base's errata are about the base's document, its changes about its own base, and its
+        # evidence about another robot.
         parts.errata, parts.changes, parts.general_changes, parts.gone = [], {}, [], {}
         drop_firmware(parts)
+        parts.evidence = []
         for node in files.listed(reader, language.DeltaEdition.changes):
             apply_changes(parts, node, problems)
     add_own(parts, reader, files)
@@ -110,6 +118,8 @@ def _build(reader: Reader, parts: Parts, problems: list[Problem]) -> Edition:
         ],
         robot.encoders.zero if robot.encoders else None,
     )
+    observed, seen = build_evidence(parts, problems)
+    families = with_disputes(families, observed)
     commands = [command for family in families for command in family.commands]
     return Edition(
         place=reader.place,
@@ -129,6 +139,7 @@ def _build(reader: Reader, parts: Parts, problems: list[Problem]) -> Edition:
         errata=tuple(build_erratum(node, problems) for node in parts.errata),
         vectors=(
             *_inherited(parts, frame, families),
+            *seen,
             *(build_vector(node, problems) for node in parts.vectors),
         ),
         changes=tuple(parts.general_changes),
@@ -136,6 +147,7 @@ def _build(reader: Reader, parts: Parts, problems: list[Problem]) -> Edition:
         gone=tuple(parts.gone.items()),
         bases=(parts.base.name, *parts.base.bases) if parts.base else (),
         root=parts.root,
+        observed=observed,
     )
 
 

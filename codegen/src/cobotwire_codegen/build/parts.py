@@ -78,6 +78,7 @@ class Parts:
     vectors: list[Node] = field(default_factory=list)
     inherited: list[Inherited] = field(default_factory=list)
     errata: list[Node] = field(default_factory=list)
+    evidence: list[Node] = field(default_factory=list)
     base: Edition | None = None
     changes: dict[str, list[Change]] = field(default_factory=dict)
     # Commands of the base that the delta takes away, each with a hint for who still names it.
@@ -104,6 +105,10 @@ class Texts:
     def __init__(self, root: Path, unsaved: Unsaved) -> None:
         self.root, self._unsaved = root.resolve(), unsaved
         self._bytes = self._nodes = 0
+
+    def replaced(self, path: Path) -> bool:
+        """Return whether a text replaces the content of a file, which then need not exist."""
+        return path.resolve() in self._unsaved
 
     def load(self, path: Path, place: Place | None = None) -> Node:
         """Return the content of a file that is named at ``place``.
@@ -158,7 +163,8 @@ class Files:
 
     def _is_file(self, name: str) -> bool:
         try:
-            return (self._folder / name).is_file()
+            path = self._folder / name
+            return self._texts.replaced(path) or path.is_file()
         except (OSError, ValueError):  # a name that no file can have
             return False
 
@@ -196,6 +202,7 @@ def add_own(parts: Parts, reader: Reader, files: Files) -> None:
         parts.vectors += _listed(files.content(item), language.VectorsFile.vectors, reader.problems)
     for item in _one_or_many(reader.get(spec.errata)):
         parts.errata += _listed(files.content(item), language.ErrataFile.errata, reader.problems)
+    parts.evidence += files.listed(reader, spec.evidence)
 
 
 def drop_firmware(parts: Parts) -> None:

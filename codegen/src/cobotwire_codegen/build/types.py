@@ -287,6 +287,7 @@ def disputes(reader: Reader, key: Key[tuple[Node, ...]]) -> tuple[Dispute, ...]:
                 inner.get(spec.reading),
                 inner.get(spec.confidence),
                 evidence(inner, spec.evidence),
+                inner.get(spec.about),
             )
         )
     return tuple(found)

@@ -1,4 +1,4 @@
-"""Rules for vectors and errata: they agree with the commands."""
+"""Rules for vectors, errata and observed facts: they agree with the commands."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from fractions import Fraction
 from typing import Literal
 
 from cobotwire_codegen.errors import Problem, nearest
+from cobotwire_codegen.facts import ASPECTS, parts_of
 from cobotwire_codegen.model import Command, Edition, Variant, Vector
 from cobotwire_codegen.wire import build_frame
 
@@ -154,6 +155,23 @@ def errata_name_commands(edition: Edition) -> Iterator[Problem]:
                 yield Problem(erratum.place, "unknown-command", message)
 
 
+def facts_named(edition: Edition) -> Iterator[Problem]:
+    """Report facts of unknown commands, parts or aspects that evidence or disputes name."""
+    named = [(fact.place, fact.fact) for each in edition.observed for fact in each.facts]
+    for command in edition.commands:
+        named += [(d.place, f"{command.name}/{d.about}") for d in command.disputed if d.about]
+    for place, fact in named:
+        name, _, rest = fact.partition("/")
+        part, _, aspect = rest.partition("/")
+        found = edition.by_name.get(name)
+        if found is None:
+            yield Problem(place, "unknown-command", edition.no_command(name))
+        elif part not in parts_of(found) or aspect not in ASPECTS:
+            known = [*parts_of(found), *ASPECTS]
+            hint = nearest(part if part not in known else aspect, known)
+            yield Problem(place, "unknown-fact", f"{name} has no fact {rest}{hint}")
+
+
 RULES = (
     vectors_apart,
     vectors_hold,
@@ -162,4 +180,5 @@ RULES = (
     every_variant_shown,
     printed_explained,
     errata_name_commands,
+    facts_named,
 )

@@ -8,6 +8,7 @@ from cobotwire_codegen.cli import same_version
 from cobotwire_codegen.cli.build import build
 from cobotwire_codegen.cli.check import check
 from cobotwire_codegen.cli.diff import diff
+from cobotwire_codegen.cli.evidence import evidence
 from cobotwire_codegen.cli.explain import explain
 from cobotwire_codegen.cli.generate import generate
 from cobotwire_codegen.cli.ids import ids
@@ -77,6 +78,7 @@ VERBS = (
     ids,
     vectors,
     reconcile,
+    evidence,
     watch,
     lsp,
 )

@@ -32,6 +32,7 @@ def diff(old: Edition, new: Edition) -> tuple[Finding, ...]:
         *family_changes(old, new),
         *prose.errata(old, new),
         *prose.vectors(old, new),
+        *prose.evidence(old, new),
         *prose.history("changes", old.changes, new.changes),
     ]
     if old.name in new.bases or new.name in old.bases:

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator, Sequence
 from cobotwire_codegen.diff import words
 from cobotwire_codegen.diff.finding import Finding, finding
 from cobotwire_codegen.diff.match import T, bare, match, order
-from cobotwire_codegen.model import Change, Dispute, Edition, Lines, Vector
+from cobotwire_codegen.model import Change, Dispute, Edition, Lines, Observation, Vector
 
 
 def doc(where: str, old: str, new: str) -> Iterator[Finding]:
@@ -34,7 +34,11 @@ def notes(where: str, old: Sequence[str], new: Sequence[str]) -> Iterator[Findin
 def disputes(where: str, old: Sequence[Dispute], new: Sequence[Dispute]) -> Iterator[Finding]:
     """Compare the disputes."""
     place = f"{where}/disputed"
-    yield from _listed("dispute", lambda _: place, old, new, lambda item: item.claim)
+    yield from _listed("dispute", lambda _: place, old, new, _dispute)
+
+
+def _dispute(found: Dispute) -> str:
+    return f"confidence {found.confidence}: {found.claim}"
 
 
 def history(where: str, old: Sequence[Change], new: Sequence[Change]) -> Iterator[Finding]:
@@ -61,6 +65,19 @@ def vectors(old: Edition, new: Edition) -> Iterator[Finding]:
     yield from _listed(
         "vector", lambda item: f"vectors/{item.name}", old.vectors, new.vectors, _vector
     )
+
+
+def evidence(old: Edition, new: Edition) -> Iterator[Finding]:
+    """Compare what arms showed."""
+    yield from _listed(
+        "evidence", lambda arm: f"evidence/{arm.digest[:8]}", old.observed, new.observed, _arm
+    )
+
+
+def _arm(found: Observation) -> str:
+    good = sum(fact.confirmed for fact in found.facts)
+    bad = len(found.facts) - good
+    return f"{found.date} {found.robot}: {good} confirmed, {bad} contradicted"
 
 
 def _listed(

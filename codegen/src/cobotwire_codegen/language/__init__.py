@@ -35,6 +35,7 @@ from cobotwire_codegen.language.effects import (
     Moves,
     State,
 )
+from cobotwire_codegen.language.evidence import EvidenceFile, ObservedFact
 from cobotwire_codegen.language.facts import Dispute, Evidence
 from cobotwire_codegen.language.frame import Address, Frame, FrameFile, Transport
 from cobotwire_codegen.language.messages import (
@@ -120,6 +121,7 @@ __all__ = [
     "Erratum",
     "ErrorCodes",
     "Evidence",
+    "EvidenceFile",
     "ExampleVector",
     "Firmware",
     "Flag",
@@ -134,6 +136,7 @@ __all__ = [
     "Motion",
     "Moves",
     "NamedVector",
+    "ObservedFact",
     "Octets",
     "Quantity",
     "Record",

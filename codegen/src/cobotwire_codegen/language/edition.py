@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from cobotwire_codegen.language.changes import CHANGE, ChangesFile
 from cobotwire_codegen.language.effects import State
+from cobotwire_codegen.language.evidence import EvidenceFile
 from cobotwire_codegen.language.frame import FrameFile
 from cobotwire_codegen.language.json_schema import ref
 from cobotwire_codegen.language.messages import Command, CommandsFile, ReplyField, accepted_key
@@ -80,6 +81,10 @@ class _Edition(Record):
     errata = optional(
         InFiles(_ERRATA, or_file(ref(ErrataFile.definition()))),
         "The places where the document is wrong or contradicts itself.",
+    )
+    evidence = optional(
+        InFiles(EvidenceFile),
+        "What real arms showed: a file for each run. `cobotwire-gen evidence add` adds them.",
     )
     motion = optional(
         Part(Motion),
@@ -167,6 +172,7 @@ EDITION = Choice("edition", {"base": DeltaEdition}, WholeEdition)
 # list, so `edition` is first.
 FILES: dict[str, Described] = {
     "edition": EDITION,
+    "evidence": EvidenceFile,
     "family": CommandsFile,
     "changes": ChangesFile,
     "vectors": VectorsFile,

@@ -31,6 +31,11 @@ class Dispute(Record):
     claim = required(Text(), "The fact, as this edition reads it.")
     reading = required(Text(), "The same as a formula or in a few words.")
     confidence = required(Word(CONFIDENCE), "How certain the reading is.")
+    about = optional(
+        Text(),
+        "The part and the aspect that it is about, as evidence files name a fact of the command: "
+        "`reply/length`. What arms show then raises or lowers the confidence.",
+    )
     evidence = required(Listed(Evidence, NO_EVIDENCE), "What each source states.", NO_EVIDENCE[0])
     EXAMPLE = """\
 claim: The reply carries tenths of a degree.

@@ -14,6 +14,7 @@ from cobotwire_codegen.language.changes import (
 )
 from cobotwire_codegen.language.edition import Acks, DeltaEdition, WholeEdition
 from cobotwire_codegen.language.effects import ANY_EFFECT, State
+from cobotwire_codegen.language.evidence import EvidenceFile, ObservedFact
 from cobotwire_codegen.language.facts import Dispute, Evidence
 from cobotwire_codegen.language.frame import Address, Frame, FrameFile, Transport
 from cobotwire_codegen.language.limits import COMMAND_LIMITS, LIMITS
@@ -63,6 +64,7 @@ _CHAPTERS: tuple[tuple[str, tuple[Described, ...]], ...] = (
     ("Changes of a delta", (ChangesFile, CHANGE, REQUEST_CHANGE, REPLY_CHANGE)),
     ("Disputes and firmware", (Dispute, Firmware, Evidence)),
     ("Vectors and errata", (VectorsFile, VECTOR, Rejection, ErrataFile, Erratum)),
+    ("What arms showed", (EvidenceFile, ObservedFact)),
 )
 
 

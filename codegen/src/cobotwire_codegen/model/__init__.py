@@ -21,7 +21,15 @@ from cobotwire_codegen.model.edition import (
     Vector,
 )
 from cobotwire_codegen.model.effects import Effect, State
-from cobotwire_codegen.model.facts import Change, Dispute, Evidence, Firmware, Lines
+from cobotwire_codegen.model.facts import (
+    Change,
+    Dispute,
+    Evidence,
+    Firmware,
+    Lines,
+    Observation,
+    ObservedFact,
+)
 from cobotwire_codegen.model.frame import Address, Frame, FrameCheck, FrameNumber
 from cobotwire_codegen.model.robot import (
     Encoders,
@@ -75,6 +83,8 @@ __all__ = [
     "Listed",
     "Member",
     "Motion",
+    "Observation",
+    "ObservedFact",
     "Octets",
     "Quantity",
     "ReadBack",

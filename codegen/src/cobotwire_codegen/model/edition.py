@@ -11,7 +11,7 @@ from typing import Literal
 from cobotwire_codegen.errors import Place, nearest
 from cobotwire_codegen.model.commands import Command, Family
 from cobotwire_codegen.model.effects import State
-from cobotwire_codegen.model.facts import Change, Lines
+from cobotwire_codegen.model.facts import Change, Lines, Observation
 from cobotwire_codegen.model.frame import Frame
 from cobotwire_codegen.model.robot import Robot
 from cobotwire_codegen.model.shapes import Type
@@ -101,6 +101,8 @@ class Edition:
     """The names of the base, of its base, and so on."""
     root: Path = field(default=Path(), compare=False, repr=False)
     """The folder to which the file names of places are relative."""
+    observed: tuple[Observation, ...] = ()
+    """What real arms showed."""
 
     def no_command(self, name: str) -> str:
         """Return the message that an unknown command has."""

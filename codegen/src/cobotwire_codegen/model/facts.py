@@ -42,13 +42,45 @@ class Firmware:
 
 @dataclass(frozen=True, slots=True)
 class Dispute:
-    """A fact on which the sources disagree."""
+    """A fact on which the sources disagree; ``about`` is its part and aspect, if it has a name."""
 
     place: Place
     claim: str
     reading: str
     confidence: str
     evidence: tuple[Evidence, ...]
+    about: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class ObservedFact:
+    """What an arm showed of a fact, COMMAND/PART/ASPECT; ``confirmed``: what the edition states."""
+
+    place: Place
+    fact: str
+    confirmed: bool
+    why: str
+    frames: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Observation:
+    """What one arm showed, in a file of evidence; ``vectors`` are names of vectors."""
+
+    place: Place
+    kind: str
+    robot: str
+    firmware: str
+    date: str
+    digest: str
+    facts: tuple[ObservedFact, ...]
+    vectors: tuple[str, ...]
+
+    @property
+    def source(self) -> str:
+        """The source, as evidence names it."""
+        firmware = f", firmware {self.firmware}" if self.firmware else ""
+        return f"a {self.kind} of a real arm, {self.date}: {self.robot}{firmware}"
 
 
 @dataclass(frozen=True, slots=True)

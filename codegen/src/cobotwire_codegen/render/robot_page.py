@@ -6,6 +6,7 @@ import re
 from collections.abc import Iterator, Sequence
 from pathlib import PurePosixPath
 
+from cobotwire_codegen.facts import SOURCES, Confirmed, bar, counts
 from cobotwire_codegen.model import Dispute, Edition, Evidence, Quantity, Value
 from cobotwire_codegen.render import Files, environment, python_api
 from cobotwire_codegen.render.escape_markdown import escaped
@@ -16,11 +17,12 @@ _REAL_ARM = re.compile(r"\breal arms?\b|\bfield reports?\b|\bcapture\b")
 _ABOUT_THE_SPEC = re.compile(r"(?:^| )[^.]*stated as the difference[^.]*\.")
 
 
-def robot_pages(editions: Sequence[Edition]) -> Files:
+def robot_pages(editions: Sequence[tuple[Edition, Confirmed]]) -> Files:
     """Return a page for each robot; docs/conf.py draws its arm in place of the comment."""
     template = environment().get_template("markdown/robot.md.j2")
     made: Files = {}
-    for edition in map(escaped, editions):
+    for given, facts in editions:
+        edition, counted = escaped(given), counts(facts)
         text = template.render(
             edition=edition,
             about=_ABOUT_THE_SPEC.sub("", edition.doc),
@@ -31,6 +33,11 @@ def robot_pages(editions: Sequence[Edition]) -> Files:
             seen=list(_seen(edition)),
             captured=_captured(edition),
             history=_history(edition),
+            counted=counted,
+            bars=[
+                (source, says, bar(counted[source], counted["facts"]))
+                for source, says in SOURCES.items()
+            ],
             disputed=[command.name for command in edition.commands if command.disputed],
         )
         made[PurePosixPath(f"{edition.name}.md")] = text

@@ -3,4 +3,4 @@
 
 from cobotwire.protocol.loading import load_table
 
-TABLE = load_table(__package__, checksum="5b704614")
+TABLE = load_table(__package__, checksum="144c388e")

@@ -3,4 +3,4 @@
 
 from cobotwire.protocol.loading import load_table
 
-TABLE = load_table(__package__, checksum="84c3823f")
+TABLE = load_table(__package__, checksum="81c457cd")

@@ -3,4 +3,4 @@
 
 from cobotwire.protocol.loading import load_table
 
-TABLE = load_table(__package__, checksum="1cb53315")
+TABLE = load_table(__package__, checksum="4407d33c")

@@ -3,4 +3,4 @@
 
 from cobotwire.protocol.loading import load_table
 
-TABLE = load_table(__package__, checksum="868a1319")
+TABLE = load_table(__package__, checksum="aa4ee5b3")

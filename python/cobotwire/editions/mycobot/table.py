@@ -3,4 +3,4 @@
 
 from cobotwire.protocol.loading import load_table
 
-TABLE = load_table(__package__, checksum="e638bd63")
+TABLE = load_table(__package__, checksum="69d46203")

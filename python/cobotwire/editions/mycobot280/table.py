@@ -3,4 +3,4 @@
 
 from cobotwire.protocol.loading import load_table
 
-TABLE = load_table(__package__, checksum="92b77cb5")
+TABLE = load_table(__package__, checksum="4ece9e3e")

@@ -3,4 +3,4 @@
 
 from cobotwire.protocol.loading import load_table
 
-TABLE = load_table(__package__, checksum="2f2df428")
+TABLE = load_table(__package__, checksum="8a05b82e")

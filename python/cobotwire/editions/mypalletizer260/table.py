@@ -3,4 +3,4 @@
 
 from cobotwire.protocol.loading import load_table
 
-TABLE = load_table(__package__, checksum="3b8db8ad")
+TABLE = load_table(__package__, checksum="d2baf7e6")

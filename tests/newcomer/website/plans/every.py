@@ -11,6 +11,7 @@ PLANS: dict[str, Plan] = {
     "docs/start.md": readme.START,
     "docs/cli.md": readme.CLI,
     "docs/guide/add-command.md": readme.ADD_COMMAND,
+    "docs/confirm-your-robot.md": guides.CONFIRM,
     "docs/guide/drive.md": guides.DRIVE,
     "docs/simulation.md": guides.SIMULATION,
     "docs/studio.md": guides.STUDIO,

@@ -101,6 +101,12 @@ SEARCHES = Plan(
         NotRun(CLONE),
     )
 )
+CONFIRM = Plan(
+    commands={
+        "cobotwire survey /dev/ttyACM0 -o survey.zip": NotRun("it needs an arm"),
+        "cobotwire-gen evidence add survey.zip": NotRun(CLONE),
+    }
+)
 ATTACK = Plan(commands={"make attack": NotRun(CLONE)})
 C = Plan(
     commands={

@@ -71,6 +71,14 @@ EXPLANATIONS = (
         "verdict: consistent",
     ),
     Explanation(
+        "unknown-fact",
+        "An evidence file names a part or an aspect that the command does not have.",
+        "What an arm showed must be found at the command that it is about.",
+        "Write COMMAND/PART/ASPECT; after a field was renamed, rename it in the evidence too.",
+        "- fact: light/reply.lit/range",
+        "- fact: light/request.lit/range",
+    ),
+    Explanation(
         "no-evidence",
         "A dispute or change has no evidence.",
         "A reading that contradicts a source needs a source of its own.",

@@ -1,0 +1,1 @@
+"""What real arms showed: reading the files of owners, and counting what is confirmed."""
