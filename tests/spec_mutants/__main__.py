@@ -8,7 +8,7 @@ import time
 from collections import Counter
 from pathlib import Path
 
-from spec_mutants.campaign import Result, Task, run_all, tasks
+from spec_mutants.campaign import Result, run_all, tasks
 from spec_mutants.survivors import accepted
 
 LEAST = 0.98
@@ -35,31 +35,27 @@ def _progress(done: int, total: int) -> None:
 
 
 def _report(results: list[Result], seconds: float) -> int:
+    """Print kills per edition, and the survivors; return 1 if there are too many."""
     judged = [(task, verdict) for task, verdict in results if not verdict.equal]
-    killed, total = Counter[str](), Counter[str]()
+    total, killed, listed = Counter[str](), Counter[str](), Counter[str]()
     for task, verdict in judged:
-        total[task.kind] += 1
-        killed[task.kind] += bool(verdict.killer)
-    width = max((len(kind) for kind in total), default=0)
-    for kind in sorted(total):
-        print(f"{kind:{width}}  {killed[kind]:4} / {total[kind]}")
-    survivors = [task for task, verdict in judged if not verdict.killer]
-    unexplained = [task for task in survivors if not _explained(task)]
-    for task in unexplained:
-        print(f"SURVIVES WITHOUT A REASON  {task.kind}  {task.title}")
-    share = sum(killed.values()) / max(1, len(judged))
+        total[task.edition] += 1
+        killed[task.edition] += bool(verdict.killer)
+        if not verdict.killer:
+            reason = accepted(task.edition, task.kind, task.title)
+            listed[task.edition] += bool(reason)
+            print(f"survives  {task.kind}  {task.title}: {reason or 'WITHOUT A REASON'}")
+    shares = {name: killed[name] / max(1, total[name] - listed[name]) for name in total}
     print(
-        f"{sum(killed.values())} of {len(judged)} mutants killed ({share:.1%}); "
+        f"{'edition':17} {'mutants':>7} {'killed':>7} {'unconfirmed':>12} {'killed of the rest':>19}"
+    )
+    for name, share in shares.items():
+        print(f"{name:17} {total[name]:7} {killed[name]:7} {listed[name]:12} {share:19.1%}")
+    print(
+        f"{killed.total()} of {total.total()} mutants killed, {listed.total()} unconfirmed; "
         f"{len(results) - len(judged)} more leave the edition as it is; {seconds:.0f} s"
     )
-    return 1 if unexplained or share < LEAST else 0
-
-
-def _explained(task: Task) -> bool:
-    reason = accepted(task.kind, task.title)
-    if reason:
-        print(f"survives  {task.kind}  {task.title}: {reason}")
-    return bool(reason)
+    return int(min(shares.values(), default=1) < LEAST)
 
 
 if __name__ == "__main__":

@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 from cobotwire_codegen.load import Node, load
 from spec_mutants.mutants import Mutant, mutants_of
-from spec_mutants.spec_files import EDITIONS, ROOT, Verdict, built, files, judged
+from spec_mutants.spec_files import PATHS, ROOT, Verdict, built, files, judged
 
 
 class Task(NamedTuple):
@@ -31,16 +31,20 @@ class Task(NamedTuple):
 Result = tuple[Task, Verdict]
 
 
-@lru_cache(maxsize=64)
+@lru_cache(maxsize=256)
 def _mutants(edition: str, file: Path) -> tuple[Node, tuple[Mutant, ...]]:
     root = load(file, file.relative_to(ROOT).as_posix())
     return root, tuple(mutants_of(root, built(edition)))
 
 
 def tasks() -> Iterator[Task]:
-    """Yield every mutant of every file, always in the same order."""
-    for edition in EDITIONS:
+    """Yield every mutant of every file once, always in the same order."""
+    done = set[Path]()
+    for edition in PATHS:
         for file in files(edition):
+            if file in done:
+                continue
+            done.add(file)
             for number, mutant in enumerate(_mutants(edition, file)[1]):
                 yield Task(edition, file, number, mutant.kind, mutant.name)
 

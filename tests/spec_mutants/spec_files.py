@@ -13,13 +13,13 @@ from cobotwire_codegen.check import check
 from cobotwire_codegen.errors import SpecError
 from cobotwire_codegen.load import Mapping, Node, Scalar, Sequence, load
 from cobotwire_codegen.model import Edition
+from cobotwire_codegen.project import spec_files
 from cobotwire_codegen.publish import edition_json
 from spec_statements import STATEMENTS
 
-ROOT = Path(__file__).parent.parent.parent
-FOLDER = ROOT / "spec" / "editions"
-# Bases first. A change of the base may also be noticed in the delta.
-EDITIONS = ("mycobot", "mycobot280")
+ROOT = Path(__file__).resolve().parent.parent.parent
+# The files by edition. A change of a base may also be noticed in its deltas.
+PATHS = {path.stem: path for path in spec_files(ROOT)}
 # What explains a fact, and where it stands.
 PROSE = {"doc", "title", "notes", "place"}
 FACTS = ("frame", "types", "commands", "changes")
@@ -35,7 +35,7 @@ class Verdict:
 
 def files(edition: str) -> Iterator[Path]:
     """Yield the files that state the facts of an edition."""
-    path = (FOLDER / f"{edition}.yaml").resolve()
+    path = PATHS[edition]
     yield path
     root = load(path)
     assert isinstance(root, Mapping)
@@ -46,10 +46,21 @@ def files(edition: str) -> Iterator[Path]:
                 yield (path.parent / str(item.value)).resolve()
 
 
-@lru_cache(maxsize=8)
+@lru_cache(maxsize=len(PATHS))
 def built(edition: str) -> Edition:
     """Return an edition as it is."""
-    return build_edition(FOLDER / f"{edition}.yaml", ROOT)
+    return build_edition(PATHS[edition], ROOT)
+
+
+@lru_cache(maxsize=len(PATHS))
+def _deltas(edition: str) -> list[str]:
+    """Return the editions that an edition is the base of."""
+    return [name for name in PATHS if edition in built(name).bases]
+
+
+@lru_cache(maxsize=len(PATHS))
+def _built_facts(edition: str) -> object:
+    return _facts(built(edition))
 
 
 def _facts(edition: Edition) -> object:
@@ -66,14 +77,17 @@ def _without_prose(value: object) -> object:
 def judged(edition: str, path: Path, node: Node) -> Verdict:
     """Return what notices that a file of an edition has other content."""
     equal = True
-    for name in EDITIONS[EDITIONS.index(edition) :]:
+    for name in (edition, *_deltas(edition)):
         try:
-            made = build_edition(FOLDER / f"{name}.yaml", ROOT, {path: node})
+            made = build_edition(PATHS[name], ROOT, {path: node})
             check(made)
         except SpecError as error:
             return Verdict(f"check: {error.problems[0].code}")
-        for statement in STATEMENTS:
-            for _ in statement(made):
-                return Verdict(f"{statement.__module__.rpartition('.')[2]}.{statement.__name__}")
-        equal = equal and _facts(made) == _facts(built(name))
+        if _facts(made) != _built_facts(name):
+            equal = False
+            for statement in STATEMENTS:
+                for _ in statement(made):
+                    return Verdict(
+                        f"{statement.__module__.rpartition('.')[2]}.{statement.__name__}"
+                    )
     return Verdict(equal=equal)

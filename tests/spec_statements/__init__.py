@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 
 from cobotwire_codegen.model import Edition
-from spec_statements import effects, maker, meanings, quantities, recorded
+from spec_statements import effects, maker, meanings, quantities, recorded, requests
 
 Statement = Callable[[Edition], Iterator[str]]
 
@@ -15,4 +15,5 @@ STATEMENTS: tuple[Statement, ...] = (
     *quantities.RULES,
     *maker.RULES,
     *recorded.RULES,
+    *requests.RULES,
 )

@@ -12,7 +12,8 @@ import re
 from collections.abc import Iterator
 from itertools import chain
 
-from cobotwire_codegen.model import Edition, Effect, Quantity, Type
+from cobotwire_codegen.language.words import BUILT_IN
+from cobotwire_codegen.model import Command, Edition, Effect, Quantity, Type
 from spec_statements.meanings import fits
 
 # Name, then description, and the effect. The first pattern that fits decides.
@@ -146,9 +147,119 @@ def in_words(effect: Effect) -> str:
     return " ".join(filter(None, words))
 
 
+# The editions with a row of EFFECTS for each command; those of others are held by their words.
+IN_ROWS = ("mycobot", "mycobot280")
+# Words that say the same as the words of a state.
+SAYS: dict[str, str] = {
+    "angles": r"encoder|radian|target_angle",
+    "held": r"torque|enable|servo|motor|brake|on\b|off\b",
+    "powered": r"power|switch|on\b|off\b",
+    "connected": r"connected|disconnect|power_on|power_off",
+    "free": r"free|power_on",
+    "lowest": r"smallest|\bmin",
+    "highest": r"largest|\bmax",
+    "opening": r"open|close|gripper value|its zero",
+    "halted": r"stop",
+    "starts": r"started",
+    "system": r"firmware",
+    "atom": r"end of the arm|atom",
+    "tool": r"\bend\b|tool|port",
+    "tick": r"ticks",
+    "points": r"record|drag",
+    "planned": r"plan",
+    "end": r"output|input|end|serial",
+    "registers": r"register|regist",
+    "bus": r"gripper|hand",
+    "faults": r"error|fault|status",
+    "read": r"get|reads",
+    "written": r"set|writes",
+}
+# Commands with words that name other state as well: what they are about.
+ABOUT = (
+    (r"power_on", "powered held free connected"),
+    (r"(release|focus)_(all_)?servos?", "held"),
+    (r"get_encoder", "angles"),
+    (r"[sg]et_digital_(out|in)put", "pins end_pins"),
+    (r"get_base_io_input", "base_pins"),
+    (r"[sg]et_assist_\w+", "assist_pins"),
+    (r"init_gripper", "opening"),
+    (r"get_(robot_)?(modify|modified)_version", "revision"),
+    (r"set_limit_switch", "checks_position reports_ends"),
+    (r"[sg]et_world_reference", "world"),
+    (r"set_hand_gripper_angles", "finger_positions hand_positions"),
+    (r"tool_serial_restore", "tool_baud tool_timeout"),
+    (r"is_in_position\w*", "reached"),
+    (r"set_gripper_state", "gripper_held"),
+    (r"[sg]et_servo(_system)?_data", "registers head_registers"),
+    (r"[sg]et_communication_mode", "robot_protocol"),
+    (r"is_init_calibration", "calibrated"),
+    (r"check_async_or_sync", "synchronous_mode"),
+    (r"set_pro_gripper_stop", "bus_paused"),
+)
+# The same where an edition has such state.
+ABOUT_ITS_OWN = {
+    "head_deviation": (r"[sg]et_servo_cw", "head_deviation"),
+    "encoders": (r"[sg]et_servos?_encoder(_drag)?", "encoders servo_speeds"),
+}
+
+
+def named(edition: Edition) -> Iterator[str]:
+    """Report state that neither the name nor the words of a command name, or another one better."""
+    states = [*BUILT_IN, *(state.name for state in edition.states)]
+    for command in edition.commands:
+        effect = command.effect
+        if effect is None:
+            if not command.event and edition.states:
+                yield f"{command.name} has no effect"
+            continue
+        if edition.name in IN_ROWS or effect.by_role:
+            continue
+        text = _text(command)
+        for label, each in (("", effect), *effect.cases):
+            for field, value in each.values if each.verb in ("reports", "stores", "sets") else ():
+                state = str(value if each.verb != "sets" else field)
+                several = each.verb != "sets" and (len(each.values) > 1 or label)
+                beside = f"{label} {field}" if several else ""
+                about = _about(command, states)
+                if about:
+                    if state not in about:
+                        yield f"{command.name} {each.verb} {state}, but is about {about}"
+                    continue
+                best = max(_score(name, text, beside) for name in states)
+                score = _score(state, text, beside)
+                if score < best:
+                    near = [name for name in states if _score(name, text, beside) == best]
+                    yield f"{command.name} {each.verb} {state}, but its words say {near}"
+
+
+def _about(command: Command, states: list[str]) -> list[str]:
+    """Return the state that a command with ambiguous words is about; nothing for other commands."""
+    rows = (*ABOUT, *(row for state, row in ABOUT_ITS_OWN.items() if state in states))
+    return [n for name, about in rows if re.fullmatch(name, command.name) for n in about.split()]
+
+
+def _text(command: Command) -> str:
+    fields = " ".join(field.name for field in command.fields)
+    return f"{command.name} {command.title} {command.doc} {fields}".lower().replace("_", " ")
+
+
+def _score(state: str, text: str, beside: str) -> tuple[int, float, int]:
+    """Return how well a text names a state: by the field beside it, by its words, and by how many."""
+    words = state.split("_")
+    found = [word for word in words if _says(word, text)]
+    near = sum(_says(word, beside.lower().replace("_", " ")) for word in words) if beside else 0
+    return near, len(found) / len(words), len(found)
+
+
+def _says(word: str, text: str) -> bool:
+    other = SAYS.get(word, "")
+    stem = word[:5] if len(word) > 1 else rf"{word}\b"
+    return bool(re.search(rf"\b{stem}" + (f"|{other}" if other else ""), text))
+
+
 def effects(edition: Edition) -> Iterator[str]:
     """Report commands with another effect than their name and description tell."""
-    for command in edition.commands:
+    for command in edition.commands if edition.name in IN_ROWS else ():
         if command.effect is None:
             yield f"{command.name} has no effect"
         elif not command.effect.by_role:
@@ -160,6 +271,14 @@ def effects(edition: Edition) -> Iterator[str]:
             stated, wanted = in_words(command.effect), wanted.replace("set:", verb, 1)
             if stated != wanted:
                 yield f"{command.name} {stated}, but its description says {wanted}"
+
+
+# Queries report these for more or fewer joints than the edition counts, or setters narrow them.
+UNLIKE = {
+    *("calibrated", "collision_threshold", "torque_compensation", "model_direction", "run_errors"),
+    *("zero_encoders", "down_encoders", "written_registers", "hand_enabled", "servo_faults"),
+    "servo_currents",
+}
 
 
 def states(edition: Edition) -> Iterator[str]:
@@ -184,7 +303,7 @@ def states(edition: Edition) -> Iterator[str]:
             if [found[at].name for at in effect.at] != list(state.each[: len(effect.at)]):
                 yield f"{name} has other indices than {command.name}"
             left = [types.get(each) for each in state.each[len(effect.at) :]]
-            if not _alike(state.type, widest, left):
+            if not _alike(state.type, widest, left) and name not in UNLIKE:
                 yield f"{name} is unlike {field} of {command.name}"
 
 
@@ -197,6 +316,41 @@ def speeds(edition: Edition) -> Iterator[str]:
         heeded = effect is not None and effect.option("speed") == "speed"
         if moves and "speed" in arguments and not heeded:
             yield f"{command.name} does not move at the speed that is given"
+
+
+# How a motion uses its arguments.
+USES = {
+    **dict.fromkeys(("speed", "speeds"), "speed"),
+    **dict.fromkeys(("increment", "step"), "by"),
+    "axis": "about",
+    "direction": "direction",
+}
+# The simulated myBuddy turns its joints at one speed.
+UNUSED = ("mybuddy", "set_encoders", "speeds")
+
+
+def arguments(edition: Edition) -> Iterator[str]:
+    """Report motions that use an argument otherwise than its name tells, or not at all."""
+    for command in edition.commands:
+        effect = command.effect
+        cases = () if effect is None else (effect, *(inner for _, inner in effect.cases))
+        given = {field.name for variant in command.requests for field in variant}
+        for each in cases:
+            if each.verb == "moves":
+                used = {str(value): key for key, value in each.options}
+                for name in sorted(given & {*USES, *used}):
+                    wanted = (
+                        None
+                        if (edition.name, command.name, name) == UNUSED
+                        else USES.get(name, "to")
+                    )
+                    if used.get(name) != wanted:
+                        yield f"{command.name} uses {name} as {used.get(name)}"
+                if ("joint" in given) != ("joint" in each.at):
+                    yield f"{command.name} moves at {each.at}"
+                part = "gripper" if "gripper" in command.name else each.what
+                if part != each.what or (each.what == "gripper") != ("gripper" in command.name):
+                    yield f"{command.name} moves {each.what}"
 
 
 def switches(edition: Edition) -> Iterator[str]:
@@ -225,4 +379,4 @@ def _alike(kept: Type | None, type: Type | None, left: list[Type | None]) -> boo
     return [part for _, part in type.parts] == [kept] * int(bounds[1] - bounds[0] + 1)
 
 
-RULES = (effects, states, speeds, switches)
+RULES = (named, effects, states, speeds, arguments, switches)

@@ -9,14 +9,37 @@ from functools import lru_cache
 
 from cobotwire_codegen.model import Edition
 from pymycobot_classes import library
+from robots.classes import ROBOTS
 
 MAKER = library("MyCobot280")
+# The document's edition has the defaults of the class for newer firmware.
+CLASSES = {robot.edition: robot for robot in ROBOTS.values()} | {"mycobot": ROBOTS["MyCobot280"]}
+CLASSES["mercury_x1"] = CLASSES["mercury_b1"]
+# For these the library waits longer: tables of `read` in its common.py and of _read in myarm_api.py.
+WAITS_MS = {
+    **dict.fromkeys(("mercury_a1", "mercury_b1", "mercury_x1"), {"power_on": 8000}),
+    **dict.fromkeys(("pro400", "pro450", "pro630"), {"power_on": 8000}),
+    **dict.fromkeys(("myarm_c650", "myarm_m750"), {"get_robot_error_status": 90000}),
+    "mycobot320": {"get_robot_status": 75000},
+}
+# Arguments that the edition must be given, or gives, unlike the library; each has its ruling there.
+RULED_DEFAULTS = (
+    r"(mercury|pro)\S+ (pause|resume|stop) deceleration|(mercury|pro)\S+ write_move_c_r arc"
+    r"|(mercury|pro)\S+ [sg]et_pro_gripper address|mycobot280_rdkx5 get_gripper_value gripper"
+    r"|(myarm300|mybuddy) set_color \w+|mybuddy is_in_position kind|mycobot320 set_hand_gripper_pinch_action \w+"
+    r"|pro450 set_(control_mode mode|torque_comp damping|tool_serial_timeout timeout)|pro630 power_on mode"
+    r"|(mercury|pro)\S+ \wet_(hand|pro)_gripper\w* (gripper|speed)"
+)
+# The servo bus runs at 1 Mbaud (Feetech, "Servo SCS Communication Protocol").
+BUS_BAUDRATE = 1000000
 
 
-@lru_cache(maxsize=1)
-def _baudrate() -> int:
+def _baudrate(edition: str) -> int | None:
     """Return the rate at which the library opens a port unless it is told another."""
-    return int(inspect.signature(MAKER.__init__).parameters["baudrate"].default)
+    if edition not in CLASSES:
+        return BUS_BAUDRATE
+    taken = inspect.signature(library(CLASSES[edition].peer).__init__).parameters
+    return int(taken["baudrate"].default) if "baudrate" in taken else None
 
 
 @lru_cache(maxsize=1)
@@ -29,13 +52,14 @@ def _wait_ms() -> int:
 
 def transport(edition: Edition) -> Iterator[str]:
     """Report another baud rate or deadline than the library uses."""
-    if edition.frame.baudrate != _baudrate():
-        yield f"{edition.frame.baudrate} baud; the maker's library opens ports at {_baudrate()}"
-    if edition.frame.deadline_ms != _wait_ms():
-        yield f"{edition.frame.deadline_ms} ms; the maker's library waits {_wait_ms()} ms"
-    for command in edition.commands:
-        if command.deadline_ms != _wait_ms():
-            yield f"{command.name} has a deadline of its own"
+    if edition.frame.baudrate != (_baudrate(edition.name) or edition.frame.baudrate):
+        yield f"{edition.frame.baudrate} baud; the maker's library has {_baudrate(edition.name)}"
+    if edition.name in CLASSES:
+        waits = WAITS_MS.get(edition.name, {})
+        for command in edition.commands:
+            wanted = waits.get(command.name, _wait_ms())
+            if command.deadline_ms != wanted:
+                yield f"{command.name}: {command.deadline_ms} ms; the maker's library {wanted} ms"
 
 
 def defaults(edition: Edition) -> Iterator[str]:
@@ -43,19 +67,23 @@ def defaults(edition: Edition) -> Iterator[str]:
 
     A command of the library's name has its arguments in the library's order.
     """
-    for command in edition.commands:
-        theirs = _defaults(command.name)
+    robot = CLASSES.get(edition.name)
+    for command in edition.commands if robot else ():
+        theirs = _defaults(robot.peer, robot.method(command))
         fields = [f for variant in command.requests[:1] for f in variant if f.const is None]
+        if command.arguments:
+            fields.sort(key=lambda field: command.arguments.index(field.name))
         for field, default in zip(fields, theirs):
             ours = None if field.default is None else field.default[0]
-            if ours != default:
+            named = f"{edition.name} {command.name} {field.name}"
+            if ours != default and not re.fullmatch(RULED_DEFAULTS, named):
                 yield f"{command.name}: {field.name} has the default {ours}; the library {default}"
 
 
-@lru_cache(maxsize=1024)
-def _defaults(name: str) -> tuple[int | None, ...]:
+@lru_cache(maxsize=4096)
+def _defaults(peer: str, name: str) -> tuple[int | None, ...]:
     """Return the defaults of a method of the library; None where an argument has none."""
-    method = getattr(MAKER, name, None)
+    method = getattr(library(peer), name, None)
     given = [] if method is None else list(inspect.signature(method).parameters.values())[1:]
     return tuple(None if p.default in (p.empty, None) else int(p.default) for p in given)
 

@@ -9,32 +9,70 @@ from cobotwire_codegen.model import Edition, Field, Quantity
 
 # The last words of a quantity's name, and its unit.
 UNITS = (
-    (r"(\w+_)?(angle|rotation|radian|limit)", "degree"),
-    (r"(\w+_)?(length|reach|height|reach_step|height_step|distance)", "millimetre"),
-    (r"(gripper_)?speed|(\w+_)?opening", "percent"),
-    (r"(measured_)?encoder", "tick"),
+    (r"(filter|serial|queue)_length|finger_angle", ""),  # entries, bytes, commands, raw numbers
+    (r"(\w+_)?(angle|rotation|rotation_step|radian|limit|over_shoot|deviation)", "degree"),
+    (r"joint_top_speed", "degree_per_second"),
+    (r"end_top_speed", "millimetre_per_second"),
+    (r"end_top_acceleration", "millimetre_per_second_squared"),
+    (r"(\w+_)?(length|reach|height|reach_step|height_step|distance|radius)", "millimetre"),
+    (r"(gripper_|motion_|finger_|\w*bus_)?speed|(\w+_)?opening|(\w+_)?planned", "percent"),
+    (r"joint_percent|threshold|compensation|duty|(\w+_)?hand_position", "percent"),
+    (r"(measured_|s\d_)?encoder", "tick"),
     (r"(target_)?servo_speed", "step_per_second"),
-    (r"voltage", "volt"),
-    (r"temperature", "degree_celsius"),
-    (r"(reported_)?current", "milliampere"),
+    (r"motor_speed", "revolution_per_minute"),
+    (r"volt(age)?", "volt"),
+    (r"temperature|celsius", "degree_celsius"),
+    (r"((reported|small_servo|servo|motor)_)?current", "milliampere"),
     (r"frequency", "hertz"),
+    (r"(external_)?baud(_rate)?", "baud"),
+    (r"(serial|external)_timeout", "millisecond"),
 )
+# Numbers that the sources of an edition print without a unit.
+UNITLESS = r"mybuddy (current|frequency)|pro450 temperature|my(cobot(280|320)|arm)\S* duty"
 # The names of fields, and the units that their types then have; other fields have no unit.
 FIELDS = (
-    (r"angles?|radians", {"degree"}),
-    (r"coords?|target", {"millimetre", "degree"}),
-    (r"distance", {"millimetre"}),
-    (r"speed", {"percent"}),
+    (r"angles?|radians|(current|target)_angle", {"degree"}),
+    (r"coords?|target|through|end", {"millimetre", "degree"}),
+    (r"distance|radius", {"millimetre"}),
+    (r"speed|duty|thresholds?|compensations?|positions|linear|angular", {"percent"}),
     (r"encoders?", {"tick"}),
     (r"speeds", {"step_per_second"}),
     (r"point", {"tick", "step_per_second"}),
     (r"voltages", {"volt"}),
     (r"temperatures", {"degree_celsius"}),
-    (r"current", {"milliampere"}),
+    (r"currents?", {"milliampere"}),
     (r"frequency", {"hertz"}),
+    (r"baud", {"baud"}),
+    (r"timeout", {"millisecond"}),
+)
+# Fields that the maker's names call otherwise: the edition's base or name, command and field.
+OTHERWISE = (
+    # The class has a method of its own for coordinates.
+    (r"(mercury_a1|myarm300) is_in_position target", {"degree"}),
+    (r"mercury_a1 get_pos_over positions", {""}),
+    (r"mycobot280 set_pwm_output duty", {""}),
+    (r"mercury_a1 get_max_speed speed", {""}),
+    (r"mercury_a1 set_max_speed speed", {"degree_per_second", "millimetre_per_second"}),
+    (r"mercury_a1 set_max_acc acceleration", {"", "millimetre_per_second_squared"}),
+    (r"mercury_a1 get_servo_speeds speeds", {"revolution_per_minute"}),
+    (r"mercury_a1 set_hand_gripper_angles angles", {""}),
+    (r"mercury_a1 jog_increment_angle increment", {"degree"}),
+    (r"mybuddy (collision left|collision right)", {"degree"}),
+    (r"mybuddy (is_robot_in_position|get_base_coords) \w+", {"millimetre", "degree"}),
+    (r"mybuddy (get_coord coord|[sg]et_joint_current current|jog_increment increment)", {""}),
+    (r"mybuddy set_pwm_output frequency", {""}),
+    (r"mybuddy set_plan_acceleration acceleration", {"percent"}),
+    (r"mycobot320 set_pro_gripper value", {"", "percent"}),
+    (r"mycobot320 \wet_pro_gripper_(\w*angle|speed|open|close) value", {"percent"}),
+    (r"mycobot320 \wet_hand_gripper_(default_speed|speed|angle) value", {"percent"}),
+    (r"\S+ \wet_(pro|hand)_gripper\w* value", {""}),
+    (r"pro450 get_motor_temps temperatures", {""}),
+    (r"pro450 get_torque_comp compensations", {"", "percent"}),
 )
 
 
+# The first servo is beside them, or joints follow in the order of a page.
+OTHER_NUMBERS = ("further_", "right_")
 PARTS = (
     (r"[xyz]", "millimetre"),
     (r"r[xyz]", "degree"),
@@ -50,12 +88,19 @@ def _quantities(field: Field) -> Iterator[Quantity]:
                 yield part
 
 
+def names(edition: Edition) -> tuple[str, ...]:
+    """Return the name of an edition, then those of its bases."""
+    return (edition.name, *edition.bases)
+
+
 def units(edition: Edition) -> Iterator[str]:
     """Report quantities with another unit than their name tells."""
     for type in edition.types:
         if isinstance(type, Quantity):
-            found = [unit for name, unit in UNITS if re.fullmatch(name, type.name)] or [""]
-            if found != [type.unit]:
+            found = [unit for name, unit in UNITS if re.fullmatch(name, type.name)]
+            if any(re.fullmatch(UNITLESS, f"{of} {type.name}") for of in names(edition)):
+                found = [""]
+            if type.unit != (found or [""])[0]:
                 yield f"{type.name} has the unit {type.unit!r}, but its name says {found}"
 
 
@@ -63,6 +108,7 @@ def field_units(edition: Edition) -> Iterator[str]:
     """Report fields with other units than their name tells."""
     for command in edition.commands:
         for field in command.fields:
+            full = f"{command.name} {field.name}"
             wanted: set[str] = set()
             for name, units in FIELDS:
                 if re.fullmatch(name, field.name):
@@ -71,6 +117,9 @@ def field_units(edition: Edition) -> Iterator[str]:
                 wanted = {"millimetre", "degree"} if field.selector else {"degree"}
             elif field.name == "value" and "gripper" in command.name:
                 wanted = {"percent"}
+            for pattern, units in reversed(OTHERWISE):
+                if any(re.fullmatch(pattern, f"{of} {full}") for of in names(edition)):
+                    wanted = units
             given = {part.unit for part in _quantities(field)}
             if given and given != (wanted or {""}):
                 yield f"{command.name}: {field.name} has {given}; wanted {wanted}"
@@ -112,4 +161,26 @@ def flags(edition: Edition) -> Iterator[str]:
                 yield f"{command.name}: {field.name} is a {field.type.kind}, but is true or false"
 
 
-RULES = (units, field_units, part_units, case_units, radians, flags)
+def uniform(edition: Edition) -> Iterator[str]:
+    """Report a part with another type than the parts beside it, or a number that is missing.
+
+    Joints, servos and fingers count from 1. Only a type with its number or letter in its name is
+    for one of them.
+    """
+    for type in edition.types:
+        rows: dict[str, list[tuple[str, str]]] = {}
+        for label, part in type.parts if len(type.parts) > 1 else ():
+            row = re.sub(r"\d+", "#", label)
+            kind = re.sub(r"^[js]\d(?=_)|^(arm|flange)(?=_)|\d+$", "#", part.name)
+            rows.setdefault(row, []).append((label, kind))
+        if type.name.startswith(OTHER_NUMBERS):
+            continue
+        for row, parts in rows.items():
+            if "#" in row and len({kind for _, kind in parts}) > 1:
+                yield f"{type.name}: {parts} differ"
+            numbers = [int(n) for label, _ in parts for n in re.findall(r"\d+", label)[:1]]
+            if numbers != [*range(1, len(numbers) + 1)]:
+                yield f"{type.name} has the numbers {numbers}"
+
+
+RULES = (uniform, units, field_units, part_units, case_units, radians, flags)

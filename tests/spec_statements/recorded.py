@@ -104,6 +104,10 @@ def joint_limits(edition: Edition) -> Iterator[str]:
         yield "each joint has limits"
 
 
+# Their simulated arms have no geometry that could reject a motion.
+SILENT = ("myarm300", "pro400", "pro450", "pro630")
+
+
 def error_codes(edition: Edition) -> Iterator[str]:
     """Report numbers of errors that mean something else where the register is explained."""
     meanings = [
@@ -114,16 +118,20 @@ def error_codes(edition: Edition) -> Iterator[str]:
     ]
     codes = edition.robot.error_codes
     if codes is None:
-        if any("joint" in text for _, _, text in meanings):
+        if any("joint" in text for _, _, text in meanings) and edition.name not in SILENT:
             yield "the numbers of errors are explained, but the simulated arm reports none"
         return
     wanted = {
         r"joint .* limit": [*codes.joint_limits],
-        r".* no solution": [codes.no_solution],
+        r"the motion was stopped$": [codes.stopped],
+        r".* no power": [codes.no_power],
+        r"(.* )?no (inverse )?solution": [codes.no_solution],
         r".*straight line": [codes.no_straight_line],
     }
     for pattern, numbers in wanted.items():
-        [(low, high)] = [(a, b) for a, b, text in meanings if re.match(pattern, text)]
+        if numbers == [0]:  # the register of the 280 has no such number
+            continue
+        low, high = next((a, b) for a, b, text in meanings if re.match(pattern, text))
         if numbers != [*range(low, high + 1)][: len(numbers)]:
             yield f"{numbers} differ from {low}..{high}, which mean {pattern}"
 
