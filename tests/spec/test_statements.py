@@ -15,7 +15,7 @@ from pymycobot_classes import RobotLimit, without_port, written
 from robots.arguments import plain
 from spec_statements import STATEMENTS, Statement, effects, meanings
 
-EDITIONS = ("mycobot", "mycobot280")
+EDITIONS = tuple(vectors.editions())
 BY_MAKER = "The maker's library 4.0.7 sends the accepted values and raises for the refused ones."
 
 

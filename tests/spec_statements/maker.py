@@ -17,17 +17,18 @@ CLASSES = {robot.edition: robot for robot in ROBOTS.values()} | {"mycobot": ROBO
 CLASSES["mercury_x1"] = CLASSES["mercury_b1"]
 # For these the library waits longer: tables of `read` in its common.py and of _read in myarm_api.py.
 WAITS_MS = {
-    **dict.fromkeys(("mercury_a1", "mercury_b1", "mercury_x1"), {"power_on": 8000}),
-    **dict.fromkeys(("pro400", "pro450", "pro630"), {"power_on": 8000}),
-    **dict.fromkeys(("myarm_c650", "myarm_m750"), {"get_robot_error_status": 90000}),
+    "mercury": {"power_on": 8000},
+    "pro": {"power_on": 8000},
+    "myarm_": {"get_robot_error_status": 90000},
     "mycobot320": {"get_robot_status": 75000},
 }
 # Arguments that the edition must be given, or gives, unlike the library; each has its ruling there.
 RULED_DEFAULTS = (
     r"(mercury|pro)\S+ (pause|resume|stop) deceleration|(mercury|pro)\S+ write_move_c_r arc"
     r"|(mercury|pro)\S+ [sg]et_pro_gripper address|mycobot280_rdkx5 get_gripper_value gripper"
-    r"|(myarm300|mybuddy) set_color \w+|mybuddy is_in_position kind|mycobot320 set_hand_gripper_pinch_action \w+"
-    r"|pro450 set_(control_mode mode|torque_comp damping|tool_serial_timeout timeout)|pro630 power_on mode"
+    r"|(myarm300|mybuddy) set_color \w+|mybuddy is_in_position kind|pro630 power_on mode"
+    r"|mycobot320 set_hand_gripper_pinch_action \w+"
+    r"|pro450 set_(control_mode mode|torque_comp damping|tool_serial_timeout timeout)"
     r"|(mercury|pro)\S+ \wet_(hand|pro)_gripper\w* (gripper|speed)"
 )
 # The servo bus runs at 1 Mbaud (Feetech, "Servo SCS Communication Protocol").
@@ -55,7 +56,8 @@ def transport(edition: Edition) -> Iterator[str]:
     if edition.frame.baudrate != (_baudrate(edition.name) or edition.frame.baudrate):
         yield f"{edition.frame.baudrate} baud; the maker's library has {_baudrate(edition.name)}"
     if edition.name in CLASSES:
-        waits = WAITS_MS.get(edition.name, {})
+        found = (w for prefix, w in WAITS_MS.items() if edition.name.startswith(prefix))
+        waits = next(found, {})
         for command in edition.commands:
             wanted = waits.get(command.name, _wait_ms())
             if command.deadline_ms != wanted:
