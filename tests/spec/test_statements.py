@@ -13,6 +13,7 @@ from cobotwire_codegen.load import Mapping, Node, Scalar, Sequence, load
 from cobotwire_codegen.model import Command
 from pymycobot_classes import RobotLimit, without_port, written
 from robots.arguments import plain
+from spec_mutants.spec_files import PATHS, built
 from spec_statements import STATEMENTS, Statement, effects, meanings
 
 EDITIONS = tuple(vectors.editions())
@@ -26,7 +27,7 @@ def test_edition_agrees_with_independent_statement(edition: str, statement: Stat
 
 
 def test_every_pattern_of_a_meaning_describes_a_command() -> None:
-    commands = [command for name in EDITIONS for command in vectors.edition(name).commands]
+    commands = [command for name in PATHS for command in built(name).commands]
     said = [(effect, name, doc) for name, doc, effect in effects.EFFECTS]
     for word, name, doc in (*meanings.SAFETY, *meanings.ROLES, *said):
         assert any(meanings.fits(command, name, doc) for command in commands), (word, name)

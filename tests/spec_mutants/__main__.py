@@ -46,11 +46,9 @@ def _report(results: list[Result], seconds: float) -> int:
             listed[task.edition] += bool(reason)
             print(f"survives  {task.kind}  {task.title}: {reason or 'WITHOUT A REASON'}")
     shares = {name: killed[name] / max(1, total[name] - listed[name]) for name in total}
-    print(
-        f"{'edition':17} {'mutants':>7} {'killed':>7} {'unconfirmed':>12} {'killed of the rest':>19}"
-    )
+    print(f"{'edition':17} {'mutants':>7} {'killed':>7} {'unconfirmed':>12} {'of the rest':>12}")
     for name, share in shares.items():
-        print(f"{name:17} {total[name]:7} {killed[name]:7} {listed[name]:12} {share:19.1%}")
+        print(f"{name:17} {total[name]:7} {killed[name]:7} {listed[name]:12} {share:12.1%}")
     print(
         f"{killed.total()} of {total.total()} mutants killed, {listed.total()} unconfirmed; "
         f"{len(results) - len(judged)} more leave the edition as it is; {seconds:.0f} s"

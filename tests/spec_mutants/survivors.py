@@ -1,4 +1,4 @@
-"""The mutants that may survive: facts that ``spec/unconfirmed.yaml`` lists, each with the reason."""
+"""Reads ``spec/unconfirmed.yaml``: the facts without a second source, each with the reason."""
 
 from __future__ import annotations
 

@@ -244,7 +244,7 @@ def _text(command: Command) -> str:
 
 
 def _score(state: str, text: str, beside: str) -> tuple[int, float, int]:
-    """Return how well a text names a state: by the field beside it, by its words, and by how many."""
+    """Rate how well a text names a state: by the field beside it, by its words, and how many."""
     words = state.split("_")
     found = [word for word in words if _says(word, text)]
     near = sum(_says(word, beside.lower().replace("_", " ")) for word in words) if beside else 0

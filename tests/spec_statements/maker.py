@@ -15,7 +15,7 @@ MAKER = library("MyCobot280")
 # The document's edition has the defaults of the class for newer firmware.
 CLASSES = {robot.edition: robot for robot in ROBOTS.values()} | {"mycobot": ROBOTS["MyCobot280"]}
 CLASSES["mercury_x1"] = CLASSES["mercury_b1"]
-# For these the library waits longer: tables of `read` in its common.py and of _read in myarm_api.py.
+# For these the library waits longer: `read` in its common.py, `_read` in its myarm_api.py.
 WAITS_MS = {
     "mercury": {"power_on": 8000},
     "pro": {"power_on": 8000},
