@@ -70,8 +70,10 @@ def defaults(edition: Edition) -> Iterator[str]:
     A command of the library's name has its arguments in the library's order.
     """
     robot = CLASSES.get(edition.name)
-    for command in edition.commands if robot else ():
-        theirs = _defaults(robot.peer, robot.method(command))
+    if robot is None:
+        return
+    for command in edition.commands:
+        theirs = _defaults(robot.peer, robot.methods.get(command.name, command.name))
         fields = [f for variant in command.requests[:1] for f in variant if f.const is None]
         if command.arguments:
             fields.sort(key=lambda field: command.arguments.index(field.name))

@@ -241,7 +241,7 @@ def explained_errors(edition: Edition) -> Iterator[str]:
     for command in edition.commands:
         codes = [field.type for field in command.reply if field.type.name == "error_code"]
         known = edition.name not in ("mybuddy", "mypalletizer260")  # no page explains theirs
-        if known and command.role == "error" and not all(c.meanings for c in codes):
+        if known and command.role == "error" and not all(getattr(c, "meanings", ()) for c in codes):
             yield f"{command.name}: nothing says what its numbers mean"
 
 

@@ -16,7 +16,7 @@ import vectors
 from cobotwire.codec.interface import Codec
 from cobotwire.protocol.addresses import find_address
 from cobotwire.protocol.errors import UsageError
-from cobotwire.protocol.messages import to_degrees
+from cobotwire.protocol.radians import to_degrees
 from cobotwire_codegen.model import Edition
 from robots.arguments import Named
 from robots.classes import ROBOTS
