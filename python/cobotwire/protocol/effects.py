@@ -15,7 +15,7 @@ from functools import cache
 from typing import Any, Literal, NamedTuple
 
 from cobotwire.protocol.robot import real
-from cobotwire.protocol.table import Command, Table
+from cobotwire.protocol.table import Command, Field, Table
 
 Part = Literal["joints", "joint", "end", "gripper"]
 Control = Literal["stop", "halt", "pause", "resume", "forget"]
@@ -187,6 +187,11 @@ def each_case(effect: Effect | None) -> Iterator[Effect]:
         yield from effect.cases.values()
     elif effect is not None:
         yield effect
+
+
+def empty_value(field: Field) -> int:
+    """Return the raw value that reports an empty list: that of EMPTY; else 1."""
+    return dict(zip(field.labels, field.choices)).get("EMPTY", 1)
 
 
 def states_of(table: Table) -> dict[str, State]:

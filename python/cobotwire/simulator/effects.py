@@ -25,6 +25,7 @@ from cobotwire.protocol.effects import (
     Zeroes,
     each_case,
     effect_of,
+    empty_value,
     states_of,
 )
 from cobotwire.protocol.fields import Field, named_fields
@@ -254,8 +255,7 @@ def _lists(asked: Asked, effect: Lists) -> dict[str, Any] | None:
         zeros = (0,) * len(field.cases[0].numbers) if field.many else 0
         return {field.name: values.pop(0) if values else zeros}
     if effect.report == "empty":
-        labels = dict(zip(field.labels, field.choices))
-        empty = labels.get("EMPTY", 1)
+        empty = empty_value(field)
         return {field.name: empty if not values else next(c for c in field.choices if c != empty)}
     return {field.name: len(values)}
 

@@ -62,6 +62,15 @@ HISTORY = (
         84,
         "57e07a421a41",
     ),
+    CatalogueVersion(
+        8,
+        "eac7ab68b49f",
+        "new: `list-cleared`; `effect` includes what an argument chooses, `points-in-order` lists "
+        "that nothing counts, `read-back` what a case stores by an index; `reply-repeats` with "
+        "power only where a command switches it",
+        85,
+        "0",
+    ),
 )
 VERSION = HISTORY[-1].number
 

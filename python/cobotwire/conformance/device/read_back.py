@@ -14,7 +14,7 @@ from cobotwire.conformance.device.requests import (
     limits_of,
     requests,
 )
-from cobotwire.conformance.device.selection import judged, reporter
+from cobotwire.conformance.device.selection import judged, reporter, reporters
 from cobotwire.conformance.mistakes import Pair, likely_mistake
 from cobotwire.conformance.places import numbers_of
 from cobotwire.conformance.samples.physical import setting_values, takes_whole
@@ -52,7 +52,9 @@ class Setting:
         given = {field.name: field for field in self.variant.fields}
         fields = self.query_variant.fields
         fields = tuple(f if f.const is not None else given[f.name] for f in fields)
-        return requests(self.query, Variant(fields), limits=self._limits)
+        # Of an argument that selects what is stored, only its part.
+        part = {name: (raw,) for name, raw in self.part}
+        return requests(self.query, Variant(fields), limits={**self._limits, **part})
 
     @property
     def _limits(self) -> Limits:
@@ -236,8 +238,11 @@ def _parts(table: Table, command: Command) -> Iterator[Setting]:
     effect, variant = judged(command), command.request[0]
     if isinstance(effect, Cases):
         for raw, case in effect.cases.items():
-            for argument, state in case.values.items() if isinstance(case, Stores) else ():
-                if found := reporter(table, state):
+            if not isinstance(case, Stores):
+                continue
+            for argument, state in case.values.items():
+                found = next((each for each in reporters(table, state) if each.at == case.at), None)
+                if found:
                     query, part = found.query, ((effect.selector, raw),)
                     pairs = ((found.field, argument),)
                     yield Setting(command, variant, query, query.request[0], pairs, part)

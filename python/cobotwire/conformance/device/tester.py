@@ -13,8 +13,10 @@ from cobotwire.conformance.device.device import (
     NoMoreReplies,
     NotSupported,
 )
+from cobotwire.conformance.device.groups.changes import AFTER_CHANGE_OR_REPLY
+from cobotwire.conformance.device.groups.recorded import taken
 from cobotwire.conformance.device.permissions import Permissions
-from cobotwire.conformance.device.plan import Plan, Step
+from cobotwire.conformance.device.plan import RAN, Plan, Step
 from cobotwire.conformance.device.probe import Probe, Run, needed
 from cobotwire.conformance.device.read_as import sent_last
 from cobotwire.conformance.device.requester import Timing
@@ -153,6 +155,7 @@ class Tester:
             raise
         finally:
             self._close(steps[done:])
+            self._note_unread()
             self.report.seconds = self.connection.now
         self.report.finished = not self._ended
         return self.report
@@ -283,6 +286,18 @@ class Tester:
                 f"Not tested away from zero: joint {', '.join(still)}. There, a wrong scale, order "
                 "or direction does not show; with --allow motion the arm is also tested elsewhere."
             )
+
+    def _note_unread(self) -> None:
+        """Report the commands that were sent, but with an effect that nothing shows."""
+        after = {case.id for case in AFTER_CHANGE_OR_REPLY}
+        malformed = {group.name for group in SUITE.groups if "malformed" in group.permission}
+        ran = [r for r in self.report.results if r.command and r.verdict in RAN]
+        tested = {r.command for r in ran if r.case not in after and r.group not in malformed}
+        sent = sorted({r.command for r in ran if r.case in after} - tested)
+        unread = [name for name in sent if not taken(self.table, self.table.command(name))]
+        if unread:
+            text = f"Not tested: the effect of {', '.join(unread)}; only what comes after it."
+            self.report.untested = f"{self.report.untested} {text}".strip()
 
     def _read_version(self) -> None:
         query = self.device.command("version")

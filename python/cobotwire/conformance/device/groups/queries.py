@@ -105,6 +105,12 @@ def is_framed_query(table: Table, command: Command) -> bool:
     return is_query(table, command) and bool(command.reply)
 
 
+def _is_powered_query(table: Table, command: Command) -> bool:
+    """Return whether a command only reads, of a device with power to switch."""
+    switchable = any(other.safety == "power" for other in table.commands)
+    return switchable and is_framed_query(table, command)
+
+
 def _query_with_power(probe: Probe) -> None:
     """Request twice after the arm has got power: what was true before it shows in one reply."""
     device = probe.device
@@ -245,8 +251,8 @@ WITH_POWER = Group(
     "queries with power",
     (REPEATS,),
     _query_with_power,
-    is_framed_query,
+    _is_powered_query,
     frozenset({POWER}),
     sends="The query twice, after the arm has been switched on if it was off.",
-    subject="each query with a framed reply",
+    subject="each query with a framed reply, if a command switches the power",
 )

@@ -1,20 +1,25 @@
-"""Points that are recorded one by one: they are counted, and read in the order of recording.
+"""Values that are listed one by one: they are counted, and read in the order of recording.
 
-Reading a point removes it. Nothing moves.
+Reading a value removes it. Nothing moves. A list that no query counts is emptied before, so that
+what it held may be lost.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import partial
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
-from cobotwire.conformance.device.device import NotSupported
-from cobotwire.conformance.device.groups.changes import AFTER_CHANGE, request_change
+from cobotwire.conformance.device.device import Device, NotSupported
+from cobotwire.conformance.device.groups.changes import AFTER_CHANGE_OR_REPLY, request_change
 from cobotwire.conformance.device.probe import Probe, for_rows
-from cobotwire.conformance.device.requests import as_row, request_of, revealing
+from cobotwire.conformance.device.read_back import EXACT
+from cobotwire.conformance.device.requests import as_row, gentle_values, revealing
 from cobotwire.conformance.device.selection import does, first
+from cobotwire.conformance.samples.physical import takes_whole
 from cobotwire.conformance.suite import Group, TestCase
-from cobotwire.protocol.effects import Lists
+from cobotwire.protocol.effects import Lists, empty_value
+from cobotwire.protocol.fields import Field, named_fields
 from cobotwire.protocol.table import Command, Table
 
 IN_ORDER = TestCase(
@@ -22,61 +27,124 @@ IN_ORDER = TestCase(
     "Points that were added are counted, and read in the order in which they were added.",
 )
 
+CLEARED = TestCase("list-cleared", "A list that was cleared holds nothing.")
+
 # How many points are added; how many of the device's own are kept at most, to be added again.
 ADDED, MOST_KEPT = 3, 50
-# Both values are multiples of the wire's step, so only floating-point errors are tolerated.
-EXACT = 1e-6
+# So many zeros in a row are read from an empty list, if nothing else reports that it is empty.
+ZEROS = 3
 
 
 class _List(NamedTuple):
-    """The commands of a list: what reads and removes the first point, and what reports on it."""
+    """The commands of a list: what appends, what takes the first point, and what reports on it."""
 
-    take: Command
-    counter: Command
+    add: Command
+    given: Field
+    take: Command | None
+    counter: Command | None
     empty: Command | None
 
+    def request(self, point: tuple[float, ...]) -> Any:
+        """Return the request that appends a point."""
+        value = point if self.given.many else point[0]
+        given = gentle_values(self.add.request[0]) | {self.given.name: value}
+        return self.add.request_type.from_fields(given)
 
-def _list(table: Table, command: Command) -> _List | None:
-    """Return the commands of the list to which a command appends."""
-    appends = does(Lists, append=True)(table, command)
-    state = "" if appends is None else appends.state
-    take, counter, empty = (
-        first(table, does(Lists, state=state, **wanted))
-        for wanted in ({"take": "first"}, {"report": "count"}, {"report": "empty"})
-    )
-    return None if take is None or counter is None else _List(take, counter, empty)
+    @property
+    def points(self) -> list[tuple[float, ...]]:
+        """Points that differ in each part."""
+        shown = self.given if self.take is None else self.take.reply[0].fields[-1]
+        pairs = list(zip(self.given.cases[0].numbers, shown.cases[0].numbers))
+        rows = revealing([pairs], [(0,) * len(pairs)])
+        return [tuple(as_row(row[0])) for row in rows[:ADDED]]
+
+
+def _list(table: Table, state: str) -> _List | None:
+    """Return the commands of a list to which numbers can be appended; None: nothing shows them."""
+    wanted = ({"append": True}, {"take": "first"}, {"report": "count"}, {"report": "empty"})
+    add, take, counter, empty = (first(table, does(Lists, state=state, **each)) for each in wanted)
+    appends = None if add is None else does(Lists)(table, add)
+    if add is None or appends is None:
+        return None
+    given = named_fields(add.request)[appends.append][0]
+    ends = take is not None and does(Lists, empty="zeros")(table, take)
+    shown = counter or ends or (empty and take is None)
+    return _List(add, given, take, counter, empty) if shown and not takes_whole(given) else None
+
+
+def _of(**wanted: object) -> Callable[[Table, Command], _List | None]:
+    """Return what finds the list of a command that does what is wanted with it."""
+
+    def found(table: Table, command: Command) -> _List | None:
+        effect = does(Lists, **wanted)(table, command)
+        return _list(table, effect.state) if effect else None
+
+    return found
+
+
+appended, taken, cleared = _of(append=True), _of(take="first"), _of(clear="all")
+
+
+def _counted(table: Table, command: Command) -> _List | None:
+    points = appended(table, command)
+    return points if points and points.take and points.counter else None
+
+
+def _uncounted(table: Table, command: Command) -> _List | None:
+    return None if _counted(table, command) else appended(table, command)
 
 
 def _in_order(probe: Probe, points: _List) -> None:
     """Take the points that are there, add some, read them, and add the first ones again."""
-    device, command, take = probe.device, probe.command, points.take
-    count = device.require(points.counter.request_type()).result
-    if count > MOST_KEPT:
-        raise NotSupported(f"{count} points are recorded, which would be lost")
-    own = [_take(probe, take) for _ in range(count)]
-    device.restore_after_body[command.name] = partial(_restore, probe, points, own)
-    numbers = (f.cases[0].numbers for f in (command.request[0].fields[0], take.reply[0].fields[0]))
-    pairs = list(zip(*numbers))
-    added = [sample[0] for sample in revealing([pairs], [(0,) * len(pairs)])[:ADDED]]
-    _expect_count(probe, points, 0)
-    for number, point in enumerate(added, 1):
-        request_change(probe, request_of(command, point))
-        _expect_count(probe, points, number)
-    for number, point in enumerate(added, 1):
+    take, count = points.take, _count(probe.device, points)
+    if take is not None:
+        own = _take_own(probe, points, take, count)
+        probe.device.restore_after_body[probe.command.name] = partial(_restore, probe, points, own)
+        count = 0
+    _expect_count(probe, points, count)
+    for number, point in enumerate(points.points, 1):
+        request_change(probe, points.request(point))
+        _expect_count(probe, points, count + number)
+    if take is None:
+        return
+    for number, point in enumerate(points.points, 1):
         came = _take(probe, take)
         same = all(abs(one - other) <= EXACT for one, other in zip(point, came))
         reason = f"{take.name}: expected {point}, which was added as number {number}; came {came}"
         probe.expect(IN_ORDER, same, reason)
-        _expect_count(probe, points, len(added) - number)
+        _expect_count(probe, points, len(points.points) - number)
 
 
-def _expect_count(probe: Probe, points: _List, count: int) -> None:
+def _count(device: Device, points: _List) -> int:
+    """Return how many points there are; 0 if no query counts them."""
+    query = points.counter
+    if query is None:
+        return 0
+    return int(device.require(query.request_type()).fields[query.reply[0].fields[-1].name])
+
+
+def _take_own(probe: Probe, points: _List, take: Command, count: int) -> list[tuple[float, ...]]:
+    """Take every point that is there, and return them; without a count, until zeros come."""
+    own: list[tuple[float, ...]] = []
+    while len(own) < (count if points.counter else ZEROS) or (
+        not points.counter and any(map(any, own[-ZEROS:]))
+    ):
+        if max(count, len(own)) > MOST_KEPT:
+            raise NotSupported(f"more than {MOST_KEPT} points are recorded, which would be lost")
+        own.append(_take(probe, take))
+    return own if points.counter else own[:-ZEROS]
+
+
+def _expect_count(probe: Probe, points: _List, count: int, case: TestCase = IN_ORDER) -> None:
     """Expect the number of points, and the report whether there are any."""
-    came = probe.device.require(points.counter.request_type()).result
-    probe.expect(IN_ORDER, came == count, f"{points.counter.name}: expected {count}; came {came}")
+    device = probe.device
+    if points.counter is not None:
+        came = _count(device, points)
+        probe.expect(case, came == count, f"{points.counter.name}: expected {count}; came {came}")
     if points.empty is not None:
         filled, when = points.empty.request_type(), f", with {count} points"
-        probe.expect_flag(IN_ORDER, filled, count > 0, when=when)
+        right = (count == 0) == bool(empty_value(points.empty.reply[0].fields[-1]))
+        probe.expect_flag(case, filled, right, when=when)
 
 
 def _take(probe: Probe, take: Command) -> tuple[float, ...]:
@@ -86,21 +154,49 @@ def _take(probe: Probe, take: Command) -> tuple[float, ...]:
             reason = f"{take.name}: expected legal values; {reply.error}"
             probe.expect(IN_ORDER, reply.error is None, reason)
         raise NotSupported(f"{take.name} reports nothing")
-    return as_row(response.valid.message.result)
+    return as_row(response.valid.message.fields[take.reply[0].fields[-1].name])
 
 
 def _restore(probe: Probe, points: _List, own: list[tuple[float, ...]]) -> None:
-    left = probe.device.read(points.counter.request_type())
-    for _ in range(0 if left is None else min(left.result, ADDED)):
+    assert points.take is not None, "without it nothing was taken"
+    left = _count(probe.device, points) if points.counter else ADDED
+    for _ in range(min(left, ADDED)):
         probe.device.request(points.take.request_type())
     for point in own:
-        probe.device.request(request_of(probe.command, point))
+        probe.device.request(points.request(point))
+
+
+def _clear(probe: Probe, points: _List) -> None:
+    """Add a point, and clear the list."""
+    probe.device.request(points.request(points.points[0]))
+    request_change(probe, probe.command.request_type())
+    _expect_count(probe, points, 0, CLEARED)
+    if points.take is not None:
+        came = _take(probe, points.take)
+        reason = f"{points.take.name}: expected zeros from an empty list; came {came}"
+        probe.expect(CLEARED, not any(came), reason)
 
 
 RECORDED = Group(
     "recorded points",
-    (IN_ORDER, *AFTER_CHANGE),
-    *for_rows(_list, _in_order),
+    (IN_ORDER, *AFTER_CHANGE_OR_REPLY),
+    *for_rows(_counted, _in_order),
     sends="Points that differ in each part, one by one; the number of points; each point.",
     subject="the command that adds a point, if another one reads it and one counts them",
+)
+UNCOUNTED = Group(
+    "listed values",
+    (IN_ORDER, *AFTER_CHANGE_OR_REPLY),
+    *for_rows(_uncounted, _in_order),
+    frozenset({"irreversible"}),
+    sends="Values that differ in each part, one by one; then what reads or reports them.",
+    subject="each command that appends to a list which others only read or only report on",
+)
+CLEARS = Group(
+    "cleared lists",
+    (CLEARED, *AFTER_CHANGE_OR_REPLY),
+    *for_rows(cleared, _clear),
+    frozenset({"irreversible"}),
+    sends="A value that is added, the command, and what reads or reports on the list.",
+    subject="each command that clears a list, if values can be added and read or counted",
 )

@@ -28,12 +28,13 @@ from cobotwire.conformance.device.read_back import (
 )
 from cobotwire.conformance.device.requests import (
     arguments_of,
+    gentle_values,
     harmless,
     requests,
 )
 from cobotwire.conformance.device.selection import judged, reporters
 from cobotwire.conformance.suite import Group, TestCase
-from cobotwire.protocol.effects import Sets
+from cobotwire.protocol.effects import Cases, Sets
 from cobotwire.protocol.messages import Request
 from cobotwire.protocol.table import Command, Table
 
@@ -206,6 +207,41 @@ def _set_off(probe: Probe, mover: Mover, query: Command) -> None:
                     return
 
 
+def choices(table: Table, command: Command) -> list[tuple[Request[Any], Fixed]]:
+    """Return what an argument can choose that queries report, such as OPEN: a request of each."""
+    effect = judged(command)
+    if not isinstance(effect, Cases) or command.safety not in ("setting", "persistent write"):
+        return []
+    given = gentle_values(command.request[0])
+    return [
+        (command.request_type.from_fields(given | {effect.selector: raw}), fixed)
+        for raw, case in effect.cases.items()
+        if isinstance(case, Sets)
+        for state, value in case.values.items()
+        for found in reporters(table, state)
+        if found.at == case.at and isinstance(value, int)
+        for fixed in [Fixed(found.query, found.field, int(value))]
+    ]
+
+
+def _choose(probe: Probe, rows: list[tuple[Request[Any], Fixed]]) -> None:
+    """Choose each in turn, twice, so that each follows another one; then restore the old ones."""
+    device = probe.device
+    for query, fixed in {fixed.for_part(request): fixed for request, fixed in rows}.items():
+        old = fixed.read(device, query)
+        back = [one for one, each in rows if (each.for_part(one), each.value) == (query, old)]
+        if back:
+            device.restore_after_body[str(query)] = partial(device.request, back[0])
+        elif "irreversible" not in device.permissions.classes:
+            raise NotSupported("no choice restores it: that needs the permission irreversible")
+    for request, fixed in (*rows, *rows):
+        request_change(probe, request)
+        reads = partial(_read, device, fixed, fixed.for_part(request))
+        device.poll(reads, fixed.value.__eq__, SHOWS, SHOWS / 4)
+        call = f"{probe.command.name}({arguments_of(request)})"
+        _expect(probe, EFFECT, fixed, fixed.for_part(request), fixed.value, call)
+
+
 SWITCHES = Group(
     "switches",
     (EFFECT, DONE, *AFTER_CHANGE_OR_REPLY, REPEATS),
@@ -215,6 +251,13 @@ SWITCHES = Group(
         "that restores the state. Without power, each query without arguments, twice."
     ),
     subject="each command with a fixed effect that a query reports",
+)
+CHOICES = Group(
+    "choices",
+    (EFFECT, *AFTER_CHANGE_OR_REPLY),
+    *for_rows(choices, _choose),
+    sends="The command with each choice in turn, twice; after each, the query that reports it.",
+    subject="each setting with an argument that chooses a fixed effect which a query reports",
 )
 HOLDING = Group(
     "single parts",

@@ -5,7 +5,9 @@ from __future__ import annotations
 from cobotwire.conformance.device.groups.changes import AFTER_CHANGE_OR_REPLY, request_change
 from cobotwire.conformance.device.groups.gripping import opens
 from cobotwire.conformance.device.groups.motion import resume
+from cobotwire.conformance.device.groups.recorded import appended, cleared
 from cobotwire.conformance.device.groups.settings import is_shown
+from cobotwire.conformance.device.groups.switching import choices
 from cobotwire.conformance.device.mover import give_power
 from cobotwire.conformance.device.probe import Probe
 from cobotwire.conformance.device.read_back import fixed_effect, setter_of, settings_of
@@ -19,8 +21,8 @@ from cobotwire.protocol.table import Command, Table
 def _is_unread(table: Table, command: Command) -> bool:
     """Return whether no query reads back what a command does, and no command restores it."""
     own = command.role in ("", "halt") or (command.role == "gripper" and not opens(table, command))
-    read = fixed_effect(table, command) or settings_of(table, command) or is_shown(table, command)
-    return command.safety != "query" and own and not read
+    read = (fixed_effect, settings_of, is_shown, choices, appended, cleared)
+    return command.safety != "query" and own and not any(each(table, command) for each in read)
 
 
 def _send_unread(probe: Probe) -> None:
