@@ -90,4 +90,6 @@ def _state_changes(old: Edition, new: Edition) -> Iterator[Finding]:
             words.state(side[name]) if name in side else "not declared" for side in (before, after)
         ]
         if shown[0] != shown[1]:
-            yield finding("state-changed", f"edition/state/{name}", *shown)
+            # What an old command does to a new state is a change of its effect.
+            rule = "state-changed" if name in before else "state-added"
+            yield finding(rule, f"edition/state/{name}", *shown)

@@ -136,6 +136,7 @@ _ADDITION = {
     "echo-loosened": "the echo was {old}, is {new}: replies without it are accepted as well",
     "edition-added": "the edition {new} was added",
     "request-variant-added": "the request may also be ({new})",
+    "state-added": "the state was added, is {new}",
     "result-now-required": "could be missing, is always present",
 }
 _DOCS = {
