@@ -143,6 +143,10 @@ def _wrong_cases(effect: Effect, selector: Field | None) -> Iterator[str]:
         if raw in found:
             yield f"the cases {found[raw]} and {case} are the same value of {selector.name}"
         found[raw] = case
+    for name, raw in members.items():
+        if raw not in found:
+            what = f"{name} of {selector.name} has no case"
+            yield f"{what}; if its effect is not known: {{unknown: why}}"
 
 
 def _unknown_states(effect: Effect, states: Mapping[str, State]) -> Iterator[str]:
