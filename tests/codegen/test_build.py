@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
 import in_process
+from cobotwire_codegen.build import build_edition
 from cobotwire_codegen.cli import main
+from cobotwire_codegen.render import render_reference
 from in_process import Ended
 
 LAMP = (Path(__file__).parent / "lamp.yaml").read_text()
@@ -39,6 +42,16 @@ def test_build_writes_package_reference_and_c_and_finds_them_fresh(folder: Path)
     assert sorted(path.name for path in (folder / "c").iterdir()) == ["lamp.c", "lamp.h"]
     again = run(folder, *words, "--check")
     assert (again.returncode, again.stdout) == (0, "fresh\n")
+
+
+def test_reference_names_the_device_and_the_check_of_its_frames(folder: Path) -> None:
+    framed = LAMP.replace("length_counts: [", "check: crc16-modbus\n    length_counts: [check, ")
+    (folder / "lamp.yaml").write_text(framed)
+    edition = replace(build_edition(folder / "lamp.yaml", folder), title="A lamp: with a check")
+    pages = {str(path): text for path, text in render_reference(edition).items()}
+    assert "# Protocol of the lamp\n" in pages["README.md"]
+    check = "The check of each frame is crc16-modbus over all bytes before it, high byte first."
+    assert check in pages["README.md"]
 
 
 def test_build_writes_plugins_into_folder_with_other_files(folder: Path) -> None:

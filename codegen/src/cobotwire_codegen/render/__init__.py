@@ -24,7 +24,7 @@ from cobotwire_codegen import lower
 from cobotwire_codegen.model import Bits, Edition, Enum, Flag, Listed, Quantity, Type, Value
 from cobotwire_codegen.publish import edition_json, errata_json
 from cobotwire_codegen.render import examples, layout, markdown, parameters, python_api, words
-from cobotwire_codegen.render.byte_table import byte_rows, on_one_line, only_fixed
+from cobotwire_codegen.render.byte_table import byte_rows, check_words, on_one_line, only_fixed
 from cobotwire_codegen.render.diagram import byte_diagram
 from cobotwire_codegen.render.effects import effect_in_words
 from cobotwire_codegen.render.escape_markdown import escaped
@@ -229,6 +229,7 @@ def _environment(kind: type[Environment], *loaders: BaseLoader) -> Environment:
         md=markdown,
         examples=examples,
         byte_rows=byte_rows,
+        check_words=check_words,
         only_fixed=only_fixed,
         on_one_line=on_one_line,
         effect_in_words=effect_in_words,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Set
 
 from cobotwire_codegen.language.words import CONTROLS
 from cobotwire_codegen.model import Command, Edition, Effect
@@ -54,20 +54,22 @@ def effect_in_words(edition: Edition, command: Command) -> str:
     effect = command.effect
     if effect is None:
         return ""
-    words = [*_sentences(effect), *_others(edition, command, effect)]
+    types = {state.name: state.type for state in edition.states if not state.each}
+    flags = {name for name, type in types.items() if type and type.kind == "flag"}
+    words = [*_sentences(effect, flags), *_others(edition, command, effect)]
     if effect.assumed:
         words.append(f"This effect is assumed. {_sentence(effect.assumed)}")
     return " ".join(words)
 
 
-def _sentences(effect: Effect) -> Iterator[str]:
+def _sentences(effect: Effect, flags: Set[str]) -> Iterator[str]:
     match effect.verb:
         case "reports":
-            yield f"It reports {_states(effect)}."
+            yield f"It reports {_states(effect, flags)}."
         case "stores":
-            yield f"It sets {_states(effect)}."
+            yield f"It sets {_states(effect, flags)}."
         case "sets":
-            yield f"It {', and '.join(_fixed(effect))}{_chosen(effect.at)}."
+            yield f"It {', and '.join(_fixed(effect, flags))}{_chosen(effect.at)}."
         case "moves":
             moves = "turns" if effect.option("keeps") else "moves"
             yield f"It {moves} {_PARTS[effect.what]}{_way(effect)}."
@@ -78,17 +80,17 @@ def _sentences(effect: Effect) -> Iterator[str]:
         case "list":
             yield _list(effect)
         case "computes":
-            source = effect.option("from")
-            yield f"It computes {_state(effect, effect.what)} from `{source}`; nothing changes."
+            what, source = _state(effect, effect.what, flags), effect.option("from")
+            yield f"It computes {what} from `{source}`; nothing changes."
         case "unknown" | "python":
             yield _sentence(effect.what)
         case _:
             for case, inner in effect.cases:
-                for sentence in _sentences(inner):
+                for sentence in _sentences(inner, flags):
                     yield f"`{effect.what}` {case}: {sentence[0].lower()}{sentence[1:]}"
 
 
-def _fixed(effect: Effect) -> Iterator[str]:
+def _fixed(effect: Effect, flags: Set[str]) -> Iterator[str]:
     """Yield what a command sets to fixed values: what it switches on and off, and the rest."""
     nouns = _SWITCHED | (_ONE_SWITCHED if effect.at else {})
     for way, value in (("on", True), ("off", False)):
@@ -96,7 +98,7 @@ def _fixed(effect: Effect) -> Iterator[str]:
         if switched:
             yield f"switches {way} {_listed(switched)}"
     rest = [
-        f"{_state(effect, name)} to {_value(value)}{' percent' if name == 'opening' else ''}"
+        f"{_state(effect, name, flags)} to {_value(value)}{' percent' if name == 'opening' else ''}"
         for name, value in effect.values
         if name not in nouns
     ]
@@ -150,13 +152,14 @@ def _others(edition: Edition, command: Command, effect: Effect) -> Iterator[str]
         yield "The result survives a power cycle."
 
 
-def _states(effect: Effect) -> str:
-    states = dict.fromkeys(_state(effect, str(state)) for _, state in effect.values)
+def _states(effect: Effect, flags: Set[str]) -> str:
+    states = dict.fromkeys(_state(effect, str(state), flags) for _, state in effect.values)
     return _listed(states) + _chosen(effect.at)
 
 
-def _state(effect: Effect, name: str) -> str:
-    return (_ONE if effect.at else {}).get(name) or _BUILT_IN.get(name) or f"the {_words(name)}"
+def _state(effect: Effect, name: str, flags: Set[str]) -> str:
+    named = f"`{name}`" if name in flags else f"the {_words(name)}"
+    return (_ONE if effect.at else {}).get(name) or _BUILT_IN.get(name) or named
 
 
 def _chosen(arguments: Iterable[str]) -> str:

@@ -27,8 +27,8 @@ from cobotwire_codegen.render.words import decimal, span, units
 
 
 def robot(edition: Edition) -> str:
-    """Return the name of the edition's robot, without what its title adds to it."""
-    return edition.title.partition(":")[0]
+    """Return the name of the edition's robot, without an article, and what its title adds to it."""
+    return re.sub("^(A|An|The) ", "", edition.title.partition(":")[0])
 
 
 def wire_variant(type: Type) -> str:
