@@ -53,6 +53,12 @@ def test_package_of_your_own_decodes_recordings_that_name_its_edition(
     codec_of_recording.cache_clear()
 
 
+def test_file_in_place_of_a_package_has_to_be_built(tmp_path: Path) -> None:
+    (tmp_path / "pump.yaml").touch()
+    with pytest.raises(UsageError, match="is a file: generate a package from it"):
+        editions.load(str(tmp_path / "pump.yaml"))
+
+
 def test_name_in_a_recording_is_never_imported(tmp_path: Path) -> None:
     (tmp_path / "evil").mkdir()
     (tmp_path / "evil" / "__init__.py").write_text("raise SystemExit('imported')")

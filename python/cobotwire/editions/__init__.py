@@ -51,6 +51,8 @@ def load(name: str = DEFAULT) -> Edition:
     except (ModuleNotFoundError, ValueError, TypeError):
         hint = did_you_mean(name, names()) or f"; choose from {', '.join(names())}"
         message = f"there is no edition {name!r}{hint}"
+        if os.path.isfile(name):
+            message = f"{name!r} is a file: generate a package from it with cobotwire-gen build"
         raise UsageError("edition", name, message=message) from None
     try:
         complete = hasattr(package, "TABLE") and hasattr(package, "CLIENT")

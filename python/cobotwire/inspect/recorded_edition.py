@@ -31,7 +31,8 @@ def codec_of_recording(recorded: str, default: str) -> Codec:
         name = printable(recorded)
         message = (
             f"the recording names the edition {name!r}, which is not installed; if you have its "
-            f"package, choose it: cobotwire --edition PACKAGE, or the argument edition"
+            f"package, choose it by its name or folder: cobotwire --edition PACKAGE, or the "
+            f"argument edition"
         )
         raise UsageError("edition", recorded, message=message)
     return codecs.load(table)

@@ -159,3 +159,9 @@ def test_explain_suggests_the_nearest_word_for_an_unknown_one(word: str, near: s
     result = samples.run(vectors.ROOT, "explain", word)
     assert result.returncode == 2
     assert f"did you mean {near}?" in result.stderr
+
+
+def test_outside_of_a_clone_the_file_has_to_be_named(tmp_path: Path) -> None:
+    unknown = samples.run(tmp_path, "explain", "bad-efect")
+    assert "bad-efect is not a problem code; did you mean bad-effect?" in unknown.stderr
+    assert "name your own file" in samples.run(tmp_path, "vectors").stderr

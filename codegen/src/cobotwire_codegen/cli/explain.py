@@ -9,10 +9,8 @@ import click
 from cobotwire_codegen.author.codes import CODES
 from cobotwire_codegen.author.describe import describe_code, describe_command
 from cobotwire_codegen.build import build_edition
-from cobotwire_codegen.cli.shared import edition_path, report_problems
+from cobotwire_codegen.cli.shared import DEFAULT_EDITION, edition_path, report_problems
 from cobotwire_codegen.errors import nearest
-
-DEFAULT_EDITION = "spec/editions/mycobot.yaml"
 
 
 @click.command()
@@ -33,6 +31,9 @@ def explain(word: str | None, file: str) -> None:
     if word in CODES:
         click.echo(describe_code(CODES[word]))
         return
+    if file == DEFAULT_EDITION and not Path(file).is_file():
+        hint = f"{_hint(word, [*CODES])}; for a command, name its file: --edition FILE"
+        raise click.UsageError(f"{word} is not a problem code{hint}")
     with report_problems():
         # The edition is not checked, so that a command can be explained while it is being changed.
         edition = build_edition(edition_path(file), Path.cwd())

@@ -20,8 +20,7 @@ from cobotwire_codegen.author.draft import (
 from cobotwire_codegen.author.place import families, vectors_file
 from cobotwire_codegen.author.propose import typical_values
 from cobotwire_codegen.check import check as check_edition
-from cobotwire_codegen.cli.explain import DEFAULT_EDITION
-from cobotwire_codegen.cli.shared import edition_path, report_problems
+from cobotwire_codegen.cli.shared import DEFAULT_EDITION, edition_path, report_problems
 from cobotwire_codegen.errors import nearest
 from cobotwire_codegen.language.words import BUILT_IN, SAFETY
 from cobotwire_codegen.load import Mapping, Node, Scalar, Sequence, parse

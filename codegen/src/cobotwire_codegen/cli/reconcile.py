@@ -12,8 +12,7 @@ import click
 from cobotwire_codegen.author.reconcile import capture_bytes, draft_lines, plain
 from cobotwire_codegen.author.reconcile import reconcile as reconciled
 from cobotwire_codegen.build import build_edition
-from cobotwire_codegen.cli.explain import DEFAULT_EDITION
-from cobotwire_codegen.cli.shared import edition_path, report_problems
+from cobotwire_codegen.cli.shared import DEFAULT_EDITION, edition_path, report_problems
 
 
 @click.command()

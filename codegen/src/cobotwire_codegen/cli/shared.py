@@ -15,6 +15,7 @@ from jinja2 import TemplateSyntaxError
 from cobotwire_codegen.errors import Problem, SpecError, nearest
 from cobotwire_codegen.render import template_names
 
+DEFAULT_EDITION = "spec/editions/mycobot.yaml"
 FORMATS = ("text", "json", "github")
 
 root_option = click.option(
@@ -117,5 +118,7 @@ def edition_path(file: str) -> Path:
     """Return the path of the edition file that the command line names."""
     path = Path(file)
     if not path.is_file():
-        raise click.UsageError(f"there is no file {file}")
+        clone = "; it comes with a clone of the project: name your own file"
+        hint = clone if file == DEFAULT_EDITION else ""
+        raise click.UsageError(f"there is no file {file}{hint}")
     return path

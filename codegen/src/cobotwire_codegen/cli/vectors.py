@@ -10,8 +10,12 @@ from cobotwire_codegen.author.append import appended
 from cobotwire_codegen.author.place import vectors_file
 from cobotwire_codegen.author.propose import proposed
 from cobotwire_codegen.build import build_edition
-from cobotwire_codegen.cli.explain import DEFAULT_EDITION
-from cobotwire_codegen.cli.shared import edition_path, report_problems, report_write_errors
+from cobotwire_codegen.cli.shared import (
+    DEFAULT_EDITION,
+    edition_path,
+    report_problems,
+    report_write_errors,
+)
 
 
 @click.command()
@@ -36,7 +40,8 @@ def vectors(file: str, write: bool) -> None:
             for lines in entries:
                 text = appended(text, str(home), "vectors", lines, False)
             home.write_text(text, encoding="utf-8")
-            click.echo(f"{home}: {len(entries)} vectors added; compare each with a source")
+            what = f"{len(entries)} computed vectors added"
+            click.echo(f"{home}: {what}; they prove nothing until compared with real frames")
             return
     for lines in entries:
         click.echo("\n".join(lines))
