@@ -73,6 +73,8 @@ def _passed(
     theirs = call.parameters[parameter]
     if theirs in ("0", "False") and default == "None":
         text = "None" if value is None else code(value)
+        if text.endswith(" or None"):
+            return value
         if text in ("0", "False", "None"):
             return None
         is_set = isinstance(value, cst.Integer | cst.Float) or text == "True"

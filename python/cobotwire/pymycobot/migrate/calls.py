@@ -82,6 +82,10 @@ class LibraryClass:
         # Helpers of the layer send something else than the command of that name.
         return found if found.by_hand or not self.is_by_hand(method) else None
 
+    def called(self, name: str) -> Call | None:
+        """Return how the library calls what our client calls by a name; None if it has no such."""
+        return next((each for each in self.methods.values() if each.calls == name), None)
+
     def has(self, method: str) -> bool:
         """Return whether the library's class has a method."""
         return hasattr(self.layer, method)
@@ -183,6 +187,14 @@ def library() -> dict[str, LibraryClass]:
         given = class_row(name)
         made[name] = _class(given, made.get(given.get("like", "")))
     return made
+
+
+@lru_cache
+def counterparts() -> dict[str, str]:
+    """Return the class of the library that a class of ours is read as, by the name of ours."""
+    return {kind.native: name for name, kind in library().items()} | {
+        name: name for name, kind in library().items() if kind.native == name
+    }
 
 
 def are_alike(kinds: list[LibraryClass], method: str) -> bool:

@@ -95,6 +95,11 @@ TIMEOUT = "timeout was the time of one read of the port; ours limits the whole w
 UNKNOWN = (
     "{name} may be an arm, whose class is not known here, so the call is left as it is; annotate it"
 )
+PARAMETER = (
+    "{name} may be an arm, whose class is not known here, so its calls are left as they are; write "
+    "`def {function}({name}: {kind})`, and run this again"
+)
+EITHER = "this may be the library's call or ours, which have their arguments in another order"
 # What methods of the layer do that no single call of ours does.
 BY_HAND = {
     "power_on": "it waits for the motors; call power_on(), and then time.sleep(1)",

@@ -80,6 +80,11 @@ class Keys:
         owner = self.parents.get(block) if isinstance(block, cst.IndentedBlock) else None
         return owner if isinstance(owner, cst.ClassDef) else None
 
+    def function_of(self, node: cst.CSTNode) -> cst.FunctionDef | None:
+        """Return the function that a node is a parameter of."""
+        found = self.parents.get(self.parents.get(node, node))
+        return found if isinstance(found, cst.FunctionDef) else None
+
     def owner(self, node: cst.CSTNode) -> Key | None:
         """Return the key of the class, if a node is the first parameter of a method of it."""
         for given in self.assigned(node) if isinstance(node, cst.Name) else ():

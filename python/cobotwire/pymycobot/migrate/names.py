@@ -9,7 +9,7 @@ import libcst as cst
 from libcst.helpers import get_full_name_for_node
 
 from cobotwire.pymycobot.migrate.bindings import Bindings
-from cobotwire.pymycobot.migrate.calls import Call, library
+from cobotwire.pymycobot.migrate.calls import Call, counterparts, library
 from cobotwire.pymycobot.migrate.keys import Key, Keys
 from cobotwire.pymycobot.migrate.values import (
     NONE,
@@ -24,6 +24,8 @@ from cobotwire.pymycobot.migrate.values import (
 
 LIBRARY = "pymycobot"
 _NOTHING: Values = frozenset()
+# With these a rewritten program makes the library's result of ours.
+_CONVERSIONS = {"int", "list", "map"}
 
 
 class Names:
@@ -78,6 +80,14 @@ class Names:
         """Return the classes of the library that an expression may be."""
         return sorted(each.name for each in self.values(node) if isinstance(each, Kind))
 
+    def is_ours(self, node: cst.CSTNode) -> bool:
+        """Return whether an expression may be a class of ours, or an object of one."""
+        return any(isinstance(v, Kind | Arm) and v.ours for v in self.values(node))
+
+    def classes(self) -> list[str]:
+        """Return the names by which the program knows classes of arms."""
+        return sorted({name for each in self._found.froms for name, _ in _kinds(each)})
+
     def is_only(self, node: cst.CSTNode, kind: type[Value]) -> bool:
         """Return whether an expression is nothing but values of a kind, and perhaps None."""
         return all(isinstance(each, kind) for each in self.values(node) - {NONE})
@@ -97,7 +107,10 @@ class Names:
         if not isinstance(node, cst.Call) or not isinstance(node.func, cst.Attribute):
             return []
         name = node.func.attr.value
-        found = (library()[kind].call(name) for kind in self.arms(node.func.value))
+        kinds = [library()[kind] for kind in self.arms(node.func.value)]
+        found = [kind.call(name) for kind in kinds]
+        if self.is_ours(node.func.value):
+            found = [call or kind.called(name) for kind, call in zip(kinds, found)]
         return [each for each in found if each]
 
     def parameters(self, argument: cst.Arg) -> list[cst.Param]:
@@ -126,12 +139,11 @@ class Names:
 
     def _of_name(self, node: cst.Name) -> Values:
         imported = {
-            Kind(alias.evaluated_name)
+            kind
             for each in self.keys.assigned(node)
-            if isinstance(each, cst.ImportFrom) and is_of_library(each)
-            for alias in (() if isinstance(each.names, cst.ImportStar) else each.names)
-            if node.value == (alias.evaluated_alias or alias.evaluated_name)
-            and alias.evaluated_name in library()
+            if isinstance(each, cst.ImportFrom)
+            for name, kind in _kinds(each)
+            if node.value == name
         }
         return self._bound.get(self.keys.key(node), _NOTHING) | imported
 
@@ -142,7 +154,9 @@ class Names:
         if functions:
             returned = (self._bound.get(_returned(each), _NOTHING) for each in functions)
             return frozenset().union(*returned)
-        made = frozenset(Arm(each) for each in self.kinds(node.func))
+        if isinstance(node.func, cst.Name) and node.func.value in _CONVERSIONS and node.args:
+            return frozenset(v for v in self.values(node.args[-1].value) if isinstance(v, Result))
+        made = self._objects(node.func)
         results = frozenset(Result(each.gives) for each in self.called(node))
         return made | results or frozenset({UNKNOWN})
 
@@ -160,7 +174,7 @@ class Names:
 
     def _bind(self, unbound: Values) -> None:
         for target, annotation in self._found.annotated:
-            self._note(target, (Arm(each) for each in self.kinds(annotation)))
+            self._note(target, self._objects(annotation))
         for target, value in self._found.assigned:
             found = frozenset({UNKNOWN}) if value is None else self.values(value)
             self._note(target, found or unbound)
@@ -177,11 +191,15 @@ class Names:
                 self._note(parameter.name, self._of_parameter(parameter, given))
 
     def _of_parameter(self, node: cst.Param, given: dict[cst.Param, Values]) -> Values:
-        kinds = self.kinds(node.annotation.annotation) if node.annotation else []
-        if kinds:
-            return frozenset(Arm(each) for each in kinds)
+        annotated = self._objects(node.annotation.annotation) if node.annotation else _NOTHING
+        if annotated:
+            return annotated
         default = self.values(node.default) if node.default else _NOTHING
         return default | given.get(node, frozenset({UNKNOWN}))
+
+    def _objects(self, node: cst.CSTNode) -> Values:
+        """Return the arms that the classes of an expression make."""
+        return frozenset(Arm(*each) for each in self.values(node) if isinstance(each, Kind))
 
     def _note(self, target: cst.CSTNode, values: Iterable[Value]) -> None:
         key = self.key(target)
@@ -194,7 +212,22 @@ def _returned(node: cst.FunctionDef) -> Key:
     return ("returned", id(node))
 
 
+def _kinds(node: cst.ImportFrom) -> Iterable[tuple[str, Kind]]:
+    """Return the classes that a line imports from the library, or from this package, by name."""
+    ours = not node.relative and _module(node) == "cobotwire"
+    if isinstance(node.names, cst.ImportStar) or not (ours or is_of_library(node)):
+        return
+    for alias in node.names:
+        name = alias.evaluated_name
+        name = counterparts().get(name, "") if ours else name
+        if name in library():
+            yield alias.evaluated_alias or alias.evaluated_name, Kind(name, ours)
+
+
 def is_of_library(node: cst.ImportFrom) -> bool:
     """Return whether a line imports names of the library."""
-    name = get_full_name_for_node(node.module) if node.module else ""
-    return (name or "").partition(".")[0] == LIBRARY and not node.relative
+    return _module(node).partition(".")[0] == LIBRARY and not node.relative
+
+
+def _module(node: cst.ImportFrom) -> str:
+    return (get_full_name_for_node(node.module) or "") if node.module else ""

@@ -79,7 +79,11 @@ class Places(cst.CSTVisitor):
 
     def visit_Attribute(self, node: cst.Attribute) -> None:
         self._visit_value(node)
-        if self.names.arms(node.value) and not self._is_called(node):
+        arms = self.names.arms(node.value)
+        # Of our own classes only what the library has, too: what was not rewritten.
+        if self.names.is_ours(node.value) and not library()[arms[0]].has(node.attr.value):
+            arms = []
+        if arms and not self._is_called(node):
             self._decide(node, self._why_not_called(node))
         is_kept = node.attr.value in imports.KEPT["utils"]
         if isinstance(node.value, cst.Name) and self._is_utils(node.value) and not is_kept:

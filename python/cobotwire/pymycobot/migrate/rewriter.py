@@ -18,10 +18,12 @@ from cobotwire.pymycobot.migrate.arguments import (
 )
 from cobotwire.pymycobot.migrate.calls import Call, LibraryClass, are_alike, library
 from cobotwire.pymycobot.migrate.decisions import (
+    EITHER,
     HIDDEN_NAME,
     HOME,
     MIXED,
     OTHER_ROBOT,
+    PARAMETER,
     RESULTS,
     SEVERAL,
     TIMEOUT,
@@ -74,6 +76,8 @@ class Rewriter(cst.CSTTransformer):
 
     def leave_Call(self, original_node: cst.Call, updated_node: cst.Call) -> cst.BaseExpression:
         kinds = self.names.kinds(original_node.func)
+        if kinds and self.names.is_ours(original_node.func):
+            return updated_node
         if kinds:
             if len(kinds) == 1 and self.names.is_only(original_node.func, Kind):
                 return self._constructed(original_node, updated_node, kinds[0])
@@ -84,16 +88,33 @@ class Rewriter(cst.CSTTransformer):
         arms = [library()[each] for each in self.names.arms(arm)]
         if not arms:
             if self.uses.may_be_arm(arm, method):
-                self.decide(original_node, UNKNOWN.format(name=code(arm)))
+                self._ask_class(original_node, arm)
             return updated_node
         if not self.names.is_only(arm, Arm) or not are_alike(arms, method):
             self.decide(original_node, MIXED.format(code(arm)))
             return updated_node
         return self._of_arm(original_node, updated_node, arms[0], method)
 
+    def _ask_class(self, call: cst.Call, arm: cst.BaseExpression) -> None:
+        """Have the class of an unknown arm decided: of a parameter once, for all its calls."""
+        for given in self.names.keys.assigned(arm) if isinstance(arm, cst.Name) else ():
+            function = self.names.keys.function_of(given)
+            if isinstance(given, cst.Param) and function and not given.annotation:
+                kind = " or ".join(self.names.classes()) or "MyCobot280"
+                name = function.name.value
+                self.decide(given, PARAMETER.format(name=given.name.value, function=name, kind=kind))
+                return
+        self.decide(call, UNKNOWN.format(name=code(arm)))
+
     def _of_arm(
         self, original: cst.Call, updated: cst.Call, kind: LibraryClass, method: str
     ) -> cst.BaseExpression:
+        is_ours = self.names.is_ours(cst.ensure_type(original.func, cst.Attribute).value)
+        if is_ours and (found := self._rewritten_before(original, kind, method)):
+            return self._with_result(original, updated, found)
+        if is_ours and method == "go_home":
+            self.decide(original, HOME)
+            return updated
         if method in _WRITTEN and kind.has(method):
             return _WRITTEN[method](self, original, updated, kind)
         call = kind.call(method)
@@ -102,6 +123,15 @@ class Rewriter(cst.CSTTransformer):
             return updated
         return self._method(original, updated, call, kind)
 
+    def _rewritten_before(self, call: cst.Call, kind: LibraryClass, method: str) -> Call | None:
+        """Return how the library calls a method of ours; None if the call may be the library's."""
+        theirs = kind.call(method)
+        if theirs and given(call.args, list(theirs.parameters)) is not None:
+            return None
+        if not hasattr(kind.client, method) or (theirs is None and kind.has(method)):
+            return None
+        return kind.called(method) or Call(method, {}, {}, gives="same")
+
     def _method(
         self, original: cst.Call, updated: cst.Call, call: Call, kind: LibraryClass
     ) -> cst.BaseExpression:
@@ -109,6 +139,11 @@ class Rewriter(cst.CSTTransformer):
         if isinstance(arguments, str):
             self.decide(original, arguments)
             return updated
+        if self.names.is_ours(cst.ensure_type(original.func, cst.Attribute).value):
+            again = ours(call, arguments) if call is kind.call(call.calls) else arguments
+            if _shown(again) != _shown(arguments):
+                self.decide(original, EITHER)
+                return updated
         known = given(updated.args, list(call.parameters)) or {}
         if is_about_motion(call, known, kind):
             self.decide(original, RESULTS[call.result])
@@ -126,6 +161,8 @@ class Rewriter(cst.CSTTransformer):
             self.decide(original, why_other(call))
             return made
         if call.gives != "ints" and all(self.uses.is_proven(use, call.gives) for use in uses):
+            return made
+        if all(self.uses.is_converted(use, call.gives) for use in uses):
             return made
         for name in filter(self.uses.is_hidden, _FORMS[call.gives]):
             self.decide(original, HIDDEN_NAME.format(name))
@@ -217,6 +254,10 @@ def _or_default(
     if parameter in known or str(default) in ("None", str(kind.usual)):
         return known.get(parameter)
     return cst.parse_expression(f'"{default}"' if isinstance(default, str) else f"{default}")
+
+
+def _shown(arguments: list[cst.Arg] | str) -> str:
+    return arguments if isinstance(arguments, str) else code(cst.Call(cst.Name("_"), arguments))
 
 
 def _called(name: str, *arguments: cst.BaseExpression) -> cst.Call:

@@ -62,6 +62,16 @@ class Uses:
         """
         return self._is_safe_row(use) if form == "list" else self._is_safe_number(use)
 
+    def is_converted(self, use: Use, form: str) -> bool:
+        """Return whether the program itself makes the library's form of a result of ours."""
+        call = self._parents[use.inside]
+        if not isinstance(use.inside, cst.Arg) or not isinstance(call, cst.Call):
+            return False
+        made = matchers.Call(matchers.Name("int"))
+        if form == "ints":
+            made = matchers.Call(matchers.Name("map"), [matchers.Arg(matchers.Name("int")), matchers.Arg()])
+        return matchers.matches(call, made)
+
     def is_failure_test(self, node: cst.CSTNode) -> bool:
         """Return whether an expression tests whether a call of an arm failed."""
         if isinstance(node, cst.Comparison):
@@ -79,7 +89,7 @@ class Uses:
         """Return whether an unknown value may be an arm, judged by the method called on it."""
         name = node.attr if isinstance(node, cst.Attribute) else node
         like_arm = isinstance(name, cst.Name) and name.value in self._arm_names
-        if self.names.kinds(node) or self._is_result(node):
+        if self.names.kinds(node) or self._is_result(node) or self._is_device(node):
             return False
         return method in _methods() or (like_arm and method in _COMMON)
 
@@ -87,6 +97,11 @@ class Uses:
         """Return whether a value is the result of an arm's method; its uses are listed anyway."""
         func = node.func if isinstance(node, cst.Call) else None
         return isinstance(func, cst.Attribute) and bool(self.names.arms(func.value))
+
+    def _is_device(self, node: cst.BaseExpression) -> bool:
+        """Return whether a value is a device of an arm of ours: ``arm.left`` or ``arm.at(1)``."""
+        found = node.func if isinstance(node, cst.Call) else node
+        return isinstance(found, cst.Attribute) and self.names.is_ours(found.value)
 
     def is_hidden(self, name: str) -> bool:
         """Return whether the program uses the name of a built-in function for something else."""

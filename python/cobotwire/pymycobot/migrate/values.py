@@ -6,15 +6,17 @@ from typing import NamedTuple
 
 
 class Kind(NamedTuple):
-    """A class of the library."""
+    """A class of the library; ``ours``: its counterpart here, in a program that was rewritten."""
 
     name: str
+    ours: bool = False
 
 
 class Arm(NamedTuple):
-    """An object of a class of the library."""
+    """An object of a class of the library, or of its counterpart here."""
 
     kind: str
+    ours: bool = False
 
 
 class Result(NamedTuple):
