@@ -37,7 +37,7 @@ COUNTED = (
     Counted("86 runs on bad lines: every call right", LINES, ("right",), in_readme=True),
     Counted("… an error that says what happened", LINES, ("honest error",)),
     Counted(
-        "… a wrong value, -1, None, a crash, a hang, or sent too often",
+        "… a call fails without an error that says so, hangs, or is sent too often",
         LINES,
         ("-1 or None", "crash", "wrong, silently", "sent too often", "hang"),
         in_readme=True,
@@ -49,7 +49,7 @@ COUNTED = (
     Counted("… an error that says what happened", FAULTS, ("honest error",)),
     Counted("… -1 or None instead of an error", FAULTS, ("-1 or None",)),
     Counted("… an exception that shows a mistake in the library", FAULTS, ("exception",)),
-    Counted("… wrong, and no error", FAULTS, ("wrong, silently",), in_readme=True),
+    Counted("… a wrong result without an error", FAULTS, ("wrong, silently",), in_readme=True),
     Counted(
         "requests to move or change the arm that arrived twice or more",
         FAULTS,

@@ -15,8 +15,8 @@ from in_process import cobotwire
 from scripted_peer import ScriptedPeer
 
 MOTION = ("send_angles", "10,0,0,0,0,0", "30")
-NO_POWER = "the arm has no power; cobotwire call URL power_on switches it on"
-PAUSED = "the arm's motion is paused; cobotwire call URL resume continues the old motion at once"
+NO_POWER = "the arm has no power; cobotwire call {} power_on switches it on"
+PAUSED = "the arm's motion is paused; cobotwire call {} resume continues the old motion at once"
 ERROR = "the arm's error register is 3: joint 3 is beyond its limit; find the cause"
 
 
@@ -50,7 +50,9 @@ def test_motion_that_the_arm_does_not_obey_is_not_sent_unless_forced(
         target = arm.state.angles.target(0.0)
         forced = cobotwire("call", server.url, *MOTION, "--force")
     assert (refused.returncode, refused.stdout) == (7, "")
-    assert refused.stderr.startswith(f"cobotwire: send_angles was not sent: {text}")
+    assert refused.stderr.startswith(
+        f"cobotwire: send_angles was not sent: {text.format(server.url)}"
+    )
     assert len(refused.stderr.splitlines()) == 1
     assert target == (0, 0, 0, 0, 0, 0)
     assert (forced.returncode, forced.stderr.startswith("sent; acknowledged")) == (0, True)
@@ -72,6 +74,7 @@ def test_doctor_reports_why_an_arm_does_not_move_and_not_that_it_is_healthy() ->
         _, expected, text = map(str, state.values)
         assert (kind, text.startswith(sentence[:40])) == (expected, True)
         assert f"! {kind}: {sentence}" in human.stdout
+        assert text.partition("; ")[2].format(server.url) in human.stdout
     # The values begin in one column.
     assert "  get_error_information 3\n  is_moving             " in human.stdout
 
@@ -90,7 +93,7 @@ def test_doctor_names_the_command_that_switches_a_mercury_on() -> None:
     with PtyServer(SimulatedArm(mercury_a1.TABLE)) as server:
         human = cobotwire("--edition", "mercury_a1", "doctor", server.url, "--count", "1")
     assert human.returncode == 1
-    assert "cobotwire call URL power_on switches it on" in human.stdout
+    assert f"cobotwire call {server.url} power_on switches it on" in human.stdout
 
 
 def test_motion_is_not_sent_while_the_emergency_stop_is_pressed() -> None:
@@ -151,5 +154,5 @@ def test_simulated_arm_without_powered_refuses_the_motion_from_the_command_line(
         url = printed(sim).split()[-1]
         result = cobotwire("call", url, *MOTION)
         doctor = cobotwire("doctor", url, "--count", "1")
-    assert (result.returncode, NO_POWER in result.stderr) == (7, True)
+    assert (result.returncode, NO_POWER.format(url) in result.stderr) == (7, True)
     assert (doctor.returncode, "healthy" in doctor.stdout) == (1, False)

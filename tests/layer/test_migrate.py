@@ -91,6 +91,7 @@ def test_constructor_is_rewritten(before: str, after: str) -> None:
         ("mc.send_angles(*given)", "3:1: the arguments are not known here"),
         ("mc.no_such_method()", "3:1: MyCobot280 has no counterpart of no_such_method"),
         ("robot.send_angles(row, 50)", "3:1: robot may be an arm"),
+        ("def test(it): it.send_angles(row, 50)", "3:10: it may be an arm, whose class is not"),
         (
             "from pymycobot import ultraArm",
             "3:1: cobotwire has no ultraArm: these robots take G-code",
@@ -238,6 +239,51 @@ def test_reason_of_absent_name_is_listed() -> None:
     assert "set_color: The library puts the first argument in the place" in decision.what
     [decision] = migrate(f"{head}mb.set_gpio_output(1, 1)\n").decisions
     assert decision.what.startswith("our clients drive no pins of this computer")
+
+
+UNDECIDED = """\
+row = mc.get_angles()
+if row == -1 or not row:
+    row[0] += 5
+powered = mc.is_power_on()
+if powered is None or powered == -1:
+    mc.gpio_init()
+print(mc.is_power_on(), mc.get_radians(), mc.go_home())
+ok = mc.send_angles(row, 50)
+if ok == 1: pass
+arms = {"left": mc}
+"""
+
+
+def test_rewritten_program_is_not_changed_again_and_has_the_same_undecided_places() -> None:
+    first = migrate(HEAD + UNDECIDED)
+    again = migrate(first.text)
+    assert again.text == first.text
+    assert [(each.line, each.what) for each in again.decisions] == [
+        (each.line, each.what) for each in first.decisions
+    ]
+    assert len(first.decisions) == 9
+
+
+@pytest.mark.parametrize("rewritten_before", [False, True])
+def test_class_of_a_parameter_is_asked_once_and_may_be_written_at_any_time(
+    rewritten_before: bool,
+) -> None:
+    used = "    it.send_angle(id=1, degree=20, speed=30)\n    print(it.get_angles())\n"
+    found = migrate(f"{HEAD}def test(it):\n{used}")
+    [decision] = found.decisions
+    assert "write `def test(it: MyCobot280)`" in decision.what
+    text = found.text if rewritten_before else f"{HEAD}def test(it):\n{used}"
+    done = migrate(text.replace("(it)", "(it: MyCobot280)"))
+    assert done.decisions == ()
+    assert "send_angle(joint=1, angle=20, speed=30)" in done.text
+    assert "print(list(it.get_angles()))" in done.text
+
+
+def test_devices_of_a_rewritten_program_are_not_changed_again() -> None:
+    text = "from pymycobot import MyBuddy\nmb = MyBuddy(port)\nmb.send_angle(2, 1, 30, 50)\n"
+    once = migrate(text)
+    assert migrate(once.text) == once
 
 
 def test_time_is_imported_where_it_is_needed() -> None:

@@ -8,6 +8,7 @@ import signal
 import subprocess
 import sys
 from collections.abc import Iterator
+from importlib.metadata import version as pymycobot_version
 from pathlib import Path
 
 import pytest
@@ -119,7 +120,7 @@ def test_arm_stays_open_for_the_threads_of_a_program(
 def test_missing_program_and_missing_module_are_named(tmp_path: Path) -> None:
     ended = run_program("run", tmp_path / "none.py")
     assert ended.returncode == 2
-    assert "none.py" in ended.stderr
+    assert ended.stderr == f"cobotwire: {tmp_path / 'none.py'}: no such file\n"
     other = tmp_path / "other.py"
     other.write_text("from pymycobot.ultraArm import ultraArm\n")
     ended = run_program("run", other)
@@ -156,6 +157,20 @@ def test_installed_library_is_the_same_before_and_after() -> None:
         assert inside.MyCobot280.__module__ == "cobotwire.pymycobot.mycobot280"
     assert sys.modules["pymycobot"] is pymycobot
     assert pymycobot.MyCobot280.__module__ == "pymycobot.mycobot280"
+
+
+def test_error_of_ours_is_shown_with_the_frames_of_the_program_only(tmp_path: Path) -> None:
+    script = tmp_path / "absent_port.py"
+    script.write_text(
+        "import pymycobot\n"
+        "print(pymycobot.__version__)\n"
+        "pymycobot.MyCobot280('/dev/no-such-port')\n"
+    )
+    ended = run_program("run", script)
+    assert (ended.returncode, ended.stdout) == (1, f"{pymycobot_version('pymycobot')}\n")
+    lines = ended.stderr.splitlines()
+    assert [line.startswith("  File") for line in lines].count(True) == 1
+    assert "/dev/no-such-port: cannot be opened: No such file" in lines[-1]
 
 
 def test_program_reads_why_a_name_has_no_counterpart(

@@ -18,13 +18,14 @@ from cobotwire.cli.shared.completers import complete_commands, complete_ports
 from cobotwire.cli.shared.edition_option import uses_edition
 from cobotwire.cli.shared.output import format_result
 from cobotwire.inspect.calls import Done, prepare
+from cobotwire.protocol.errors import UsageError
 from cobotwire.protocol.json_values import as_json_value
 
 
 # click reads a negative number as an unknown option; unknown options are passed on as ARGS.
 @click.command(context_settings={"ignore_unknown_options": True})
 @click.argument("port", metavar="URL", shell_complete=complete_ports)
-@click.argument("name", shell_complete=complete_commands)
+@click.argument("name", required=False, shell_complete=complete_commands)
 @click.argument("args", nargs=-1, metavar="[ARGS]...")
 @arm_options
 @address_option
@@ -41,7 +42,7 @@ def call(
     context: click.Context,
     edition: str,
     port: str,
-    name: str,
+    name: str | None,
     args: tuple[str, ...],
     baudrate: int | None,
     record: str | None,
@@ -78,6 +79,12 @@ def call(
     After the motion the error register is read again, since the arm does not say that it rejects a
     motion.
     """  # noqa: D301  (click keeps the lines of a paragraph that starts with the character \b)
+    if name is None:
+        message = (
+            f"call takes the port, then a command: cobotwire call URL {port}; `cobotwire ports` "
+            "lists ports, `cobotwire commands` the commands"
+        )
+        raise UsageError("name", message=message)
     package = editions.load(edition)
     to = None if address is None else parse_address(address)
     _reject_options(context, args)
@@ -89,7 +96,7 @@ def call(
         package.CLIENT(transport, timeout=timeout, on_error=planned.on_error, address=to) as arm,
     ):
         try:
-            done = planned.run(arm, force=force, timeout=timeout)
+            done = planned.run(arm, port, force=force, timeout=timeout)
         except KeyboardInterrupt:
             if planned.on_error == "stop":
                 # The terminal has echoed ^C on this line.

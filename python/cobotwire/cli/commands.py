@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from inspect import getdoc
 
 import click
 from rich.table import Table as Grid
@@ -10,7 +11,8 @@ from rich.table import Table as Grid
 from cobotwire import editions
 from cobotwire.cli.shared.completers import complete_commands
 from cobotwire.cli.shared.edition_option import uses_edition
-from cobotwire.cli.shared.output import plain_console
+from cobotwire.cli.shared.output import plain_console, print_grid
+from cobotwire.inspect.calls import motions
 from cobotwire.protocol.frame_format import FixedPart
 from cobotwire.protocol.json_values import as_json_value
 from cobotwire.protocol.table import Command, Direction, Field, FrameFormat, Number, Variant
@@ -25,7 +27,12 @@ _NAMES = {"address": "address", "length": "LEN", "command": "CMD"}
 @uses_edition
 def commands(edition: str, name: str | None, as_json: bool) -> None:
     """List the commands of the edition, or describe the command NAME byte by byte."""
-    table = editions.load(edition).TABLE
+    package = editions.load(edition)
+    table = package.TABLE
+    if name is not None and not as_json and (motion := motions(package).get(name)):
+        text = getdoc(motion) or ""
+        click.echo(f"`cobotwire call URL {name}` runs it; it is a method of the client.\n\n{text}")
+        return
     chosen = table.commands if name is None else (table.command(name),)
     if as_json:
         click.echo(json.dumps([as_json_value(command) for command in chosen], indent=1))
@@ -39,7 +46,7 @@ def _print_list(chosen: tuple[Command, ...]) -> None:
     grid = Grid("id", "command", "safety", "what it does", box=None, pad_edge=False)
     for command in chosen:
         grid.add_row(f"0x{command.id:02X}", command.name, command.safety, command.title)
-    plain_console().print(grid)
+    print_grid(grid)
 
 
 def _print_reference(frame: FrameFormat, command: Command) -> None:
@@ -55,7 +62,7 @@ def _print_reference(frame: FrameFormat, command: Command) -> None:
             if 0 < index < len(every) - 1 and any(field.sizes for field in variant.fields):
                 continue
             console.print(f"\n{direction}", style="bold")
-            console.print(byte_table(frame, command, direction, variant))
+            print_grid(byte_table(frame, command, direction, variant))
     if command.text is not None:
         pairs = zip(command.text.prefixes, command.text.fields)
         console.print("\nreply, as text without a frame", style="bold")

@@ -75,7 +75,8 @@ def doctor(
 
 
 def _lines(report: Report) -> list[str]:
-    lines = [f"{report.url}: edition {report.edition}"]
+    # A port that was never open says nothing about an edition; its error says what to do.
+    lines = [f"{report.url}: edition {report.edition}"] if report.kind else []
     width = max(map(len, report.values), default=0)
     lines += [f"  {name:<{width}} {format_result(value)}" for name, value in report.values.items()]
     if report.requests:
@@ -89,7 +90,8 @@ def _lines(report: Report) -> list[str]:
         lines.append(f"  {report.noise} bytes of noise: {report.diagnosis}")
     for problem in report.problems:
         mark = "!" if problem.serious else "-"
-        lines += [f"{mark} {problem.kind}: {problem.text}", f"    {problem.advice}"]
+        lines += [f"{mark} {problem.kind}: {problem.text}"]
+        lines += [f"    {problem.advice}"] if problem.advice else []
     if report.healthy:
         lines.append("healthy")
     return lines

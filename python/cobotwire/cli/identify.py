@@ -28,7 +28,7 @@ from cobotwire.protocol.json_values import as_json_value
 def identify(port: str, baudrate: int | None, timeout: float, as_json: bool) -> None:
     """Find out which edition and firmware the arm at URL has, and by what evidence.
 
-    A few harmless queries are sent, whatever --edition says: nothing moves, and nothing is set.
+    A few harmless queries are sent: nothing moves, and nothing is set.
 
     Exit codes: 0 the edition is known; 1 an arm replied, but its edition is not known; 3 the port
     failed; 4 no reply.

@@ -60,7 +60,12 @@ def _read(script: str) -> str:
     try:
         with open(script, encoding="utf-8", newline="") as file:
             return file.read()
-    except (OSError, UnicodeDecodeError) as error:
+    except IsADirectoryError:
+        message = f"{script} is a folder; name the programs in it"
+        raise UsageError("script", script, message=message) from None
+    except OSError as error:
+        raise UsageError("script", script, message=f"{script}: {error.strerror}") from None
+    except UnicodeDecodeError as error:
         raise UsageError("script", script, f"a readable program in UTF-8 ({error})") from None
 
 

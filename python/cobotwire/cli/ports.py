@@ -9,12 +9,16 @@ from textwrap import fill
 
 import click
 
+from cobotwire.cli.shared.output import fold
 from cobotwire.protocol.printable import printable
 from cobotwire.transport.serial import ports as serial_ports
 from cobotwire.transport.serial import remedies
 from cobotwire.transport.serial.ports import Port
 from cobotwire.transport.serial.remedies import Remedy
 
+NOT_FOUND = (
+    "no arm is found: `cobotwire ports --fix` says what to check; `cobotwire sim` simulates one"
+)
 NOT_ALLOWED = "you have no permission to open it"
 
 
@@ -32,6 +36,9 @@ def ports(fix: bool, as_json: bool) -> None:
     found, computer = serial_ports.ports(), serial_ports.this_computer()
     using = [(port.device, serial_ports.programs_using(port.device)) for port in found if fix]
     steps = remedies.remedies(computer, [each for each in using if each[1]])
+    is_found = any(port.likely for port in found)
+    if not is_found and not any(by for _, by in using):
+        steps.insert(0, remedies.CABLE)
     if as_json:
         listed = [each._asdict() for each in (steps if fix else found)]
         shown = {"system": computer.system, "remedies": listed} if fix else listed
@@ -40,13 +47,16 @@ def ports(fix: bool, as_json: bool) -> None:
         lines = [line for step in steps for line in _step_lines(step)]
     else:
         lines = [line for port in found for line in _lines(port)] or [remedies.missing(computer)]
-    click.echo("\n".join(lines))
-    sys.exit(0 if any(port.likely for port in found) else 1)
+    text = "\n".join(lines)
+    # Commands are not broken, so that they can be copied.
+    click.echo(text if fix or as_json else fold(text))
+    if not (is_found or fix or as_json):
+        click.echo(fold(NOT_FOUND, err=True), err=True)
+    sys.exit(0 if is_found else 1)
 
 
 def _step_lines(step: Remedy) -> list[str]:
     text = fill(step.text, 79, initial_indent=f"{step.state:<9} ", subsequent_indent=" " * 10)
-    # Commands are not broken, so that they can be copied.
     return [text, *(["", *step.commands, ""] if step.commands else [])]
 
 

@@ -49,7 +49,9 @@ def load(name: str = DEFAULT) -> Edition:
     try:
         package = import_module(name)
     except (ModuleNotFoundError, ValueError, TypeError):
-        hint = did_you_mean(name, names()) or f"; choose from {', '.join(names())}"
+        part = [each for each in names() if len(name) > 2 and name in each][:1]
+        hint = did_you_mean(name, names()) or "".join(f"; did you mean {each}?" for each in part)
+        hint = hint or f"; choose from {', '.join(names())}"
         message = f"there is no edition {name!r}{hint}"
         if os.path.isfile(name):
             message = f"{name!r} is a file: generate a package from it with cobotwire-gen build"

@@ -30,7 +30,12 @@ def parse(command: Command, words: Sequence[str]) -> dict[str, Any]:
     for name in text:
         if name not in given:
             raise _misfit(command.name, _sizes(command), name, f"is missing its argument {name}")
-    fields = {field.name: field for field in _variant(command, given).fields}
+    try:
+        fields = {field.name: field for field in _variant(command, given).fields}
+    except UsageError:
+        if problem := _miscounted(_sizes(command), words):
+            raise _misfit(command.name, _sizes(command), "argument", problem) from None
+        raise
     return {
         name: word if name in text else parse_value(fields[name], word)
         for name, word in given.items()
@@ -89,7 +94,8 @@ def parse_method(
     given = _by_name(name, takes, words)
     for each in parameters:
         if each.default is Parameter.empty and each.name not in given:
-            raise _misfit(name, takes, each.name, f"is missing its argument {each.name}")
+            problem = _miscounted(takes, words) or f"is missing its argument {each.name}"
+            raise _misfit(name, takes, each.name, problem)
     return {each: _typed(each, types[each], word) for each, word in given.items()}
 
 
@@ -118,7 +124,8 @@ def _by_name(call: str, sizes: Mapping[str, int], words: Sequence[str]) -> dict[
     if len(rest) > len(free):
         rest = _gather(rest, [sizes[name] for name in free])
     if len(rest) > len(free):
-        raise _misfit(call, sizes, "argument", f"has no argument for {rest[len(free)]!r}")
+        problem = _miscounted(sizes, words) or f"has no argument for {rest[len(free)]!r}"
+        raise _misfit(call, sizes, "argument", problem)
     return dict(zip(free, rest)) | given
 
 
@@ -129,6 +136,25 @@ def _gather(words: list[str], sizes: Sequence[int]) -> list[str]:
         return words
     spans = pairwise(ends[: ends.index(len(words)) + 1])
     return [",".join(word.strip("[](), ") for word in words[a:b]) for a, b in spans]
+
+
+def _miscounted(sizes: Mapping[str, int], words: Sequence[str]) -> str:
+    """Return how many numbers a call with a row takes; empty if something else is wrong."""
+    named = {word.partition("=")[0] for word in words if "=" in word}
+    free = {name: size for name, size in sizes.items() if size and name not in named}
+    plain = [word.strip("[](), ") for word in words if "=" not in word]
+    if max(free.values(), default=1) < 2 or len(plain) < 2 or not all(map(_is_number, plain)):
+        return ""
+    parts = ", ".join(f"{size} for {name}" for name, size in free.items())
+    return f"takes {sum(free.values())} numbers ({parts}), and {len(plain)} are given"
+
+
+def _is_number(word: str) -> bool:
+    try:
+        _number("", word)
+    except UsageError:
+        return False
+    return True
 
 
 def _misfit(call: str, sizes: Mapping[str, int], name: str, problem: str) -> UsageError:
@@ -154,7 +180,7 @@ def parse_value(field: Field, word: str) -> Any:
         groups = [part.strip(" []()") for part in word.split(";")]
         return [_numbers(field.name, group) for group in groups if group]
     if field.many:
-        return _numbers(field.name, word)
+        return _numbers(field.name, word, [each.name for each in field.cases[0].numbers])
     if field.kind == "flag":
         return _flag(field.name, word)
     if word.upper() in field.labels:
@@ -162,7 +188,9 @@ def parse_value(field: Field, word: str) -> Any:
     if field.labels and not word.isdigit():
         members = (f"{label} ({choice})" for label, choice in zip(field.labels, field.choices))
         raise UsageError(field.name, word, ", ".join(members))
-    return _number(field.name, word)
+    number = field.cases[0].numbers[0]
+    low, high = number.physical(number.minimum), number.physical(number.maximum)
+    return _number(field.name, word, f"a number {low:g}..{high:g} {number.units}".rstrip())
 
 
 def _typed(name: str, kind: Any, word: str) -> Any:
@@ -184,16 +212,18 @@ def _bytes(field: Field, word: str) -> bytes:
         raise UsageError(field.name, word, "pairs of hex digits") from None
 
 
-def _numbers(name: str, word: str) -> list[int | float]:
+def _numbers(name: str, word: str, parts_of: Sequence[str] = ()) -> list[int | float]:
     inner = word.strip("[]() ")
     parts = inner.split(",") if "," in inner else inner.split()
-    return [_number(name, part.strip()) for part in parts]
+    names = [f"{name}.{each}" if each else name for each in parts_of[: len(parts)]]
+    names += [name] * (len(parts) - len(names))
+    return [_number(each, part.strip()) for each, part in zip(names, parts)]
 
 
-def _number(name: str, word: str) -> int | float:
+def _number(name: str, word: str, allowed: str = "a number") -> int | float:
     for number in (lambda text: int(text, 0), float):
         try:
             return number(word)
         except ValueError:
             continue
-    raise UsageError(name, word, "a number")
+    raise UsageError(name, word, allowed)

@@ -40,7 +40,9 @@ class Call(NamedTuple):
     on_error: OnError
     send: Callable[[Client, float | None], Done]
 
-    def run(self, arm: Client, *, force: bool, timeout: float | None) -> Done | CobotwireError:
+    def run(
+        self, arm: Client, url: str, *, force: bool, timeout: float | None
+    ) -> Done | CobotwireError:
         """Send it; first check that the arm obeys it if it is a motion, unless ``force``.
 
         Returns:
@@ -52,12 +54,12 @@ class Call(NamedTuple):
         checks = self.starts_motion and not force
         if checks:
             try:
-                check_ready(arm, self.name)
+                check_ready(arm, self.name, url)
             except (ArmNotReady, ReplyTimeout) as error:
                 return error
         done = self.send(arm, timeout)
         if checks:
-            check_accepted(arm, self.name)
+            check_accepted(arm, self.name, url)
         return done
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from dataclasses import dataclass, field
+from shlex import quote
 from statistics import median
 from typing import Any, NamedTuple
 
@@ -79,7 +80,7 @@ class Report:
 
     def add_port_failure(self, error: LinkError) -> None:
         """Insert as the first problem that the port could not be opened or disappeared."""
-        self.problems.insert(0, Problem("link", str(error), advice.PORT))
+        self.problems.insert(0, Problem("link", str(error), advice.PORT if self.kind else ""))
 
 
 def harmless_queries(table: Table) -> list[Command]:
@@ -174,7 +175,9 @@ class Doctor:
         report, found = self._report, []
         if self._illegal:
             text = f"illegal replies: {len(self._illegal)}, the first to {self._illegal[0]}"
-            found.append(Problem("illegal-reply", text, advice.ILLEGAL))
+            found.append(
+                Problem("illegal-reply", text, advice.ILLEGAL.format(url=quote(report.url)))
+            )
         lost = report.requests - report.replies - len(self._illegal)
         if lost and lost == report.requests:
             text = f"no reply to any of {lost} requests"
@@ -185,9 +188,9 @@ class Doctor:
             text = f"replies after their deadline: {report.late}"
             found.append(Problem("late-replies", text, advice.LATE))
         for text in doubts(self._table, report.values):
-            found.append(Problem("values", text, advice.VALUES))
+            found.append(Problem("values", text, advice.VALUES.format(url=quote(report.url))))
         states = {command.role: report.values.get(command.name) for command in self._queries}
-        return found + readiness.problems(self._table, states)
+        return found + readiness.problems(self._table, states, report.url)
 
     def _lost_replies(self, lost: int) -> list[Problem]:
         """Report unanswered requests; a simulated arm of unknown geometry has no coordinates."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from shlex import quote
 from typing import Any
 
 from cobotwire.client import Client
@@ -15,33 +16,33 @@ from cobotwire.session.motion import error_meaning
 ROLES: tuple[Role, ...] = ("powered", "paused", "error")
 
 
-def problems(table: Table, states: Mapping[Role, Any]) -> list[Problem]:
+def problems(table: Table, states: Mapping[Role, Any], url: str) -> list[Problem]:
     """Return what keeps an arm from moving; ``states`` are the results of the queries in ROLES.
 
-    A state that is missing or None is not known, and is not a problem.
+    ``url`` is its port. A state that is missing or None is not known, and is not a problem.
     """
     found = []
     powered = states.get("powered")
     if powered is not None and not powered:
-        advice = _use(table, "powered", 1, "switches it on; keep clear of the arm")
+        advice = _use(url, table, "powered", 1, "switches it on; keep clear of the arm")
         if powered != 0:
             advice = f"end that state first; then {advice}"
         found.append(Problem("no-power", f"the arm has {no_power(powered)}", advice))
     if states.get("paused"):
         stop = table.find_role("stop")
-        discard = f"; {_call(stop)} discards it" if stop else ""
-        advice = _use(table, "paused", 0, "continues the old motion at once") + discard
+        discard = f"; {_call(url, stop)} discards it" if stop else ""
+        advice = _use(url, table, "paused", 0, "continues the old motion at once") + discard
         found.append(Problem("paused", "the arm's motion is paused", advice))
     if states.get("error"):
         error = states["error"]
         text = f"the arm's error register is {with_meaning(error, error_meaning(table, error))}"
-        advice = "find the cause; then " + _use(table, "error", 0, "clears the error")
+        advice = "find the cause; then " + _use(url, table, "error", 0, "clears the error")
         found.append(Problem("error-register", text, advice))
     return found
 
 
-def check_ready(arm: Client, name: str) -> None:
-    """Ask the arm whether it obeys the motion of that name.
+def check_ready(arm: Client, name: str, url: str) -> None:
+    """Ask the arm whether it obeys the motion of that name; ``url`` is its port, for the advice.
 
     If only some queries get no reply, as from firmware that lacks one, their states are not known.
 
@@ -59,10 +60,10 @@ def check_ready(arm: Client, name: str) -> None:
         except ReplyTimeout:
             if not states:
                 raise
-    _raise_for(name, problems(arm.table, states), sent=False)
+    _raise_for(name, problems(arm.table, states, url), sent=False)
 
 
-def check_accepted(arm: Client, name: str) -> None:
+def check_accepted(arm: Client, name: str, url: str) -> None:
     """Ask the arm for its error register after a motion was sent; no reply is not an error.
 
     Raises:
@@ -75,7 +76,7 @@ def check_accepted(arm: Client, name: str) -> None:
         error = _ask(arm, query)
     except ReplyTimeout:
         return
-    _raise_for(name, problems(arm.table, {"error": error}), sent=True)
+    _raise_for(name, problems(arm.table, {"error": error}, url), sent=True)
 
 
 def _ask(arm: Client, query: Command) -> Any:
@@ -88,10 +89,10 @@ def _raise_for(name: str, found: list[Problem], *, sent: bool) -> None:
         raise ArmNotReady(name, sent, texts)
 
 
-def _use(table: Table, role: Role, raw: int, effect: str) -> str:
+def _use(url: str, table: Table, role: Role, raw: int, effect: str) -> str:
     command = table.find_setter(role, raw)
-    return f"{_call(command)} {effect}" if command else "see the arm's manual"
+    return f"{_call(url, command)} {effect}" if command else "see the arm's manual"
 
 
-def _call(command: Command) -> str:
-    return f"cobotwire call URL {command.name}"
+def _call(url: str, command: Command) -> str:
+    return f"cobotwire call {quote(url)} {command.name}"

@@ -86,6 +86,10 @@ __all__ = [
 ]
 
 
+# Programs compare it.
+__version__ = "4.0.7"
+
+
 def __getattr__(name: str) -> Any:
     # A class is made when it is used.
     if name in __all__:

@@ -13,7 +13,7 @@ from importlib.abc import Loader, MetaPathFinder
 from importlib.machinery import ModuleSpec
 from importlib.util import find_spec
 from pathlib import Path
-from types import ModuleType
+from types import ModuleType, TracebackType
 from typing import Literal
 
 from cobotwire.protocol.errors import CobotwireError, UsageError
@@ -23,6 +23,7 @@ from cobotwire.pymycobot.layer.policy import policy
 LIBRARY = "pymycobot"
 _OURS = "cobotwire.pymycobot"
 INTERRUPTED = 130
+_PACKAGE = Path(__file__).parents[1]
 
 
 class _Alias(MetaPathFinder, Loader):
@@ -89,7 +90,8 @@ def run_program(
         UsageError: there is no such file.
     """
     if not Path(path).is_file():
-        raise UsageError("script", path, "the file of a Python program")
+        problem = "is a folder; name a program in it" if Path(path).is_dir() else "no such file"
+        raise UsageError("script", path, message=f"{path}: {problem}")
     policy.errors = errors
     saved = sys.argv, sys.path[:]
     sys.argv = [path, *arguments]
@@ -139,8 +141,19 @@ def _report(error: BaseException, path: str) -> int:
     frames = error.__traceback__
     while frames is not None and frames.tb_frame.f_code.co_filename != path:
         frames = frames.tb_next
+    if isinstance(error, CobotwireError):
+        _hide_ours(frames)
+        error.__suppress_context__ = True
     traceback.print_exception(error.with_traceback(frames or error.__traceback__))
     return 1
+
+
+def _hide_ours(frames: TracebackType | None) -> None:
+    """Cut the frames of a call at the first of this package: its error says what is wrong."""
+    while frames is not None and (after := frames.tb_next):
+        if Path(after.tb_frame.f_code.co_filename).is_relative_to(_PACKAGE):
+            frames.tb_next = None
+        frames = after
 
 
 def _leave(error: BaseException | None) -> None:

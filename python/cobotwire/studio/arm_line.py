@@ -123,7 +123,7 @@ class ArmLine:
         """
         checks = command.starts_motion and not force
         if checks:
-            check_ready(self._arm, command.name)
+            check_ready(self._arm, command.name, self.url)
         query = command.safety == "query"
         if not query and self.stops != stops:
             raise NotPermitted(
@@ -137,7 +137,7 @@ class ArmLine:
                 # The stop may have overtaken it.
                 self._send_stop()
         if checks:
-            check_accepted(self._arm, command.name)
+            check_accepted(self._arm, command.name, self.url)
         return result
 
     def stop(self) -> None:

@@ -41,7 +41,7 @@ class LazyGroup(click.Group):
         word = args[0]
         if word not in self.verbs and not (word.startswith("-") or context.resilient_parsing):
             hint = did_you_mean(word, self.list_commands(context))
-            context.fail(f"there is no verb {word!r}{hint}")
+            context.fail(f"there is no command {word!r}{hint}")
         name, verb, rest = super().resolve_command(context, args)
         if verb is not None and not context.resilient_parsing:
             note_unused(context, verb)

@@ -16,6 +16,7 @@ from cobotwire.protocol.printable import printable
 
 if TYPE_CHECKING:
     from rich.console import Console
+    from rich.table import Table as Grid
 
 WIDTH_OF_FILES = 200
 # The terminal echoes ^C after the last row of a live table; there it must not begin another row.
@@ -83,6 +84,17 @@ def plain_console() -> Console:
         # Long lines are not broken, for grep and the like.
         console.width = WIDTH_OF_FILES
     return console
+
+
+def print_grid(grid: Grid) -> None:
+    """Print a grid; a file or a pipe gets its lines without the spaces at their ends."""
+    console = plain_console()
+    if console.is_terminal:
+        console.print(grid)
+        return
+    with console.capture() as capture:
+        console.print(grid)
+    click.echo("\n".join(line.rstrip() for line in capture.get().splitlines()))
 
 
 def as_hex(data: bytes) -> str:

@@ -87,7 +87,7 @@ frame-address frame-whole stray-bytes interleaved-write text-follows motion-rese
 motion-powered reply-awaited reply-given-time late-reply-expected value-range value-listed
 sent-scale sent-sign sent-byte-order sent-order sent-rounded sent-value sent-address sent-variant
 sent-once sent-all sent-nothing-else encode-bytes encode-rejects decode-values decode-rejects
-rejection-reason stream-frames stream-chunks stream-noise noise-reason answers
+rejection-reason stream-frames stream-chunks stream-noise noise-reason answers list-cleared
 """
 CLAUSES = tuple(_NUMBERED.split())
 NUMBERS = {case: number for number, case in enumerate(CLAUSES, 1)}

@@ -9,11 +9,12 @@ from pkgutil import get_data
 # The names that no class of ours has.
 _ALL = "*"
 # Why classes and modules have no counterpart, by how their names begin, in lower case without "_".
-_OWN_FRAMES = "with frames of its own, which no edition describes"
+_ELSEWHERE = "which no edition describes; run it with the maker's library"
+_OWN_FRAMES = f"with frames of its own, {_ELSEWHERE}"
 _INSIDE = "it is a part of the library itself; use the class of the robot"
 OTHERS = {
-    "elephantrobot": "it sends texts over TCP to a controller, which no edition describes",
-    "ultraarm": "these robots take G-code and other texts, which no edition describes",
+    "elephantrobot": f"it sends texts over TCP to a controller, {_ELSEWHERE}",
+    "ultraarm": f"these robots take G-code and other texts, {_ELSEWHERE}",
     **dict.fromkeys(
         ["myagv", "mercurychassis", "chassiscontrol"], f"it is a vehicle {_OWN_FRAMES}"
     ),

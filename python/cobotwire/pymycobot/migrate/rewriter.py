@@ -97,12 +97,14 @@ class Rewriter(cst.CSTTransformer):
 
     def _ask_class(self, call: cst.Call, arm: cst.BaseExpression) -> None:
         """Have the class of an unknown arm decided: of a parameter once, for all its calls."""
-        for given in self.names.keys.assigned(arm) if isinstance(arm, cst.Name) else ():
-            function = self.names.keys.function_of(given)
-            if isinstance(given, cst.Param) and function and not given.annotation:
+        for found in self.names.keys.assigned(arm) if isinstance(arm, cst.Name) else ():
+            function = self.names.keys.function_of(found)
+            if isinstance(found, cst.Param) and function and not found.annotation:
                 kind = " or ".join(self.names.classes()) or "MyCobot280"
                 name = function.name.value
-                self.decide(given, PARAMETER.format(name=given.name.value, function=name, kind=kind))
+                self.decide(
+                    found, PARAMETER.format(name=found.name.value, function=name, kind=kind)
+                )
                 return
         self.decide(call, UNKNOWN.format(name=code(arm)))
 
@@ -141,7 +143,7 @@ class Rewriter(cst.CSTTransformer):
             return updated
         if self.names.is_ours(cst.ensure_type(original.func, cst.Attribute).value):
             again = ours(call, arguments) if call is kind.call(call.calls) else arguments
-            if _shown(again) != _shown(arguments):
+            if not isinstance(again, str) and _shown(again) != _shown(arguments):
                 self.decide(original, EITHER)
                 return updated
         known = given(updated.args, list(call.parameters)) or {}
@@ -256,8 +258,8 @@ def _or_default(
     return cst.parse_expression(f'"{default}"' if isinstance(default, str) else f"{default}")
 
 
-def _shown(arguments: list[cst.Arg] | str) -> str:
-    return arguments if isinstance(arguments, str) else code(cst.Call(cst.Name("_"), arguments))
+def _shown(arguments: list[cst.Arg]) -> str:
+    return code(cst.Call(cst.Name("_"), arguments))
 
 
 def _called(name: str, *arguments: cst.BaseExpression) -> cst.Call:

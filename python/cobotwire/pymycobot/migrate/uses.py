@@ -69,7 +69,9 @@ class Uses:
             return False
         made = matchers.Call(matchers.Name("int"))
         if form == "ints":
-            made = matchers.Call(matchers.Name("map"), [matchers.Arg(matchers.Name("int")), matchers.Arg()])
+            made = matchers.Call(
+                matchers.Name("map"), [matchers.Arg(matchers.Name("int")), matchers.Arg()]
+            )
         return matchers.matches(call, made)
 
     def is_failure_test(self, node: cst.CSTNode) -> bool:

@@ -51,13 +51,15 @@ def opening(url: str, device: str = "") -> Iterator[None]:
         if isinstance(cause, ValueError | KeyError) and not isinstance(cause, OSError):
             message = f"pyserial cannot open {url}: {cause}"
             raise UsageError("port", url, message=message) from None
-        raise LinkError(url, f"cannot be opened: {_explained(device, error, cause)}") from error
+        raise LinkError(url, f"cannot be opened: {_explained(device, error, cause)}") from None
 
 
 def _explained(device: str, error: Exception, cause: BaseException) -> str:
     """Return why a port cannot be opened, and what to do."""
     match = _NUMBER_OF_WINDOWS.search(str(error))
     number = getattr(cause, "errno", None) or (int(match[1]) if match else None)
+    # termios.error has its number only among its arguments.
+    number = number or next((each for each in cause.args if isinstance(each, int)), None)
     # pyserial lists no ports on some systems.
     with suppress(ImportError, OSError):
         # Imported here, since most ports open.

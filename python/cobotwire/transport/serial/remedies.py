@@ -7,6 +7,7 @@ function of facts about the computer, so those of all systems can be tested on o
 from __future__ import annotations
 
 import errno
+import re
 from collections.abc import Sequence
 from shlex import quote
 from string import digits
@@ -18,6 +19,7 @@ from cobotwire.transport.serial.chips import CHIPS
 RULES_FILE = "/etc/udev/rules.d/70-cobotwire.rules"
 # The errors of a port that another program has locked: against every open(), or by pyserial.
 BUSY = errno.EBUSY, errno.EAGAIN
+_HOST_AND_PORT = re.compile(r"[\w.-]+:\d+", re.ASCII)
 # A message names so many ports; `cobotwire ports` lists all.
 MOST_NAMED = 4
 # The names of the two devices that macOS has for each port begin so.
@@ -48,7 +50,7 @@ class Computer(NamedTuple):
 class Remedy(NamedTuple):
     """Something to do before a port can be opened; ``commands`` are lines for a shell."""
 
-    name: Literal["busy", "group", "udev", "brltty", "device name", "driver"]
+    name: Literal["cable", "busy", "group", "udev", "brltty", "device name", "driver"]
     text: str
     state: Literal["needed", "done", "optional"] = "optional"
     commands: tuple[str, ...] = ()
@@ -67,6 +69,15 @@ def remedies(computer: Computer, busy: Sequence[tuple[str, str]] = ()) -> list[R
     return [*found, Remedy("device name", text), *drivers]
 
 
+# What --fix says first where no port is likely to lead to an arm.
+CABLE = Remedy(
+    "cable",
+    "no arm is found: check that it has power, and that its USB cable carries data, since some "
+    "only charge",
+    "needed",
+)
+
+
 def explain(computer: Computer, device: str, number: int | None, reason: str, by: str = "") -> str:
     """Return why a port cannot be opened, and what to do.
 
@@ -76,6 +87,8 @@ def explain(computer: Computer, device: str, number: int | None, reason: str, by
     denied = number in (errno.EACCES, errno.EPERM)
     if computer.system == "darwin" and device.startswith(_DIAL_IN):
         return f"{reason}; open {device.replace(_DIAL_IN, _CALL_OUT)} instead: {_WHY_CALL_OUT}"
+    if number == errno.ENOTTY:
+        return "it is not a serial port; `cobotwire ports` lists those of this computer"
     if number == errno.ENOENT:
         return f"{reason}; {missing(computer, device)}"
     # Windows opens a port for one program, and denies access to any other.
@@ -91,7 +104,11 @@ def explain(computer: Computer, device: str, number: int | None, reason: str, by
 
 def missing(computer: Computer, device: str = "") -> str:
     """Return what to say about a port that does not exist; without a name, about having none."""
+    if _HOST_AND_PORT.fullmatch(device):
+        return f"did you mean socket://{device}?"
     check = "check its cable and power; `cobotwire ports --fix` says what else can be wrong"
+    if device.startswith(("tty", "cu.")):
+        return f"did you mean /dev/{device}?"
     if not computer.devices:
         return f"this computer has no serial port; if the arm is connected to it, {check}"
     near = [each for each in computer.devices if each.rstrip(digits) == device.rstrip(digits)]
