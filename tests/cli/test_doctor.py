@@ -115,6 +115,7 @@ def test_doctor_without_a_port_exits_with_3_and_reports_what_it_found() -> None:
     result = run("/dev/nosuchport", "--json")
     assert result.returncode == 3
     assert kinds(json.loads(result.stdout)) == ["link"]
+    assert run("/dev/nosuchport").stdout.startswith("! link: /dev/nosuchport: cannot be opened")
     code, report = examined([*HEALTHY[:3], [LEAK, 0.1, None]])
     assert code == 3
     assert kinds(report)[0] == "link"

@@ -70,6 +70,10 @@ def test_edition_is_given_before_or_after_the_verb(words: str) -> None:
         ("monitr", 2, "there is no command 'monitr'; did you mean monitor?"),
         ("call /dev/x send_angles 0,0,0,0,0,0 --speed 3", 2, "is written as speed=VALUE"),
         ("call /dev/x go_hom", 2, "did you mean go_home?"),
+        ("commands --edition 280", 2, "; did you mean mycobot280?"),
+        ("migrate tests", 2, "tests is a folder; name the programs in it"),
+        ("migrate no_such.py", 2, "no_such.py: No such file"),
+        ("run tests", 2, "tests: is a folder; name a program in it"),
         ("run --eror raise x.py", 2, "--errors"),
     ],
 )
