@@ -37,7 +37,7 @@ COUNTED = (
     Counted("86 runs on bad lines: every call right", LINES, ("right",), in_readme=True),
     Counted("… an error that says what happened", LINES, ("honest error",)),
     Counted(
-        "… a call fails without an error that says so, hangs, or is sent too often",
+        "… wrong: a wrong value, -1 or None, a crash, a hang, or a request sent too often",
         LINES,
         ("-1 or None", "crash", "wrong, silently", "sent too often", "hang"),
         in_readme=True,
