@@ -82,6 +82,43 @@ def test_file_of_another_program_is_read_with_times_and_directions(
         assert directions(again) == expected
 
 
+@pytest.mark.parametrize(
+    ("begin", "missing"),
+    [
+        (8, ""),
+        (34, "lacks 26 bytes that were received before line 3; what follows is part 2"),
+        (3, "goes back in what was received before line 3; what follows is part 2"),
+        (0, ""),
+    ],
+)
+def test_bytes_on_both_sides_of_a_gap_in_a_socat_dump_are_not_joined(
+    begin: int, missing: str
+) -> None:
+    text = "".join(
+        f"< 2026/11/24 14:00:00.000001  length={len(data)} from={at} to={at + len(data) - 1}\n"
+        f" {data.hex(' ')}\n"
+        for at, data in ((0, ANGLES[:8]), (begin, ANGLES[8:]))
+    )
+    capture = capture_of(opened(text.encode()))
+    assert [packet.interface for packet in capture] == [0, int(bool(missing))]
+    assert capture.incomplete == f"file {missing}" * bool(missing)
+
+
+def test_times_without_a_date_are_marked_and_may_be_negative() -> None:
+    rows = f"-1.5,0xFE,,\n-0.0000000000000000001,0xFE,,\n{0.0012000000000000001},0x02,,\n"
+    capture = capture_of(opened(b"Time [s],Value,Parity Error,Framing Error\n" + rows.encode()))
+    assert [packet.time_ns for packet in capture] == [-1_500_000_000, 0, 1_200_000]
+    assert (capture.timed, capture.dated) == (True, False)
+    dated = capture_of(opened((FILES / "socat-x.txt").read_bytes()))
+    assert (list(dated) != [], dated.dated) == (True, True)
+
+
+def test_empty_reads_of_pymycobot_are_counted() -> None:
+    found = opened(b"_write: fe fe 02 20 fa\n_read : \n")
+    assert b"".join(packet.data for packet in capture_of(found)) == ASKED
+    assert found.file.notes == ["left out 1 line of file without bytes"]
+
+
 def test_each_id_of_a_can_bus_is_a_stream() -> None:
     capture = capture_of(opened((FILES / "candump.log").read_bytes()))
     assert {packet.interface for packet in capture} == {0, 1}
@@ -173,6 +210,10 @@ def test_wrong_line_is_an_error_with_its_number(text: str, message: str) -> None
         (b"0000000 fefe 2002 00fa\n0000005\n", "16-bit words"),
         (b"0000000 177376 020002\n0000005\n", "in octal"),
         (b'{"data": [254, 254]}', "JSON"),
+        (b"0000: FE FE 02 20 FA\n", "a dump with offsets"),
+        (b"0010  FE FE 02\n0013  20 FA\n", "a dump with offsets"),
+        (b"000000 fefe 2002 00fa\n000005\n", "a dump with offsets"),
+        (b'"robot","source","offset","time"\n', "written by an export"),
         (b"time,id,bytes\n1,2,fe fe\n", "a CSV with 3 columns: time,id,bytes"),
         (b"12:30:01 motor started\n", "is text, but not hex nor another known format"),
     ],

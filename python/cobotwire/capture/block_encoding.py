@@ -65,12 +65,17 @@ def section(application: str, comments: Iterable[str] = ()) -> bytes:
     return _block(SECTION, head + _options([*options, *text(SECTION_APPLICATION, application)]))
 
 
-def interface(name: str, description: str, speed: int) -> bytes:
-    """Return the block that describes an interface; its packets have nanosecond time stamps."""
+def interface(name: str, description: str, speed: int, start_seconds: int = 0) -> bytes:
+    """Return the block that describes an interface.
+
+    Its packets have nanosecond time stamps, which count from ``start_seconds`` after 1970.
+    """
     options = text(INTERFACE_NAME, name) + text(INTERFACE_DESCRIPTION, description)
     if speed:
         options.append((INTERFACE_SPEED, struct.pack("<Q", speed)))
     options.append((INTERFACE_RESOLUTION, bytes([NANOSECONDS])))
+    if start_seconds:
+        options.append((INTERFACE_OFFSET, struct.pack("<q", start_seconds)))
     return _block(INTERFACE, struct.pack("<HHI", LINK_TYPE, 0, 0) + _options(options))
 
 

@@ -26,12 +26,13 @@ class ByteSource(NamedTuple):
     """Blocks of bytes, each with the number of input bytes that were read for it.
 
     ``size`` is the length of the input in bytes, if it is known. ``from_arguments`` is whether the
-    arguments themselves are the bytes.
+    arguments themselves are the bytes. ``missing`` is what the input lacks; complete at its end.
     """
 
     blocks: Iterator[tuple[bytes, int]]
     size: int | None
     from_arguments: bool
+    missing: Sequence[str] = ()
 
 
 def open_input(
@@ -119,7 +120,9 @@ def _read(
     size = status.st_size if stat.S_ISREG(status.st_mode) else None
     stored = _Stored(stream, name)
     try:
-        found = recognise(_decompressed(stored, name, format), name, format, ports)
+        missing: list[str] = []
+        blocks = _decompressed(stored, name, format, missing)
+        found = recognise(blocks, name, format, ports, missing)
     except BaseException:
         stored.close()
         raise
@@ -131,17 +134,19 @@ def _read(
         return read(name)
     if found.recording:
         return CaptureReader(BlockFile(found.blocks, stored, found), name)
-    return ByteSource(_counted(found, stored, notify), size, from_arguments=False)
+    return ByteSource(_counted(found, stored, notify), size, False, found.file.missing)
 
 
-def _decompressed(stored: Iterator[bytes], name: str, format: str | None) -> Iterator[bytes]:
+def _decompressed(
+    stored: Iterator[bytes], name: str, format: str | None, missing: list[str]
+) -> Iterator[bytes]:
     """Yield the contents of a file that may be compressed."""
     from cobotwire.capture.compression import compression_of, decompressed
 
     first = next(stored, b"")
     compression = None if format == "raw" else compression_of(first)
     blocks = chain([first], stored)
-    return decompressed(blocks, compression, name) if compression else blocks
+    return decompressed(blocks, compression, name, missing) if compression else blocks
 
 
 def _counted(

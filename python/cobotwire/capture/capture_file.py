@@ -41,27 +41,35 @@ def open_capture(
         if not file.seekable():
             return file
         compression = compression_of(file.peek(MAGIC)[:MAGIC])
-        found = _recognised(_blocks(file, compression, name), name, format, ports)
-        if found and found.reader and found.recording:
+        missing: list[str] = []
+        blocks = _blocks(file, compression, name, missing)
+        found = _recognised(blocks, name, format, ports, missing)
+        if found and found.recording and (found.reader or compression):
             return BlockFile(found.blocks, file, found)
         file.seek(0)
-        return BlockFile(_blocks(file, compression, name), file) if compression else file
+        return BlockFile(_blocks(file, compression, name, []), file) if compression else file
     except BaseException:
         file.close()
         raise
 
 
-def _blocks(file: BinaryIO, compression: Compression | None, name: str) -> Iterator[bytes]:
+def _blocks(
+    file: BinaryIO, compression: Compression | None, name: str, missing: list[str]
+) -> Iterator[bytes]:
     stored = iter(lambda: file.read(BLOCK), b"")
-    return decompressed(stored, compression, name) if compression else stored
+    return decompressed(stored, compression, name, missing) if compression else stored
 
 
 def _recognised(
-    blocks: Iterator[bytes], name: str, format: str | None, ports: Sequence[int]
+    blocks: Iterator[bytes],
+    name: str,
+    format: str | None,
+    ports: Sequence[int],
+    missing: list[str],
 ) -> Recognised | None:
     """Return the contents of a file; None if reading it as a recording says what is wrong."""
     try:
-        return recognise(blocks, name, format, ports)
+        return recognise(blocks, name, format, ports, missing)
     except (UnreadableInput, CaptureError):
         if format is not None:
             raise

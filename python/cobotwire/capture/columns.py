@@ -16,8 +16,10 @@ from dataclasses import replace
 from typing import Literal, Protocol
 
 from cobotwire import codec as codecs
+from cobotwire.capture.block_file import BlockFile
 from cobotwire.capture.capture_file import open_capture
 from cobotwire.capture.captured_columns import CapturedColumns
+from cobotwire.capture.foreign.recognising import Recognised
 from cobotwire.capture.packet import Interface
 from cobotwire.capture.reference_columns import ReferenceCaptureReader
 from cobotwire.codec.interface import Codec, Data, Listening
@@ -159,6 +161,7 @@ class Pieces:
     Attributes:
         name: the name of the file, for messages.
         error: why the file cannot be decompressed to its end; None if nothing is wrong so far.
+        origin: what a file that is no plain recording was read from; None for other sources.
     """
 
     def __init__(self, source: Source, size: int) -> None:
@@ -166,6 +169,14 @@ class Pieces:
         is_path = isinstance(source, str | os.PathLike)
         self.name = str(source) if is_path else "capture"
         self.error: CaptureError | None = None
+        self.origin: Recognised | None = None
+        self._read_bytes = 0
+
+    @property
+    def size(self) -> int:
+        """The bytes of the file that were read so far, after decompression."""
+        foreign = self.origin and self.origin.reader
+        return self.origin.file.size if self.origin and foreign else self._read_bytes
 
     def __iter__(self) -> Iterator[Data]:
         if isinstance(self._source, str | os.PathLike):
@@ -177,6 +188,8 @@ class Pieces:
 
     def _read(self, path: str | os.PathLike[str]) -> Iterator[bytes]:
         with closing(open_capture(path)) as file:
+            if isinstance(file, BlockFile) and isinstance(file.origin, Recognised):
+                self.origin = file.origin
             data = [b""]
             while data:
                 data = []
@@ -188,7 +201,9 @@ class Pieces:
                 except CaptureError as error:
                     self.error = error
                 if data:
-                    yield b"".join(data)
+                    joined = b"".join(data)
+                    self._read_bytes += len(joined)
+                    yield joined
                 if self.error:
                     return
 

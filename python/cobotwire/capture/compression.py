@@ -18,6 +18,8 @@ _SLICES: dict[Compression, int] = {"gzip": 1 << 12, "zstd": 1 << 9}
 # The longest distance that zstd may refer back to, as a power of two: what its own tool allows.
 # The decompressor keeps as many bytes.
 _WINDOW = 27
+# What is wrong with compressed data that ends too early, after the name of the file.
+CUT_OFF = "has compressed data that is cut off"
 
 
 class DamagedCompression(ValueError):
@@ -31,19 +33,19 @@ def compression_of(first_bytes: bytes) -> Compression | None:
 
 
 class Decompressed(Iterator[bytes]):
-    """Yields the decompressed bytes of blocks, in pieces that are not empty.
+    """Yields the decompressed bytes of blocks, in pieces that are not empty."""
 
-    Attributes:
-        complete: whether the compressed data so far ended where it should.
-    """
-
-    def __init__(self, blocks: Iterable[bytes], compression: Compression, name: str) -> None:
+    def __init__(
+        self, blocks: Iterable[bytes], compression: Compression, name: str, missing: list[str]
+    ) -> None:
         """Decompress ``blocks``; ``name`` is the input's, for messages.
+
+        If the data ends too early, ``CUT_OFF`` is added to ``missing`` at its end.
 
         Raises:
             UsageError: zstd is not installed.
         """
-        self.complete = False
+        self._missing = missing
         start = _gzip_part if compression == "gzip" else _zstd_parts(name)
         self._pieces = self._expand(blocks, start, _SLICES[compression])
 
@@ -58,7 +60,7 @@ class Decompressed(Iterator[bytes]):
     def _expand(
         self, blocks: Iterable[bytes], start: Callable[[], Any], size: int
     ) -> Iterator[bytes]:
-        part = start()
+        part, complete = start(), False
         for block in blocks:
             for at in range(0, len(block), size):
                 rest = block[at : at + size]
@@ -71,12 +73,16 @@ class Decompressed(Iterator[bytes]):
                         continue
                     if data := _expanded(part, rest):
                         yield data
-                    self.complete = part.eof
+                    complete = part.eof
                     rest = part.unused_data
+        if not complete:
+            self._missing.append(CUT_OFF)
 
 
-def decompressed(blocks: Iterable[bytes], compression: Compression, name: str) -> Iterator[bytes]:
-    """Yield the decompressed bytes of a capture.
+def decompressed(
+    blocks: Iterable[bytes], compression: Compression, name: str, missing: list[str]
+) -> Iterator[bytes]:
+    """Yield the decompressed bytes of a capture; see :class:`Decompressed` for ``missing``.
 
     Raises:
         UsageError: zstd is not installed.
@@ -84,7 +90,7 @@ def decompressed(blocks: Iterable[bytes], compression: Compression, name: str) -
     """
     offset = 0
     try:
-        for piece in Decompressed(blocks, compression, name):
+        for piece in Decompressed(blocks, compression, name, missing):
             yield piece
             offset += len(piece)
     except DamagedCompression as error:

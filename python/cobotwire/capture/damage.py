@@ -10,7 +10,7 @@ LARGEST_BLOCK = 16 * 1024 * 1024
 MOST_INTERFACES = 1024
 
 _REASONS = {
-    "not-pcapng": "the file is not a pcapng recording",
+    "not-pcapng": "the file is not a pcapng recording; cobotwire decode says what it holds",
     "bad-length": f"damaged: a block has length {{}}, not a multiple of 4 in {{}}..{LARGEST_BLOCK}",
     "lengths-differ": "damaged: the two lengths of a block differ",
     "too-short": "damaged: a block is too short for its content",

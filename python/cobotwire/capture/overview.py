@@ -76,7 +76,8 @@ class Overview:
         name: the name of the file.
         size: its bytes after decompression.
         application: the program that wrote it, or its last section.
-        sections: how many sections it has.
+        format: what a file of another program is, such as ``a socat dump``; empty for pcapng.
+        sections: how many sections it has; 0 for a file of another program.
         interfaces: the ports that it describes.
         streams: each direction of each interface.
         messages: the messages by interface and label, such as ``get_angles.reply``.
@@ -91,6 +92,7 @@ class Overview:
     name: str
     size: int = 0
     application: str = ""
+    format: str = ""
     sections: int = 0
     interfaces: tuple[Interface, ...] = ()
     streams: list[StreamOverview] = field(default_factory=list)
@@ -173,14 +175,20 @@ def overview(
     rest, possible_sections = b"", 0
     pieces = Pieces(path, piece)
     for data in pieces:
-        progress(len(data))
+        progress(pieces.size - found.size)
+        found.size = pieces.size
         rest = rest[1 - _SECTION_SIZE :] + data
         possible_sections += len(_SECTION.findall(rest))
         found.add(reader.feed(data), gaps, gap_ns)
     last = pieces.checked(reader.finish())
     found.add(last, gaps, gap_ns)
     found.conclude(last)
-    found.sections = _sections(path) if possible_sections > 1 else possible_sections
+    if origin := pieces.origin:
+        found.missing = found.missing or "; ".join(f"it {text}" for text in origin.file.missing)
+    if origin and origin.reader:
+        found.format, found.size = origin.reader.what, pieces.size
+    else:
+        found.sections = _sections(path) if possible_sections > 1 else possible_sections
     return found
 
 

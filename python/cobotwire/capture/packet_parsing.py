@@ -15,6 +15,8 @@ MICROSECONDS = 6
 OURS = "cobotwire"
 # What the application of a recording without times ends with; its packets all have the time 0.
 UNTIMED = " (no times)"
+# The same of one with times that are counted from some start: they have no date.
+UNDATED = " (no dates)"
 
 
 class _Format(NamedTuple):

@@ -12,7 +12,7 @@ from cobotwire.capture.block_parsing import Readable, Truncated, blocks_of, is_c
 from cobotwire.capture.capture_file import open_capture
 from cobotwire.capture.foreign.recognising import Recognised
 from cobotwire.capture.packet import Interface, Packet
-from cobotwire.capture.packet_parsing import UNTIMED, PacketParser
+from cobotwire.capture.packet_parsing import OURS, UNDATED, UNTIMED, PacketParser
 from cobotwire.protocol.printable import printable
 
 __all__ = ["CaptureReader", "is_capture", "read"]
@@ -83,10 +83,14 @@ class CaptureReader:
         return not self.application.endswith(UNTIMED)
 
     @property
+    def dated(self) -> bool:
+        """Whether the times are those of a clock, and not counted from some start."""
+        return not self.application.endswith((UNTIMED, UNDATED))
+
+    @property
     def foreign(self) -> Recognised | None:
         """How a file of another program is read; None for a recording."""
-        origin = self._file.origin if isinstance(self._file, BlockFile) else None
-        return origin if isinstance(origin, Recognised) and origin.reader else None
+        return self._origin if self._origin and self._origin.reader else None
 
     @property
     def incomplete(self) -> str:
@@ -97,9 +101,17 @@ class CaptureReader:
                 f"{name} ends in the middle of a packet; "
                 f"everything before byte {self.truncated_at} is complete"
             )
-        if self.foreign:
-            return "; ".join(f"{name} {text}" for text in self.foreign.file.missing)
-        return "" if self.finished else f"the recording {name} was not finished"
+        if self._origin and self._origin.file.missing:
+            return "; ".join(f"{name} {text}" for text in self._origin.file.missing)
+        # Other programs need not write what tells that a recording is finished.
+        done = self.finished or not self.application.startswith(OURS)
+        return "" if done else f"the recording {name} was not finished"
+
+    @property
+    def _origin(self) -> Recognised | None:
+        """What the blocks were read from, if this is known."""
+        origin = self._file.origin if isinstance(self._file, BlockFile) else None
+        return origin if isinstance(origin, Recognised) else None
 
     def __iter__(self) -> Iterator[Packet]:
         return self

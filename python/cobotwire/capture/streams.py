@@ -103,16 +103,15 @@ def cut(
         yield StreamEvents(stream, stream.flush(), idle=True)
 
 
-def packets_of_interface(capture: CaptureReader, interface: int) -> list[Packet]:
-    """Return all packets of one interface.
+def packets_of_interface(capture: CaptureReader, interface: int) -> Iterator[Packet]:
+    """Yield the packets of one interface.
 
     Raises:
         EmptyInput: the capture holds no packet.
         UsageError: the capture has no interface with that index.
     """
-    packets = [packet for packet in capture if packet.interface == interface]
+    yield from (packet for packet in capture if packet.interface == interface)
     if not capture.packets:
         raise EmptyInput(capture.name)
     if not 0 <= interface < len(capture.interfaces):
         raise UsageError("interface", interface, f"0..{len(capture.interfaces) - 1}")
-    return packets

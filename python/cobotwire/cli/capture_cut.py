@@ -79,8 +79,8 @@ def cut(
       cobotwire capture cut arm.pcapng -o part.pcapng --from 2026-11-23T14:00
       cobotwire capture cut arm.pcapng -o angles.pcapng --commands get_angles,send_angles
 
-    Exit codes: 0 success; 1 FILE ends too early, and OUT holds what is before that; 6 FILE is
-    damaged: repair it first.
+    Exit codes: 0 success; 1 FILE ends too early, and OUT holds what is before that, or no packet
+    was chosen; 6 FILE is damaged: repair it first.
     """  # noqa: D301  (click keeps the lines of a paragraph that starts with the character \b)
     check_commands((*commands, *not_commands), InstalledEditions(edition))
     by_command = bool(commands or not_commands)
@@ -96,12 +96,15 @@ def cut(
         counts, lacks = editing.cut(
             file, output, *ends, choose, overwrite=overwrite, progress=advance
         )
-    click.echo(f"wrote {printable(output)}: {counted(counts.pop('kept', 0), 'packet')}", err=True)
+    kept = counts.pop("kept", 0)
+    click.echo(f"wrote {printable(output)}: {counted(kept, 'packet')}", err=True)
     for why, count in counts.items():
         click.echo(f"  {counted(count, 'packet')} left out: {why}", err=True)
     if lacks:
         click.echo(f"cobotwire: {printable(file)}: {lacks}", err=True)
-    sys.exit(1 if lacks else 0)
+    if not kept:
+        click.echo(f"cobotwire: nothing of {printable(file)} was chosen", err=True)
+    sys.exit(1 if lacks or not kept else 0)
 
 
 def _time(text: str | None, option: str, file: str) -> int | None:

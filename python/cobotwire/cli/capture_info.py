@@ -10,6 +10,7 @@ from typing import Any
 import click
 
 from cobotwire.capture.overview import Overview, StreamOverview, overview
+from cobotwire.capture.packet_parsing import UNDATED, UNTIMED
 from cobotwire.cli.shared.capture_files import recorded_size, time_text
 from cobotwire.cli.shared.edition_option import uses_edition
 from cobotwire.cli.shared.output import print_line
@@ -64,12 +65,15 @@ def info(edition: str, files: tuple[str, ...], gap: float, as_json: bool) -> Non
 def _lines(found: Overview, gap: float) -> Iterator[str]:
     yield printable(found.name)
     program = printable(found.application) or "a program without a name"
-    yield f"  {counted(found.size, 'byte')}, {counted(found.sections, 'section')}, by {program}"
+    sections = f"{counted(found.sections, 'section')}, by {program}" if found.sections else ""
+    yield "  " + ", ".join(filter(None, (counted(found.size, "byte"), found.format or sections)))
     yield f"  {printable(str(found.error or found.missing or 'whole: nothing is missing'))}"
     start_ns = found.times.first_ns if found.times else 0
-    if found.times:
+    if found.times and not found.application.endswith(UNTIMED):
+        undated = found.application.endswith(UNDATED)
         for label, time_ns in (("start", start_ns), ("end", found.times.last_ns)):
-            yield f"  {label:9} {time_text(time_ns)}"
+            time = f"{_seconds(time_ns)} (no date)" if undated else time_text(time_ns)
+            yield f"  {label:9} {time}"
         yield f"  duration  {_seconds(found.times.last_ns - start_ns)}"
     for number in range(len(found.interfaces)):
         yield from _interface_lines(found, number)

@@ -64,8 +64,8 @@ def decode(
     for the file or 0xNAME for the bytes.
 
     A recording (pcapng, which other verbs write with --record) is decoded packet by packet. Each
-    frame is decoded in the direction in which it was sent, and printed with its time. --direction
-    applies only to packets of unknown direction.
+    frame is decoded in the direction in which it was sent, and printed with its time. If a packet
+    does not state its direction, --direction says which messages it holds.
 
     FILE may also be raw bytes, hex text, what socat -x, xxd, hexdump -C, od, candump, Saleae Logic,
     PulseView or pymycobot's debug log show, bytes as Python prints them, or the TCP packets of a
@@ -80,23 +80,25 @@ def decode(
       cobotwire decode tcpdump.pcap --tcp-port 9001
       cat capture.hex | cobotwire decode - --hex --json
 
-    Exit codes: 0 all bytes are legal frames; 1 some are not; 2 a file is empty or cannot be read;
-    141 the reader of the output closed it.
+    Exit codes: 0 all bytes are legal frames; 1 some are not, or a file ends too early or lacks
+    bytes; 2 a file is empty or cannot be read; 141 the reader of the output closed it.
     """  # noqa: D301  (click keeps the lines of a paragraph that starts with the character \b)
     quiet = quiet or summary
     options = DecodeOptions(edition, direction, accept_unknown, each_byte, as_json, quiet)
     files = input_files(input)
     counts = StreamCounts()
-    unreadable = False
+    unreadable = incomplete = False
     try:
         for names in [input] if files is None else [(name,) for name in files]:
             several = files is not None and len(files) > 1
             if several:
                 options = _name_file(options, names[0])
             try:
-                _decode(open_input(names, format, notify, ports), options, counts)
+                source = open_input(names, format, notify, ports)
+                incomplete |= _decode(source, options, counts)
             except UnreadableInput as error:
                 if not several:
+                    summary &= bool(counts.bytes)
                     raise
                 notify(str(error))
                 unreadable = True
@@ -104,19 +106,20 @@ def decode(
         # Ctrl-C prints the counts up to that point.
         if summary:
             print_text(_counts_json(counts) if as_json else "\n".join(_counts_lines(counts)))
-    sys.exit(USAGE if unreadable else 0 if counts.only_legal else 1)
+    sys.exit(USAGE if unreadable else int(incomplete or not counts.only_legal))
 
 
 def _decode(
     source: ByteSource | CaptureReader, options: DecodeOptions, counts: StreamCounts
-) -> None:
+) -> bool:
+    """Decode an input; return whether something is missing at its end or within."""
     if isinstance(source, ByteSource):
         decode_bytes(source, options, counts)
-        return
+        return bool(source.missing)
     # Imported here, because most input is no recording.
     from cobotwire.cli.shared.decoded_recording import decode_recording
 
-    decode_recording(source, options, counts)
+    return decode_recording(source, options, counts)
 
 
 def _name_file(options: DecodeOptions, name: str) -> DecodeOptions:

@@ -157,9 +157,10 @@ def export(
     The report counts rows, noise, rejected frames, gaps, and inputs that end too early. An export
     that is interrupted leaves no file under its final name.
 
-    Exit codes: 0 everything is written, and the inputs hold only legal frames; 1 everything is
-    written, but they also hold noise or rejected frames, end too early, or one of them cannot be
-    read; 2 the only one cannot be read; 8 a file cannot be written.
+    Exit codes: 0 everything is written, and the inputs are complete and hold only legal frames;
+    1 everything that could be read is written, but an input holds noise or rejected frames, ends
+    too early or is not read, or no message was chosen; 2 wrong usage, or the only input cannot be
+    read; 3 reading an input failed; 8 a file cannot be written.
     """  # noqa: D301  (click keeps the lines of a paragraph that starts with the character \b)
     plan = ExportPlan(
         output,
@@ -191,4 +192,4 @@ def export(
         print_line(json.dumps(report.as_dict()))
     elif not quiet:
         click.echo("\n".join(report_lines(report)), err=True)
-    sys.exit(0 if report.clean else 1)
+    sys.exit(0 if report.clean and report.files else 1)

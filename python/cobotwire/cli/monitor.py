@@ -22,6 +22,7 @@ from cobotwire.cli.shared.completers import complete_ports
 from cobotwire.cli.shared.edition_option import uses_edition
 from cobotwire.cli.shared.output import ECHO_COLUMNS, print_line
 from cobotwire.inspect import Monitor, Observation
+from cobotwire.inspect.monitor import monitored
 from cobotwire.protocol.json_values import as_json_value
 
 # The width of a number with its name and the space after it; of borders, less the last such space.
@@ -55,6 +56,7 @@ def monitor(
     """
     package = editions.load(edition)
     table = package.TABLE
+    monitored(table)
     try:
         with (
             open_arm(port, table, baudrate, record) as transport,

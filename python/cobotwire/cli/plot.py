@@ -13,6 +13,7 @@ from cobotwire.capture import CaptureReader
 from cobotwire.capture.byte_source import ByteSource, open_input
 from cobotwire.capture.streams import packets_of_interface
 from cobotwire.cli.shared.edition_option import uses_edition
+from cobotwire.cli.shared.input_files import reading_options
 from cobotwire.cli.shared.output import report_written
 from cobotwire.cli.shared.recordings import interface_option, notify, warn_if_incomplete
 from cobotwire.codec.interface import Codec
@@ -28,6 +29,9 @@ from cobotwire.inspect.plot import (
 from cobotwire.protocol.errors import UsageError
 from cobotwire.protocol.printable import printable
 
+# Interfaces that are not drawn, and that a message names.
+LISTED = 8
+
 
 @click.command()
 @click.argument("file", type=click.Path())
@@ -39,27 +43,41 @@ from cobotwire.protocol.printable import printable
     metavar="PICTURE",
     help="A .png, .svg or .pdf file.",
 )
+@reading_options
 @interface_option
 @click.option("--pose", is_flag=True, help="Draw the last pose of the arm as a stick figure.")
 @uses_edition
-def plot(edition: str, file: str, output: str, interface: int, pose: bool) -> None:
+def plot(
+    edition: str,
+    file: str,
+    output: str,
+    format: str | None,
+    ports: tuple[int, ...],
+    interface: int | None,
+    pose: bool,
+) -> None:
     """Draw joints, coordinates, frames, noise and reply times of the recording FILE over time.
 
-    FILE may also hold the raw bytes that an arm sent. They have no times, so they are drawn over
+    The first interface is drawn, unless --interface chooses another one. FILE may also be what
+    other programs wrote, as for cobotwire decode. Raw bytes have no times, so they are drawn over
     the offset in bytes. Plotting needs matplotlib: pip install 'cobotwire[plot]'.
     """
     check_output(output)
-    source = open_input((file,), None, notify)
+    source = open_input((file,), format, notify, ports)
     title = [printable(Path(file).name)]
     if isinstance(source, ByteSource):
         codec = codecs.load(editions.load(edition).TABLE)
         series = series_of_bytes((block for block, _ in source.blocks), codec)
         title.append(f"edition {codec.table.edition}")
     else:
-        series, codec = _read_recording(source, interface, edition)
-        begin = datetime.fromtimestamp(series.start_ns / 1e9, UTC)
-        title += [printable(source.interfaces[interface].url), f"edition {codec.table.edition}"]
-        title.append(f"{begin:%Y-%m-%d %H:%M:%S} UTC")
+        series, codec = _read_recording(source, interface or 0, edition)
+        title += [
+            printable(source.interfaces[interface or 0].url),
+            f"edition {codec.table.edition}",
+        ]
+        if source.dated:
+            begin = datetime.fromtimestamp(series.start_ns / 1e9, UTC)
+            title.append(f"{begin:%Y-%m-%d %H:%M:%S} UTC")
     if not pose:
         draw_charts(series, output, "   ".join(filter(None, title)))
     elif joints := series.tracks["joints"].rows:
@@ -72,8 +90,14 @@ def plot(edition: str, file: str, output: str, interface: int, pose: bool) -> No
 
 def _read_recording(capture: CaptureReader, interface: int, edition: str) -> tuple[Series, Codec]:
     with capture:
-        packets = packets_of_interface(capture, interface)
+        packets = list(packets_of_interface(capture, interface))
         warn_if_incomplete(capture)
+    if len(capture.interfaces) > 1:
+        names = (f"{at} ({printable(each.url)})" for at, each in enumerate(capture.interfaces))
+        others = [name for at, name in enumerate(names) if at != interface]
+        more = f", and {len(others) - LISTED} more" * (len(others) > LISTED)
+        listed = ", ".join(others[:LISTED]) + more
+        notify(f"drawing interface {interface}; not drawn: {listed}; --interface chooses one")
     if not capture.timed:
         message = f"{capture.name} states no times to draw over"
         raise UsageError("FILE", capture.name, message=message)

@@ -43,22 +43,23 @@ FASTEST = 1e6
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object per packet.")
 @uses_edition
 def replay(
-    edition: str, file: str, as_arm: bool, speed: float, interface: int, as_json: bool
+    edition: str, file: str, as_arm: bool, speed: float, interface: int | None, as_json: bool
 ) -> None:
     """Print the recording FILE as a timeline: seconds, direction, bytes, meaning.
 
     With --serve, serve the recorded arm on a pseudo-terminal instead, and print its name. The arm
     replies to each recorded request as recorded, with the same delay and the same noise.
 
+    The timeline shows all interfaces, and --serve serves the first one, unless --interface chooses.
     The edition is the one that the recording names; --edition applies if it names none.
     """
     with open_recording(file) as capture:
         if not as_arm:
-            _print_timeline(capture, edition, as_json)
+            _print_timeline(capture, edition, interface, as_json)
             warn_if_incomplete(capture)
             return
         lines = LineOutput(left_out)
-        arm = _arm(capture, edition, speed, interface, lines)
+        arm = _arm(capture, edition, speed, interface or 0, lines)
         warn_if_incomplete(capture)
     try:
         serve(local_server(arm), between=[lines.flush])
@@ -71,7 +72,7 @@ def _arm(
 ) -> ReplayedArm:
     if not 0 < speed <= FASTEST:
         raise UsageError("speed", speed, f"above 0, up to {FASTEST:.0f}")
-    packets = packets_of_interface(capture, interface)
+    packets = list(packets_of_interface(capture, interface))
     codec = codec_of_interface(capture, interface, edition)
     arm = ReplayedArm(packets, codec, speed=speed, on_request=partial(_print_request, lines))
     if not arm.requests:
@@ -88,18 +89,20 @@ def _print_request(lines: LineOutput, request: ReplayedRequest) -> None:
     lines.print(fold(f"received {as_hex(request.data)}   {reply}"))
 
 
-def _print_timeline(capture: CaptureReader, edition: str, as_json: bool) -> None:
+def _print_timeline(
+    capture: CaptureReader, edition: str, interface: int | None, as_json: bool
+) -> None:
     start: int | None = None
-    for packet in capture:
+    for packet in capture if interface is None else packets_of_interface(capture, interface):
         start = packet.time_ns if start is None else start
         meaning = _meaning(packet, codec_of_interface(capture, packet.interface, edition))
         after = (packet.time_ns - start) / 1e9 if capture.timed else None
         if as_json:
             print_line(json.dumps(_as_json(capture, packet, after, meaning)))
             continue
-        interface = f" interface {packet.interface}" if len(capture.interfaces) > 1 else ""
+        label = f" interface {packet.interface}" if len(capture.interfaces) > 1 else ""
         data, pause = as_hex(packet.data), _pause(packet)
-        when = f"{seconds_column(after)}{interface}"
+        when = f"{seconds_column(after)}{label}"
         print_line(fold(f"{when} {ARROWS[packet.direction]} {data}   {meaning}{pause}"))
 
 

@@ -13,14 +13,14 @@ from cobotwire.diagnose.residue import Residue, Verdict, Wait
 # This many NULs in a row are a finding, also inside other noise.
 NUL_MINIMUM = 4
 NUL_LIMIT = 4096
-# This many NULs in a row mean a reboot. About 277 were seen when an arm restarted; other traffic
-# has fewer: a frame has at most 16 data bytes, a sync write to six servos 50.
+# This many NULs in a row may mean a reboot. About 277 were seen when an arm restarted; other
+# traffic has fewer: a frame has at most 16 data bytes, a sync write to six servos 50.
 REBOOT_NULS = 64
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Nuls(Finding):
-    """NUL bytes in a row; from ``REBOOT_NULS`` on they mean that the controller restarts."""
+    """NUL bytes in a row; from ``REBOOT_NULS`` on the controller possibly restarts."""
 
     count: int
     reboot: bool
@@ -30,7 +30,7 @@ class Nuls(Finding):
 
     @property
     def failure(self) -> str | None:
-        """Return "" if the controller restarts, since NULs do not say why."""
+        """Return "" if the controller possibly restarts, since NULs do not say why."""
         return "" if self.reboot else None
 
     @property
@@ -40,7 +40,7 @@ class Nuls(Finding):
 
     def describe(self) -> str:
         """Describe the run."""
-        return f"{self.count} NULs" + (": the controller restarts" if self.reboot else "")
+        return f"{self.count} NULs" + (": the controller possibly restarts" if self.reboot else "")
 
     def summarize(self, count: int, size: int) -> str:
         """Describe short runs."""

@@ -60,6 +60,8 @@ class Summary:
         times = "" if most == 1 else f" {most} times"
         cause = next((self._causes[c.kind] for c in CLASSES if self._causes.get(c.kind)), "")
         verb = "rebooted" if self._rebooted else "failed"
+        if self._failures.keys() == {"nuls"}:
+            verb = f"possibly {verb}"
         return f"the controller {verb}{times}" + (f": {cause}" if cause else "")
 
 

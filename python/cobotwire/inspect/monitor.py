@@ -11,7 +11,7 @@ from cobotwire.client import Client
 from cobotwire.codec.interface import Codec
 from cobotwire.inspect.traffic_listener import DiagnosingListener
 from cobotwire.protocol.errors import ProtocolError, ReplyTimeout, UsageError
-from cobotwire.protocol.table import Command, Role
+from cobotwire.protocol.table import Command, Role, Table
 
 # The rate is computed over this many samples, the most recent ones.
 WINDOW = 10
@@ -45,6 +45,18 @@ class Observation(NamedTuple):
     error: str
 
 
+def monitored(table: Table) -> list[Command]:
+    """Return the queries of joints and coordinates that an edition has.
+
+    Raises:
+        UsageError: it has none.
+    """
+    if found := [each for role in ROLES for each in table.commands if each.role == role]:
+        return found
+    message = f"nothing to monitor: {table.edition} has no query of joints or coordinates"
+    raise UsageError("edition", table.edition, message=message)
+
+
 class Monitor:
     """Samples the joints and coordinates of an arm, and listens to the port in between.
 
@@ -56,13 +68,12 @@ class Monitor:
         """Take at most ``rate`` samples a second.
 
         Raises:
-            UsageError: the rate is not allowed.
+            UsageError: the rate is not allowed, or the edition has no query to monitor.
         """
         if not 0 < rate <= FASTEST:
             raise UsageError("rate", rate, f"above 0, up to {FASTEST:g}")
         self._arm, self._rate = arm, rate
-        commands = codec.table.commands
-        self._commands = [c for role in ROLES for c in commands if c.role == role]
+        self._commands = monitored(codec.table)
         self._listener = DiagnosingListener(codec)
         self._answered = 0
         self._error = ""

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import gzip
+import shutil
 from pathlib import Path
+from typing import get_args
 
 import fsspec
 import pytest
@@ -18,8 +20,11 @@ from capture.export.exporting import (
     reply,
     request,
 )
-from cobotwire.capture import Packet
-from cobotwire.capture.export import Input, Inputs
+from capture.test_foreign import FILES
+from cobotwire.capture import Packet, archive
+from cobotwire.capture.archive import ThreadEngine
+from cobotwire.capture.export import ExportPlan, FormatName, Input, Inputs, write
+from cobotwire.inspect.exporting import InstalledEditions
 from cobotwire.protocol.errors import LinkError, UsageError
 
 ANGLES = reply("get_angles", [1.0, 2.0, 3.0, 4.0, 5.0, 6.0])
@@ -34,13 +39,32 @@ def names(*arguments: Path | str) -> list[str]:
 def captures(tmp_path: Path) -> Path:
     folder = tmp_path / "captures"
     (folder / "day").mkdir(parents=True)
-    for name in ("b.bin", "a.bin", "day/c.bin", ".hidden", "day/old.parquet"):
+    for name in ("b.bin", "a.bin", "day/c.bin", ".hidden"):
         (folder / name).write_bytes(ANGLES)
     return folder
 
 
 def test_folder_means_the_captures_in_and_below_it(captures: Path) -> None:
     assert names(captures) == ["a.bin", "b.bin", "c.bin"]
+
+
+@pytest.mark.parametrize("engine", [None, ThreadEngine(1)])
+def test_folder_with_earlier_exports_is_read_without_them(
+    tmp_path: Path, engine: ThreadEngine | None
+) -> None:
+    recording(tmp_path / "arm.pcapng", polled(2))
+    for format in get_args(FormatName):
+        export(tmp_path / format, tmp_path / "arm.pcapng", format=format)
+    shutil.copy(FILES / "saleae-logic2.csv", tmp_path)
+    (tmp_path / "unknown.csv").write_text("time,id,bytes\n1,2,fe fe\n")
+    plan = ExportPlan(str(tmp_path / "out"), InstalledEditions())
+    inputs = Inputs.find([str(tmp_path)])
+    report = archive.export(plan, inputs, engine) if engine else write(plan, inputs)
+    left_out = [note for note in report.notes if note.startswith("left out: ")]
+    assert (len(left_out), len(inputs.files), report.inputs) == (7, 10, 3)
+    assert report.rows == {"get_angles.request": 3, "get_angles.reply": 3}
+    assert ["looks like a CSV with 3 columns" in text for text in report.unread] == [True]
+    assert any("saleae-logic2.csv: its times have no date" in note for note in report.notes)
 
 
 def test_pattern_means_the_files_that_match(captures: Path) -> None:
@@ -72,6 +96,7 @@ def test_standard_input_is_not_combined_with_files(captures: Path) -> None:
         ("captures/arm1.pcapng.zst", "arm1"),
         ("s3://bucket/robot=left/day=2026-11-23/part.pcapng", "left"),
         ("arm2.bin.gz", "arm2"),
+        *((f"left{ending}", "left") for ending in (".pcap", ".txt", ".csv.gz")),
         ("-", "stdin"),
     ],
 )
@@ -109,7 +134,7 @@ def test_rows_before_the_cut_of_a_compressed_input_are_exported(
     path = tmp_path / f"arm.bin{ending}"
     path.write_bytes(compressed(ANGLES * 1000, ending)[:-5])
     report = export(tmp_path / "out", path)
-    assert report.truncated == [f"{path}: its compressed data is cut off"]
+    assert report.truncated == [f"{path}: has compressed data that is cut off"]
     assert report.rows["get_angles.reply"] >= 500
     assert not report.clean
 

@@ -15,9 +15,10 @@ from cobotwire.protocol.errors import LinkError, UsageError
 
 STDIN = "-"
 COMPRESSED: dict[str, Compression] = {".gz": "gzip", ".zst": "zstd"}
-_ENDINGS = (".pcapng", ".bin", ".raw", ".cap")
-# Folders often hold the files of earlier exports too.
-_EXPORTED = (".parquet", ".csv", ".arrow", ".feather", ".mcap")
+_ENDINGS = (
+    *(".pcapng", ".pcap", ".cap", ".bin", ".raw", ".hex", ".xxd", ".dump"),
+    *(".txt", ".log", ".csv"),
+)
 _HIVE_ROBOT = re.compile(r"(?:^|/)robot=([^/]+)/")
 
 
@@ -28,10 +29,12 @@ class Input:
     Attributes:
         url: a path, an fsspec URL, or ``-``.
         size: the number of stored bytes; None if it is not known.
+        listed: whether it was found in a folder, and not named itself.
     """
 
     url: str
     size: int | None = None
+    listed: bool = False
 
     @property
     def robot(self) -> str:
@@ -65,9 +68,9 @@ class Inputs:
     def find(cls, arguments: Sequence[str]) -> Inputs:
         """Return the files that arguments name.
 
-        A folder means all files in it and below it, a pattern those that match; both are sorted by
-        name. A folder leaves out hidden files, and those that exports write. An argument with
-        ``://`` is an fsspec URL, which may also name a folder or be a pattern.
+        A folder means all files in it and below it but hidden ones, a pattern those that match;
+        both are sorted by name. An argument with ``://`` is an fsspec URL, which may also name a
+        folder or be a pattern.
 
         Raises:
             UsageError: an argument names nothing, or fsspec is missing.
@@ -106,8 +109,9 @@ def _files(argument: str) -> Iterator[Input]:
     elif is_url(argument):
         yield from _objects(argument)
     else:
+        listed = os.path.isdir(argument)
         for path in _paths(argument):
-            yield Input(path, os.path.getsize(path) if os.path.isfile(path) else None)
+            yield Input(path, os.path.getsize(path) if os.path.isfile(path) else None, listed)
 
 
 def _paths(argument: str) -> list[str]:
@@ -123,12 +127,7 @@ def _paths(argument: str) -> list[str]:
 def _below(folder: str) -> Iterator[str]:
     for parent, folders, files in os.walk(folder):
         folders[:] = [name for name in folders if not name.startswith(".")]
-        yield from (os.path.join(parent, name) for name in files if _is_capture(name))
-
-
-def _is_capture(name: str) -> bool:
-    """Return whether a file that was not named itself may be a capture."""
-    return not name.startswith(".") and not name.endswith(_EXPORTED)
+        yield from (os.path.join(parent, name) for name in files if name[0] != ".")
 
 
 def _none(argument: str, why: str) -> list[str]:
@@ -143,7 +142,7 @@ def _objects(url: str) -> Iterator[Input]:
             yield Input(url)
             return
         for name, details in sorted(_listed(store, path).items()):
-            yield Input(store.unstrip_protocol(name), details.get("size"))
+            yield Input(store.unstrip_protocol(name), details.get("size"), name != path)
     except FileNotFoundError:
         _none(url, "no such file")
     except OSError as error:
@@ -160,7 +159,7 @@ def _listed(store: Any, path: str) -> dict[str, dict[str, Any]]:
     kept = {
         name: details
         for name, details in found.items()
-        if details["type"] == "file" and _is_capture(name.rpartition("/")[2])
+        if details["type"] == "file" and not name.rpartition("/")[2].startswith(".")
     }
     if not kept:
         raise FileNotFoundError(path)

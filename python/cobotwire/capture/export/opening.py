@@ -27,7 +27,7 @@ class InputStream:
 
     Attributes:
         name: the name of the input, for messages.
-        truncated: why the input ends too early; empty if it does not, or has not ended yet.
+        truncated: why a line of the input cannot be read; empty if all so far can.
         found: its format.
     """
 
@@ -53,8 +53,9 @@ class InputStream:
         self._file = _open(input)
         self._rest = b""
         try:
-            blocks = self._decompressed(input)
-            self.found = recognise(blocks, self.name, format, ports, any_text=True)
+            missing: list[str] = []
+            blocks = self._decompressed(input, missing)
+            self.found = recognise(blocks, self.name, format, ports, missing)
         except BaseException:
             self.close()
             raise
@@ -92,7 +93,7 @@ class InputStream:
         except OSError as error:
             raise LinkError(self.name, f"reading failed: {error.strerror or error}") from error
 
-    def _decompressed(self, input: Input) -> Iterator[bytes]:
+    def _decompressed(self, input: Input, missing: list[str]) -> Iterator[bytes]:
         """Yield the bytes of the capture, in blocks that are not empty."""
         stored = self._stored()
         first = next(stored, b"")
@@ -101,13 +102,10 @@ class InputStream:
         if compression is None:
             yield from blocks
             return
-        decompressed = Decompressed(blocks, compression, input.url)
         try:
-            yield from decompressed
+            yield from Decompressed(blocks, compression, input.url, missing)
         except DamagedCompression as error:
             raise LinkError(self.name, f"decompressing failed: {error}") from error
-        if not decompressed.complete:
-            self.truncated = "its compressed data is cut off"
 
 
 def _open(input: Input) -> BinaryIO:

@@ -16,9 +16,10 @@ from cobotwire.capture.export.opening import InputStream, Progress
 from cobotwire.capture.export.plan import ExportPlan, Message
 from cobotwire.capture.export.report import Report
 from cobotwire.capture.export.tables import MessageTables, Origin, occurring
+from cobotwire.capture.foreign.recognising import ExportedInput
 from cobotwire.capture.gaps import Gaps
 from cobotwire.capture.packet import Interface
-from cobotwire.capture.packet_parsing import OURS, UNTIMED
+from cobotwire.capture.packet_parsing import OURS, UNDATED, UNTIMED
 from cobotwire.codec.interface import Codec, Columns, Counters, Listening
 from cobotwire.protocol.errors import EmptyInput, UnreadableInput, UsageError
 
@@ -44,6 +45,13 @@ class Source:
         """
         try:
             yield from self._batches(input)
+        except ExportedInput as error:
+            # Folders often hold the files of earlier exports too.
+            if not input.listed:
+                self._report.unread.append(str(error))
+                self._report.inputs += 1
+            else:
+                self._report.notes.append(f"left out: {error}")
         except UnreadableInput as error:
             self._report.unread.append(str(error))
             self._report.inputs += 1
@@ -100,6 +108,9 @@ class Source:
         yield from self._captured(last, input, gaps)
         if not (last.streams or last.error or last.truncated_at):
             raise EmptyInput(input.url)
+        if last.application.endswith(UNDATED):
+            message = "its times have no date; the column time counts them from 1970-01-01"
+            self._report.notes.append(f"{input.url}: {message}")
         self._report.inputs += 1
         for part in last.streams:
             self._count(part.counters)

@@ -47,7 +47,7 @@ def _saleae(file: ForeignFile) -> Iterator[Chunk]:
                 line, "a byte such as 0xFE: show the data as hex in Logic, and export again"
             )
         if (time_ns := seconds_ns(row[time].strip())) is None:
-            file.reject(line, "a time in seconds: export without ISO 8601 timestamps")
+            file.reject(line, "a time in seconds, without ISO 8601 timestamps")
         damaged += any(row[at].strip().lower() not in ("", "false") for at in errors)
         name = row[of["name"]] if "name" in of else ""
         direction = _direction(name)
@@ -107,7 +107,7 @@ READERS = (
             rb'"?(?:Time \[s\]"?,"?Value\b|name"?,"?type"?,"?start_time"?,"?duration"?,"?data\b)'
         ),
         _saleae,
-        remark="its times start with the measurement",
+        remark="its times have no date: they count from the start of the measurement",
     ),
     Reader(
         "sigrok",

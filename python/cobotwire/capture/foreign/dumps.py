@@ -64,6 +64,26 @@ def _parse(file: ForeignFile, line: Line, what: str, pattern: re.Pattern[str]) -
     return data, int(found[1], 16)
 
 
+def has_offsets(head: bytes) -> bool:
+    """Return whether hex text that begins like this has offsets before its bytes.
+
+    The first one is a 0 with more digits than the bytes after it, or each one counts the bytes of
+    the lines before it.
+    """
+    lines = [line.split() for line in head.replace(b":", b" ").splitlines() if line.strip()]
+    # The end of the head may cut the last line.
+    lines = lines[:-1] if len(lines) > 2 else lines
+    try:
+        offsets = [int(words[0], 16) for words in lines]
+        sizes = [len(bytes.fromhex(b"".join(words[1:]).decode())) for words in lines]
+        if sizes[0] and not offsets[0] and len(lines[0][0]) > len(lines[0][1]):
+            return True
+    except (IndexError, ValueError):
+        return False
+    ends = [at + size for at, size in zip(offsets, sizes)]
+    return len(lines) > 1 and 0 not in sizes[:-1] and ends[:-1] == offsets[1:]
+
+
 READERS = (
     _reader(
         "xxd",

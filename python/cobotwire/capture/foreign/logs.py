@@ -20,7 +20,8 @@ from cobotwire.protocol.counted import counted
 LOCAL = "its times have no time zone, and are taken for UTC"
 
 _SOCAT = re.compile(
-    r"([<>]) ([0-9]{4}(?:/[0-9]{2}){2} [0-9:]{8})\.([0-9]{6}|[0-9]{9})  length=([0-9]{1,9}) .*"
+    r"([<>]) ([0-9]{4}(?:/[0-9]{2}){2} [0-9:]{8})\.([0-9]{6}|[0-9]{9})  length=([0-9]{1,9})"
+    r" (?:from=([0-9]{1,18}) )?.*"
 )
 # With -v, at most 16 bytes and their text; without it, all bytes.
 _SOCAT_BYTES = re.compile(r"((?: [0-9a-f]{2})+)(?:  .*)?")
@@ -30,12 +31,18 @@ _SOCAT_OWN = re.compile(r"[0-9/]{10} [0-9:]{8} socat\[")
 def _socat(file: ForeignFile) -> Iterator[Chunk]:
     """Yield the blocks of ``socat -x``, with or without ``-v``, as versions 1.7 and 1.8 write them.
 
+    If a direction lacks bytes by its ``from``, what follows is a stream of its own, as it is after
+    bytes that come again. A ``from`` of 0 is that of another connection.
+
     Version 1.7.4 prints microseconds in nine digits. Nine digits are taken for microseconds until
     there are too many of them.
     """
     head = Line(0, "")
     block, data, size = Chunk(b""), b"", 0
     micro = True
+    ends: dict[str, int] = {}
+    streams: dict[str, str] = {}
+    parts = 1
     for line in file.lines():
         if line.text.rstrip() == "--" or _SOCAT_OWN.match(line.text):
             continue
@@ -53,7 +60,20 @@ def _socat(file: ForeignFile) -> Iterator[Chunk]:
             direction: Direction = "sent" if found[1] == ">" else "received"
             time_ns = start + int(found[3]) * (1000 if micro or len(found[3]) == 6 else 1)
             head, data, size = line, b"", int(found[4])
-            block = Chunk(b"", direction, time_ns)
+            begin = int(found[5] or ends.get(direction, 0))
+            if begin and begin != ends.get(direction, begin):
+                parts += 1
+                streams[direction] = f"part {parts}"
+                lost = begin - ends[direction]
+                what = (
+                    f"lacks {counted(lost, 'byte')} that were"
+                    if lost > 0
+                    else "goes back in what was"
+                )
+                follows = f"before line {line.number}; what follows is part {parts}"
+                file.missing.append(f"{what} {direction} {follows}")
+            ends[direction] = begin + size
+            block = Chunk(b"", direction, time_ns, streams.get(direction, ""))
         if data and len(data) == size:
             yield block._replace(data=data)
     if len(data) < size:
@@ -70,7 +90,7 @@ def _pymycobot(file: ForeignFile) -> Iterator[Chunk]:
 
     Most of its classes print bytes below 16 with one digit.
     """
-    others = 0
+    others = empty = 0
     timed: bool | None = None
     for line in file.lines():
         if not (found := _PYMYCOBOT.search(line.text)):
@@ -88,6 +108,10 @@ def _pymycobot(file: ForeignFile) -> Iterator[Chunk]:
         if data := bytes(int(each, 16) for each in found[2].split()):
             direction: Direction = "sent" if found[1] == "write" else "received"
             yield Chunk(data, direction, time_ns)
+        else:
+            empty += 1
+    if empty:
+        file.notes.append(f"left out {counted(empty, 'line')} of {file.name} without bytes")
     if others:
         file.notes.append(
             f"left out {counted(others, 'line')} of {file.name} without _write or _read"

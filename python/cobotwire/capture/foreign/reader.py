@@ -19,7 +19,7 @@ from cobotwire.protocol.printable import printable
 PORTS = (9000, 4500)
 LONGEST_LINE = 1 << 20
 SHOWN = 40
-_SECONDS = re.compile(r"-?[0-9]{1,10}(?:\.[0-9]{1,18})?(?:e-?[0-9]{1,2})?", re.IGNORECASE)
+_SECONDS = re.compile(r"-?[0-9]{1,10}(?:\.[0-9]{1,40})?(?:e-?[0-9]{1,2})?", re.IGNORECASE)
 
 
 class Chunk(NamedTuple):
@@ -55,6 +55,7 @@ class ForeignFile:
         ports: TCP ports of arms.
         notes: what a user should know about how it was read; complete at the end.
         missing: what the file lacks, such as lost packets; complete at the end.
+        size: the bytes that were read so far, after decompression.
     """
 
     name: str
@@ -62,6 +63,13 @@ class ForeignFile:
     ports: tuple[int, ...] = PORTS
     notes: list[str] = field(default_factory=list)
     missing: list[str] = field(default_factory=list)
+    size: int = 0
+
+    def counted(self) -> Iterator[bytes]:
+        """Yield the blocks, and count their bytes."""
+        for block in self.blocks:
+            self.size += len(block)
+            yield block
 
     def remarks(self) -> list[str]:
         """Return the notes, and a sentence for each thing that is missing."""

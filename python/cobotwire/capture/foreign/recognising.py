@@ -62,12 +62,24 @@ UNREADABLE = (
         "Unicode text in UTF-16, as PowerShell writes it: save it as UTF-8",
     ),
     (rb"\xa1\xb2\xcd\x34|\x34\xcd\xb2\xa1", "a modified pcap file: editcap -F pcap FILE FILE.pcap"),
-    (rb"PAR1|ARROW1|\x89MCAP", "the output of an export, which holds no bytes of a line"),
     (rb"\s*[<>] [0-9/]{10} [0-9:.]+  length=", "socat -v, which loses bytes: record with socat -x"),
     (rb"[0-9a-f]{7}(?: +[0-9a-f]{4})+\r?\n", "hexdump in 16-bit words: use hexdump -C, or xxd"),
     (rb"[0-7]{7}(?: [0-7]{6})+\r?\n", "a dump in octal: use od -A x -t x1z, or xxd"),
     (rb"\s*(?:\{|\[\s*[{\[\"])", "JSON: print its bytes as hex"),
 )
+
+
+# What an export writes: Parquet, Arrow, MCAP, and the columns of a CSV file.
+EXPORTED = re.compile(rb'PAR1|ARROW1|\x89MCAP|"robot","source","offset",')
+RAW = "--raw decodes it as raw bytes"
+OFFSETS = "looks like a dump with offsets before the bytes: write it with xxd or hexdump -C"
+
+
+class ExportedInput(UnreadableInput):
+    """An error of an input file: an export wrote it, so it holds no bytes of a line."""
+
+    def __init__(self, name: str) -> None:
+        super().__init__(name, f"was written by an export, and holds no bytes of a line; {RAW}")
 
 
 class Recognised(NamedTuple):
@@ -100,8 +112,7 @@ def recognise(
     name: str,
     format: str | None = None,
     ports: Sequence[int] = (),
-    *,
-    any_text: bool = False,
+    missing: list[str] | None = None,
 ) -> Recognised:
     """Return the contents of a file as blocks of a recording, or as bytes of a line.
 
@@ -110,7 +121,7 @@ def recognise(
         name: its name, for messages.
         format: one of ``FORMATS``; None to detect it.
         ports: the TCP ports of arms; empty for the usual ones.
-        any_text: whether text in no known format is read as raw bytes, with a note.
+        missing: gets what the file lacks, also from what yields the blocks.
 
     Raises:
         UsageError: there is no such format.
@@ -119,9 +130,12 @@ def recognise(
     """
     if format not in (None, *FORMATS):
         raise UsageError("format", format, ", ".join(FORMATS))
+    file = ForeignFile(name, blocks, tuple(ports) or PORTS)
+    file.missing = file.missing if missing is None else missing
+    blocks = file.counted()
     if not (start := next(blocks, b"")):
         raise EmptyInput(name)
-    file = ForeignFile(name, chain([start], blocks), tuple(ports) or PORTS)
+    file.blocks = chain([start], blocks)
     if format == "raw":
         return Recognised(None, False, file.blocks, file)
     if format is not None:
@@ -135,9 +149,7 @@ def recognise(
         return _read_by(found, file)
     if is_text(start):
         problem = _unknown_text(start[:DETECT])
-        if not any_text:
-            raise UnreadableInput(name, f"{problem}; --raw decodes it as raw bytes")
-        file.notes.append(f"{printable(name)} {problem}; it was read as raw bytes")
+        raise UnreadableInput(name, f"{problem}; {RAW}")
     return Recognised(None, is_capture(start), file.blocks, file)
 
 
@@ -170,16 +182,21 @@ def _reader_of(head: bytes, name: str) -> Reader | None:
     head = head[:DETECT]
     if is_text(head):
         found = [reader for reader in TEXTS if reader.start(head)]
-        found = found or [HEX] * is_hex(head, cut=True)
+        if not found and is_hex(head, cut=True):
+            if dumps.has_offsets(head):
+                raise UnreadableInput(name, f"{OFFSETS}; {RAW}, --hex all digits")
+            found = [HEX]
     if len(found) > 1:
         what = " and ".join(reader.what for reader in found)
         names = " or ".join(f"--read-as {reader.name}" for reader in found)
         raise UnreadableInput(name, f"can be {what}: choose with {names}")
     if found:
         return found[0]
+    if EXPORTED.match(head):
+        raise ExportedInput(name)
     for pattern, problem in UNREADABLE:
         if re.match(pattern, head, re.IGNORECASE):
-            raise UnreadableInput(name, f"looks like {problem}; --raw decodes it as raw bytes")
+            raise UnreadableInput(name, f"looks like {problem}; {RAW}")
     return None
 
 

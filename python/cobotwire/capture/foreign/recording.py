@@ -9,26 +9,30 @@ from itertools import chain
 from cobotwire.capture.damage import MOST_INTERFACES
 from cobotwire.capture.foreign.reader import Chunk, ForeignFile, Reader
 from cobotwire.capture.packet import Interface, Packet
-from cobotwire.capture.packet_parsing import UNTIMED
+from cobotwire.capture.packet_parsing import UNDATED, UNTIMED
 from cobotwire.capture.writer import CaptureWriter
 from cobotwire.protocol.errors import UnreadableInput
 
 LATEST = (1 << 63) - 1
+# An earlier time, in nanoseconds since 1970, is no date.
+DATED = 10**18
 
 
 def recording_of(reader: Reader, file: ForeignFile) -> Iterator[bytes]:
     """Yield the blocks of a pcapng file; each stream of the chunks is an interface.
 
     If the first chunk has no time, none has, and the application of the recording ends with
-    ``UNTIMED``. Times before 1970 are those of a measurement with a trigger: the first is then 0.
+    ``UNTIMED``. If its time is before 2001, times count from some start, which in a measurement
+    with a trigger is not the first: the application ends with ``UNDATED``.
     """
     chunks = reader.chunks(file)
     first = next(chunks, None)
     if first is None:
         return
     out = BytesIO()
-    writer = CaptureWriter(out, reader.name + UNTIMED * (first.time_ns is None))
-    start = min(first.time_ns or 0, 0)
+    mark = UNTIMED if first.time_ns is None else UNDATED if first.time_ns < DATED else ""
+    start = min((first.time_ns or 0) // 10**9, 0)
+    writer = CaptureWriter(out, reader.name + mark, start)
     interfaces: dict[str, int] = {}
     for chunk in chain([first], chunks):
         if chunk.stream not in interfaces:
@@ -44,7 +48,7 @@ def recording_of(reader: Reader, file: ForeignFile) -> Iterator[bytes]:
 
 
 def _packet(file: ForeignFile, chunk: Chunk, start: int, interface: int) -> Packet:
-    time_ns = (chunk.time_ns or 0) - start
-    if not 0 <= time_ns <= LATEST:
+    time_ns = chunk.time_ns or 0
+    if not start * 10**9 <= time_ns <= LATEST:
         raise UnreadableInput(file.name, f"has a time out of range: {time_ns} ns")
     return Packet(time_ns, chunk.direction, chunk.data, "bytes", interface=interface)

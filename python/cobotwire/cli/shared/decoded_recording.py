@@ -45,8 +45,8 @@ class _TimedStreamPrinter(StreamPrinter):
         return json.dumps({**self._file, **facts, **as_object(self.reader, item)})
 
 
-def decode_recording(capture: CaptureReader, options: DecodeOptions, counts: StreamCounts) -> None:
-    """Decode each direction of each interface on its own, with times."""
+def decode_recording(capture: CaptureReader, options: DecodeOptions, counts: StreamCounts) -> bool:
+    """Decode each direction of each interface on its own; return whether something is missing."""
     printers: dict[DirectionStream, _TimedStreamPrinter] = {}
     start_ns: int | None = None
     with capture:
@@ -61,4 +61,4 @@ def decode_recording(capture: CaptureReader, options: DecodeOptions, counts: Str
             if items:
                 # Times that nobody needs any more are forgotten, also if nothing is printed.
                 stream.time_of(items[-1].offset)
-        warn_if_incomplete(capture)
+        return warn_if_incomplete(capture)

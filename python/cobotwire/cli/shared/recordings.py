@@ -16,8 +16,6 @@ ARROWS: dict[Direction, str] = {"sent": ">", "received": "<", "unknown": "?"}
 interface_option = click.option(
     "--interface",
     type=int,
-    default=0,
-    show_default=True,
     help="The index of the interface, if the recording has several.",
 )
 
@@ -43,8 +41,10 @@ def seconds_column(after: float | None) -> str:
     return " " * 10 if after is None else f"{after:10.6f}"
 
 
-def warn_if_incomplete(capture: CaptureReader) -> None:
+def warn_if_incomplete(capture: CaptureReader) -> bool:
     """Print to standard error what a user should know about a recording that was read.
+
+    Return whether it is incomplete.
 
     Raises:
         EmptyInput: it holds no packet.
@@ -55,3 +55,4 @@ def warn_if_incomplete(capture: CaptureReader) -> None:
         raise EmptyInput(capture.name)
     if capture.incomplete:
         notify(capture.incomplete)
+    return bool(capture.incomplete)

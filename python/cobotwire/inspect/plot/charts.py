@@ -104,7 +104,8 @@ def _panels(series: Series) -> list[Panel]:
             lines = partial(_lines, track=coords, names=shown, gaps=timed)
             panels.append((f"end, {symbol}", lines))
     each = "per second" if timed else "per 1000 bytes"
-    panels.append((f"frames received\n{each}", lambda axes: _frames(axes, series)))
+    received = " received" * (series.reply_times is not None)
+    panels.append((f"frames{received}\n{each}", lambda axes: _frames(axes, series)))
     if series.noise:
         panels.append((f"noise, bytes\n{each}", lambda axes: _noise(axes, series)))
     times = series.reply_times

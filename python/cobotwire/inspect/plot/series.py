@@ -56,10 +56,10 @@ class Series:
         axis: ``seconds`` since the first packet, or ``bytes`` for a stream without times.
         end: the end of the axis.
         tracks: joints in degrees, coordinates in millimetres and degrees; may be empty.
-        frames: the place of each received frame.
-        noise: the place and the size in bytes of each received span of noise.
+        frames: the place of each frame that was not sent: received, or of unknown direction.
+        noise: the place and the size in bytes of each span of noise that was not sent.
         start_ns: the time of the first packet, in nanoseconds since 1970; 0 without times.
-        reply_times: the times between requests and replies; None without times.
+        reply_times: the times between requests and replies; None without times or directions.
     """
 
     axis: Literal["seconds", "bytes"]
@@ -84,29 +84,29 @@ def series_of_packets(packets: Iterable[Packet], codec: Codec) -> Series:
     start_ns = min(packet.time_ns for packet in packets)
     collector = _Collector(Series("seconds", start_ns=start_ns), codec)
     pairing = Pairing(codec.table)
-    # Packets of unknown direction count as replies, because the charts show replies.
-    for stream, events, _ in cut(packets, lambda interface: codec, "reply"):
+    for stream, events, _ in cut(packets, lambda interface: codec):
         for event in events:
             time_ns = stream.time_of(event.offset + len(event.data) - 1)
             at = (time_ns - start_ns) / 1e9
             collector.series.end = max(collector.series.end, at)
             if stream.direction != "sent":
                 collector.add(event, at)
-            if isinstance(event, Frame):
+            if isinstance(event, Frame) and stream.direction != "unknown":
                 pair = pairing.sent if stream.direction == "sent" else pairing.received
                 pair(at, event.command)
-    collector.series.reply_times = pairing.finish()
+    if any(packet.direction != "unknown" for packet in packets):
+        collector.series.reply_times = pairing.finish()
     return collector.series
 
 
 def series_of_bytes(blocks: Iterable[bytes], codec: Codec) -> Series:
-    """Collect the series of the raw bytes that an arm sent.
+    """Collect the series of raw bytes.
 
     Raises:
         UsageError: there are no bytes.
     """
     collector = _Collector(Series("bytes"), codec)
-    framer = codec.framer("reply")
+    framer = codec.framer("both")
     for block in blocks:
         for event in framer.feed(block):
             collector.add(event, event.offset)
@@ -119,7 +119,7 @@ def series_of_bytes(blocks: Iterable[bytes], codec: Codec) -> Series:
 
 
 class _Collector:
-    """Adds received frames and noise to a series."""
+    """Adds frames and noise to a series."""
 
     def __init__(self, series: Series, codec: Codec) -> None:
         self.series = series
