@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 from capture.export.exporting import START, polled, recording, reply
+from capture.test_foreign import FILES
 from cobotwire.capture import Packet, read
 from in_process import Ended, cobotwire
 
@@ -52,6 +53,23 @@ def test_info_of_several_files_has_a_total_and_the_worst_exit_code(arm: Path) ->
     assert capture("info", "/nope").returncode == 2
 
 
+@pytest.mark.parametrize(
+    ("name", "head", "start"),
+    [
+        ("socat-x.txt", "  551 bytes, a socat dump", "  start     2026-11-24"),
+        ("saleae-logic1.csv", "  470 bytes, a table of Saleae", "  start     0.000 s (no date)"),
+        ("pulseview.txt", "  2275 bytes, annotations of", None),
+    ],
+)
+def test_info_of_another_programs_file_states_its_own_size_and_times(
+    name: str, head: str, start: str | None
+) -> None:
+    lines = capture("info", FILES / name).stdout.splitlines()
+    assert lines[1].startswith(head)
+    starts = [line for line in lines if line.startswith("  start")]
+    assert [line.startswith(start or "") for line in starts] == [True] * bool(start)
+
+
 def test_cut_takes_seconds_times_and_commands(arm: Path) -> None:
     out = arm.with_name("out.pcapng")
     done = capture("cut", arm, "-o", out, "--from", "0.02", "--to", "2027-01-01T00:00+01:00")
@@ -61,6 +79,8 @@ def test_cut_takes_seconds_times_and_commands(arm: Path) -> None:
     assert [packet.time_ns for packet in read(out)][:1] == [START + SECOND // 50]
     done = capture("cut", arm, "-o", out, "--commands", "is_power_on", "--overwrite")
     assert "6 packets left out: other commands\n  1 packet left out: noise" in done.stderr
+    done = capture("cut", arm, "-o", out, "--from", "9", "--overwrite")
+    assert (done.returncode, f"nothing of {arm} was chosen" in done.stderr) == (1, True)
     arm.write_bytes(arm.read_bytes()[:-3])
     done = capture("cut", arm, "-o", out, "--noise", "keep", "--overwrite")
     assert done.returncode == 1

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gzip
 import json
 from pathlib import Path
 
@@ -60,8 +61,28 @@ def test_truncated_recording_is_decoded_with_a_warning(recorded: Path, tmp_path:
     cut = tmp_path / "cut.pcapng"
     cut.write_bytes(whole[: whole.rindex(ANGLES[:8]) + 12])
     result = run("decode", cut)
+    assert result.returncode == 1
     assert "ends in the middle of a packet" in result.stderr
     assert "request: get_angles()" in result.stdout
+
+
+@pytest.mark.parametrize("kind", ["bin", "pcapng"])
+def test_cut_compressed_file_is_decoded_and_reported(tmp_path: Path, kind: str) -> None:
+    plain, path = tmp_path / "arm.pcapng", tmp_path / f"arm.{kind}.gz"
+    with plain.open("wb") as file:
+        writer = CaptureWriter(file)
+        writer.interface(Interface("port", "mycobot", 115200))
+        writer.packet(Packet(0, "received", ANGLES, "frame"))
+        writer.finish()
+    data = plain.read_bytes() if kind == "pcapng" else ANGLES
+    path.write_bytes(gzip.compress(data)[:-3])
+    result = run("decode", path)
+    assert result.returncode == 1
+    assert result.stderr == f"cobotwire: {path} has compressed data that is cut off\n"
+    assert "get_angles(angles=(1.4," in result.stdout
+    if kind == "pcapng":
+        info = run("capture", "info", path)
+        assert (info.returncode, "it has compressed data that" in info.stdout) == (1, True)
 
 
 def test_direction_option_applies_to_packets_of_unknown_direction(tmp_path: Path) -> None:

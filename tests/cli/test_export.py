@@ -141,6 +141,21 @@ def test_time_range_is_iso_8601_in_utc(
     assert report["outside"] == 7 - rows
 
 
+def test_export_without_a_chosen_message_says_that_it_wrote_nothing(tmp_path: Path) -> None:
+    path = recording(tmp_path / "arm.pcapng", polled(3))
+    done = exported(path, "-o", tmp_path / "out", "--from", "2030-01-01")
+    assert done.returncode == 1
+    assert "no file was written: no message was chosen\n" in done.stderr
+
+
+def test_times_before_1970_are_not_written_to_mcap(tmp_path: Path) -> None:
+    path = tmp_path / "neg.csv"
+    path.write_text("Time [s],Value\n" + "".join(f"-1,0x{byte:02X}\n" for byte in POWERED))
+    done = exported(path, "-o", tmp_path / "arm.mcap")
+    assert done.returncode == 2
+    assert "times before 1970, which an MCAP file cannot hold" in done.stderr
+
+
 def test_partitions_are_folders_that_readers_know(arm: Path, tmp_path: Path) -> None:
     out = tmp_path / "lake"
     exported(arm, "-o", out, "--partition", "robot,command,day", "--direction", "reply")

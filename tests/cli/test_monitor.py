@@ -10,8 +10,10 @@ from pathlib import Path
 
 import pytest
 
-from cobotwire import MyCobot
+from cobotwire import MyCobot, editions
 from cobotwire.capture import read
+from cobotwire.editions.mycobot import TABLE
+from cobotwire.inspect.monitor import ROLES
 from cobotwire.simulator import PtyServer
 from command_line import PROGRAM
 from in_process import cobotwire
@@ -33,6 +35,18 @@ def test_monitor_prints_lines_without_a_terminal(server: PtyServer) -> None:
     assert len(lines) == 3
     assert all("get_angles" in line and "get_coords" in line for line in lines)
     assert "\x1b" not in result.stdout
+
+
+def test_edition_without_joints_has_nothing_to_monitor(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path = tmp_path / "arm.pcapng"
+    kept = tuple(each for each in TABLE.commands if each.role not in ROLES)
+    monkeypatch.setattr(editions.load("mycobot"), "TABLE", TABLE._replace(commands=kept))
+    result = cobotwire("--edition", "mycobot", "monitor", "memory://none", "--record", path)
+    assert result.returncode == 2
+    assert "nothing to monitor: mycobot has no query of joints or coordinates" in result.stderr
+    assert not path.exists()
 
 
 def test_json_output_holds_values_errors_and_noise() -> None:

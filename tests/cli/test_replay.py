@@ -10,6 +10,7 @@ from pathlib import Path
 
 import pytest
 
+from capture.export.exporting import polled, recording
 from cobotwire import MyCobot, ReplyTimeout
 from cobotwire import codec as codecs
 from cobotwire.capture import Recording, read
@@ -119,6 +120,18 @@ def test_file_that_is_not_a_recording_is_rejected(
     assert result.returncode == code
     assert words in result.stderr
     assert "Traceback" not in result.stderr
+
+
+def test_timeline_shows_the_chosen_interface(tmp_path: Path) -> None:
+    path = recording(
+        tmp_path / "two.pcapng", [*polled(1), polled(1)[1]._replace(interface=1)], "", ""
+    )
+    lines = [run(path, *words).stdout.splitlines() for words in ((), ("--interface", "1"))]
+    assert [*map(len, lines)] == [3, 1]
+    assert " interface 1 < " in lines[1][0]
+    result = run(path, "--interface", "2")
+    assert (result.returncode, result.stdout) == (2, "")
+    assert "interface is 2; allowed: 0..1" in result.stderr
 
 
 @pytest.mark.parametrize(

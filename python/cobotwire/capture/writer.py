@@ -24,7 +24,7 @@ class CaptureWriter:
 
         No packet may have a time before ``start_seconds``, which may be negative.
         """
-        self._file, self._start_seconds = file, start_seconds
+        self._file, self._start = file, start_seconds
         self.size = 0
         # For each interface: the times of its first and last packet, and their number.
         self._seen: list[tuple[int, int, int]] = []
@@ -33,27 +33,25 @@ class CaptureWriter:
     def interface(self, interface: Interface) -> int:
         """Describe an interface; return the index for its packets."""
         edition = f"edition {interface.edition}" if interface.edition else ""
-        self._write(
-            blocks.interface(interface.url, edition, interface.baudrate, self._start_seconds)
-        )
+        self._write(blocks.interface(interface.url, edition, interface.baudrate, self._start))
         self._seen.append((0, 0, 0))
         return len(self._seen) - 1
 
     def packet(self, packet: Packet) -> None:
         """Write one packet of an interface that was described."""
-        start_ns = self._start_seconds * 10**9
+        time_ns, start_ns = packet.time_ns - self._start * 10**9, self._start * 10**9
         first, last, count = self._seen[packet.interface]
         self._write(
             blocks.packet(
                 packet.interface,
-                packet.time_ns - start_ns,
+                time_ns,
                 packet.data,
                 FLAGS[packet.direction],
                 comment_of(packet),
             )
         )
         end = packet.pieces[-1].time_ns if packet.pieces else packet.time_ns
-        first = min(first, packet.time_ns - start_ns) if count else packet.time_ns - start_ns
+        first = min(first, time_ns) if count else time_ns
         self._seen[packet.interface] = first, max(last, end - start_ns), count + 1
 
     def finish(self) -> None:

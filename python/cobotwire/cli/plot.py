@@ -29,9 +29,6 @@ from cobotwire.inspect.plot import (
 from cobotwire.protocol.errors import UsageError
 from cobotwire.protocol.printable import printable
 
-# Interfaces that are not drawn, and that a message names.
-LISTED = 8
-
 
 @click.command()
 @click.argument("file", type=click.Path())
@@ -71,10 +68,8 @@ def plot(
         title.append(f"edition {codec.table.edition}")
     else:
         series, codec = _read_recording(source, interface or 0, edition)
-        title += [
-            printable(source.interfaces[interface or 0].url),
-            f"edition {codec.table.edition}",
-        ]
+        url = source.interfaces[interface or 0].url
+        title += [printable(url), f"edition {codec.table.edition}"]
         if source.dated:
             begin = datetime.fromtimestamp(series.start_ns / 1e9, UTC)
             title.append(f"{begin:%Y-%m-%d %H:%M:%S} UTC")
@@ -93,11 +88,9 @@ def _read_recording(capture: CaptureReader, interface: int, edition: str) -> tup
         packets = list(packets_of_interface(capture, interface))
         warn_if_incomplete(capture)
     if len(capture.interfaces) > 1:
-        names = (f"{at} ({printable(each.url)})" for at, each in enumerate(capture.interfaces))
-        others = [name for at, name in enumerate(names) if at != interface]
-        more = f", and {len(others) - LISTED} more" * (len(others) > LISTED)
-        listed = ", ".join(others[:LISTED]) + more
-        notify(f"drawing interface {interface}; not drawn: {listed}; --interface chooses one")
+        last = len(capture.interfaces) - 1
+        what = f"only interface {interface}: {printable(capture.interfaces[interface].url)}"
+        notify(f"drawing {what}; --interface chooses another of 0..{last}")
     if not capture.timed:
         message = f"{capture.name} states no times to draw over"
         raise UsageError("FILE", capture.name, message=message)

@@ -157,6 +157,23 @@ def test_coordinates_are_drawn_by_the_names_and_units_of_their_edition(tmp_path:
     assert "J5" not in drawn
 
 
+def test_bytes_of_unknown_direction_are_drawn_as_decode_reads_them(tmp_path: Path) -> None:
+    request = bytes.fromhex("FE FE 02 20 FA")
+    path = tmp_path / "can.log"
+    text = f"(1.0) can0 123#{request.hex()}\n(2.0) can0 123#{request.hex()}\n"
+    path.write_text(text + f"(3.0) can0 124#{LEAK.hex()}\n")
+    with read(path) as capture:
+        series = series_of_packets([each for each in capture if not each.interface], CODEC)
+    assert (series.frames, series.noise, series.reply_times) == ([0, 1], [], None)
+    series = series_of_bytes([request * 2], CODEC)
+    assert (series.frames, series.noise) == ([0, 5], [])
+    result = run(path, "-o", tmp_path / "can.svg")
+    assert "only interface 0: can0 123; --interface chooses another of 0..1" in result.stderr
+    drawn = (tmp_path / "can.svg").read_text()
+    assert "1970" not in drawn
+    assert "frames received" not in drawn
+
+
 def test_plot_rejects_wrong_file_names_and_interfaces(tmp_path: Path) -> None:
     path = tmp_path / "arm.pcapng"
     record(path, Scenario(name="well"), samples=1)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import re
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from glob import glob, has_magic
 from typing import Any
 
@@ -15,10 +15,7 @@ from cobotwire.protocol.errors import LinkError, UsageError
 
 STDIN = "-"
 COMPRESSED: dict[str, Compression] = {".gz": "gzip", ".zst": "zstd"}
-_ENDINGS = (
-    *(".pcapng", ".pcap", ".cap", ".bin", ".raw", ".hex", ".xxd", ".dump"),
-    *(".txt", ".log", ".csv"),
-)
+_ENDINGS = (".pcapng", ".pcap", ".cap", ".bin", ".raw", ".hex", ".txt", ".log", ".csv")
 _HIVE_ROBOT = re.compile(r"(?:^|/)robot=([^/]+)/")
 
 
@@ -29,12 +26,12 @@ class Input:
     Attributes:
         url: a path, an fsspec URL, or ``-``.
         size: the number of stored bytes; None if it is not known.
-        listed: whether it was found in a folder, and not named itself.
+        listed: whether a folder or a pattern named it, and not its own name.
     """
 
     url: str
     size: int | None = None
-    listed: bool = False
+    listed: bool = field(default=False, compare=False)
 
     @property
     def robot(self) -> str:
@@ -109,9 +106,9 @@ def _files(argument: str) -> Iterator[Input]:
     elif is_url(argument):
         yield from _objects(argument)
     else:
-        listed = os.path.isdir(argument)
         for path in _paths(argument):
-            yield Input(path, os.path.getsize(path) if os.path.isfile(path) else None, listed)
+            size = os.path.getsize(path) if os.path.isfile(path) else None
+            yield Input(path, size, path != argument)
 
 
 def _paths(argument: str) -> list[str]:

@@ -47,14 +47,16 @@ class Source:
             yield from self._batches(input)
         except ExportedInput as error:
             # Folders often hold the files of earlier exports too.
-            if not input.listed:
-                self._report.unread.append(str(error))
-                self._report.inputs += 1
-            else:
+            if input.listed:
                 self._report.notes.append(f"left out: {error}")
+            else:
+                self._unread(error)
         except UnreadableInput as error:
-            self._report.unread.append(str(error))
-            self._report.inputs += 1
+            self._unread(error)
+
+    def _unread(self, error: UnreadableInput) -> None:
+        self._report.unread.append(str(error))
+        self._report.inputs += 1
 
     def _batches(self, input: Input) -> Iterator[Batch]:
         stream = InputStream(input, self._progress, self._plan.read_as or None, self._plan.ports)
@@ -134,7 +136,10 @@ class Source:
             robot = f"{input.robot}-{interface}" if interface else input.robot
             found = gaps.setdefault(interface, Gaps(self._plan.gap_ns))
             timed = not batch.application.endswith(UNTIMED)
-            times = (time for stream in streams for times in stream.times for time in times)
+            times = [time for stream in streams for times in stream.times for time in times]
+            if self._plan.format == "mcap" and min(times, default=0) < 0:
+                message = f"{input.url} has times before 1970, which an MCAP file cannot hold"
+                raise UsageError("INPUT", input.url, message=message)
             if not timed:
                 self._check_times(input)
             elif count := sum(1 for _ in found.take(times)):

@@ -35,9 +35,7 @@ def report_lines(report: Report) -> Iterator[str]:
     yield from map(printable, report.unread)
     yield from (f"incomplete: {printable(text)}" for text in report.truncated)
     if not report.files:
-        yield (
-            "no file was written: no message was chosen" if report.frames else "no file was written"
-        )
+        yield "no file was written" + ": no message was chosen" * bool(report.frames)
     yield from (
         f"wrote {printable(file.path)}: {counted(file.bytes, 'byte')}"
         for file in report.files[:LISTED]
