@@ -57,7 +57,11 @@ def test_info_of_several_files_has_a_total_and_the_worst_exit_code(arm: Path) ->
     ("name", "head", "start"),
     [
         ("socat-x.txt", "  551 bytes, a socat dump", "  start     2026-11-24"),
-        ("saleae-logic1.csv", "  470 bytes, a table of Saleae", "  start     0.000 s (no date)"),
+        (
+            "saleae-logic1.csv",
+            "  470 bytes, a table of Saleae",
+            "  start     -0.000250 s (no date)",
+        ),
         ("pulseview.txt", "  2275 bytes, annotations of", None),
     ],
 )

@@ -72,7 +72,7 @@ def _lines(found: Overview, gap: float) -> Iterator[str]:
     if found.times and not found.application.endswith(UNTIMED):
         undated = found.application.endswith(UNDATED)
         for label, time_ns in (("start", start_ns), ("end", found.times.last_ns)):
-            time = f"{_seconds(time_ns)} (no date)" if undated else time_text(time_ns)
+            time = f"{time_ns / 1e9:.6f} s (no date)" if undated else time_text(time_ns)
             yield f"  {label:9} {time}"
         yield f"  duration  {_seconds(found.times.last_ns - start_ns)}"
     for number in range(len(found.interfaces)):

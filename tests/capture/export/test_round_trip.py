@@ -166,7 +166,7 @@ def test_offsets_of_a_file_do_not_decrease(angles: Path) -> None:
 
 
 def test_file_without_rows_has_the_columns_of_one_with_rows(angles: Path) -> None:
-    (angles / "noise.bin").write_bytes(b"noise")
+    (angles / "noise.bin").write_bytes(b"noise\0")
     report = export(
         angles / "none.parquet",
         angles / "noise.bin",
