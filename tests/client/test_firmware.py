@@ -79,7 +79,7 @@ def test_versions_of_one_robot_are_not_those_of_robots_that_are_stated_by_it() -
 
 def test_page_of_a_robot_lists_changes_by_version_of_the_firmware() -> None:
     stated = [vectors.edition("mycobot280"), vectors.edition("mycobot320")]
-    pages = {path.stem: text for path, text in robot_pages(stated).items()}
+    pages = {path.stem: text for path, text in robot_pages([(each, {}) for each in stated]).items()}
     _, _, section = pages["mycobot280"].partition("## Firmware versions")
     rows = [line.split(" | ")[:3] for line in section.partition("##")[0].splitlines()[6:]]
     assert rows[:4] == [

@@ -10,8 +10,7 @@ from textwrap import fill
 import click
 
 from cobotwire_codegen.build import build_edition
-from cobotwire_codegen.cli.explain import DEFAULT_EDITION
-from cobotwire_codegen.cli.shared import edition_path, report_problems
+from cobotwire_codegen.cli.shared import DEFAULT_EDITION, edition_path, report_problems
 
 
 @click.command()

@@ -16,7 +16,7 @@ class Bindings(cst.CSTVisitor):
         self.annotated: list[tuple[cst.CSTNode, cst.BaseExpression]] = []
         self.calls: list[cst.Call] = []
         self.functions: list[cst.FunctionDef] = []
-        self.froms: list[cst.ImportFrom] = []
+        self.from_imports: list[cst.ImportFrom] = []
         self.returns: dict[cst.FunctionDef, list[cst.BaseExpression]] = defaultdict(list)
         # The names that imports give to what is not the module of that name.
         self.imported: set[str] = set()
@@ -26,7 +26,7 @@ class Bindings(cst.CSTVisitor):
         self._import(alias for alias in node.names if alias.asname)
 
     def visit_ImportFrom(self, node: cst.ImportFrom) -> None:
-        self.froms.append(node)
+        self.from_imports.append(node)
         if not isinstance(node.names, cst.ImportStar):
             self._import(node.names)
 

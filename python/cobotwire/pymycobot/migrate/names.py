@@ -86,7 +86,7 @@ class Names:
 
     def classes(self) -> list[str]:
         """Return the names by which the program knows classes of arms."""
-        return sorted({name for each in self._found.froms for name, _ in _kinds(each)})
+        return sorted({name for each in self._found.from_imports for name, _ in _kinds(each)})
 
     def is_only(self, node: cst.CSTNode, kind: type[Value]) -> bool:
         """Return whether an expression is nothing but values of a kind, and perhaps None."""
