@@ -168,7 +168,7 @@ SAYS: dict[str, str] = {
     "points": r"record|drag",
     "planned": r"plan",
     "end": r"output|input|end|serial",
-    "registers": r"register|regist",
+    "registers": r"register",
     "bus": r"gripper|hand",
     "faults": r"error|fault|status",
     "read": r"get|reads",
