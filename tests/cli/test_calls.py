@@ -30,7 +30,8 @@ def test_motion_waits_and_prints_where_the_arm_is(server: PtyServer) -> None:
     assert (moved.returncode, moved.stderr.startswith("arrived after ")) == (0, True)
     assert "j1=0.96  j2=2.02" in moved.stdout
     homed = json.loads(cobotwire("call", server.url, "go_home", "--json").stdout)
-    assert set(homed["result"].values()) == {0.0}
+    # An encoder counts in steps of 0.09 degrees.
+    assert max(map(abs, homed["result"].values())) < 0.1
     assert 0 < homed["seconds"] < 9
 
 

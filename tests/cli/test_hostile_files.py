@@ -69,7 +69,8 @@ def test_number_with_thousands_of_digits_in_a_comment_changes_nothing(
     tmp_path: Path, verb: list[str], comment: str
 ) -> None:
     code, _ = show(verb, write(tmp_path / "arm.pcapng", comment))
-    assert code == 0
+    # It has no mark of its end, which decode reports.
+    assert code == (verb[0] == "decode")
     [packet] = read(tmp_path / "arm.pcapng")
     assert packet.pieces in ((), (Piece(17, SECOND + 1),))
 

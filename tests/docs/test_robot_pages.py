@@ -58,7 +58,7 @@ def test_page_lists_each_command_with_its_place(site: Path) -> None:
     assert sorted(linked) == sorted(name.replace("_", "-").lower() for name in commands)
 
 
-def test_page_says_what_real_arms_showed_and_which_facts_are_disputed() -> None:
+def test_page_says_what_real_arms_showed_and_which_facts_are_disputed(site: Path) -> None:
     text = page("mycobot280")
     assert "| reports from real arms: FE FE 03 65 19 FA |" in text
     assert "The sources disagree about `is_in_position`" in text

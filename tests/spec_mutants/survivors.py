@@ -1,4 +1,4 @@
-"""Reads ``spec/unconfirmed.yaml``: the facts without a second source, each with the reason."""
+"""Reads ``tests/spec_mutants/unconfirmed.yaml``: the facts without a second source, each with the reason."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ class Unconfirmed(NamedTuple):
 @lru_cache(maxsize=1)
 def unconfirmed() -> tuple[Unconfirmed, ...]:
     """Return the rows of the list."""
-    root = load(ROOT / "spec" / "unconfirmed.yaml")
+    root = load(ROOT / "tests" / "spec_mutants" / "unconfirmed.yaml")
     assert isinstance(root, Mapping)
     return tuple(
         Unconfirmed(

@@ -37,7 +37,7 @@ from transport.ends import FAST, Line
         ("rfc2217://localhost", UsageError, "host:port"),
         ("socket://127.0.0.1:1", LinkError, "refused"),
         ("alt://x?class=Nope", UsageError, "Nope"),
-        ("/dev/null", LinkError, "Inappropriate ioctl"),
+        ("/dev/null", LinkError, "not a serial port"),
         ("/", LinkError, "Is a directory"),
     ],
 )

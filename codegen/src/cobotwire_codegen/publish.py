@@ -239,7 +239,7 @@ class _Writer:
             agrees_with=list(command.agrees_with),
             arguments=list(command.method_order),
             effect=command.effect and published_effect(command.effect, command, self._states),
-            firmware=command.firmware
+            firmware_versions=command.firmware
             and {key: float(version) for key, version in command.firmware.versions.items()},
             title=command.title,
             doc=command.doc,

@@ -30,8 +30,8 @@ _KEYS: tuple[tuple[type, str], ...] = (
     ),
     (
         dict,
-        "address_range crc edition effect encoders error_codes frame geometry motion read_by"
-        " request_text servos state text",
+        "address_range crc edition effect encoders error_codes firmware_versions frame geometry"
+        " motion read_by request_text servos state text",
     ),
     (bool, "ack event more optional radians refin refout replies_without_id"),
 )

@@ -220,7 +220,7 @@ class _Reader:
             tuple(get("accepted", ())),
             self._package,
             get("effect"),
-            get("firmware"),
+            get("firmware_versions"),
         )
 
     def _variants(self, records: list[list[Record]]) -> tuple[Variant, ...]:

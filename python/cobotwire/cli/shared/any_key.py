@@ -7,10 +7,7 @@ import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-if sys.platform == "win32":
-    import _thread
-    import msvcrt
-else:
+if sys.platform != "win32":
     import select
     import signal
     import termios
@@ -67,7 +64,11 @@ def _watch(ended: threading.Event) -> None:
 
 def _watch_windows(ended: threading.Event) -> None:
     if sys.platform == "win32":
+        # Here, because other systems lack it, also when they test what Windows lacks.
+        from _thread import interrupt_main
+        from msvcrt import kbhit
+
         while not ended.wait(POLL):
-            if msvcrt.kbhit():
-                _thread.interrupt_main()
+            if kbhit():
+                interrupt_main()
                 return

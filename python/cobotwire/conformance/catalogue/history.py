@@ -64,12 +64,12 @@ HISTORY = (
     ),
     CatalogueVersion(
         8,
-        "eac7ab68b49f",
+        "4479e68d624a",
         "new: `list-cleared`; `effect` includes what an argument chooses, `points-in-order` lists "
         "that nothing counts, `read-back` what a case stores by an index; `reply-repeats` with "
         "power only where a command switches it",
         85,
-        "0",
+        "bbcba3667264",
     ),
 )
 VERSION = HISTORY[-1].number

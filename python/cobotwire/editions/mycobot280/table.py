@@ -3,4 +3,4 @@
 
 from cobotwire.protocol.loading import load_table
 
-TABLE = load_table(__package__, checksum="4ece9e3e")
+TABLE = load_table(__package__, checksum="f51d23b6")

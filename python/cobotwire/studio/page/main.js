@@ -176,8 +176,9 @@ function wireControls() {
   wireTabs(byId("tabs"));
   wireTabs(byId("move-tabs"));
   byId("control").addEventListener("click", async () => {
-    await attempt(source.control(!state.mine));
-    if (state.simulated && byId("control").textContent === "Take control") await attempt(source.allowMotion(true));
+    const taking = !state.mine;
+    await attempt(source.control(taking));
+    if (taking && state.simulated) await attempt(source.allowMotion(true));
   });
   byId("motion").addEventListener("change", () => attempt(source.allowMotion(byId("motion").checked)));
   byId("stop").addEventListener("click", stop);
