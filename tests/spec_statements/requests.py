@@ -29,31 +29,33 @@ Expected = tuple[Call, bytes | None]
 
 def requests(edition: Edition) -> Iterator[str]:
     """Report calls for which an edition sends other bytes than the maker's class, or rejects."""
-    expected = _expected(edition.name)
-    if expected:
+    alike, _ = compared(edition.name)
+    if alike:
         codec = codec_of_edition(edition)
-        for call, wanted in expected:
+        for call, wanted in alike:
             if _sent(codec, call) != wanted:
                 yield f"{call.command}: {call.ours} differs from the maker's {call.method}"
 
 
 @lru_cache(maxsize=32)
-def _expected(name: str) -> tuple[Expected, ...]:
-    """Return the calls in which the class and the edition as it is agree, with the bytes."""
+def compared(name: str) -> tuple[tuple[Expected, ...], int]:
+    """Return the calls in which the class and the edition as it is agree, and how many differ."""
     robot = next((each for each in ROBOTS.values() if each.edition == name), None)
     if robot is None:
-        return ()
+        return (), 0
     codec = codec_of_edition(vectors.edition(name))
     names = {command.name for command in robot.table.commands}
     calls = [call for call in calls_of(robot) if call.command in names and not call.why]
-    found = []
+    found, differ = [], 0
     for call in {_key(each): each for each in (*calls, *_beyond(calls))}.values():
         with open(os.devnull, "w") as nowhere, redirect_stdout(nowhere):  # some classes print
             theirs = sent_by_peer(robot, call)
         wanted = theirs if isinstance(theirs, bytes) else None
         if _sent(codec, call) == wanted:
             found.append((call, wanted))
-    return tuple(found)
+        else:
+            differ += 1
+    return tuple(found), differ
 
 
 def _key(call: Call) -> str:
