@@ -254,6 +254,6 @@ def test_time_beyond_64_bits_is_rejected_after_the_packets_before_it(
 
 def test_reader_ignores_bytes_after_damage() -> None:
     reader = capture_reader(NATIVE)
-    assert str(reader.feed(b"hello, world").error).endswith("recording (at byte 0)")
+    assert "is not a pcapng recording" in str(reader.feed(b"hello, world").error)
     assert reader.feed(written(poll(1))).streams == []
     assert len(reader.finish()) == 0
