@@ -75,6 +75,8 @@ def pretend(extras: Iterable[str] = ()) -> None:
         for name in names:
             if hasattr(module, name):
                 delattr(module, name)
+    # Windows has it, and this system does not.
+    modules["msvcrt"] = types.ModuleType("msvcrt")
     modules["selectors"].DefaultSelector = selectors.SelectSelector
     modules["selectors"].SelectSelector._select = staticmethod(_select_sockets)
     modules["select"].select = _select_sockets

@@ -1,4 +1,4 @@
-"""Reads ``tests/spec_mutants/unconfirmed.yaml``: the facts without a second source, each with the reason."""
+"""Reads ``unconfirmed.yaml``: the facts without a second source, each with the reason."""
 
 from __future__ import annotations
 

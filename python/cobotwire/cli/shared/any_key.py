@@ -7,7 +7,10 @@ import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-if sys.platform != "win32":
+if sys.platform == "win32":
+    import _thread
+    import msvcrt
+else:
     import select
     import signal
     import termios
@@ -64,11 +67,7 @@ def _watch(ended: threading.Event) -> None:
 
 def _watch_windows(ended: threading.Event) -> None:
     if sys.platform == "win32":
-        # Here, because other systems lack it, also when they test what Windows lacks.
-        from _thread import interrupt_main
-        from msvcrt import kbhit
-
         while not ended.wait(POLL):
-            if kbhit():
-                interrupt_main()
+            if msvcrt.kbhit():
+                _thread.interrupt_main()
                 return
