@@ -118,7 +118,7 @@ def _paths(tree: str) -> Iterator[list[str]]:
 
 
 def import_cycle(imports: Mapping[str, set[str]]) -> list[str]:
-    """Return modules that import each other in a circle; the list is empty if there are none."""
+    """Return the modules of an import cycle; an empty list without one."""
     try:
         TopologicalSorter(imports).prepare()
     except CycleError as error:

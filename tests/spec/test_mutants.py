@@ -77,5 +77,8 @@ def test_removed_fact_is_not_in_the_changed_file() -> None:
 
 
 def test_few_mutants_may_survive(all_tasks: list[Task]) -> None:
-    listed = [task for task in all_tasks if accepted(task.edition, task.kind, task.title)]
-    assert len(listed) < len(all_tasks) / 5
+    # The document states the first two; of most other editions one source is known.
+    for editions, share in (({"mycobot", "mycobot280"}, 50), ({*PATHS, "servo_bus"}, 10)):
+        found = [task for task in all_tasks if task.edition in editions]
+        listed = [task for task in found if accepted(task.edition, task.kind, task.title)]
+        assert len(listed) < len(found) / share

@@ -82,7 +82,7 @@ class Overview:
         streams: each direction of each interface.
         messages: the messages by interface and label, such as ``get_angles.reply``.
         rejected: frames with a value that the edition does not allow; they are in no message.
-        times: of all messages, rejected frames and noise; None if there are none.
+        times: those of the messages, rejected frames and noise; None for an empty recording.
         gaps: the longest pauses, longest first.
         gap_count, gap_ns: the number of all pauses, and their sum.
         missing: what the recording lacks at its end; empty if it is whole.

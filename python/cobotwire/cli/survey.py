@@ -105,7 +105,7 @@ def survey(
             found, stopped = _run(
                 table, edition, subject, recording, earlier, settings, allow_motion
             )
-            content = content_of(found, edition, robot)
+            content = content_of(found, edition, robot, simulated=simulated)
             recorded = recording.read_bytes()
         if earlier is not None:
             content, recorded = continued(earlier, content, recorded)

@@ -141,6 +141,7 @@ def test_fact_without_a_fitting_frame_is_not_taken(wrong: Any, why: str) -> None
 @pytest.mark.parametrize(
     ("data", "why"),
     [
+        (packed(survey(simulated=True)), "not of a real arm"),
         (packed(survey(robot="a\x1b[2J")), "cannot be printed"),
         (packed(survey(robot="a" * 81)), "0 to 80 characters"),
         (packed(survey(edition="../../etc")), "is not a name"),

@@ -199,6 +199,8 @@ def _bytes(value: Any) -> bytes:
 def _survey(data: dict[str, Any], digest: str) -> Submitted:
     head = (data.get("format"), data.get("version"))
     _require(head == ("cobotwire-survey", 1), "the file is not a survey of version 1")
+    # Files of the first surveys do not say it.
+    _require(data.get("simulated", False) is False, "the survey is not of a real arm")
     edition = _edition(data)
     versions = _of(data.get("firmware"), dict, "firmware")
     _require(len(versions) <= 8, "firmware has more than 8 entries")

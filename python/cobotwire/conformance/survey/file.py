@@ -27,7 +27,7 @@ MOST_NAME = 80
 FACT = ("fact", "verdict", "why")
 
 
-def content_of(survey: Survey, package: str, robot: str) -> dict[str, Any]:
+def content_of(survey: Survey, package: str, robot: str, *, simulated: bool) -> dict[str, Any]:
     """Return what the file states: no name of a host, user, port or folder."""
     return {
         "format": FORMAT,
@@ -35,6 +35,7 @@ def content_of(survey: Survey, package: str, robot: str) -> dict[str, Any]:
         "edition": survey.table.edition,
         "edition_digest": edition_digest(package),
         "robot": printable(robot)[:MOST_NAME],
+        "simulated": simulated,
         "firmware": survey.firmware,
         "date": datetime.now(UTC).strftime("%Y-%m-%dT%H:%M:%SZ"),
         "cobotwire": cobotwire.__version__,

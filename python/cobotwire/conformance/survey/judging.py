@@ -38,7 +38,7 @@ BY_PLACE = ("reached", "arrives", "stops", "moving", "agrees")
 WORDS = 8
 # How many relations that do not hold a reason lists.
 MOST_SHOWN = 3
-# An argument that all silent commands share, if so many are silent, is what is wrong.
+# If at least this many silent commands share an argument, the argument is what is wrong.
 SEVERAL = 2
 
 

@@ -20,7 +20,7 @@ RULES_FILE = "/etc/udev/rules.d/70-cobotwire.rules"
 # The errors of a port that another program has locked: against every open(), or by pyserial.
 BUSY = errno.EBUSY, errno.EAGAIN
 _HOST_AND_PORT = re.compile(r"[\w.-]+:\d+", re.ASCII)
-# A message names so many ports; `cobotwire ports` lists all.
+# The most ports that a message names; `cobotwire ports` lists all.
 MOST_NAMED = 4
 # The names of the two devices that macOS has for each port begin so.
 _DIAL_IN, _CALL_OUT = "/dev/tty.", "/dev/cu."
