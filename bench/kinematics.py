@@ -17,7 +17,7 @@ import time
 from pathlib import Path
 
 from cobotwire.editions.mycobot280 import TABLE
-from cobotwire.simulator.kinematics import Pose, flange, nearest
+from cobotwire.kinematics import Pose, flange, nearest
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
 

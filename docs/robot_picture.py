@@ -6,8 +6,8 @@ from collections.abc import Iterable, Sequence
 from math import cos, pi, radians, sin
 
 from cobotwire.editions import load
-from cobotwire.simulator.kinematics import geometry_of
-from cobotwire.simulator.kinematics.forward import frames
+from cobotwire.kinematics import geometry_of
+from cobotwire.kinematics.forward import frames
 
 # The look at the arm: turned about the vertical axis, and from above.
 TURNED, RAISED = radians(30), radians(20)

@@ -6,8 +6,8 @@ import random
 from collections.abc import Iterable
 
 from cobotwire.editions.mycobot280 import TABLE
+from cobotwire.kinematics import Geometry, geometry_of, ticks
 from cobotwire.protocol.robot import Encoders
-from cobotwire.simulator.kinematics import Geometry, geometry_of, ticks
 from cobotwire.simulator.start import steps
 
 LIMITS = [

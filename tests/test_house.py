@@ -27,6 +27,7 @@ ROOMS = (
     "protocol",
     "codec",
     "diagnose",
+    "kinematics",
     "transport",
     "capture",
     "session",

@@ -19,8 +19,8 @@ from pathlib import Path
 from typing import NamedTuple
 
 from cobotwire.editions.mycobot280 import TABLE, MyCobot280
-from cobotwire.simulator.kinematics import geometry_of
-from cobotwire.simulator.kinematics.forward import frames
+from cobotwire.kinematics import geometry_of
+from cobotwire.kinematics.forward import frames
 from terminal import Terminal
 from terminal_picture import FONT, Film, Screen, screen_of
 

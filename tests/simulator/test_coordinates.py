@@ -8,10 +8,10 @@ import pytest
 
 from cobotwire import codec as codecs
 from cobotwire.editions.mycobot280 import TABLE, TargetKind
+from cobotwire.kinematics import Pose
 from cobotwire.protocol.robot import UNSTATED
 from cobotwire.simulator import SimulatedArm
 from cobotwire.simulator.clock import SteppedClock
-from cobotwire.simulator.kinematics import Pose
 from simulator.bench import Bench
 
 REFERENCE = codecs.load(TABLE, "reference")

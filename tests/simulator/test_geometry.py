@@ -11,8 +11,8 @@ import pytest
 import in_process
 from cobotwire import editions
 from cobotwire.editions.mycobot280 import TABLE
+from cobotwire.kinematics import geometry_of
 from cobotwire.simulator import PtyServer, SimulatedArm
-from cobotwire.simulator.kinematics import geometry_of
 from cobotwire_codegen.cli import main
 from in_process import Ended
 

@@ -17,11 +17,11 @@ from typing import Any
 import pytest
 
 from cobotwire.editions import load, names
+from cobotwire.kinematics import Geometry, coords_of, flange, geometry_of, nearest
+from cobotwire.kinematics.closed_form import is_solved
 from cobotwire.protocol.errors import UsageError
 from cobotwire.protocol.table import Command, Table
 from cobotwire.simulator import PtyServer, SimulatedArm
-from cobotwire.simulator.kinematics import Geometry, coords_of, flange, geometry_of, nearest
-from cobotwire.simulator.kinematics.closed_form import is_solved
 from simulator.bench import Bench
 
 WITH_GEOMETRY = [name for name in names() if geometry_of(load(name).TABLE) is not None]

@@ -13,6 +13,9 @@ from cobotwire.editions.mercury_a1 import TABLE as MERCURY
 from cobotwire.editions.mycobot import TABLE as DOCUMENT
 from cobotwire.editions.mycobot280 import TABLE
 from cobotwire.editions.mypalletizer260 import TABLE as PALLETIZER
+from cobotwire.kinematics import Pose, flange, geometry_of
+from cobotwire.kinematics.ticks import Steps, reported_coords
+from cobotwire.protocol.limits import joint_limits
 from cobotwire.protocol.robot import (
     Dimensions,
     Encoders,
@@ -24,9 +27,7 @@ from cobotwire.protocol.robot import (
 )
 from cobotwire.protocol.table import Table
 from cobotwire.simulator import SimulatedArm, SteppedClock
-from cobotwire.simulator.kinematics import Pose, flange, geometry_of
-from cobotwire.simulator.kinematics.ticks import Steps, reported_coords
-from cobotwire.simulator.start import joint_limits, steps
+from cobotwire.simulator.start import steps
 from simulator.bench import Bench
 
 # Angles and coordinates of a real mechArm 270, from a public program (see its edition).

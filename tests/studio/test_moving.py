@@ -10,8 +10,8 @@ from typing import Any
 import pytest
 
 from cobotwire.editions import mycobot280
+from cobotwire.kinematics import flange, geometry_of
 from cobotwire.simulator import SimulatedArm, TcpServer
-from cobotwire.simulator.kinematics import flange, geometry_of
 from studio.driven_page import Page, browser
 from studio.studio_server import Studio, running
 from studio.test_page import ANGLES, ROWS, pytestmark  # noqa: F401  (skip without a browser)

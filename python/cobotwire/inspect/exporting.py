@@ -9,7 +9,7 @@ from cobotwire import editions
 from cobotwire.capture.export.plan import Forward
 from cobotwire.codec.interface import Codec
 from cobotwire.inspect.recorded_edition import codec_of_recording
-from cobotwire.simulator.kinematics import coords_of, geometry_of
+from cobotwire.kinematics import coords_of, geometry_of
 
 
 @dataclass(frozen=True, slots=True)

@@ -11,14 +11,14 @@ from functools import partial
 from itertools import combinations
 from typing import NamedTuple
 
+from cobotwire.kinematics.forward import coords_of
+from cobotwire.kinematics.geometry import geometry_of
+from cobotwire.kinematics.pose import Pose
 from cobotwire.protocol.effects import Reports, effect_of
+from cobotwire.protocol.limits import joint_limits
 from cobotwire.protocol.numbers import Number
 from cobotwire.protocol.roles import row_index
 from cobotwire.protocol.table import Command, Field, Table
-from cobotwire.simulator.kinematics.forward import coords_of
-from cobotwire.simulator.kinematics.geometry import geometry_of
-from cobotwire.simulator.kinematics.pose import Pose
-from cobotwire.simulator.start import joint_limits
 
 # The command, and the part of it as facts name it: ``reply.FIELD`` or ``request.ARGUMENT``. The row
 # of a query with the argument joint has a number for each joint.

@@ -58,6 +58,25 @@ def limited(table: Table, limits: Limits) -> Table:
     return table._replace(commands=tuple(commands))
 
 
+def joint_limits(table: Table) -> list[Range]:
+    """Return the limits of each joint: the ranges of targets, or else those that are stated.
+
+    A range that holds every number of the wire is no limit. Empty: the edition states no limit.
+    """
+    return _ranges(table) or list(table.robot.joint_limits)
+
+
+def _ranges(table: Table) -> list[Range]:
+    command = table.find_role("joint targets")
+    if command is None:
+        return []
+    variant = command.request[0]
+    numbers = variant.fields[row_index(variant)].cases[0].numbers
+    if any(number.raw_range == (number.minimum, number.maximum) for number in numbers):
+        return []
+    return [(n.physical(n.minimum), n.physical(n.maximum)) for n in numbers]
+
+
 class _Rule:
     """The given ranges, and the names of the parts that they limit."""
 

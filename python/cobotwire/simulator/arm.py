@@ -8,6 +8,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any, NamedTuple
 
 from cobotwire import codec as codecs
+from cobotwire.kinematics import Geometry, geometry_of
 from cobotwire.protocol.addresses import devices_of, find_address
 from cobotwire.protocol.errors import UsageError
 from cobotwire.protocol.messages import Event
@@ -18,7 +19,6 @@ from cobotwire.simulator.behaviour.external import installed
 from cobotwire.simulator.devices import new_state
 from cobotwire.simulator.effects import EVERY_JOINT, Asked, perform
 from cobotwire.simulator.events import Events
-from cobotwire.simulator.kinematics import Geometry, geometry_of
 from cobotwire.simulator.motion.hand import checked
 from cobotwire.simulator.state import ArmState
 

@@ -6,10 +6,10 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any, NamedTuple
 
+from cobotwire.kinematics.coordinates import places_of
 from cobotwire.protocol.fields import Field
 from cobotwire.protocol.roles import ANGLES, as_reached_query
 from cobotwire.protocol.table import Command
-from cobotwire.simulator.coordinates import places_of
 from cobotwire.simulator.replies import Unanswerable
 from cobotwire.simulator.state import ArmState
 

@@ -5,11 +5,12 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
+from cobotwire.kinematics import Geometry
 from cobotwire.protocol.addresses import find_address, lacks_joints
+from cobotwire.protocol.limits import joint_limits
 from cobotwire.protocol.table import Address, Command, Table
 from cobotwire.simulator.effects import begin
-from cobotwire.simulator.kinematics import Geometry
-from cobotwire.simulator.start import coordinates, joint_limits, steps
+from cobotwire.simulator.start import coordinates, steps
 from cobotwire.simulator.state import ArmState
 
 

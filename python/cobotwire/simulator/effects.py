@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any, NamedTuple
 
+from cobotwire.kinematics import Effort
 from cobotwire.protocol.effects import (
     Cases,
     Computes,
@@ -31,7 +32,6 @@ from cobotwire.protocol.effects import (
 from cobotwire.protocol.fields import Field, named_fields
 from cobotwire.protocol.table import Command, Table
 from cobotwire.simulator.built_in import READERS, WRITERS, Reported, after_writing
-from cobotwire.simulator.kinematics import Effort
 from cobotwire.simulator.moves import move
 from cobotwire.simulator.replies import Unanswerable
 from cobotwire.simulator.state import ArmState

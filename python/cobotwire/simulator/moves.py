@@ -6,13 +6,13 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
+from cobotwire.kinematics import Pose
+from cobotwire.kinematics.coordinates import places_of, pose_with
+from cobotwire.kinematics.pose import turned_about
 from cobotwire.protocol.effects import Moves
 from cobotwire.protocol.fields import Field, named_fields
 from cobotwire.protocol.table import Command
 from cobotwire.simulator.built_in import unit_of
-from cobotwire.simulator.coordinates import places_of, pose_with
-from cobotwire.simulator.kinematics import Pose
-from cobotwire.simulator.kinematics.pose import turned_about
 from cobotwire.simulator.replies import Unanswerable
 from cobotwire.simulator.state import ArmState
 from cobotwire.simulator.targets import (

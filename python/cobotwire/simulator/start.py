@@ -2,31 +2,9 @@
 
 from __future__ import annotations
 
-from cobotwire.protocol.roles import row_index
+from cobotwire.kinematics.coordinates import ALL_SIX, places_of
+from cobotwire.kinematics.ticks import Steps
 from cobotwire.protocol.table import Number, Table
-from cobotwire.simulator.coordinates import ALL_SIX, places_of
-from cobotwire.simulator.kinematics.ticks import Steps
-
-Limits = list[tuple[float, float]]
-
-
-def joint_limits(table: Table) -> Limits:
-    """Return the limits of each joint: the ranges of targets, or else those that are stated.
-
-    A range that holds every number of the wire is no limit. Empty: the edition states no limit.
-    """
-    return _ranges(table) or list(table.robot.joint_limits)
-
-
-def _ranges(table: Table) -> Limits:
-    command = table.find_role("joint targets")
-    if command is None:
-        return []
-    variant = command.request[0]
-    numbers = variant.fields[row_index(variant)].cases[0].numbers
-    if any(number.raw_range == (number.minimum, number.maximum) for number in numbers):
-        return []
-    return [(n.physical(n.minimum), n.physical(n.maximum)) for n in numbers]
 
 
 def coordinates(table: Table) -> tuple[int, ...]:

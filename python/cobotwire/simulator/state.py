@@ -6,6 +6,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
+from cobotwire.kinematics import Geometry, Pose, flange
+from cobotwire.kinematics.coordinates import ALL_SIX, pose_with
+from cobotwire.kinematics.ticks import Steps, reported_angles, reported_coords
 from cobotwire.protocol.messages import Event
 from cobotwire.protocol.robot import (
     UNSTATED,
@@ -16,9 +19,6 @@ from cobotwire.protocol.robot import (
     Robot,
     Servos,
 )
-from cobotwire.simulator.coordinates import ALL_SIX, pose_with
-from cobotwire.simulator.kinematics import Geometry, Pose, flange
-from cobotwire.simulator.kinematics.ticks import Steps, reported_angles, reported_coords
 from cobotwire.simulator.motion import Axes
 from cobotwire.simulator.motion.hand import TimedPoint
 

@@ -10,9 +10,9 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable, Mapping
 
-from cobotwire.simulator.kinematics import Effort, Pose, nearest
-from cobotwire.simulator.kinematics.descent import STEPS_OF_A_REQUEST
-from cobotwire.simulator.kinematics.straight import straight_line
+from cobotwire.kinematics import Effort, Pose, nearest
+from cobotwire.kinematics.descent import STEPS_OF_A_REQUEST
+from cobotwire.kinematics.straight import straight_line
 from cobotwire.simulator.replies import Unanswerable
 from cobotwire.simulator.state import ArmState
 

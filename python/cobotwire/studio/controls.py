@@ -7,9 +7,9 @@ from typing import Any, NamedTuple
 
 from cobotwire.protocol.effects import Effect, Moves, Sets, each_case, effect_of
 from cobotwire.protocol.fields import named_fields
+from cobotwire.protocol.limits import joint_limits
 from cobotwire.protocol.table import Command, Table
 from cobotwire.simulator.moves import FORWARD
-from cobotwire.simulator.start import joint_limits
 from cobotwire.studio.forms import elements
 
 # The direction that is not forward.

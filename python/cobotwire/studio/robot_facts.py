@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import Any
 
+from cobotwire.kinematics import geometry_of
+from cobotwire.protocol.limits import joint_limits
 from cobotwire.protocol.table import Role, Table
-from cobotwire.simulator.kinematics import geometry_of
-from cobotwire.simulator.start import joint_limits
 
 Facts = dict[str, Any]
 

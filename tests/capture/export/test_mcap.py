@@ -20,8 +20,8 @@ from cobotwire.capture.export.formats.mcap_file import open_sink
 from cobotwire.capture.export.tables import TIME
 from cobotwire.editions import load
 from cobotwire.inspect.exporting import InstalledEditions
+from cobotwire.kinematics import flange, geometry_of
 from cobotwire.protocol.errors import UsageError
-from cobotwire.simulator.kinematics import flange, geometry_of
 
 
 class Written(NamedTuple):

@@ -16,11 +16,11 @@ import pytest
 from cobotwire.conformance import Result, Verdict
 from cobotwire.editions import load, names
 from cobotwire.editions.mycobot280.messages import SolveInvKinematics, SolveInvKinematicsReply
+from cobotwire.kinematics import Pose, flange, geometry_of, nearest
+from cobotwire.kinematics.closed_form import solutions
 from cobotwire.protocol.table import Table
 from cobotwire.simulator import SimulatedArm
 from cobotwire.simulator.behaviour import Behaviour
-from cobotwire.simulator.kinematics import Pose, flange, geometry_of, nearest
-from cobotwire.simulator.kinematics.closed_form import solutions
 from conformance.device.testing import permissions, prepared
 
 Row = tuple[float, ...]

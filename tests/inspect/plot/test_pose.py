@@ -18,8 +18,8 @@ from cobotwire.cli.app import app
 from cobotwire.editions.mycobot280 import TABLE, MyCobot280
 from cobotwire.inspect.plot import draw_pose
 from cobotwire.inspect.plot.pose import points
+from cobotwire.kinematics import coords_of, geometry_of
 from cobotwire.protocol.robot import Robot
-from cobotwire.simulator.kinematics import coords_of, geometry_of
 from command_line import printed, started
 
 # The lengths of the arm's parts in millimetres, from kinematics.md.

@@ -5,11 +5,11 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
+from cobotwire.kinematics import Effort, Geometry, flange, geometry_of
+from cobotwire.kinematics.descent import descend
+from cobotwire.kinematics.inverse import REFINING_RADIAN
+from cobotwire.kinematics.nearness import misses
 from cobotwire.protocol.table import Table
-from cobotwire.simulator.kinematics import Effort, Geometry, flange, geometry_of
-from cobotwire.simulator.kinematics.descent import descend
-from cobotwire.simulator.kinematics.inverse import REFINING_RADIAN
-from cobotwire.simulator.kinematics.nearness import misses
 from cobotwire.simulator.start import steps
 
 # In how many parts the way from one row of angles to the other is gone, and how many steps may

@@ -30,8 +30,8 @@ from cobotwire.inspect.cross_checks import CrossChecks, Mistake
 from cobotwire.inspect.identification import other_edition
 from cobotwire.inspect.readings import Key, Row, Source, sources, target_of
 from cobotwire.protocol.effects import Reports, effect_of
+from cobotwire.protocol.limits import joint_limits
 from cobotwire.protocol.table import Command, Table
-from cobotwire.simulator.start import joint_limits
 from cobotwire.transport.tapped import borrowed
 
 QUERIES = (queries.QUERIES, at_rest.REACHED_AT_REST, agreement.CALCULATION)

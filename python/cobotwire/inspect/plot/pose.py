@@ -11,10 +11,10 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from cobotwire.inspect.plot.charts import COLOURS, SETTINGS, save
+from cobotwire.kinematics import geometry_of
+from cobotwire.kinematics.forward import frames
 from cobotwire.protocol.errors import UsageError
 from cobotwire.protocol.table import Table
-from cobotwire.simulator.kinematics import geometry_of
-from cobotwire.simulator.kinematics.forward import frames
 
 Point = tuple[float, float, float]
 

@@ -1,4 +1,4 @@
-// Compute where the links of the arm meet, as the server's `simulator/kinematics` does.
+// Compute where the links of the arm meet, as the server's `kinematics` does.
 
 const radians = (degrees) => (degrees * Math.PI) / 180;
 const combine = (one, by, other, times) => one.map((part, axis) => part * by + other[axis] * times);

@@ -12,11 +12,11 @@ from cobotwire.conformance.device.selection import reported, reporters
 from cobotwire.conformance.mistakes import Pair, likely_mistake
 from cobotwire.conformance.suite import Group, TestCase
 from cobotwire.inspect.readings import LINKS_APART, LINKS_TURNED
+from cobotwire.kinematics.forward import coords_of
+from cobotwire.kinematics.geometry import Geometry, geometry_of
+from cobotwire.kinematics.pose import Pose
 from cobotwire.protocol.roles import ANGLES, COORDS, KINDS, as_reached_query
 from cobotwire.protocol.table import Command, Table
-from cobotwire.simulator.kinematics.forward import coords_of
-from cobotwire.simulator.kinematics.geometry import Geometry, geometry_of
-from cobotwire.simulator.kinematics.pose import Pose
 
 GEOMETRY = TestCase(
     "geometry", "The coordinates are those of the angles, by the links that the edition states."

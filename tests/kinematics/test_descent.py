@@ -10,12 +10,12 @@ import pytest
 from scipy.optimize import least_squares
 
 from cobotwire.editions import load, names
-from cobotwire.simulator.kinematics import Effort, Geometry, Pose, flange, geometry_of
-from cobotwire.simulator.kinematics.descent import descend
-from cobotwire.simulator.kinematics.inverse import REFINING_RADIAN
-from cobotwire.simulator.kinematics.nearness import DEGREES as NEAR_DEGREES
-from cobotwire.simulator.kinematics.nearness import MILLIMETRES as NEAR_MILLIMETRES
-from cobotwire.simulator.kinematics.nearness import misses
+from cobotwire.kinematics import Effort, Geometry, Pose, flange, geometry_of
+from cobotwire.kinematics.descent import descend
+from cobotwire.kinematics.inverse import REFINING_RADIAN
+from cobotwire.kinematics.nearness import DEGREES as NEAR_DEGREES
+from cobotwire.kinematics.nearness import MILLIMETRES as NEAR_MILLIMETRES
+from cobotwire.kinematics.nearness import misses
 from kinematic_samples import LIMITS, MYCOBOT_280
 
 GEOMETRIES = {

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from cobotwire.simulator.kinematics.forward import flange
-from cobotwire.simulator.kinematics.geometry import Angles, Geometry
-from cobotwire.simulator.kinematics.pose import Pose
+from cobotwire.kinematics.forward import flange
+from cobotwire.kinematics.geometry import Angles, Geometry
+from cobotwire.kinematics.pose import Pose
 
 Limits = Sequence[tuple[float, float]]
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 
-from cobotwire.simulator.kinematics.descent import Effort, clamped, descend
-from cobotwire.simulator.kinematics.geometry import Angles, Geometry
-from cobotwire.simulator.kinematics.nearness import (
+from cobotwire.kinematics.descent import Effort, clamped, descend
+from cobotwire.kinematics.geometry import Angles, Geometry
+from cobotwire.kinematics.nearness import (
     DEGREES,
     EXACT_DEGREES,
     EXACT_MILLIMETRES,
@@ -16,7 +16,7 @@ from cobotwire.simulator.kinematics.nearness import (
     misses,
     way_between,
 )
-from cobotwire.simulator.kinematics.pose import Pose
+from cobotwire.kinematics.pose import Pose
 
 # A turn by one degree weighs as much as 5 mm.
 SEARCH_RADIAN = math.degrees(1) * 5

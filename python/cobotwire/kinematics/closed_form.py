@@ -11,8 +11,8 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Iterator, Sequence
 
-from cobotwire.simulator.kinematics.geometry import Angles, Geometry
-from cobotwire.simulator.kinematics.pose import Pose, Vector
+from cobotwire.kinematics.geometry import Angles, Geometry
+from cobotwire.kinematics.pose import Pose, Vector
 
 # Alpha of each link, in degrees, of the three arms. Turning the fourth frame half about its x axis
 # makes the 320 a 280: the fifth joint then turns the other way, and its offset changes its sign.

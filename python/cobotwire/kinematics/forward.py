@@ -8,8 +8,8 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from cobotwire.simulator.kinematics.geometry import Geometry
-from cobotwire.simulator.kinematics.pose import Pose
+from cobotwire.kinematics.geometry import Geometry
+from cobotwire.kinematics.pose import Pose
 
 
 def flange(geometry: Geometry, angles: Sequence[float]) -> Pose:

@@ -10,10 +10,10 @@ import math
 from collections.abc import Sequence
 from operator import mul
 
-from cobotwire.simulator.kinematics.forward import frames
-from cobotwire.simulator.kinematics.geometry import Angles, Geometry
-from cobotwire.simulator.kinematics.nearness import Limits
-from cobotwire.simulator.kinematics.pose import Pose, Vector, cross
+from cobotwire.kinematics.forward import frames
+from cobotwire.kinematics.geometry import Angles, Geometry
+from cobotwire.kinematics.nearness import Limits
+from cobotwire.kinematics.pose import Pose, Vector, cross
 
 # How many steps are taken at most: of one descent, and of all descents for one request. A step
 # takes about 0.1 ms, and a reply must not wait for a search.

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
+from cobotwire.kinematics import Pose
 from cobotwire.protocol.table import Number
-from cobotwire.simulator.kinematics import Pose
 
 # Where a coordinate stands among x, y, z, rx, ry and rz, by its name in an edition.
 PLACES = {"x": 0, "y": 1, "z": 2, "rx": 3, "ry": 4, "rz": 5, "theta": 5}

@@ -12,8 +12,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from cobotwire.simulator.kinematics import Pose, coords_of, flange, nearest
-from cobotwire.simulator.kinematics.straight import straight_line
+from cobotwire.kinematics import Pose, coords_of, flange, nearest
+from cobotwire.kinematics.straight import straight_line
 from kinematic_samples import (
     ENCODERS,
     LIMITS,

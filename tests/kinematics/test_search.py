@@ -10,8 +10,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from cobotwire.simulator.kinematics import Effort, Geometry, Link, Pose, flange, nearest
-from cobotwire.simulator.kinematics import search as searches
+from cobotwire.kinematics import Effort, Geometry, Link, Pose, flange, nearest
+from cobotwire.kinematics import search as searches
 from kinematic_samples import LIMITS, MYCOBOT_280, random_angles, within_limits
 
 Row = tuple[float, float, float, float]

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
-from cobotwire.simulator.kinematics.pose import Pose, Vector
+from cobotwire.kinematics.pose import Pose, Vector
 
 Quaternion = tuple[float, float, float, float]
 # Below this sine of half the turn, there is no axis to turn about.

@@ -11,10 +11,10 @@ import math
 from collections.abc import Sequence
 from itertools import islice
 
-from cobotwire.simulator.kinematics.closed_form import ROUNDING, is_solved, solutions
-from cobotwire.simulator.kinematics.descent import Effort, descend
-from cobotwire.simulator.kinematics.geometry import Angles, Geometry
-from cobotwire.simulator.kinematics.nearness import (
+from cobotwire.kinematics.closed_form import ROUNDING, is_solved, solutions
+from cobotwire.kinematics.descent import Effort, descend
+from cobotwire.kinematics.geometry import Angles, Geometry
+from cobotwire.kinematics.nearness import (
     DEGREES,
     EXACT_DEGREES,
     EXACT_MILLIMETRES,
@@ -25,8 +25,8 @@ from cobotwire.simulator.kinematics.nearness import (
     way_between,
     within,
 )
-from cobotwire.simulator.kinematics.pose import Pose
-from cobotwire.simulator.kinematics.search import search
+from cobotwire.kinematics.pose import Pose
+from cobotwire.kinematics.search import search
 
 # Angles that miss the target by less than this may be refined into a solution.
 NEAR_MILLIMETRES, NEAR_DEGREES = 10.0, 3.0
