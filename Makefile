@@ -129,7 +129,6 @@ bench: .venv/.tools .venv/.native ## compare speeds with their limits; count los
 	$(BIN)/python bench/simulated_time.py
 	$(BIN)/python bench/kinematics.py
 	$(BIN)/python bench/resync.py
-	$(BIN)/python bench/lock.py
 	$(BIN)/python bench/captures_decode.py
 	$(BIN)/python bench/speed.py
 	$(BIN)/python bench/bulk_floor.py
@@ -140,7 +139,6 @@ bench: .venv/.tools .venv/.native ## compare speeds with their limits; count los
 	$(BIN)/python bench/fleet.py
 	$(BIN)/python bench/pipelining.py
 	$(BIN)/python bench/pymycobot_session.py
-	$(BIN)/python bench/stepped_client.py
 
 bench-archive: .venv/.tools .venv/.native ## compare one and two workers on a raw file of 2 GB; takes minutes
 	$(BIN)/python bench/archive_workers.py
