@@ -73,7 +73,8 @@ PASSAGES = [
                 and loops have a ``timeout`` of their own; each of their requests has this deadline.
                 Opening the port is not limited.
             retry: how often queries are sent within their ``timeout``; default: up to three times.
-            limits: where the arm may be sent, narrower or wider than the edition says.
+            limits: where the arm may be sent, and how fast, narrower or wider than the edition
+                says.
             codec: ``native`` or ``reference``; default: the native one, where it is built.
             trace: the first traffic listener; see :meth:`add_traffic_listener`.
             record: a file that does not exist yet, for all traffic of this client as pcapng;

@@ -18,9 +18,11 @@ from cobotwire.editions.clients import EDITIONS
 # Type checkers read ``__init__.pyi``.
 _PLACES = {
     **{name: f"editions.{edition}" for name, edition in EDITIONS.items()},
+    "AsyncDeadMan": "client.aio_dead_man",
     "AsyncTwoArms": "client.aio_two_arms",
     "CaptureError": "protocol.errors",
     "CobotwireError": "protocol.errors",
+    "DeadMan": "client.dead_man",
     "EditionUnknown": "protocol.errors",
     "Joint": "protocol.joints",
     "Limits": "protocol.limits",

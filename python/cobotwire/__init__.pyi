@@ -1,6 +1,8 @@
 """The names of the package for type checkers and editors; ``__init__.py`` imports them late."""
 
+from cobotwire.client.aio_dead_man import AsyncDeadMan as AsyncDeadMan
 from cobotwire.client.aio_two_arms import AsyncTwoArms as AsyncTwoArms
+from cobotwire.client.dead_man import DeadMan as DeadMan
 from cobotwire.client.two_arms import TwoArms as TwoArms
 from cobotwire.codec import chosen
 from cobotwire.editions.clients import *  # noqa: F403  (the names of its __all__)

@@ -3,19 +3,27 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from typing import Any
 
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from cobotwire import Limits, UsageError
+from both_ways import openers
+from cobotwire import Limits, UsageError, editions
 from cobotwire import codec as codecs
+from cobotwire.client.opening import settings as client_settings
+from cobotwire.editions.mercury_a1 import MercuryA1
 from cobotwire.editions.mycobot import TABLE as DOCUMENT
 from cobotwire.editions.mycobot import MyCobot
-from cobotwire.editions.mycobot280 import TABLE, MyCobot280
+from cobotwire.editions.mycobot280 import TABLE, AsyncMyCobot280, MyCobot280
+from cobotwire.kinematics import coords_of, geometry_of
+from cobotwire.protocol.effects import Moves, effect_of
 from cobotwire.protocol.limits import limited
+from cobotwire.protocol.roles import moves_arm
 from recording_transport import RecordingTransport
+from strategies import codec_of, legal_values, variants_of
 
 REST: list[Any] = [None] * 5
 NAMES: list[codecs.CodecName] = ["reference", "native"]
@@ -129,3 +137,119 @@ def test_encoded_target_is_within_the_limits(
         return
     sent = codec.decode("request", frame).fields["angles"][joint]
     assert lowest <= sent <= lowest + width
+
+
+BOX: list[Any] = [(-300, 300), (-300, 300), (50, 500)]
+EVERY = {name: editions.load(name).TABLE for name in editions.names()}
+SPEED = st.none() | st.floats(1, 100)
+SIDE = st.none() | st.tuples(st.floats(-600, 0), st.floats(0, 600))
+
+
+@pytest.mark.parametrize("way", ["blocking", "asyncio"])
+def test_speed_and_workspace_are_checked_before_a_byte_is_sent(way: str) -> None:
+    transport = RecordingTransport()
+    limits = Limits(speed=30, workspace=BOX)
+    with openers(MyCobot280, AsyncMyCobot280)[way](transport, limits=limits) as arm:
+        refused: list[tuple[Callable[[], Any], str]] = [
+            (lambda: arm.send_angles([0] * 6, 31), r"speed is 31; allowed: .* 1\.\.30 percent"),
+            (lambda: arm.set_gripper_value(50, 31), r"speed is 31"),
+            (lambda: arm.send_angles([0, -130, 0, 0, 0, 0], 30), r"allows z 50\.\.500 mm"),
+            (lambda: arm.send_radians([0, -2.27, 0, 0, 0, 0], 30), r"move the end to z -?\d+"),
+            (lambda: arm.move_angles([0, -130, 0, 0, 0, 0], 30), r"z 50\.\.500"),
+            (lambda: arm.send_coord(3, 49.9, 30), r"coord is 49\.9; allowed: a number 50\.\."),
+            (lambda: arm.send_coords([0, 0, 49, 0, 0, 0], 30, 0), r"coords\.z is 49; allowed: "),
+            (lambda: arm.send_angle(1, 0, 30), r"send_angle\(\) is refused: limits\.workspace"),
+            (lambda: arm.jog_coord(1, 1, 30), r"where the end would go is not known"),
+            (lambda: arm.set_tool_reference([0] * 6), r"changes what coordinates mean"),
+            (lambda: arm.move_round(), r"refused"),
+        ]
+        for call, error in refused:
+            with pytest.raises(UsageError, match=error):
+                call()
+        assert transport.written == b""
+        arm.send_angles([0] * 6, 30)
+        arm.send_coord(3, 50, 30)
+        arm.set_gripper_value(50, 30)
+        arm.resume()
+        arm.stop()
+    assert transport.written.endswith(bytes.fromhex("FE FE 02 29 FA"))
+    assert transport.written.count(b"\xfe\xfe") == 5
+
+
+@pytest.mark.parametrize(
+    ("limits", "argument"),
+    [
+        (Limits(speed=0.9), "limits.speed"),
+        (Limits(speed=101), "limits.speed"),
+        (Limits(speed=True), "limits.speed"),
+        (Limits(speed=math.nan), "limits.speed"),
+        (Limits(workspace=BOX[:2]), "len(limits.workspace)"),
+        (Limits(workspace=[*BOX[:2], (5, 4)]), "limits.workspace[2]"),
+        (Limits(workspace=[*BOX[:2], (9000, 9001)]), "limits.workspace[2]"),
+    ],
+)
+def test_wrong_speed_or_workspace_is_named(limits: Limits, argument: str) -> None:
+    with pytest.raises(UsageError) as caught:
+        MyCobot280(RecordingTransport(), limits=limits)
+    assert caught.value.argument == argument
+
+
+def test_edition_without_geometry_refuses_targets_of_joints_in_a_workspace() -> None:
+    transport = RecordingTransport()
+    arm = MercuryA1(transport, limits=Limits(workspace=BOX))
+    with pytest.raises(UsageError, match="edition mercury_a1 states no geometry"):
+        arm.send_angles([0, 0, 0, -90, 0, 90, 0], 20)
+    assert transport.written == b""
+    arm.send_coords([100, 0, 100, 0, 0, 0], 20)
+    assert transport.written
+
+
+@given(st.sampled_from(sorted(EVERY)), SPEED, st.none() | st.tuples(SIDE, SIDE, SIDE), st.data())
+@settings(max_examples=150)
+def test_nothing_that_is_encoded_exceeds_a_speed_or_leaves_a_workspace(
+    name: str, speed: float | None, workspace: Any, data: st.DataObject
+) -> None:
+    table = EVERY[name]
+    limits = Limits(speed=speed, workspace=workspace)
+    if workspace is not None and table.find_role("coordinate targets") is None:
+        with pytest.raises(UsageError, match="no command with the role 'coordinate targets'"):
+            client_settings(table, None, None, "reference", limits)
+        return
+    sending = client_settings(table, None, None, "reference", limits)
+    moving = [
+        each
+        for each in variants_of(table)
+        if each.direction == "request" and each.command.safety == "motion"
+    ]
+    # Half of the draws, since they are few.
+    targets = [each for each in moving if each.command.role in ("joint targets", "joint target")]
+    often: bool = data.draw(st.booleans())
+    moving = targets if targets and often else moving
+    command, _, variant, number = moving[data.draw(st.integers(0, len(moving) - 1))]
+    values = data.draw(legal_values(variant))
+    try:
+        frame = sending.encoder(None).encode(command.name, values, None, number).frame
+    except UsageError:
+        assert command.role not in ("stop", "halt")
+        return
+    fields = codec_of(name, "reference").decode("request", frame, of=command.name).fields
+    if speed is not None and moves_arm(table, command):
+        assert fields["speed"] <= speed
+    if workspace is not None and moves_arm(table, command):
+        for side, place in _places(table, command, fields, workspace):
+            assert side is None or side[0] - 1e-9 <= place <= side[1] + 1e-9
+
+
+def _places(table: Any, command: Any, fields: Any, workspace: Any) -> Any:
+    """Yield each axis of the workspace to which a command sends the end, and where."""
+    row = next((value for value in fields.values() if isinstance(value, tuple)), ())
+    effect, geometry = effect_of(command), geometry_of(table)
+    if command.role == "joint targets":
+        assert geometry is not None, "without it the command is refused"
+        return zip(workspace, coords_of(geometry, row))
+    if command.role == "coordinate targets":
+        return zip(workspace, row)
+    assert isinstance(effect, Moves)
+    assert command.role == "coordinate target", f"{command.name} could go anywhere"
+    axis = fields[effect.about] - 1
+    return [(workspace[axis], fields["coord"])] if axis < 3 else []

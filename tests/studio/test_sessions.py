@@ -18,6 +18,8 @@ from cobotwire import editions
 from cobotwire.editions import mycobot280
 from cobotwire.editions.mycobot280 import Angles
 from cobotwire.editions.mycobot280 import messages as m
+from cobotwire.protocol.errors import UsageError
+from cobotwire.protocol.limits import Limits, limited, refusals
 from cobotwire.simulator import SimulatedArm, TcpServer
 from cobotwire.simulator.faults import find
 from cobotwire.studio.arm_line import UNANSWERED, ArmLine, PortOptions
@@ -27,9 +29,11 @@ from cobotwire.studio.entries import Entry
 from cobotwire.studio.explained import Explainer
 from cobotwire.studio.forms import forms
 from cobotwire.studio.history import KEPT_ENTRIES, History
+from cobotwire.studio.holding import Holding
 from cobotwire.studio.live import LiveSession
 from cobotwire.studio.robot_facts import robot_facts
 from cobotwire.studio.sending import Control, NotPermitted, Preparer
+from cobotwire.studio.serving import Options, staged
 from cobotwire.studio.viewers import QUEUED_ENTRIES, Viewer
 
 EDITIONS = editions.names()
@@ -78,10 +82,13 @@ def test_every_edition_has_facts_for_the_page(name: str) -> None:
     assert json.loads(json.dumps(facts)) == facts
 
 
+@pytest.mark.parametrize("limits", [Limits(), Limits(speed=20)], ids=["unlimited", "slow"])
 @pytest.mark.parametrize("name", EDITIONS)
-def test_what_a_control_sends_is_a_request_of_the_edition(name: str) -> None:
-    table = editions.load(name).TABLE
-    found, preparer = controls(table), Preparer(table)
+def test_what_a_control_sends_is_a_request_of_the_edition(name: str, limits: Limits) -> None:
+    edition = editions.load(name).TABLE
+    table = limited(edition, limits)
+    found = controls(table, refusals(edition, limits))
+    preparer = Preparer(edition, limits=limits)
     joints = robot_facts(table)["joints"]
     for control in ("joint", "coordinate", "jogJoint", "jogCoordinate", "gripper"):
         use = found[control]
@@ -97,6 +104,48 @@ def test_what_a_control_sends_is_a_request_of_the_edition(name: str) -> None:
             command = preparer.command(use["command"])
             preparer.encoded(command, preparer.arguments(command, given))
     assert (found["jogJoint"] is None) == (name in ("myarm_c650", "myarm_m750"))
+    assert not found["speeds"] or found["speeds"]["high"] == (limits.speed or 100)
+
+
+MOVE = {"angles": "0,0,0,0,0,0", "speed": "30"}
+
+
+def test_page_offers_what_a_workspace_allows_and_the_server_refuses_the_rest() -> None:
+    limits = Limits(speed=30, workspace=[None, None, (100, 450)])
+    with staged(Options(None, "mycobot280", limits=limits, silence=0.2)) as stage:
+        viewer = Viewer()
+        stage.open(viewer)
+        stage.set_control(viewer.page, True)
+        stage.set_motion(viewer.page, True)
+        offered = stage.hello(viewer)["controls"]
+        assert offered["joint"]["command"] == "send_angles", "a single joint is refused"
+        assert offered["jogJoint"] is offered["jogCoordinate"] is None
+        assert offered["speeds"]["high"] == 30
+        assert offered["coordinate"]["elements"][2]["low"] == 100
+
+        def send(command: str, **given: str) -> None:
+            asyncio.run(stage.send(viewer.page, command, given, force=True))
+
+        async def hold() -> list[str]:
+            refused: list[str] = []
+            holding = Holding(stage, viewer.page, refused.append)
+            holding.hold("send_angles", MOVE)
+            await asyncio.sleep(0.5)
+            await holding.end()
+            return refused
+
+        send("send_angles", **MOVE)
+        for command, given, error in (
+            ("send_angles", MOVE | {"speed": "31"}, "speed is 31"),
+            ("send_angles", MOVE | {"angles": "0,130,0,0,0,0"}, r"allows z 100\.\.450 mm"),
+            ("jog_angle", {"joint": "1", "direction": "1", "speed": "9"}, "is refused"),
+        ):
+            with pytest.raises(UsageError, match=error):
+                send(command, **given)
+        assert "did not say that the button is held" in asyncio.run(hold())[0]
+        assert isinstance(stage.session, LiveSession)
+        sent = [frame[3] for frame in _sent(stage.session.line)]
+        assert [each for each in sent if each in (0x22, 0x29, 0x30)] == [0x22, 0x22, 0x29]
 
 
 def _targets(*steps: tuple[str, Any]) -> list[Any]:

@@ -9,6 +9,7 @@ import click
 from cobotwire.cli.shared.arm_options import address_option, arm_options, parse_address
 from cobotwire.cli.shared.completers import complete_ports
 from cobotwire.cli.shared.edition_option import uses_edition
+from cobotwire.cli.shared.motion_options import MotionOptions, motion_options
 from cobotwire.cli.shared.output import print_line, report_written
 from cobotwire.studio.extras import check_extra
 
@@ -28,7 +29,7 @@ from cobotwire.studio.extras import check_extra
     default=0,
     help="The TCP port of the page [default: a free one].",
 )
-@click.option("--allow-motion", is_flag=True, help="Let the page move a real arm and change it.")
+@motion_options(silence=0.5)
 @click.option("--no-browser", is_flag=True, help="Print the address, but open no browser.")
 @uses_edition
 def studio(
@@ -40,7 +41,7 @@ def studio(
     rate: float,
     host: str,
     port: int,
-    allow_motion: bool,
+    motion: MotionOptions,
     no_browser: bool,
 ) -> None:
     """Show the arm at URL, or a RECORDING, on a page in the browser, until Ctrl-C.
@@ -80,8 +81,10 @@ def studio(
         rate,
         host,
         port,
-        allow_motion,
+        motion.allowed,
         not no_browser,
+        motion.limits,
+        motion.silence,
     )
     with ExitStack() as at_end:
         serve(options, announce)

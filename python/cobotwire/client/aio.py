@@ -30,7 +30,7 @@ from cobotwire.protocol.limits import Limits
 from cobotwire.protocol.messages import Request, Result
 from cobotwire.protocol.table import Table
 from cobotwire.session import Exchange, RetryPolicy
-from cobotwire.session.request import RequestEncoder, check_acknowledged
+from cobotwire.session.request import check_acknowledged
 from cobotwire.transport import Transport
 
 
@@ -68,7 +68,7 @@ class AsyncClient:
         self._stopped_for: BaseException | None = None
         self.codec = self._settings.codec.name
         self._address = find_address(self.table, address)
-        self._encoder = RequestEncoder(self._settings.codec, self._address)
+        self._encoder = self._settings.encoder(self._address)
         # This client for other addresses, by the address byte.
         self._views: dict[int, Self] = {}
         codec_used = self._settings.codec
@@ -142,7 +142,7 @@ class AsyncClient:
         if found is None:
             found = copy(self)
             found._address = wanted
-            found._encoder = RequestEncoder(self._settings.codec, wanted)
+            found._encoder = self._settings.encoder(wanted)
             found = self._views.setdefault(wanted.value, found)
         return found
 
@@ -286,6 +286,18 @@ class AsyncClient:
         self._stopped_for = error
         return sent
 
+    async def _stop_all(self) -> None:
+        """Send ``stop`` to each address that was used, whatever ``on_error`` says.
+
+        Raises:
+            UsageError: the edition has no stop.
+            LinkError: the transport is gone.
+        """
+        stop = self.table.in_role("stop").request_type()
+        clients: list[AsyncClient] = [self, *self._views.values()]
+        for client in clients:
+            await client._send(stop, deadline=inf)
+
     async def _stop_again(self, stop: Request[None]) -> bool:
         """Send ``stop`` after the first attempt was interrupted; return whether it was sent."""
         try:
@@ -300,7 +312,7 @@ class AsyncClient:
         ``longest`` limits the usual deadline, in seconds.
         """
         encoded = self._encoder.encode_request(request)
-        _, wait, retry = self._settings
+        wait, retry = self._settings.timeout, self._settings.retry
         if longest is not None:
             wait = self._settings.at_most(longest, encoded.command)
         done = await self._connection.request(encoded, retry, wait)

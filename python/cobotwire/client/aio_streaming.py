@@ -37,7 +37,7 @@ class AsyncStream:
         """
         table = settings.codec.table
         check_requests(requests, table)
-        _, wait, retry = settings
+        wait, retry = settings.timeout, settings.retry
         self._polls = [
             Poll(request, encoder.encode_request(request), retry, wait) for request in requests
         ]

@@ -31,7 +31,7 @@ from cobotwire.protocol.limits import Limits
 from cobotwire.protocol.messages import Request, Result
 from cobotwire.protocol.table import Table
 from cobotwire.session import Exchange, RetryPolicy
-from cobotwire.session.request import RequestEncoder, check_acknowledged
+from cobotwire.session.request import check_acknowledged
 from cobotwire.transport import Transport
 
 
@@ -79,7 +79,8 @@ class Client:
                 and loops have a ``timeout`` of their own; each of their requests has this deadline.
                 Opening the port is not limited.
             retry: how often queries are sent within their ``timeout``; default: up to three times.
-            limits: where the arm may be sent, narrower or wider than the edition says.
+            limits: where the arm may be sent, and how fast, narrower or wider than the edition
+                says.
             codec: ``native`` or ``reference``; default: the native one, where it is built.
             trace: the first traffic listener; see :meth:`add_traffic_listener`.
             record: a file that does not exist yet, for all traffic of this client as pcapng;
@@ -101,7 +102,7 @@ class Client:
         self._stopped_for: BaseException | None = None
         self.codec = self._settings.codec.name
         self._address = find_address(self.table, address)
-        self._encoder = RequestEncoder(self._settings.codec, self._address)
+        self._encoder = self._settings.encoder(self._address)
         # This client for other addresses, by the address byte.
         self._views: dict[int, Self] = {}
         codec_used = self._settings.codec
@@ -163,7 +164,7 @@ class Client:
         if found is None:
             found = copy(self)
             found._address = wanted
-            found._encoder = RequestEncoder(self._settings.codec, wanted)
+            found._encoder = self._settings.encoder(wanted)
             found = self._views.setdefault(wanted.value, found)
         return found
 
@@ -309,6 +310,18 @@ class Client:
         self._stopped_for = error
         return sent
 
+    def _stop_all(self) -> None:
+        """Send ``stop`` to each address that was used, whatever ``on_error`` says.
+
+        Raises:
+            UsageError: the edition has no stop.
+            LinkError: the transport is gone.
+        """
+        stop = self.table.in_role("stop").request_type()
+        clients: list[Client] = [self, *self._views.values()]
+        for client in clients:
+            client._send(stop, deadline=inf)
+
     def _stop_again(self, stop: Request[None]) -> bool:
         """Send ``stop`` after the first attempt was interrupted; return whether it was sent."""
         try:
@@ -323,7 +336,7 @@ class Client:
         ``longest`` limits the usual deadline, in seconds.
         """
         encoded = self._encoder.encode_request(request)
-        _, wait, retry = self._settings
+        wait, retry = self._settings.timeout, self._settings.retry
         if longest is not None:
             wait = self._settings.at_most(longest, encoded.command)
         done = self._connection.request(encoded, retry, wait)

@@ -40,7 +40,7 @@ class Connection:
         self._port = opener.open()
         self._transport = self._port.transport
         self.url = self._transport.url
-        self.now, self.sleep, _ = times_of(self._transport)
+        self.now, self.sleep, self.real = times_of(self._transport)
         self.firmware = ReportedFirmware()
         self.listeners = TrafficListeners(trace, self.url, self.now)
         self._exchange = exchange

@@ -12,8 +12,9 @@ from cobotwire.codec.interface import Codec
 from cobotwire.protocol.errors import UsageError
 from cobotwire.protocol.lazy import load_parts
 from cobotwire.protocol.limits import Limits, limited
-from cobotwire.protocol.table import Command, Table
+from cobotwire.protocol.table import Address, Command, Table
 from cobotwire.session import RetryPolicy
+from cobotwire.session.request import RequestEncoder
 from cobotwire.transport import Transport, open_transport
 from cobotwire.transport.tapped import tapped
 
@@ -39,6 +40,16 @@ class Settings(NamedTuple):
     codec: Codec
     timeout: float | None
     retry: RetryPolicy
+    limits: Limits = Limits()
+
+    def encoder(self, address: Address | None) -> RequestEncoder:
+        """Return what encodes the requests to an address, within the limits."""
+        if self.limits.speed is None and self.limits.workspace is None:
+            return RequestEncoder(self.codec, address)
+        # Few clients have such limits, and kinematics take long to import.
+        from cobotwire.client.limited import LimitedEncoder
+
+        return LimitedEncoder(self.codec, address, self.limits)
 
     def at_most(self, longest: float, command: Command) -> float:
         """Return the deadline of a command in seconds, but ``longest`` at most."""
@@ -71,16 +82,17 @@ def settings(
     check_seconds("timeout", timeout)
     if retry is not None and not isinstance(retry, RetryPolicy):
         raise UsageError("retry", retry, "a RetryPolicy")
-    if limits is not None:
-        if not isinstance(limits, Limits):
-            raise UsageError("limits", limits, "Limits")
+    limits = Limits() if limits is None else limits
+    if not isinstance(limits, Limits):
+        raise UsageError("limits", limits, "Limits")
+    if limits != Limits():
         table = limited(table, limits)
     # No call imports anything: Ctrl-C in an import could leave one of its locks held.
     package = table.commands[0].package if table.commands else ""
     if package:
         load_parts(f"{package}.messages")
     # Made again: _replace() of a policy checks nothing.
-    return Settings(codecs.load(table, codec), timeout, RetryPolicy(*(retry or ())))
+    return Settings(codecs.load(table, codec), timeout, RetryPolicy(*(retry or ())), limits)
 
 
 def check_seconds(argument: str, value: float | None) -> None:

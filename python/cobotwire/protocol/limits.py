@@ -8,33 +8,43 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from math import isfinite
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
+from cobotwire.protocol.effects import Stores, effect_of
 from cobotwire.protocol.errors import UsageError
-from cobotwire.protocol.roles import picked, row_index
+from cobotwire.protocol.roles import moves_arm, picked, row_index
 from cobotwire.protocol.table import Case, Command, Field, Number, Role, Table, Variant
 
 # No number on the wire is that large, and scaling it does not overflow.
 BEYOND = 1e100
 Range = tuple[float, float]
 Ranges = Sequence[Range | None]
+AXES = ("x", "y", "z")
 
 
 class Limits(NamedTuple):
     """The lowest and the highest target of each joint and coordinate.
 
-    None keeps the edition's limit of one part, or of all parts. Only targets are limited. Commands
-    that move the arm by a distance (``jog_increment``), or until it is stopped, are not limited.
+    None keeps the edition's limit of one part, or of all parts. ``joints`` and ``coords`` limit
+    targets alone: commands that move the arm by a distance (``jog_increment``), or until it is
+    stopped, stay as they are. ``speed`` and ``workspace`` hold for everything that moves the arm: a
+    command that could exceed them, whatever its arguments, is refused (:func:`refusals`). Nothing
+    limits ``stop``.
 
     Attributes:
         joints: a range in degrees for each joint, base first.
         coords: a range for each coordinate: x, y, z in millimetres, then rx, ry, rz in degrees.
         wider: whether ranges may exceed the edition's, up to what the wire can carry.
+        speed: the highest speed in percent.
+        workspace: ranges for x, y and z in millimetres: where the end may be sent, also by angles
+            of joints. The path to a target is not checked.
     """
 
     joints: Ranges | None = None
     coords: Ranges | None = None
     wider: bool = False
+    speed: float | None = None
+    workspace: Ranges | None = None
 
 
 def limited(table: Table, limits: Limits) -> Table:
@@ -44,18 +54,43 @@ def limited(table: Table, limits: Limits) -> Table:
         UsageError: a range is not a pair of numbers, or is wider than the edition's (with
             ``wider``: than the wire can carry), or the edition has no such targets.
     """
-    rules: dict[str, _Rule] = {}
-    if limits.joints is not None:
-        rule = _Rule("joints", limits.joints, table.in_role("joint targets"), limits.wider)
-        rules |= {"joint targets": rule, "joint target": rule}
-    if limits.coords is not None:
-        rule = _Rule("coords", limits.coords, table.in_role("coordinate targets"), limits.wider)
-        rules |= {"coordinate targets": rule, "coordinate target": rule}
-    commands = (
-        _command(command, rules[command.role]) if command.role in rules else command
-        for command in table.commands
-    )
-    return table._replace(commands=tuple(commands))
+    rules: list[tuple[tuple[Role, Role], _Rule]] = []
+    joints: tuple[Role, Role] = ("joint targets", "joint target")
+    coords: tuple[Role, Role] = ("coordinate targets", "coordinate target")
+    for what, ranges, targets in (
+        ("joints", limits.joints, joints),
+        ("coords", limits.coords, coords),
+    ):
+        if ranges is not None:
+            rules.append((targets, _Rule(what, ranges, _names(table, targets[0]), limits.wider)))
+    if limits.workspace is not None:
+        rules.append((coords, _Workspace(limits.workspace, _names(table, coords[0]))))
+    commands = table.commands
+    for roles, rule in rules:
+        commands = tuple(_command(each, rule) if each.role in roles else each for each in commands)
+    if limits.speed is not None:
+        cap = _checked_speed(limits.speed)
+        commands = tuple(_slower(command, cap) for command in commands)
+    return table._replace(commands=commands)
+
+
+def refusals(table: Table, limits: Limits) -> dict[str, str]:
+    """Return the commands that are not sent within ``limits``, each with the reason.
+
+    With a workspace these are the motions to a place that is not known before they are sent, and
+    the settings that change what coordinates mean; with a speed, motions that take no percentage.
+    """
+    found = {}
+    for command in table.commands:
+        why = ""
+        if limits.workspace is not None:
+            why = _leaves_workspace(table, command)
+        if limits.speed is not None and not why and moves_arm(table, command):
+            capped = all(any(map(_is_speed, variant.fields)) for variant in command.request)
+            why = "" if capped else "limits.speed is set, and it takes no speed in percent"
+        if why:
+            found[command.name] = f"{command.name}() is refused: {why}"
+    return found
 
 
 def joint_limits(table: Table) -> list[Range]:
@@ -77,20 +112,18 @@ def _ranges(table: Table) -> list[Range]:
     return [(n.physical(n.minimum), n.physical(n.maximum)) for n in numbers]
 
 
+def _names(table: Table, row: Role) -> list[str]:
+    """Return the names of the parts that one command moves together."""
+    variant = table.in_role(row).request[0]
+    return [number.name for number in variant.fields[row_index(variant)].cases[0].numbers]
+
+
 class _Rule:
     """The given ranges, and the names of the parts that they limit."""
 
-    def __init__(self, what: str, ranges: Ranges, row: Command, wider: bool) -> None:
-        self._what = what
-        self._wider = wider
-        numbers = row.request[0].fields[row_index(row.request[0])].cases[0].numbers
-        self.names = [number.name for number in numbers]
-        allowed = f"{len(self.names)} ranges"
-        if isinstance(ranges, str) or not isinstance(ranges, Sequence):
-            raise UsageError(f"limits.{what}", ranges, allowed)
-        if len(ranges) != len(self.names):
-            raise UsageError(f"len(limits.{what})", len(ranges), allowed)
-        self._ranges = [self._checked(part, given) for part, given in enumerate(ranges)]
+    def __init__(self, what: str, ranges: Ranges, names: list[str], wider: bool = False) -> None:
+        self._what, self._wider, self.names = what, wider, names
+        self._ranges = checked_ranges(what, ranges, len(names))
 
     def number(self, part: int, number: Number) -> Number:
         """Return a number of a target with the limits of its part."""
@@ -108,13 +141,103 @@ class _Rule:
             raise UsageError(f"limits.{self._what}[{part}]", given, allowed)
         return number._replace(minimum=lowest, maximum=highest)
 
-    def _checked(self, part: int, given: object) -> Range | None:
+
+class _Workspace(_Rule):
+    """The ranges of x, y and z; the edition's stay where they are narrower."""
+
+    def __init__(self, workspace: Ranges, names: list[str]) -> None:
+        box = dict(zip(AXES, checked_ranges("workspace", workspace, len(AXES))))
+        if not {*AXES} <= {*names}:
+            message = f"a workspace needs the coordinates x, y, z; this edition has {names}"
+            raise UsageError("limits.workspace", workspace, message=message)
+        super().__init__("workspace", [box.get(name) for name in names], names)
+
+    def number(self, part: int, number: Number) -> Number:
+        given = self._ranges[part]
         if given is None:
-            return None
-        pair = list(given) if isinstance(given, Sequence) and not isinstance(given, str) else []
-        if len(pair) == 2 and all(map(_is_number, pair)) and pair[0] <= pair[1]:
-            return pair[0], pair[1]
-        raise UsageError(f"limits.{self._what}[{part}]", given, "a pair (lowest, highest), or None")
+            return number
+        lowest, highest = _raw_range(number, given)
+        lowest, highest = max(lowest, number.minimum), min(highest, number.maximum)
+        if lowest > highest:
+            low, high = number.physical(number.minimum), number.physical(number.maximum)
+            allowed = f"a range of {self.names[part]} that meets {low:g}..{high:g} {number.units}"
+            raise UsageError(f"limits.workspace[{part}]", given, allowed)
+        return number._replace(minimum=lowest, maximum=highest)
+
+
+def checked_ranges(what: str, ranges: Ranges, count: int) -> list[Range | None]:
+    """Return ranges as pairs of numbers, or None for each that is not limited.
+
+    Raises:
+        UsageError: there are not ``count`` of them, or one is neither None nor a pair of numbers.
+    """
+    allowed = f"{count} ranges"
+    if isinstance(ranges, str) or not isinstance(ranges, Sequence):
+        raise UsageError(f"limits.{what}", ranges, allowed)
+    if len(ranges) != count:
+        raise UsageError(f"len(limits.{what})", len(ranges), allowed)
+    return [_checked(f"limits.{what}[{part}]", given) for part, given in enumerate(ranges)]
+
+
+def _checked(argument: str, given: object) -> Range | None:
+    if given is None:
+        return None
+    pair = list(given) if isinstance(given, Sequence) and not isinstance(given, str) else []
+    if len(pair) == 2 and all(map(_is_number, pair)) and pair[0] <= pair[1]:
+        return pair[0], pair[1]
+    raise UsageError(argument, given, "a pair (lowest, highest), or None")
+
+
+def _checked_speed(speed: float) -> float:
+    if _is_number(speed) and 1 <= speed <= 100:
+        return speed
+    raise UsageError("limits.speed", speed, "a number 1..100 percent")
+
+
+def _slower(command: Command, cap: float) -> Command:
+    """Return a command of which each speed in percent is at most ``cap``."""
+    variants = command.request
+    if not any(_is_speed(field) for variant in variants for field in variant.fields):
+        return command
+    return command._replace(
+        request=tuple(
+            variant._replace(
+                fields=tuple(_capped(f, cap) if _is_speed(f) else f for f in variant.fields)
+            )
+            for variant in variants
+        )
+    )
+
+
+def _capped(field: Field, cap: float) -> Field:
+    cases = []
+    for case in field.cases:
+        numbers = (n._replace(maximum=_raw_range(n, (0, cap))[1]) for n in case.numbers)
+        cases.append(Case(case.when, tuple(numbers)))
+    return field._replace(cases=tuple(cases))
+
+
+def _is_speed(field: Field) -> bool:
+    # How far a gripper opens is in percent too.
+    return field.name == "speed" and all(number.unit == "percent" for number in field.numbers)
+
+
+# The state that decides what coordinates mean: of the end or a tool, from the base or the world.
+_FRAMES = frozenset({"tool", "world", "reference_frame", "end_type"})
+
+
+def _leaves_workspace(table: Table, command: Command) -> str:
+    """Return why a command could leave a workspace whose ranges its targets keep; or nothing."""
+    effect = effect_of(command)
+    if isinstance(effect, Stores) and not _FRAMES.isdisjoint(effect.values.values()):
+        return "it changes what coordinates mean, and limits.workspace is set"
+    if not moves_arm(table, command) or command.role in ("coordinate targets", "coordinate target"):
+        return ""
+    if command.role != "joint targets":
+        return "limits.workspace is set, and where the end would go is not known before"
+    if table.robot.geometry is None:
+        return f"limits.workspace is set, and edition {table.edition} states no geometry"
+    return ""
 
 
 def _command(command: Command, rule: _Rule) -> Command:
@@ -168,5 +291,5 @@ def _raw_range(number: Number, given: Range) -> tuple[int, int]:
     return lowest + (number.physical(lowest) < low), highest - (number.physical(highest) > high)
 
 
-def _is_number(value: object) -> bool:
+def _is_number(value: Any) -> bool:
     return isinstance(value, int | float) and not isinstance(value, bool) and isfinite(value)

@@ -153,6 +153,11 @@ def starts_motion(table: Table, command: Command) -> bool:
     return back is None or table.command(back.query).role != "paused"
 
 
+def moves_arm(table: Table, command: Command) -> bool:
+    """Return whether a command may set joints in motion; one for the gripper does not."""
+    return starts_motion(table, command) and not is_of_gripper(table, command)
+
+
 def is_of_gripper(table: Table, command: Command) -> bool:
     """Return whether a command is for the gripper, which has its own servo."""
     gripper = table.find_role("gripper")

@@ -90,7 +90,7 @@ class _Api:
 
     def __init__(self, stage: Stage) -> None:
         self._stage = stage
-        self._forms = forms(stage.table)
+        self._forms = forms(stage.offered)
 
     async def table(self, request: Request) -> Response:
         return JSONResponse({"commands": self._forms})

@@ -11,6 +11,7 @@ from typing import Any, NamedTuple
 from cobotwire.editions import Edition
 from cobotwire.inspect.readiness import check_accepted, check_ready
 from cobotwire.protocol.errors import LinkError, ProtocolError, ReplyTimeout
+from cobotwire.protocol.limits import Limits
 from cobotwire.protocol.table import Command, Role
 from cobotwire.session import Traffic
 from cobotwire.studio.sending import NotPermitted
@@ -33,6 +34,7 @@ class PortOptions(NamedTuple):
     baudrate: int | None = None
     record: str | None = None
     address: int | str | None = None
+    limits: Limits | None = None
 
 
 class _Poll:
@@ -71,6 +73,7 @@ class ArmLine:
                 trace=self._note,
                 record=port.record,
                 address=port.address,
+                limits=port.limits,
                 on_error="leave",
             )
         except BaseException:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Container, Iterator, Mapping
 from typing import Any, NamedTuple
 
 from cobotwire.protocol.effects import Effect, Moves, Sets, each_case, effect_of
@@ -33,20 +33,25 @@ class ControlCommand(NamedTuple):
     elements: list[dict[str, Any]]
 
 
-def controls(table: Table) -> dict[str, Any]:
+def controls(table: Table, refused: Container[str] = ()) -> dict[str, Any]:
     """Return what each control of the page sends, as JSON values; None: the edition has none.
 
-    ``joint`` and ``coordinate`` move one of them to a target, ``joints`` all; ``jogJoint`` and
+    ``joint`` and ``coordinate`` move one of them to a target, ``joints`` all (so does ``joint``
+    without an argument ``at``); ``jogJoint`` and
     ``jogCoordinate`` move until stop. ``home`` is the pose with all joints at zero, if the limits
-    allow it.
+    allow it. Commands that are ``refused`` serve no control.
     """
     found = dict.fromkeys(
         ("joint", "joints", "coordinate", "jogJoint", "jogCoordinate", "gripper", "light", "power")
     )
     for command in table.commands:
+        if command.name in refused:
+            continue
         for name, arguments in _uses(command):
             if found[name] is None and _suffices(command, arguments):
                 found[name] = _control(command, arguments, table.joints)._asdict()
+    # Where no joint may be sent alone, the page sends all of them.
+    found["joint"] = found["joint"] or found["joints"]
     reachable = all(low <= 0 <= high for low, high in joint_limits(table))
     speeds = [each for each in (found["joint"], found["joints"]) if each]
     return {

@@ -7,11 +7,9 @@ import time
 from collections.abc import Callable, Coroutine
 from typing import Any
 
+from cobotwire.client.dead_man import Silence
 from cobotwire.protocol.errors import CobotwireError
 from cobotwire.studio.stage import Stage
-
-# A page says at least this often that it still holds. It sends ten times a second.
-LONGEST_SILENCE_SECONDS = 0.5
 
 
 class Holding:
@@ -21,7 +19,7 @@ class Holding:
         """``refuse`` gets the text of an error: the motion was not sent, or stop was not."""
         self._stage, self._page, self._refuse = stage, page, refuse
         self._tasks: set[asyncio.Task[None]] = set()
-        self._held, self._kept = False, 0.0
+        self._held, self._silence = False, Silence(stage.silence)
 
     def hold(self, command: object, arguments: object) -> None:
         """Send a motion; it is stopped when the page releases it or says nothing more."""
@@ -33,7 +31,7 @@ class Holding:
 
     def keep(self) -> None:
         """Note that the page still holds."""
-        self._kept = time.monotonic()
+        self._silence.alive(time.monotonic())
 
     def release(self) -> None:
         """Stop the arm, if the page holds a motion."""
@@ -54,7 +52,7 @@ class Holding:
 
     async def _watch(self) -> None:
         while self._held:
-            left = self._kept + LONGEST_SILENCE_SECONDS - time.monotonic()
+            left = self._silence.left(time.monotonic())
             if left <= 0:
                 self.release()
                 self._refuse("the arm was stopped: the page did not say that the button is held")

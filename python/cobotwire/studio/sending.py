@@ -5,13 +5,14 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from cobotwire import codec as codecs
+from cobotwire.client.opening import settings
 from cobotwire.inspect.call_arguments import parse
 from cobotwire.protocol.addresses import find_address
 from cobotwire.protocol.errors import CobotwireError, UsageError
+from cobotwire.protocol.limits import Limits
 from cobotwire.protocol.messages import Request
 from cobotwire.protocol.table import Command, Table
-from cobotwire.session.request import EncodedRequest, RequestEncoder
+from cobotwire.session.request import EncodedRequest
 
 
 class NotPermitted(CobotwireError):
@@ -90,11 +91,14 @@ class Control:
 
 
 class Preparer:
-    """Turns the fields of a form into a request."""
+    """Turns the fields of a form into a request within the limits of the arm's client."""
 
-    def __init__(self, table: Table, address: int | str | None = None) -> None:
+    def __init__(
+        self, table: Table, address: int | str | None = None, limits: Limits | None = None
+    ) -> None:
         self._table = table
-        self._encoder = RequestEncoder(codecs.load(table), find_address(table, address))
+        sending = settings(table, None, None, None, limits)
+        self._encoder = sending.encoder(find_address(table, address))
 
     def command(self, name: object) -> Command:
         """Return a command that can be sent.

@@ -20,6 +20,7 @@ from cobotwire import editions
 from cobotwire.capture import is_capture, read
 from cobotwire.editions import Edition
 from cobotwire.protocol.errors import CobotwireError, LinkError, UsageError
+from cobotwire.protocol.limits import Limits
 from cobotwire.studio.accepting import Server
 from cobotwire.studio.access import Access
 from cobotwire.studio.app import make_app
@@ -29,7 +30,7 @@ from cobotwire.studio.live import REMARKS, LiveSession
 from cobotwire.studio.recorded import RecordedSession
 from cobotwire.studio.sending import Control
 from cobotwire.studio.simulated_line import SimulatedLine
-from cobotwire.studio.stage import Stage
+from cobotwire.studio.stage import LONGEST_SILENCE_SECONDS, Stage
 
 FASTEST_POLL = 200.0
 # What pages send is small.
@@ -49,6 +50,8 @@ class Options(NamedTuple):
         host, port: where the server listens; port 0: any that is free.
         allow_motion: whether pages may send anything but queries.
         open_browser: whether to open the page.
+        limits: what the arm's client keeps within.
+        silence: seconds after which a motion that a page holds is stopped if the page is silent.
     """
 
     source: str | None
@@ -61,6 +64,8 @@ class Options(NamedTuple):
     port: int = 0
     allow_motion: bool = False
     open_browser: bool = True
+    limits: Limits | None = None
+    silence: float = LONGEST_SILENCE_SECONDS
 
 
 def serve(options: Options, announce: Callable[[Access], None]) -> None:
@@ -133,13 +138,21 @@ def staged(options: Options) -> Iterator[Stage]:
 
             simulated = stack.enter_context(SimulatedLine(edition.TABLE, remark))
             url = simulated.url
-        port = PortOptions(url, options.baudrate, options.record, options.address)
+        port = PortOptions(url, options.baudrate, options.record, options.address, options.limits)
         line = stack.enter_context(ArmLine(edition, port, options.rate))
         if options.allow_motion:
             stack.callback(_stop_at_end, line)
         # A simulated arm hurts nobody.
         control = Control(options.allow_motion or simulated is not None)
-        stage = Stage(edition, LiveSession(line, remarks), control, simulated, options.address)
+        stage = Stage(
+            edition,
+            LiveSession(line, remarks),
+            control,
+            simulated,
+            options.address,
+            options.limits,
+            options.silence,
+        )
         stack.callback(stage.close)
         yield stage
 

@@ -11,6 +11,7 @@ from cobotwire import codec as codecs
 from cobotwire.editions import Edition
 from cobotwire.protocol.errors import UsageError
 from cobotwire.protocol.json_values import as_json_value
+from cobotwire.protocol.limits import Limits, limited, refusals
 from cobotwire.studio.controls import controls
 from cobotwire.studio.describing import Describer
 from cobotwire.studio.explained import Explainer
@@ -21,6 +22,8 @@ from cobotwire.studio.sending import Control, NotPermitted, Preparer
 from cobotwire.studio.simulated_line import SimulatedLine, scenarios
 from cobotwire.studio.viewers import Viewer
 
+# A page says at least this often that it still holds a button. It sends ten times a second.
+LONGEST_SILENCE_SECONDS = 0.5
 # Requests of pages that wait for replies at a time.
 SENDERS = 4
 
@@ -35,10 +38,16 @@ class Stage:
         control: Control,
         simulated: SimulatedLine | None = None,
         address: int | str | None = None,
+        limits: Limits | None = None,
+        silence: float = LONGEST_SILENCE_SECONDS,
     ) -> None:
+        """``limits`` are those of the client; ``silence`` ends what a page holds, in seconds."""
         self.table, self.session, self.control = edition.TABLE, session, control
         self.explainer = Explainer(edition, codecs.load(self.table))
-        self.preparer = Preparer(self.table, address)
+        self.preparer = Preparer(self.table, address, limits)
+        self._limits, self.silence = Limits() if limits is None else limits, silence
+        # Frames of other programs are described by the table of the edition.
+        self.offered = limited(self.table, self._limits)
         self.simulated = simulated
         self._scenarios = scenarios(self.table) if simulated is not None else []
         self._senders = ThreadPoolExecutor(SENDERS, "cobotwire-send")
@@ -61,7 +70,7 @@ class Stage:
         hello = {
             "page": viewer.page,
             "robot": robot_facts(self.table),
-            "controls": controls(self.table),
+            "controls": controls(self.offered, refusals(self.table, self._limits)),
             "mode": "live" if live else "recording",
             "simulated": self.simulated is not None,
             "motionPermitted": self.control.motion_permitted,

@@ -39,9 +39,12 @@ export class Move {
     const [control, jogging] = [this.controls[target], this.controls[jog]];
     const range = control?.elements[at] ?? control?.elements[0];
     const [low, high] = limit ?? (range ? [range.low, range.high] : [-180, 180]);
-    const place = (used) => ({ [used.arguments.at]: String(used.places[at]) });
+    const place = (used) => (used.arguments.at ? { [used.arguments.at]: String(used.places[at]) } : {});
     const request = (value) => {
-      const given = { ...place(control), [control.arguments.to]: String(value), ...this.speed(control) };
+      const { joints, targetJoints } = this.state;
+      // Without a place it takes all joints.
+      const to = control.arguments.at ? value : (targetJoints ?? joints).with(at, value).join(",");
+      const given = { ...place(control), [control.arguments.to]: String(to), ...this.speed(control) };
       return () => this.source.send(control.command, given);
     };
     return new Axis(name, range?.unit || unit, low, high, {

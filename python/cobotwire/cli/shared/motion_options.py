@@ -1,0 +1,106 @@
+"""The options of every verb that lets others move an arm: pages, programs, machines."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import wraps
+from typing import Any, NamedTuple
+
+import click
+
+from cobotwire.protocol.limits import AXES, Limits, Range, checked_ranges
+
+Verb = Callable[..., Any]
+LONGEST_SILENCE = 3600
+
+
+class MotionOptions(NamedTuple):
+    """What others may do to the arm.
+
+    Attributes:
+        allowed: whether they may send anything but queries.
+        limits: what the client of the arm keeps within.
+        silence: seconds without a sign of life after which the arm is stopped.
+    """
+
+    allowed: bool
+    limits: Limits
+    silence: float
+
+
+def _parse_workspace(
+    context: click.Context, option: click.Parameter, text: str | None
+) -> list[Range | None] | None:
+    if text is None:
+        return None
+    try:
+        ranges = [_range(part) for part in text.split(",")]
+        return checked_ranges("workspace", ranges, len(AXES))
+    except ValueError:
+        message = (
+            f"{text!r} is no workspace; allowed: a range in mm for each of x, y and z, such as "
+            "-200:200,-200:200,50:400; an empty range limits nothing"
+        )
+        raise click.BadParameter(message) from None
+
+
+def _range(text: str) -> Range | None:
+    if not text:
+        return None
+    low, high = map(float, text.split(":"))
+    return low, high
+
+
+def motion_options(silence: float) -> Callable[[Verb], Verb]:
+    """Return what gives a verb these options, as its argument ``motion``.
+
+    ``silence`` is the default of ``--silence``.
+    """
+    options = (
+        click.option(
+            "--allow-motion",
+            is_flag=True,
+            help="Permit more than queries: to move and change the arm.",
+        ),
+        click.option(
+            "--max-speed",
+            type=click.FloatRange(1, 100),
+            metavar="PERCENT",
+            help="The highest speed; motions without a speed in percent are refused.",
+        ),
+        click.option(
+            "--workspace",
+            callback=_parse_workspace,
+            metavar="X:X,Y:Y,Z:Z",
+            help="Where the end may be sent, in mm, such as -200:200,-200:200,50:400.",
+        ),
+        click.option(
+            "--silence",
+            type=click.FloatRange(0, LONGEST_SILENCE, min_open=True, max_open=True),
+            metavar="SECONDS",
+            default=silence,
+            show_default=True,
+            help="Stop a motion if its sender is silent for so long.",
+        ),
+    )
+
+    def give(verb: Verb) -> Verb:
+        @wraps(verb)
+        def with_motion(
+            *arguments: Any,
+            allow_motion: bool,
+            max_speed: float | None,
+            workspace: list[Range | None] | None,
+            silence: float,
+            **named: Any,
+        ) -> Any:
+            limits = Limits(speed=max_speed, workspace=workspace)
+            motion = MotionOptions(allow_motion, limits, silence)
+            return verb(*arguments, motion=motion, **named)
+
+        made: Verb = with_motion
+        for option in reversed(options):
+            made = option(made)
+        return made
+
+    return give
