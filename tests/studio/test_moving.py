@@ -303,11 +303,11 @@ def test_six_sliders_move_at_sixty_frames_a_second(opened: Page) -> None:
         " const step = (at) => { count += 1;"
         f" {sliders}.forEach((slider, index) => {{ slider.value = 40 * Math.sin(at / 300 + index);"
         " slider.dispatchEvent(new Event('input')); });"
-        " if (at - begin < 3000) requestAnimationFrame(step); else done(count); };"
+        " if (at - begin < 1000) requestAnimationFrame(step); else done(count); };"
         " requestAnimationFrame(step); })"
     )
     each = 1000 * (_busy(opened) - before) / frames
-    print(f"{frames / 3:.0f} frames a second; {each:.1f} ms of work in each")
+    print(f"{frames} frames a second; {each:.1f} ms of work in each")
     # What the page does for a frame must fit into a sixtieth of a second.
     assert each < 1000 / 60
 
