@@ -11,7 +11,7 @@ from cobotwire.client import events
 from cobotwire.client.aio import AsyncClient
 from cobotwire.client.opening import check_seconds
 from cobotwire.protocol import roles
-from cobotwire.protocol.errors import MotionTimeout, ReplyTimeout
+from cobotwire.protocol.errors import MotionTimeout, ProtocolError, ReplyTimeout
 from cobotwire.protocol.messages import Request
 from cobotwire.session import EncodedRequest, motion
 
@@ -104,9 +104,9 @@ class AsyncMovingClient(AsyncClient):
         """
         check_seconds("timeout", timeout)
         goal = motion.goal_of(self.table, target, kind)
-        with self._motion_ended() as ended:
+        with self._end_signs() as signs:
             try:
-                await self._wait(goal, timeout, ended)
+                await self._wait(goal, timeout, signs)
             except asyncio.CancelledError as error:
                 await self._stop_for(error)
                 raise
@@ -166,19 +166,18 @@ class AsyncMovingClient(AsyncClient):
         goal = (
             motion.goal_of(self.table, target, roles.kinds_of(self.table)[label]) if wait else None
         )
-        with self._motion_ended() as ended:
+        with self._end_signs() as signs:
             try:
-                await self._send_motion(encoded, wait and ended is not None)
+                await self._send_motion(encoded, wait and signs.queue is not None)
                 if goal is not None:
-                    await self._wait(goal, timeout, ended)
+                    await self._wait(goal, timeout, signs)
             except asyncio.CancelledError as error:
                 await self._stop_for(error)
                 raise
 
-    def _motion_ended(self) -> AbstractContextManager[events.EventQueue | None]:
-        """Return a context with a queue for the event that ends a motion; None if there is none."""
-        add = self._connection.listeners.add
-        return events.motion_ended(self.table, self._address, add)
+    def _end_signs(self) -> AbstractContextManager[events.EndSigns]:
+        """Return a context with what the arm sends that can mean the end of a motion."""
+        return events.end_signs(self.table, self._address, self._connection.listeners.add)
 
     async def _send_motion(self, request: EncodedRequest, in_stages: bool) -> None:
         """Send a motion; in an edition with two stages the arm accepts or refuses it first."""
@@ -192,14 +191,12 @@ class AsyncMovingClient(AsyncClient):
         except ReplyTimeout:
             return
 
-    async def _wait(
-        self, goal: motion.Goal, timeout: float, ended: events.EventQueue | None
-    ) -> None:
+    async def _wait(self, goal: motion.Goal, timeout: float, signs: events.EndSigns) -> None:
         steps = motion.until_reached(self.table, goal, timeout, self._connection.now())
         step = next(steps)
         try:
             while True:
-                outcome = await self._take(step, ended)
+                outcome = await self._take(step, signs)
                 step = steps.send(outcome)
         except StopIteration:
             return
@@ -209,20 +206,22 @@ class AsyncMovingClient(AsyncClient):
                 self._stopped_for = error
             raise
 
-    async def _take(self, step: motion.Step, ended: events.EventQueue | None) -> motion.Outcome:
+    async def _take(self, step: motion.Step, signs: events.EndSigns) -> motion.Outcome:
         now, result = self._connection.now, None
-        if isinstance(step, motion.Pause):
-            await self._connection.sleep(max(0.0, step.until - now()))
-        elif isinstance(step, motion.Listen):
-            assert ended is not None, "the edition has the event"
+        if isinstance(step, motion.Listen):
             wait = max(0.0, step.until - now())
-            await self._connection.listen(wait, lambda: ended.filled)
-            result = ended.next()
+            await self._connection.listen(wait, lambda: signs.received)
+            result = signs.next()
         elif isinstance(step, motion.Stop):
             result = await self._stop_for(TimeoutError())
         else:
             try:
                 result = await self._call(step.request, step.longest)
             except ReplyTimeout:
-                result = None
+                pass
+            except ProtocolError:
+                if not step.optional:
+                    raise
+            # The reply says more than an acknowledgement that came before it.
+            signs.acked = signs.acked and result is None
         return motion.Outcome(now(), result)

@@ -12,7 +12,7 @@ from typing import Any, Generic, TypeVar
 from cobotwire.protocol.errors import UsageError
 from cobotwire.protocol.messages import Event
 from cobotwire.protocol.table import Address, Table
-from cobotwire.session import EventReceived, Traffic
+from cobotwire.session import AckReceived, EventReceived, Traffic
 
 EventT = TypeVar("EventT", bound=Event)
 
@@ -100,25 +100,57 @@ class EventQueue:
         return bool(self._waiting)
 
 
+class EndSigns:
+    """What a device sends that can mean the end of a waited motion.
+
+    Attributes:
+        acked: whether a motion was acknowledged since this was last False.
+        queue: the events of ended motions; None if the edition has no such event.
+    """
+
+    def __init__(self, table: Table, address: Address | None) -> None:
+        command = table.find_role("motion ended")
+        self.acked = False
+        self.queue: EventQueue | None = None
+        if command is not None:
+            event: Any = command.reply_type
+            self.queue = EventQueue(Wanted(table, (event,), address), CAPACITY)
+
+    def take(self, traffic: Traffic) -> None:
+        """Note what was received if it can mean the end."""
+        found = traffic.event
+        if isinstance(found, AckReceived) and found.command.safety == "motion":
+            self.acked = True
+        if self.queue is not None:
+            self.queue.take(traffic)
+
+    @property
+    def received(self) -> bool:
+        """Whether something waits."""
+        return self.acked or (self.queue is not None and self.queue.filled)
+
+    def next(self) -> Any:
+        """Return the oldest event, or True for an acknowledgement; None: nothing waits."""
+        event = None if self.queue is None else self.queue.next()
+        if event is None and self.acked:
+            self.acked, event = False, True
+        return event
+
+
 @contextmanager
-def motion_ended(
+def end_signs(
     table: Table,
     address: Address | None,
     add: Callable[[Callable[[Traffic], None]], Callable[[], None]],
-) -> Iterator[EventQueue | None]:
-    """Yield a queue for the event that ends a motion; None if the edition has none.
+) -> Iterator[EndSigns]:
+    """Yield what collects the signs of a motion's end.
 
     ``add`` adds a traffic listener, and returns a function that removes it.
     """
-    command = table.find_role("motion ended")
-    if command is None:
-        yield None
-        return
-    event: Any = command.reply_type
-    queue = EventQueue(Wanted(table, (event,), address), CAPACITY)
-    remove = add(queue.take)
+    signs = EndSigns(table, address)
+    remove = add(signs.take)
     try:
-        yield queue
+        yield signs
     finally:
         remove()
 

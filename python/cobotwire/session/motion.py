@@ -6,41 +6,59 @@ wait in their own ways, and decide nothing.
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Generator, Sequence
-from typing import Any, NamedTuple
+from math import inf
+from typing import Any, NamedTuple, NoReturn
 
 from cobotwire.protocol.addresses import NOBODY
 from cobotwire.protocol.errors import ArmState, MotionTimeout, RequestRefused, UsageError
-from cobotwire.protocol.messages import Request
+from cobotwire.protocol.messages import Event, Request
+from cobotwire.protocol.numbers import Number
 from cobotwire.protocol.roles import COORDS, kinds_of, place_role, reached_query, row_index
-from cobotwire.protocol.table import Role, Table
+from cobotwire.protocol.table import Command, Role, Table
 from cobotwire.session.request import EncodedRequest
 
-# Ten rounds a second of at most two requests: a moving arm replies to 10 to 20 a second.
-POLL_SECONDS = 0.1
-# If the device reports the end of a motion, the queries only make up for an event that was lost.
-CONFIRM_SECONDS = 1.0
+# A moving arm replies to 10 to 20 queries a second; a wait never sends more than this many.
+MOST_QUERIES = 12
+# Queries near the end are this far apart, divided by how many more this second allows.
+SPACING_SECONDS = 0.15
+# The second look at where the arm is comes after this time, later ones after twice the time before.
+FIRST_SECONDS = 0.05
+# The longest time between two looks. If the device reports the end of a motion, the queries only
+# make up for an event that was lost.
+LOOK_SECONDS, CONFIRM_SECONDS = 0.5, 1.0
+# Near the end the arm is looked at again after this time.
+AGAIN_SECONDS = 0.15
+# How long the event of the end is awaited before the arm is asked.
+EVENT_SECONDS = 0.15
+# An arm that nears its target by fewer tolerances a second may stand still and tremble.
+SLOWEST = 2.0
 # An arm that stands still for this long does not continue by itself.
 STILL_SECONDS = 1.0
 # How long each query after a failed motion may take.
 STATE_SECONDS = 0.2
+# Within the time of a query it is repeated, after this time at the earliest.
+REPEAT_SECONDS = 0.1
 
 
 class Query(NamedTuple):
-    """Send this request, and wait at most ``longest`` seconds for its reply."""
+    """Send this request, and wait at most ``longest`` seconds for its reply.
+
+    If it is ``optional``, a reply that the edition does not allow counts as none.
+    """
 
     request: Request[Any]
     longest: float
-
-
-class Pause(NamedTuple):
-    """Do nothing until then."""
-
-    until: float
+    optional: bool = False
 
 
 class Listen(NamedTuple):
-    """Wait until then, or until the device reports the end of a motion; the result is its event."""
+    """Wait until then, or until the device sends what can mean the end of a motion.
+
+    The result is the event of the end, or True for the acknowledgement of a motion: some firmware
+    acknowledges a motion when it ends.
+    """
 
     until: float
 
@@ -59,7 +77,7 @@ class Outcome(NamedTuple):
     result: Any = None
 
 
-Step = Query | Pause | Listen | Stop
+Step = Query | Listen | Stop
 Steps = Generator[Step, Outcome, None]
 
 
@@ -76,23 +94,27 @@ class Goal(NamedTuple):
         target: the numbers of the target.
         place: the role of the query that reports where the arm is, in the same numbers.
         query: reports whether the target is reached, or else where the arm is.
-        tolerances: how far each number may be from the target; empty if the arm reports by itself
-            whether the target is reached.
+        decides: whether the arm reports by itself whether the target is reached.
+        tolerances: how far each number may be from the target where the arm does not; empty if the
+            edition does not report where it is.
         turns: for each number, whether a whole turn makes no difference.
     """
 
     target: tuple[float, ...]
     place: Role
     query: Request[Any]
-    tolerances: tuple[float, ...] = ()
-    turns: tuple[bool, ...] = ()
+    decides: bool
+    tolerances: tuple[float, ...]
+    turns: tuple[bool, ...]
 
     def is_met(self, result: Any) -> bool:
         """Return whether the result of the query says that the target is reached."""
-        if not self.tolerances:
-            return bool(result)
-        pairs = zip(self.target, result, self.tolerances, self.turns)
-        return all(_distance(wish, have, turns) <= most for wish, have, most, turns in pairs)
+        return bool(result) if self.decides else self.distance(result) <= 1
+
+    def distance(self, place: Sequence[float]) -> float:
+        """Return how far a place is from the target: the farthest number, in its tolerances."""
+        parts = zip(self.target, place, self.tolerances, self.turns)
+        return max(_distance(wish, have, turns) / most for wish, have, most, turns in parts)
 
 
 def _distance(one: float, other: float, turns: bool) -> float:
@@ -113,20 +135,25 @@ def goal_of(table: Table, target: Sequence[float], kind: int) -> Goal:
         allowed = ", ".join(f"{name} ({number})" for name, number in kinds.items())
         raise UsageError("kind", kind, allowed)
     place, reached = place_role(label), reached_query(table)
-    if reached is not None and label in reached.kinds:
-        return Goal(tuple(target), place, reached.request(target, label))
-    query = table.in_role(place)
-    numbers = query.reply[0].fields[row_index(query.reply[0])].cases[0].numbers
-    if len(target) != len(numbers):
-        raise UsageError("len(target)", len(target), str(len(numbers)))
-    return Goal(
-        tuple(target),
-        place,
-        query.request_type(),
-        tuple(TOLERANCES.get(number.unit, OTHER_TOLERANCE) for number in numbers),
-        # A joint has ends; the orientation of the end has none.
-        tuple(label == COORDS and number.unit == "degree" for number in numbers),
-    )
+    decides = reached is not None and label in reached.kinds
+    where = table.find_role(place) if decides else table.in_role(place)
+    numbers = () if where is None else _numbers(where)
+    if reached is not None and decides:
+        query = reached.request(target, label)
+    else:
+        if len(target) != len(numbers):
+            raise UsageError("len(target)", len(target), str(len(numbers)))
+        query = table.in_role(place).request_type()
+    tolerances = tuple(TOLERANCES.get(number.unit, OTHER_TOLERANCE) for number in numbers)
+    # A joint has ends; the orientation of the end has none.
+    turns = tuple(label == COORDS and number.unit == "degree" for number in numbers)
+    return Goal(tuple(target), place, query, decides, tolerances, turns)
+
+
+def _numbers(where: Command) -> tuple[Number, ...]:
+    """Return the numbers that the query reports."""
+    reply = where.reply[0]
+    return reply.fields[row_index(reply)].cases[0].numbers
 
 
 def ack_seconds(request: EncodedRequest) -> float | None:
@@ -138,77 +165,146 @@ def ack_seconds(request: EncodedRequest) -> float | None:
 def until_reached(table: Table, goal: Goal, limit: float, started: float) -> Steps:
     """Yield the steps of waiting until the arm is at a target.
 
-    A request without a reply is not an error: the arm is busy. The next round repeats it, until
-    the time is over.
+    Two readings of where the arm is tell when it will be there. Until shortly before, it is looked
+    at rarely; then it is asked often whether it is there. What the device itself sends about the
+    end of a motion looks the same for an earlier motion, so a query confirms it.
+
+    A request without a reply is not an error: the arm is busy. A later one repeats it, until the
+    time is over.
 
     Raises:
         MotionTimeout: the target was not reached within ``limit`` seconds, or the arm has stood
             still for a second and is not there.
         RequestRefused: the device reports that the motion has failed.
     """
-    now, still_since, before = started, None, None
-    ended = table.find_role("motion ended")
-    while True:
-        begun = now
-        now, found = yield Query(goal.query, _left(started, limit, now))
-        if found is not None and goal.is_met(found):
+    return _Wait(table, goal, limit, started).steps()
+
+
+class _Wait:
+    """What a wait knows about the motion, and when it sent its queries."""
+
+    def __init__(self, table: Table, goal: Goal, limit: float, started: float) -> None:
+        self._table, self._goal = table, goal
+        self._started, self._ends = started, started + limit
+        self._now = started
+        self._ended, self._moving = table.find_role("motion ended"), table.find_role("moving")
+        # None: nothing reports where the arm is.
+        self._where = table.find_role(goal.place) if goal.tolerances else None
+        # The time and the result of the last look at where the arm is.
+        self._before: tuple[float, Any] | None = None
+        self._still_since: float | None = None
+        # From when on the arm may be there, and when it is looked at again even then.
+        self._due = self._look_at = started
+        self._sent: deque[float] = deque()
+
+    def steps(self) -> Steps:
+        """Yield the steps of the wait."""
+        goal = self._goal
+        while True:
+            near, found = self._now >= self._due, None
+            if near or not goal.decides:
+                found = yield from self._ask(goal.query, optional=False)
+                if found is not None and goal.is_met(found):
+                    return
+            if not goal.decides or not near or self._now >= self._look_at:
+                yield from self._look(None if goal.decides else found, near)
+            still = None if self._still_since is None else self._now - self._still_since
+            if self._now >= self._ends or (still is not None and still >= STILL_SECONDS):
+                yield from self._give_up(standing=still is not None)
+            yield from self._rest()
+
+    def _ask(
+        self, request: Request[Any], *, optional: bool = True
+    ) -> Generator[Step, Outcome, Any]:
+        """Yield a query as soon as it may be sent; return its result."""
+        while len(self._sent) >= MOST_QUERIES and self._now < self._sent[-MOST_QUERIES] + 1.0:
+            yield from self._listen(self._sent[-MOST_QUERIES] + 1.0)
+        sent = self._now
+        self._now, result = yield Query(request, max(0.1, self._ends - sent), optional)
+        # Without a reply it may have been sent again.
+        repeats = min(int((self._now - sent) / REPEAT_SECONDS), MOST_QUERIES)
+        again = (self._now - n * REPEAT_SECONDS for n in reversed(range(repeats)))
+        self._sent.extend([sent, *again])
+        return result
+
+    def _look(self, place: Any, near: bool) -> Generator[Step, Outcome, None]:
+        """Find out when the arm may be there, or else whether it stands still.
+
+        ``place`` is where it is, None if it did not reply; where the query of the goal does not
+        report that, another one does. ``near`` tells whether it could be there.
+        """
+        if self._where is not None and self._goal.decides:
+            place = yield from self._ask(self._where.request_type())
+            if place is None and self._moving is not None:
+                # Perhaps this arm cannot say where it is.
+                self._where = None
+        before, self._before = self._before, None if place is None else (self._now, place)
+        self._look_at = self._now + AGAIN_SECONDS
+        if place is not None and before is None:
+            self._due = inf
             return
-        place = found if goal.tolerances else None
-        now, is_moving, before = yield from _moving(table, goal, place, before, limit, started, now)
+        self._due = self._now
+        if before is not None and place is not None:
+            left = self._goal.distance(place)
+            speed = (self._goal.distance(before[1]) - left) / max(self._now - before[0], 1e-6)
+            if speed >= SLOWEST:
+                self._still_since = None
+                # A bound: it may brake, but it is at full speed.
+                self._due += left / speed + (0.0 if self._ended is None else EVENT_SECONDS)
+                self._look_at = max(self._due, self._look_at)
+                return
+        if not near:
+            # It may be there.
+            self._look_at = self._now
+            return
+        is_moving = None if before is None or place is None else place != before[1]
+        if self._moving is not None:
+            is_moving = yield from self._ask(self._moving.request_type())
         if is_moving is None or is_moving:
-            still_since = None
-        elif still_since is None:
-            still_since = now
-        standing = still_since is not None
-        stuck = still_since is not None and now - still_since >= STILL_SECONDS
-        if stuck or now - started >= limit:
-            waited = now - started
-            if standing:
-                # A stop ends a pause, which would explain why the arm stands still.
-                state = yield from _state(table, goal)
-                stopped = yield Stop()
-            else:
-                stopped = yield Stop()
-                state = yield from _state(table, goal)
-            raise MotionTimeout(goal.target, waited, standing, bool(stopped.result), state)
-        if ended is None:
-            now, _ = yield Pause(max(now, begun + POLL_SECONDS))
-            continue
-        # The event of an earlier motion looks the same, so a query confirms it.
-        until = min(max(now, begun + CONFIRM_SECONDS), max(now, started + limit))
-        now, event = yield Listen(until)
-        refusal = None if event is None else ended.refusal(event.fields)
+            self._still_since = None
+        elif self._still_since is None:
+            self._still_since = self._now
+
+    def _rest(self) -> Generator[Step, Outcome, None]:
+        """Wait until the next query."""
+        now = self._now
+        while self._sent[0] <= now - 1.0 and len(self._sent) > 1:
+            self._sent.popleft()
+        until = self._sent[-1] + SPACING_SECONDS / max(1, MOST_QUERIES - len(self._sent))
+        if self._due > now:
+            longest = CONFIRM_SECONDS
+            if self._ended is None:
+                longest = min(LOOK_SECONDS, max(FIRST_SECONDS, now - self._started))
+            until = max(until, min(self._due, now + longest))
+        if (yield from self._listen(min(until, max(now, self._ends)))):
+            self._due = self._now
+
+    def _listen(self, until: float) -> Generator[Step, Outcome, bool]:
+        """Listen until then; return whether the device sent what can mean the end of a motion.
+
+        Raises:
+            RequestRefused: the device reports that the motion has failed.
+        """
+        self._now, event = yield Listen(until)
+        refusal = None
+        if self._ended is not None and isinstance(event, Event):
+            refusal = self._ended.refusal(event.fields)
         if refusal is not None:
             yield Stop()
-            what = f"the motion to {list(goal.target)}"
-            raise RequestRefused(what, *refusal, b"")
+            raise RequestRefused(f"the motion to {list(self._goal.target)}", *refusal, b"")
+        return event is not None
 
-
-def _moving(
-    table: Table, goal: Goal, place: Any, before: Any, limit: float, started: float, now: float
-) -> Generator[Step, Outcome, tuple[float, bool | None, Any]]:
-    """Yield the query whether the arm moves; else compare where it is with where it was before.
-
-    Args:
-        table: the edition.
-        goal: what is waited for.
-        place: where the arm is; None if it was not asked, or did not reply.
-        before: where it was.
-        limit: how long the motion is waited for.
-        started: when the wait started.
-        now: the time.
-
-    Returns:
-        The time, whether the arm moves (None: not known), and where it is.
-    """
-    moving, where = table.find_role("moving"), table.find_role(goal.place)
-    if moving is not None:
-        now, is_moving = yield Query(moving.request_type(), _left(started, limit, now))
-        return now, is_moving, None
-    if place is None and where is not None and not goal.tolerances:
-        now, place = yield Query(where.request_type(), _left(started, limit, now))
-    known = place is not None and before is not None
-    return now, place != before if known else None, place
+    def _give_up(self, *, standing: bool) -> Generator[Step, Outcome, NoReturn]:
+        """Stop the arm, and raise a MotionTimeout with its state."""
+        waited = self._now - self._started
+        if standing:
+            # A stop ends a pause, which would explain why the arm stands still.
+            state = yield from _state(self._table, self._goal)
+            stopped = yield Stop()
+        else:
+            stopped = yield Stop()
+            state = yield from _state(self._table, self._goal)
+        raise MotionTimeout(self._goal.target, waited, standing, bool(stopped.result), state)
 
 
 def _state(table: Table, goal: Goal) -> Generator[Step, Outcome, ArmState]:
@@ -220,7 +316,7 @@ def _state(table: Table, goal: Goal) -> Generator[Step, Outcome, ArmState]:
         if command is None:
             found.append(None)
         else:
-            outcome = yield Query(command.request_type(), STATE_SECONDS)
+            outcome = yield Query(command.request_type(), STATE_SECONDS, optional=True)
             found.append(outcome.result)
     place, powered, paused, error = found
     position = None if place is None else tuple(place)
@@ -231,8 +327,3 @@ def error_meaning(table: Table, error: int) -> str:
     """Return what the edition says about a number of its error register; empty if nothing."""
     command = table.find_role("error")
     return "" if command is None else command.reply[0].fields[-1].meaning(error)
-
-
-def _left(started: float, limit: float, now: float) -> float:
-    """Return the time that is left; a request gets a tenth of a second at least."""
-    return max(0.1, started + limit - now)
