@@ -165,7 +165,9 @@ def test_query_of_a_wait_depends_on_when_the_end_is_due() -> None:
     # At 10 degrees in 0.05 s it may be there after 0.15 s; a long wait is cut into looks.
     assert steps.send(Outcome(100.05, (10.0, 0.0, 0.0, 0.0, 0.0, 0.0))) == Listen(100.1)
     assert steps.send(Outcome(100.1)) == Query(angles, pytest.approx(8.9), optional=True)
-    assert steps.send(Outcome(100.1, (20.0, 0.0, 0.0, 0.0, 0.0, 0.0))) == Listen(pytest.approx(100.2))
+    assert steps.send(Outcome(100.1, (20.0, 0.0, 0.0, 0.0, 0.0, 0.0))) == Listen(
+        pytest.approx(100.2)
+    )
     assert steps.send(Outcome(100.2)) == Query(reached, pytest.approx(8.8))
     with pytest.raises(StopIteration):
         steps.send(Outcome(100.2, True))

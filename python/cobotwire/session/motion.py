@@ -19,10 +19,11 @@ from cobotwire.protocol.roles import COORDS, kinds_of, place_role, reached_query
 from cobotwire.protocol.table import Command, Role, Table
 from cobotwire.session.request import EncodedRequest
 
-# A moving arm replies to 10 to 20 queries a second; a wait never sends more than this many.
-MOST_QUERIES = 12
+# A moving arm replies to 10 to 20 queries a second. A wait sends at most 12 in any second: these,
+# and two repeats of a query whose reply is lost.
+MOST_QUERIES = 10
 # Queries near the end are this far apart, divided by how many more this second allows.
-SPACING_SECONDS = 0.15
+SPACING_SECONDS = 0.1
 # The second look at where the arm is comes after this time, later ones after twice the time before.
 FIRST_SECONDS = 0.05
 # The longest time between two looks. If the device reports the end of a motion, the queries only
