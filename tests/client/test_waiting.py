@@ -96,7 +96,7 @@ def test_end_is_noticed_soon_with_few_queries_and_never_early(name: str) -> None
         delays.append(arm.move(target, speed))
         busiest = max(busiest, arm.most_queries())
     assert busiest <= MOST_QUERIES
-    assert max(delays) < 0.5
+    assert max(delays) < 0.4
     assert len(delays) < MOTIONS or median(delays) <= 0.06
 
 

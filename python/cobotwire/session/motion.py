@@ -200,9 +200,9 @@ class _Wait:
 
     def steps(self) -> Steps:
         """Yield the steps of the wait."""
-        goal = self._goal
+        goal, heard = self._goal, False
         while True:
-            near, found = self._now >= self._due, None
+            near, found = heard or self._now >= self._due, None
             if near or not goal.decides:
                 found = yield from self._ask(goal.query, optional=False)
                 if found is not None and goal.is_met(found):
@@ -212,7 +212,7 @@ class _Wait:
             still = None if self._still_since is None else self._now - self._still_since
             if self._now >= self._ends or (still is not None and still >= STILL_SECONDS):
                 yield from self._give_up(standing=still is not None)
-            yield from self._rest()
+            heard = yield from self._rest()
 
     def _ask(
         self, request: Request[Any], *, optional: bool = True
@@ -266,8 +266,8 @@ class _Wait:
         elif self._still_since is None:
             self._still_since = self._now
 
-    def _rest(self) -> Generator[Step, Outcome, None]:
-        """Wait until the next query."""
+    def _rest(self) -> Generator[Step, Outcome, bool]:
+        """Wait until the next query; return whether the device sent a sign of the end meanwhile."""
         now = self._now
         while self._sent[0] <= now - 1.0 and len(self._sent) > 1:
             self._sent.popleft()
@@ -277,8 +277,7 @@ class _Wait:
             if self._ended is None:
                 longest = min(LOOK_SECONDS, max(FIRST_SECONDS, now - self._started))
             until = max(until, min(self._due, now + longest))
-        if (yield from self._listen(min(until, max(now, self._ends)))):
-            self._due = self._now
+        return (yield from self._listen(min(until, max(now, self._ends))))
 
     def _listen(self, until: float) -> Generator[Step, Outcome, bool]:
         """Listen until then; return whether the device sent what can mean the end of a motion.
