@@ -70,7 +70,7 @@ class Arm:
 
     @staticmethod
     def distance(place: Any, target: list[float]) -> float:
-        return max(abs(have - wish) for have, wish in zip(place, target))
+        return max(float(abs(have - wish)) for have, wish in zip(place, target))
 
     def most_queries(self) -> int:
         """Return how many queries were sent in the busiest second."""
