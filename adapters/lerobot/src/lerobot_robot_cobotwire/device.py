@@ -1,0 +1,101 @@
+"""What the robot and the teleoperator share: an arm that is opened, read and closed."""
+
+from __future__ import annotations
+
+import sys
+from abc import abstractmethod
+from contextlib import ExitStack
+from dataclasses import dataclass
+from typing import Any
+
+from cobotwire import UsageError, editions
+from cobotwire.protocol.addresses import devices_of
+from lerobot_robot_cobotwire.features import Positions
+from lerobot_robot_cobotwire.interface import DeviceAlreadyConnectedError, DeviceNotConnectedError
+
+
+@dataclass(kw_only=True)
+class ArmConfig:
+    """Which arm there is, and at which port. LeRobot prints the comments as help."""
+
+    # The protocol of the arm, such as mycobot280; `cobotwire identify PORT` finds it out.
+    edition: str
+    # A serial port, or a URL such as socket://127.0.0.1:9000.
+    port: str
+    # Bits a second; by default that of the edition.
+    baudrate: int | None = None
+    # The device, such as LEFT, of an arm that has several.
+    address: str | None = None
+    # Whether the arm has a gripper: gripper.pos, 0 (closed) to 100 (open).
+    gripper: bool = False
+
+
+class ArmDevice:
+    """An arm that needs no calibration, since it keeps its zero positions itself.
+
+    Requests raise DeviceNotConnectedError if the port is not open, ReplyTimeout if the arm does not
+    reply, and LinkError if the port is gone.
+    """
+
+    name: str
+
+    def __init__(self, config: ArmConfig) -> None:
+        """Find the edition and what it reports; nothing is opened.
+
+        Raises:
+            UsageError: there is no such edition, or its arm has several devices and none is named.
+        """
+        self._arm: Any = None
+        self._opened = ExitStack()
+        self._config, self.edition = config, editions.load(config.edition)
+        self.table = self.edition.TABLE
+        devices = [device.name for device in devices_of(self.table)]
+        if len(devices) > 1 and config.address is None:
+            raise UsageError("address", None, ", ".join(devices))
+        self.positions = Positions(self.table, config.gripper)
+
+    @property
+    def is_connected(self) -> bool:
+        """Whether the port is open."""
+        return self._arm is not None
+
+    @property
+    def is_calibrated(self) -> bool:
+        """True: there is nothing to calibrate."""
+        return True
+
+    def calibrate(self) -> None:
+        """Do nothing."""
+
+    @abstractmethod
+    def configure(self) -> None:
+        """Prepare the arm."""
+
+    def open(self, opened: ExitStack, **options: Any) -> None:
+        """Open the port and prepare the arm; ``opened`` takes what ``disconnect`` closes.
+
+        Raises:
+            DeviceAlreadyConnectedError: it is open.
+        """
+        if self._arm is not None:
+            raise DeviceAlreadyConnectedError(f"{self.name} is connected already")
+        port, address = self._config.port, self._config.address
+        client = self.edition.CLIENT(port, self._config.baudrate, address=address, **options)
+        self._arm = opened.enter_context(client)
+        opened.callback(setattr, self, "_arm", None)
+        self.configure()
+        self._opened = opened.pop_all()
+
+    def disconnect(self) -> None:
+        """Close everything. If an error is the reason, the arm is left as ``on_error`` says."""
+        _ = self.arm
+        # LeRobot calls this in `finally`.
+        error = sys.exception()
+        self._opened.__exit__(type(error) if error else None, error, None)
+
+    @property
+    def arm(self) -> Any:
+        """The client of the edition."""
+        if self._arm is None:
+            raise DeviceNotConnectedError(f"{self.name} is not connected: call connect() first")
+        return self._arm

@@ -1,0 +1,66 @@
+"""The teleoperator: an arm that a person moves by hand."""
+
+from __future__ import annotations
+
+from contextlib import ExitStack
+from dataclasses import dataclass
+from typing import Any
+
+from lerobot_robot_cobotwire.device import ArmConfig, ArmDevice
+from lerobot_robot_cobotwire.features import release_command
+from lerobot_robot_cobotwire.interface import Teleoperator, TeleoperatorConfig
+
+
+@TeleoperatorConfig.register_subclass("cobotwire")
+@dataclass(kw_only=True)
+class CobotwireTeleoperatorConfig(ArmConfig, TeleoperatorConfig):
+    """Which arm a person moves."""
+
+    # Whether to release the motors when the port is opened. The arm sinks: hold it.
+    released: bool = False
+
+
+class CobotwireTeleoperator(ArmDevice, Teleoperator):
+    """An arm that a person moves by hand; it is only read."""
+
+    config_class = CobotwireTeleoperatorConfig
+    name = "cobotwire"
+
+    def __init__(self, config: CobotwireTeleoperatorConfig) -> None:
+        """Check the configuration; nothing is opened.
+
+        Raises:
+            UsageError: there is no such edition, or an option is not allowed.
+        """
+        ArmDevice.__init__(self, config)
+        Teleoperator.__init__(self, config)
+        self.config = config
+        self._release = release_command(self.table) if config.released else None
+
+    @property
+    def action_features(self) -> dict[str, Any]:
+        """The type of each position."""
+        return dict.fromkeys(self.positions.names, float)
+
+    @property
+    def feedback_features(self) -> dict[str, Any]:
+        """Empty: the arm takes no feedback."""
+        return {}
+
+    def connect(self, calibrate: bool = True) -> None:
+        """Open the port, and release the motors if the configuration says so."""
+        with ExitStack() as opened:
+            self.open(opened, on_error="leave")
+
+    def configure(self) -> None:
+        """Release the motors of an arm that replies, if the configuration says so."""
+        self.get_action()
+        if self._release is not None:
+            getattr(self.arm, self._release.name)()
+
+    def get_action(self) -> dict[str, Any]:
+        """Return where the arm is."""
+        return {**self.positions.read(self.arm)}
+
+    def send_feedback(self, feedback: dict[str, Any]) -> None:
+        """Do nothing: the arm takes no feedback."""

@@ -1,0 +1,14 @@
+"""A stand-in for LeRobot's cameras: it has none."""
+
+from dataclasses import dataclass
+from typing import Any
+
+
+@dataclass
+class CameraConfig:
+    width: int
+    height: int
+
+
+def make_cameras_from_configs(camera_configs: dict[str, CameraConfig]) -> dict[str, Any]:
+    return {}
