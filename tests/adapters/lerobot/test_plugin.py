@@ -3,169 +3,154 @@
 from __future__ import annotations
 
 import math
+import time
+from contextlib import suppress
 from typing import Any
 
 import pytest
 from lerobot.robots import Robot
 from lerobot.teleoperators import Teleoperator
 
+import lerobot_robot_cobotwire as plugin
 from cobotwire import UsageError, editions
 from cobotwire.protocol.errors import ArmNotReady
-from cobotwire.session import Traffic
 from cobotwire.simulator import MemoryTransport, SimulatedArm, SteppedClock
-from lerobot_robot_cobotwire import (
-    CobotwireRobot,
-    CobotwireRobotConfig,
-    CobotwireTeleoperator,
-    CobotwireTeleoperatorConfig,
-)
 from lerobot_robot_cobotwire.interface import DeviceAlreadyConnectedError, DeviceNotConnectedError
 
 JOINTS = [f"joint{number}.pos" for number in range(1, 7)]
 POSE = dict(zip(JOINTS, [10.0, -20.0, 30.0, -40.0, 50.0, -60.0]))
+DOWN = dict.fromkeys(JOINTS, 0.0) | {"joint2.pos": 130.0}
 
 
 class Bench:
-    """A simulated arm in stepped time, and the requests to it that are no queries."""
+    """A simulated arm in stepped time, and the robot or teleoperator on it."""
 
     def __init__(self, edition: str = "mycobot280", *, powered: bool = True) -> None:
-        self.clock, self.table = SteppedClock(), editions.load(edition).TABLE
-        self.arm = SimulatedArm(self.table, clock=self.clock, powered=powered)
-        self.port: Any = MemoryTransport(self.arm.connect(), self.clock)
-        self.requests: list[str] = []
+        self.clock, table = SteppedClock(), editions.load(edition).TABLE
+        self.arm = SimulatedArm(table, clock=self.clock, powered=powered)
+        self.names = {command.id: command.name for command in reversed(table.commands)}
+        self.edition, self.requests = edition, list[str]()
 
-    def robot(self, **options: Any) -> CobotwireRobot:
-        """Return a robot that is connected, and whose requests are noted."""
-        config = CobotwireRobotConfig(edition=self.table.edition, port=self.port, **options)
-        robot = CobotwireRobot(config)
-        robot.connect()
-        robot.arm.add_traffic_listener(self._note)
-        return robot
+    def connect(self, kind: str = "Robot", **options: Any) -> Any:
+        """Return a device that is connected; note its requests that are no queries."""
+        port: Any = MemoryTransport(self.arm.connect(), self.clock)
+        config = getattr(plugin, f"Cobotwire{kind}Config")
+        device = getattr(plugin, f"Cobotwire{kind}")(
+            config(edition=self.edition, port=port, **options)
+        )
+        device.connect()
+        device.arm.add_traffic_listener(self._note)
+        return device
 
-    def teleoperator(self, **options: Any) -> CobotwireTeleoperator:
-        config = CobotwireTeleoperatorConfig(edition=self.table.edition, port=self.port, **options)
-        teleoperator = CobotwireTeleoperator(config)
-        teleoperator.connect()
-        return teleoperator
-
-    def _note(self, traffic: Traffic) -> None:
-        names = {each.id: each.name for each in reversed(self.table.commands)}
-        if traffic.direction == "sent" and not names[traffic.data[3]].startswith(("get", "is")):
-            self.requests.append(names[traffic.data[3]])
+    def _note(self, traffic: Any) -> None:
+        if traffic.direction == "sent" and "get" not in (name := self.names[traffic.data[3]]):
+            self.requests.append(name)
 
 
 def test_classes_have_what_lerobot_requires() -> None:
-    for ours, theirs in ((CobotwireRobot, Robot), (CobotwireTeleoperator, Teleoperator)):
-        assert [name for name in theirs.required if not hasattr(ours, name)] == []
+    for ours, base in (
+        (plugin.CobotwireRobot, Robot),
+        (plugin.CobotwireTeleoperator, Teleoperator),
+    ):
+        assert [name for name in base.required.split() if not hasattr(ours, name)] == []
 
 
 @pytest.mark.parametrize("edition", editions.names())
-def test_each_arm_has_a_robot_if_it_has_motors_and_a_teleoperator(edition: str) -> None:
+def test_arm_with_motors_has_a_robot_and_each_arm_a_teleoperator(edition: str) -> None:
     table = editions.load(edition).TABLE
     place: dict[str, Any] = {"edition": edition, "port": "nowhere"}
     if table.addresses:
         with pytest.raises(UsageError, match="address is None; allowed: LEFT, RIGHT"):
-            CobotwireRobot(CobotwireRobotConfig(**place))
+            plugin.CobotwireRobot(plugin.CobotwireRobotConfig(**place))
         place["address"] = "LEFT"
-    teleoperator = CobotwireTeleoperator(CobotwireTeleoperatorConfig(**place))
-    assert len(teleoperator.action_features) == table.joints
-    assert teleoperator.is_calibrated
+    led = plugin.CobotwireTeleoperator(plugin.CobotwireTeleoperatorConfig(**place))
+    assert [*led.action_features] == [f"joint{n}.pos" for n in range(1, table.joints + 1)]
+    config = plugin.CobotwireRobotConfig(**place)
     if edition == "myarm_c650":
         with pytest.raises(UsageError, match="has no motors: use it as a teleoperator"):
-            CobotwireRobot(CobotwireRobotConfig(**place))
-        return
-    robot = CobotwireRobot(CobotwireRobotConfig(**place))
-    assert robot.action_features == robot.observation_features == teleoperator.action_features
-    assert robot.name == f"cobotwire_{edition}"
+            plugin.CobotwireRobot(config)
+    else:
+        robot = plugin.CobotwireRobot(config)
+        assert robot.action_features == robot.observation_features == led.action_features
 
 
 def test_targets_are_clipped_and_the_newest_replaces_those_before_it() -> None:
     bench = Bench()
-    robot = bench.robot(joint_limits=[[-5.0, 5.0], *[None] * 5])
+    robot = bench.connect(joint_limits=[(-5.0, 5.0), *[None] * 5], silence=3000.0)
     robot.send_action(dict.fromkeys(JOINTS, -1000.0))
     sent = robot.send_action(POSE)
     assert sent == POSE | {"joint1.pos": 5.0}
     assert bench.requests == ["send_angles"] * 2, "nothing is waited for"
     bench.clock.sleep(5.0)
     assert robot.get_observation() == pytest.approx(sent, abs=0.1)
+    for wrong in ({}, POSE | {"joint7.pos": 0.0}, POSE | {"joint3.pos": math.nan}):
+        with pytest.raises(UsageError, match=r"allowed: (joint1\.pos|a finite number)"):
+            robot.send_action(wrong)
+    assert len(bench.requests) == 2
 
 
-def test_gripper_moves_when_its_target_changes() -> None:
-    bench = Bench()
-    robot = bench.robot(gripper=True)
-    for opening in (40.2, 39.9, 170.0):
-        sent = robot.send_action(POSE | {"gripper.pos": opening})
-    assert sent["gripper.pos"] == 100.0
-    assert bench.requests.count("set_gripper_value") == 2
-    bench.clock.sleep(5.0)
-    assert robot.get_observation()["gripper.pos"] == 100.0
-
-
-@pytest.mark.parametrize(
-    ("action", "text"),
-    [
-        ({}, r"the names of the action is \[\]; allowed: joint1.pos, joint2.pos"),
-        (POSE | {"joint7.pos": 0.0}, "allowed: joint1.pos"),
-        (POSE | {"joint3.pos": math.nan}, "joint3.pos is nan; allowed: a finite number"),
-    ],
-    ids=["empty", "a joint too many", "not a number"],
-)
-def test_wrong_action_is_refused_and_nothing_is_sent(action: dict[str, float], text: str) -> None:
-    bench = Bench()
-    robot = bench.robot()
-    with pytest.raises(UsageError, match=text):
-        robot.send_action(action)
-    assert bench.requests == []
-
-
-@pytest.mark.parametrize(("on_error", "stops"), [("stop", 1), ("leave", 0)])
-def test_disconnect_stops_the_arm_after_an_error_unless_it_is_to_be_left(
-    on_error: str, stops: int
+def test_joints_stay_inside_the_workspace_and_the_gripper_moves_when_its_target_changes(
+    caplog: pytest.LogCaptureFixture,
 ) -> None:
-    for error in (None, KeyboardInterrupt()):
-        bench = Bench()
-        robot = bench.robot(on_error=on_error)
-        robot.send_action(POSE)
+    bench = Bench()
+    robot = bench.connect(workspace=[None, None, (100.0, 500.0)], gripper=True)
+    assert robot.send_action(DOWN | {"gripper.pos": 130.0})["joint2.pos"] == 0.0
+    inside = robot.send_action(POSE | {"gripper.pos": 99.9})
+    for _ in range(3):
+        assert robot.send_action(DOWN | {"gripper.pos": 40.0}) == inside | {"gripper.pos": 40.0}
+    assert bench.requests == ["set_gripper_value", "send_angles", "set_gripper_value"]
+    assert "would move the end to z -11.3 mm" in caplog.records[1].message
+    assert len(caplog.records) == 2
+    for option in ({"workspace": [None, None, None]}, {"gripper": True}):
+        with pytest.raises(UsageError, match=r"states no geometry|cannot move a gripper"):
+            Bench("myarm_m750").connect(**option)
+
+
+@pytest.mark.parametrize("error", [None, KeyboardInterrupt()])
+@pytest.mark.parametrize("on_error", ["stop", "leave"])
+def test_disconnect_after_an_error_stops_the_arm(on_error: str, error: Any) -> None:
+    bench = Bench()
+    robot = bench.connect(on_error=on_error, silence=3000.0)
+    robot.send_action(POSE)
+    with suppress(KeyboardInterrupt):
         try:
-            if error is not None:
+            if error:
                 raise error
-        except KeyboardInterrupt:
+        finally:
             robot.disconnect()
-        else:
-            robot.disconnect()
-        assert bench.requests[1:] == ["stop"] * (stops if error else 0)
-        assert not robot.is_connected
-        with pytest.raises(DeviceNotConnectedError, match="not connected: call connect"):
-            robot.send_action(POSE)
+    assert bench.requests[1:] == (["stop"] if error and on_error == "stop" else [])
+    with pytest.raises(DeviceNotConnectedError, match="not connected: call connect"):
+        robot.send_action(POSE)
+
+
+def test_arm_is_stopped_when_no_action_comes() -> None:
+    bench = Bench()
+    robot = bench.connect(silence=0.5)
+    robot.send_action(POSE)
+    bench.clock.sleep(0.6)
+    ends = time.monotonic() + 5.0
+    while bench.requests[-1] != "stop" and time.monotonic() < ends:
+        time.sleep(0.01)
+    bench.clock.sleep(5.0)
+    assert robot.get_observation()["joint6.pos"] > -50.0
 
 
 @pytest.mark.simulated_arm(transport="tcp")
 def test_arm_without_power_is_not_connected(simulated_arm_url: str) -> None:
-    config = CobotwireRobotConfig(edition="mycobot280", port=simulated_arm_url)
-    with pytest.raises(ArmNotReady, match="the arm has no power") as caught:
-        CobotwireRobot(config).connect()
-    assert f"cobotwire call {simulated_arm_url} power_on" in str(caught.value)
+    config = plugin.CobotwireRobotConfig(edition="mycobot280", port=simulated_arm_url)
+    with pytest.raises(ArmNotReady, match=f"cobotwire call {simulated_arm_url} power_on"):
+        plugin.CobotwireRobot(config).connect()
 
 
-def test_released_arm_is_read_while_a_person_moves_it() -> None:
-    bench = Bench()
-    bench.arm.lead([(1.0, tuple(POSE.values()))])
-    held = bench.teleoperator()
-    bench.clock.sleep(2.0)
-    assert held.get_action() == dict.fromkeys(JOINTS, 0.0)
-    held.disconnect()
-    bench.port = MemoryTransport(bench.arm.connect(), bench.clock)
-    released = bench.teleoperator(released=True)
+@pytest.mark.parametrize(("edition", "released"), [("mycobot280", True), ("myarm_c650", False)])
+def test_arm_that_a_person_moves_is_read(edition: str, released: bool) -> None:
+    bench = Bench(edition, powered=released)
+    led = bench.connect("Teleoperator", released=released)
+    bench.arm.lead([(1.0, (10.0,) * bench.arm.state.joints)])
     with pytest.raises(DeviceAlreadyConnectedError):
-        released.connect()
+        led.connect()
     bench.clock.sleep(2.0)
-    assert released.get_action() == pytest.approx(POSE, abs=0.1)
-
-
-def test_arm_that_is_always_moved_by_hand_needs_no_release() -> None:
-    bench = Bench("myarm_c650", powered=False)
-    bench.arm.lead([(1.0, (10.0,) * 7)])
-    bench.clock.sleep(2.0)
-    assert bench.teleoperator().get_action()["joint7.pos"] == pytest.approx(10.0, abs=0.1)
-    with pytest.raises(UsageError, match="has no command that releases all motors"):
-        bench.teleoperator(released=True)
+    assert led.get_action() == pytest.approx(dict.fromkeys(led.action_features, 10.0), abs=0.1)
+    if not released:
+        with pytest.raises(UsageError, match="has no command that releases all motors"):
+            bench.connect("Teleoperator", released=True)

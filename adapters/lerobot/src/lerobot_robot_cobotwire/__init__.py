@@ -1,15 +1,12 @@
-"""The arms of cobotwire as a robot and a teleoperator of LeRobot.
+"""The arms of cobotwire as a robot and a teleoperator of LeRobot, both of the type ``cobotwire``.
 
 LeRobot imports this package because of its name, and finds the classes by those of their
-configurations. Both are registered as ``cobotwire``.
+configurations.
 """
 
-from lerobot_robot_cobotwire.robot import CobotwireRobot, CobotwireRobotConfig
-from lerobot_robot_cobotwire.teleoperator import CobotwireTeleoperator, CobotwireTeleoperatorConfig
-
-__all__ = [
-    "CobotwireRobot",
-    "CobotwireRobotConfig",
-    "CobotwireTeleoperator",
-    "CobotwireTeleoperatorConfig",
-]
+from lerobot_robot_cobotwire.robot import CobotwireRobot as CobotwireRobot
+from lerobot_robot_cobotwire.robot import CobotwireRobotConfig as CobotwireRobotConfig
+from lerobot_robot_cobotwire.teleoperator import CobotwireTeleoperator as CobotwireTeleoperator
+from lerobot_robot_cobotwire.teleoperator import (
+    CobotwireTeleoperatorConfig as CobotwireTeleoperatorConfig,
+)

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import sys
-from abc import abstractmethod
+from collections.abc import Mapping
 from contextlib import ExitStack
 from dataclasses import dataclass
+from types import MappingProxyType
 from typing import Any
 
 from cobotwire import UsageError, editions
@@ -33,11 +34,13 @@ class ArmConfig:
 class ArmDevice:
     """An arm that needs no calibration, since it keeps its zero positions itself.
 
-    Requests raise DeviceNotConnectedError if the port is not open, ReplyTimeout if the arm does not
-    reply, and LinkError if the port is gone.
+    Methods may raise DeviceNotConnectedError, LinkError if the port is gone, and ReplyTimeout.
     """
 
     name: str
+    # Arguments of the client.
+    options: dict[str, Any]
+    cameras: Mapping[str, Any] = MappingProxyType({})
 
     def __init__(self, config: ArmConfig) -> None:
         """Find the edition and what it reports; nothing is opened.
@@ -46,13 +49,17 @@ class ArmDevice:
             UsageError: there is no such edition, or its arm has several devices and none is named.
         """
         self._arm: Any = None
-        self._opened = ExitStack()
         self._config, self.edition = config, editions.load(config.edition)
         self.table = self.edition.TABLE
         devices = [device.name for device in devices_of(self.table)]
         if len(devices) > 1 and config.address is None:
             raise UsageError("address", None, ", ".join(devices))
         self.positions = Positions(self.table, config.gripper)
+
+    @property
+    def action_features(self) -> dict[str, Any]:
+        """The type of each position."""
+        return dict.fromkeys(self.positions.names, float)
 
     @property
     def is_connected(self) -> bool:
@@ -67,24 +74,27 @@ class ArmDevice:
     def calibrate(self) -> None:
         """Do nothing."""
 
-    @abstractmethod
     def configure(self) -> None:
         """Prepare the arm."""
 
-    def open(self, opened: ExitStack, **options: Any) -> None:
-        """Open the port and prepare the arm; ``opened`` takes what ``disconnect`` closes.
+    def connect(self, calibrate: bool = True) -> None:
+        """Open cameras and port, and prepare the arm.
 
         Raises:
-            DeviceAlreadyConnectedError: it is open.
+            ArmNotReady: a robot has no power, is paused, or reports an error.
         """
         if self._arm is not None:
             raise DeviceAlreadyConnectedError(f"{self.name} is connected already")
-        port, address = self._config.port, self._config.address
-        client = self.edition.CLIENT(port, self._config.baudrate, address=address, **options)
-        self._arm = opened.enter_context(client)
-        opened.callback(setattr, self, "_arm", None)
-        self.configure()
-        self._opened = opened.pop_all()
+        port, speed, address = self._config.port, self._config.baudrate, self._config.address
+        with ExitStack() as opened:
+            # They close last, after the arm has its stop.
+            for camera in self.cameras.values():
+                opened.enter_context(camera)
+            client = self.edition.CLIENT(port, speed, address=address, **self.options)
+            self._arm = opened.enter_context(client)
+            opened.callback(setattr, self, "_arm", None)
+            self.configure()
+            self._opened = opened.pop_all()
 
     def disconnect(self) -> None:
         """Close everything. If an error is the reason, the arm is left as ``on_error`` says."""

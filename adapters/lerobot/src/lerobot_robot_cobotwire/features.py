@@ -11,14 +11,23 @@ from typing import Any
 
 from cobotwire import Limits, UsageError
 from cobotwire.protocol.effects import Effect, Moves, Reports, Sets, Stores, effect_of
-from cobotwire.protocol.limits import joint_limits, limited
+from cobotwire.protocol.limits import joint_limits, limited, refusals
 from cobotwire.protocol.table import Command, Table
 
-GRIPPER = "gripper.pos"
-# The opening of a gripper, in percent.
-CLOSED, OPEN = 0.0, 100.0
-# How editions call the mode in which a new target replaces the present one.
-NEWEST = ("REFRESH", "NEWEST")
+# Its position is its opening in percent.
+GRIPPER, OPENINGS = "gripper.pos", (0.0, 100.0)
+# What the effect of the first command for a use is.
+_USES: dict[str, Callable[[Effect | None], bool]] = {
+    "read gripper": lambda e: isinstance(e, Reports) and [*e.values.values()] == ["opening"],
+    "move gripper": lambda e: isinstance(e, Moves) and e.part == "gripper" and type(e.to) is str,
+    "release all motors": lambda e: isinstance(e, Sets) and e == Sets({"held": False}),
+    "choose targets": lambda e: isinstance(e, Stores) and [*e.values.values()] == ["fresh_mode"],
+}
+
+
+def find(table: Table, use: str) -> Command | None:
+    """Return the command for a use; None if the edition has none."""
+    return next((each for each in table.commands if _USES[use](effect_of(each))), None)
 
 
 class Positions:
@@ -30,10 +39,8 @@ class Positions:
     """
 
     def __init__(self, table: Table, gripper: bool) -> None:
-        """Find the queries."""
-        opening = _find(table, lambda e: isinstance(e, Reports) and _only(e.values, "opening"))
         self._joints = table.in_role("joints")
-        self._opening = opening if gripper else None
+        self._opening = find(table, "read gripper") if gripper else None
         self.joints = [f"joint{number}.pos" for number in range(1, table.joints + 1)]
         self.names = self.joints + ([GRIPPER] if self._opening else [])
 
@@ -57,13 +64,15 @@ class Targets:
         """Take the limits of the edition, narrowed by ``limits``.
 
         Raises:
-            UsageError: a limit is not allowed, or the edition has no command for the gripper.
+            UsageError: a limit is not allowed, or the edition has no geometry or gripper for it.
         """
+        if why := refusals(table, limits).get(table.in_role("joint targets").name):
+            raise UsageError("workspace", limits.workspace, message=why)
         ranges = joint_limits(limited(table, limits)) or [(-inf, inf)] * table.joints
         self.limits = dict(zip(joints, ranges, strict=True))
-        self.gripper = _find(table, _opens_gripper) if gripper else None
+        self.gripper = find(table, "move gripper") if gripper else None
         if self.gripper is not None:
-            self.limits[GRIPPER] = (CLOSED, OPEN)
+            self.limits[GRIPPER] = OPENINGS
         elif gripper:
             message = f"edition {table.edition} cannot move a gripper: use gripper=false"
             raise UsageError("gripper", gripper, message=message)
@@ -81,38 +90,3 @@ class Targets:
             if not isfinite(target):
                 raise UsageError(name, target, "a finite number")
         return {n: min(max(targets[n], low), high) for n, (low, high) in self.limits.items()}
-
-
-def release_command(table: Table) -> Command:
-    """Return the command that releases the motors of all joints and leaves the power on.
-
-    Raises:
-        UsageError: the edition has none.
-    """
-    found = _find(table, lambda e: isinstance(e, Sets) and e == Sets({"held": False}))
-    if found is None:
-        message = f"edition {table.edition} has no command that releases all motors"
-        raise UsageError("released", True, message=message)
-    return found
-
-
-def newest_target_mode(table: Table) -> tuple[Command, int] | None:
-    """Return the command and the mode in which a new target replaces all earlier ones."""
-    found = _find(table, lambda e: isinstance(e, Stores) and _only(e.values, "fresh_mode"))
-    if found is None:
-        return None
-    mode = found.request[0].fields[0]
-    raws = dict(zip(mode.labels, mode.choices))
-    return found, next(raws[label] for label in NEWEST if label in raws)
-
-
-def _find(table: Table, matches: Callable[[Effect | None], bool]) -> Command | None:
-    return next((each for each in table.commands if matches(effect_of(each))), None)
-
-
-def _only(values: Mapping[str, str], state: str) -> bool:
-    return [*values.values()] == [state]
-
-
-def _opens_gripper(effect: Effect | None) -> bool:
-    return isinstance(effect, Moves) and effect.part == "gripper" and isinstance(effect.to, str)

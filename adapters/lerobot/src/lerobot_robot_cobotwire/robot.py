@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from contextlib import ExitStack
+import logging
 from dataclasses import dataclass, field
 from typing import Any
 
-from cobotwire import Limits, UsageError
+from cobotwire import DeadMan, Limits, UsageError
+from cobotwire.client.opening import check_seconds
 from cobotwire.inspect.readiness import check_ready
+from cobotwire.protocol.limits import AXES
 from lerobot_robot_cobotwire.device import ArmConfig, ArmDevice
-from lerobot_robot_cobotwire.features import GRIPPER, Targets, newest_target_mode
+from lerobot_robot_cobotwire.features import GRIPPER, Targets, find
 from lerobot_robot_cobotwire.interface import (
     CameraConfig,
     Robot,
@@ -27,6 +29,10 @@ class CobotwireRobotConfig(ArmConfig, RobotConfig):
     max_speed: int = 50
     # The lowest and the highest angle of each joint in degrees; by default those of the edition.
     joint_limits: list[tuple[float, float] | None] | None = None
+    # Where the end may be sent: ranges for x, y and z in millimetres; by default anywhere.
+    workspace: list[tuple[float, float] | None] | None = None
+    # Seconds without an action after which the arm is stopped.
+    silence: float = 1.0
     # stop: stop the arm if an error or Ctrl-C disconnects it; leave: let it end its motion.
     on_error: str = "stop"
     # Cameras by name, as in LeRobot's own robots.
@@ -52,16 +58,17 @@ class CobotwireRobot(ArmDevice, Robot):
         # A dataset names the edition as its type of robot.
         self.name = f"{type(self).name}_{config.edition}"
         Robot.__init__(self, config)
-        self.config, self._opening = config, -1
-        self._limits = Limits(joints=config.joint_limits)
-        self._targets = Targets(self.table, self.positions.joints, config.gripper, self._limits)
+        self.config = config
+        check_seconds("silence", config.silence)
+        limits = Limits(config.joint_limits, speed=config.max_speed, workspace=config.workspace)
+        self.options = {"limits": limits, "on_error": config.on_error}
+        self._targets = Targets(self.table, self.positions.joints, config.gripper, limits)
         self.cameras = make_cameras_from_configs(config.cameras)
 
     @property
     def observation_features(self) -> dict[str, Any]:
         """The type of each position that the arm reports, and the shape of each picture."""
-        cameras = self.config.cameras.items()
-        pictures = {name: (each.height, each.width, 3) for name, each in cameras}
+        pictures = {n: (c.height, c.width, 3) for n, c in self.config.cameras.items()}
         return dict.fromkeys(self.positions.names, float) | pictures
 
     @property
@@ -69,24 +76,17 @@ class CobotwireRobot(ArmDevice, Robot):
         """The type of each target."""
         return dict.fromkeys(self._targets.limits, float)
 
-    def connect(self, calibrate: bool = True) -> None:
-        """Open the cameras and the port. The arm does not move.
-
-        Raises:
-            ArmNotReady: it has no power, is paused, or reports an error.
-        """
-        with ExitStack() as opened:
-            for camera in self.cameras.values():
-                camera.connect()
-                opened.callback(camera.disconnect)
-            self.open(opened, limits=self._limits, on_error=self.config.on_error)
-
     def configure(self) -> None:
         """Let new targets replace the present one, where the edition has a mode for that."""
         check_ready(self.arm, "send_action", self.config.port)
-        if found := newest_target_mode(self.table):
-            command, mode = found
-            getattr(self.arm, command.name)(mode)
+        if command := find(self.table, "choose targets"):
+            getattr(self.arm, command.name)(1)  # in mode 0 it waits
+        self._sent, self._is_inside = self.positions.read(self.arm), True
+
+    def connect(self, calibrate: bool = True) -> None:
+        """Also start the switch that stops the arm when no action comes."""
+        super().connect(calibrate)
+        self._dead_man = self._opened.enter_context(DeadMan(self.arm, self.config.silence))
 
     def get_observation(self) -> dict[str, Any]:
         """Return where the arm is, and what the cameras see."""
@@ -96,13 +96,25 @@ class CobotwireRobot(ArmDevice, Robot):
     def send_action(self, action: dict[str, Any]) -> dict[str, Any]:
         """Send targets without waiting, clipped to the limits; return what was sent.
 
+        If the end would leave the workspace, the joints keep their last targets.
+
         Raises:
             UsageError: a target is missing, is not a finite number, or is for no joint.
         """
         sent, speed = self._targets.clip(action), self.config.max_speed
-        self.arm.move_angles([sent[name] for name in self.positions.joints], speed, wait=False)
-        gripper = self._targets.gripper
-        if gripper is not None and self._opening != (opening := round(sent[GRIPPER])):
-            getattr(self.arm, gripper.name)(opening, speed)
-            self._opening = opening
+        joints, gripper = self.positions.joints, self._targets.gripper
+        self._dead_man.alive()
+        try:
+            self.arm.move_angles([sent[name] for name in joints], speed, wait=False)
+            self._is_inside = True
+        except UsageError as error:
+            if error.argument not in AXES:
+                raise
+            if self._is_inside:
+                logging.warning("%s; the joints keep their last targets", error)
+            self._is_inside = False
+            sent |= {name: self._sent[name] for name in joints}
+        if gripper is not None and round(sent[GRIPPER]) != round(self._sent.get(GRIPPER, -1)):
+            getattr(self.arm, gripper.name)(round(sent[GRIPPER]), speed)
+        self._sent = sent
         return {**sent}

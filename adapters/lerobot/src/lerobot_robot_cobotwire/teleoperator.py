@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from contextlib import ExitStack
 from dataclasses import dataclass
 from typing import Any
 
+from cobotwire import UsageError
 from lerobot_robot_cobotwire.device import ArmConfig, ArmDevice
-from lerobot_robot_cobotwire.features import release_command
+from lerobot_robot_cobotwire.features import find
 from lerobot_robot_cobotwire.interface import Teleoperator, TeleoperatorConfig
 
 
@@ -27,30 +27,18 @@ class CobotwireTeleoperator(ArmDevice, Teleoperator):
     name = "cobotwire"
 
     def __init__(self, config: CobotwireTeleoperatorConfig) -> None:
-        """Check the configuration; nothing is opened.
-
-        Raises:
-            UsageError: there is no such edition, or an option is not allowed.
-        """
         ArmDevice.__init__(self, config)
         Teleoperator.__init__(self, config)
-        self.config = config
-        self._release = release_command(self.table) if config.released else None
-
-    @property
-    def action_features(self) -> dict[str, Any]:
-        """The type of each position."""
-        return dict.fromkeys(self.positions.names, float)
+        self.config, self.options = config, {"on_error": "leave"}
+        self._release = find(self.table, "release all motors") if config.released else None
+        if config.released and self._release is None:
+            message = f"edition {config.edition} has no command that releases all motors"
+            raise UsageError("released", True, message=message)
 
     @property
     def feedback_features(self) -> dict[str, Any]:
         """Empty: the arm takes no feedback."""
         return {}
-
-    def connect(self, calibrate: bool = True) -> None:
-        """Open the port, and release the motors if the configuration says so."""
-        with ExitStack() as opened:
-            self.open(opened, on_error="leave")
 
     def configure(self) -> None:
         """Release the motors of an arm that replies, if the configuration says so."""

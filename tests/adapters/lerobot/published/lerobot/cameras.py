@@ -1,10 +1,8 @@
 """A stand-in for LeRobot's cameras: it has none."""
 
-from dataclasses import dataclass
 from typing import Any
 
 
-@dataclass
 class CameraConfig:
     width: int
     height: int

@@ -1,14 +1,10 @@
-"""A stand-in for LeRobot's robots: what a plugin must have."""
+"""A stand-in for LeRobot's robots; ``required`` is what a plugin must have."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, TypeVar
+from typing import Any
 
-Config = TypeVar("Config", bound=type)
-REQUIRED = (
-    *("action_features", "calibrate", "configure", "connect", "disconnect"),
-    *("is_calibrated", "is_connected"),
-)
+SHARED = "action_features calibrate configure connect disconnect is_calibrated is_connected"
 
 
 @dataclass(kw_only=True)
@@ -16,12 +12,12 @@ class RobotConfig:
     id: str | None = None
 
     @classmethod
-    def register_subclass(cls, name: str) -> Callable[[Config], Config]:
+    def register_subclass(cls, name: str) -> Callable[[type], type]:
         return lambda config: config
 
 
 class Robot:
-    required = frozenset((*REQUIRED, "observation_features", "get_observation", "send_action"))
+    required = f"{SHARED} get_observation observation_features send_action"
 
     def __init__(self, config: Any) -> None:
         self.id = config.id

@@ -1,6 +1,6 @@
-"""A stand-in for LeRobot's teleoperators: what a plugin must have."""
+"""A stand-in for LeRobot's teleoperators."""
 
-from lerobot.robots import REQUIRED, Robot, RobotConfig
+from lerobot.robots import SHARED, Robot, RobotConfig
 
 
 class TeleoperatorConfig(RobotConfig):
@@ -8,4 +8,4 @@ class TeleoperatorConfig(RobotConfig):
 
 
 class Teleoperator(Robot):
-    required = frozenset((*REQUIRED, "feedback_features", "get_action", "send_feedback"))
+    required = f"{SHARED} feedback_features get_action send_feedback"
