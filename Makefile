@@ -20,9 +20,10 @@ FUZZ_SECONDS ?= 60
 ATTACK_SECONDS ?= 180
 STATES ?= 1000000
 REV ?= HEAD
+LEROBOT ?= lerobot==0.4.4
 CARGO_FUZZ := .cargo-tools/bin/cargo-fuzz
 
-.PHONY: set-up spec-mutants help demo test lint lint-and-rust python-test computing-tests simulating-tests calling-tests waiting-tests other-tests rust-test products gen targets docs bench plots picture answers table fuzz figures clean faults conform defects attack archives bench-archive bench-compare rust-asan robots layer demos front-end front-end-if-reachable four-hours studio-pictures explore nightly release-check figures-page every-edition
+.PHONY: set-up spec-mutants help demo test lint lint-and-rust python-test computing-tests simulating-tests calling-tests waiting-tests other-tests rust-test products gen targets docs bench plots picture answers table fuzz figures clean faults conform defects attack archives lerobot bench-archive bench-compare rust-asan robots layer demos front-end front-end-if-reachable four-hours studio-pictures explore nightly release-check figures-page every-edition
 .DEFAULT_GOAL := help
 
 help: ## list the targets
@@ -195,8 +196,14 @@ every-edition: set-up ## test all editions where `make test` tests a sample
 archives: .venv/.tools .venv/.native ## export and query archives on a Dask cluster and an S3 server
 	$(BIN)/python -m pytest tests/capture/archive -o python_files='test_*.py on_*.py'
 
+# It has an environment of its own, because it requires torch: about 8 GB.
+lerobot: .venv/.tools .venv/.native ## record and replay an episode with the real LeRobot: make lerobot LEROBOT='lerobot[core-scripts]==0.6.1' PYTHON=python3.12
+	$(PYTHON) -m venv target/lerobot
+	target/lerobot/bin/python -m pip install --quiet --no-compile '$(LEROBOT)' . ./adapters/lerobot
+	LEROBOT=target/lerobot $(BIN)/python -m pytest -o python_files='on_*.py' tests/adapters
+
 .PHONY: wheels-check
-wheels-check: .venv/.base ## build both distributions; run README, website and three other protocols from the wheels in fresh environments: PYTHONS="python3.11 ..."
+wheels-check: .venv/.base ## build the distributions; run README, website and three other protocols from the wheels in fresh environments: PYTHONS="python3.11 ..."
 	$(BIN)/python -m pip install --quiet --group release
 	PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/python tools/wheels_check.py $(PYTHONS)
 

@@ -21,6 +21,7 @@ from module_graph import (
 )
 
 PACKAGE = vectors.ROOT / "python" / "cobotwire"
+LEROBOT = vectors.ROOT / "adapters/lerobot/src/lerobot_robot_cobotwire"
 
 # The rooms of the package. Each may import only the rooms above it.
 ROOMS = (
@@ -88,8 +89,12 @@ def test_package_holds_the_rooms_and_nothing_else() -> None:
 
 @pytest.mark.parametrize(
     ("root", "name"),
-    [(PACKAGE, "cobotwire"), (vectors.ROOT / "codegen/src/cobotwire_codegen", "cobotwire_codegen")],
-    ids=["package", "generator"],
+    [
+        (PACKAGE, "cobotwire"),
+        (vectors.ROOT / "codegen/src/cobotwire_codegen", "cobotwire_codegen"),
+        (LEROBOT, "lerobot_robot_cobotwire"),
+    ],
+    ids=["package", "generator", "adapter of LeRobot"],
 )
 def test_python_modules_and_folders_have_no_import_cycle(root: Path, name: str) -> None:
     imports = python_imports_of(root, name)
@@ -101,6 +106,12 @@ def test_python_modules_and_folders_have_no_import_cycle(root: Path, name: str) 
 @pytest.mark.parametrize("crate", ["core", "py", "fuzz"])
 def test_rust_modules_have_no_import_cycle(crate: str) -> None:
     assert import_cycle(rust_imports_of(vectors.ROOT / "rust" / crate / "src")) == []
+
+
+def test_one_module_imports_lerobot() -> None:
+    for path in LEROBOT.glob("*.py"):
+        packages = {name.partition(".")[0] for name in python_imports(path, "x")}
+        assert ("lerobot" in packages) is (path.stem == "interface"), path
 
 
 def test_generator_and_package_do_not_import_each_other() -> None:

@@ -33,7 +33,8 @@ LEFT = """
 Left to do by hand, in this order:
   1. Confirm the repository's URL (pyproject.toml names {repository}) and the site's.
   2. Once: register .github/workflows/release.yml with the environment "pypi" as trusted publisher
-     of the projects cobotwire and cobotwire-codegen on PyPI; require an approval in it.
+     of the projects cobotwire, cobotwire-codegen and lerobot_robot_cobotwire on PyPI; require an
+     approval in it.
   3. make test, make release-check, make wheels-check, make fuzz FUZZ_SECONDS=600, make conform
   4. git tag --sign v{version} && git push origin v{version}
   5. Read what the workflow built, then approve its job "publish".
@@ -111,7 +112,7 @@ def check_ci() -> str:
 
 
 def check_distributions() -> str:
-    """Build both distributions; check metadata, contents and versions."""
+    """Build the distributions; check metadata, contents and versions."""
     with tempfile.TemporaryDirectory() as folder:
         build(Path(folder))
         return check_files(Path(folder))
@@ -121,8 +122,8 @@ def check_files(folder: Path) -> str:
     """Check distributions that were built."""
     files = sorted(folder.iterdir())
     wrong = [file.name for file in files if f"-{version()}" not in file.name]
-    if len(files) < 4 or wrong:
-        raise Failed(f"expected two source distributions and wheels of {version()}: {files}")
+    if len(files) < 6 or wrong:
+        raise Failed(f"expected three source distributions and wheels of {version()}: {files}")
     _run(sys.executable, "-m", "twine", "check", "--strict", *map(str, files))
     wheels = [str(file) for file in files if file.suffix == ".whl"]
     # W002: duplicate files. Editions of like robots have modules with the same text.
@@ -131,7 +132,7 @@ def check_files(folder: Path) -> str:
 
 
 def build(folder: Path) -> None:
-    """Build both source distributions, and from these both wheels."""
+    """Build the source distributions, and from these the wheels."""
     python = sys.executable
     # The library of the studio's page, which is not committed.
     _run(python, str(ROOT / "tools" / "front_end.py"))
@@ -139,7 +140,8 @@ def build(folder: Path) -> None:
     [source] = folder.glob("cobotwire-*.tar.gz")
     command = ("pip", "wheel", "--quiet", "--no-deps", "--wheel-dir", str(folder))
     _run(python, "-m", *command, str(source))
-    _run(python, "-m", "build", "--outdir", str(folder), str(ROOT / "codegen"))
+    for other in ("codegen", "adapters/lerobot"):
+        _run(python, "-m", "build", "--outdir", str(folder), str(ROOT / other))
 
 
 def notes() -> str:

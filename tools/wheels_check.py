@@ -1,4 +1,4 @@
-"""Build both distributions, install them as a user does, and run README and website there.
+"""Build the distributions, install them (without LeRobot) as a user does, and run the pages.
 
     python tools/wheels_check.py [PYTHON ...]    # make wheels-check PYTHONS="python3.11 ..."
 

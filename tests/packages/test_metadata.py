@@ -1,4 +1,4 @@
-"""Check what both distributions say of themselves: one version, the same links, absolute links."""
+"""Check what the distributions say of themselves: one version, the same links, absolute links."""
 
 from __future__ import annotations
 
@@ -20,7 +20,12 @@ from cobotwire.editions.clients import EDITIONS
 from newcomer.installing import run
 from vectors import ROOT
 
-PROJECTS = {"cobotwire": ROOT / "pyproject.toml", "codegen": ROOT / "codegen" / "pyproject.toml"}
+PROJECTS = {
+    "cobotwire": ROOT / "pyproject.toml",
+    "codegen": ROOT / "codegen" / "pyproject.toml",
+    "lerobot": ROOT / "adapters" / "lerobot" / "pyproject.toml",
+}
+ADDED = ("codegen", "lerobot")
 LINK = re.compile(r"\]\(([^)\s]+)\)")
 
 
@@ -29,9 +34,9 @@ def project(name: str) -> dict[str, Any]:
     return table
 
 
-def test_version_is_stated_once_and_is_that_of_both_distributions() -> None:
+def test_version_is_stated_once_and_is_that_of_all_distributions() -> None:
     stated = tomllib.loads((ROOT / "Cargo.toml").read_text())["workspace"]["package"]["version"]
-    assert [project(name).get("version") for name in PROJECTS] == [None, None]
+    assert [project(name).get("version") for name in PROJECTS] == [None] * 3
     assert version("cobotwire") == version("cobotwire-codegen") == stated
     assert cobotwire.__version__ == stated
     crates = tomllib.loads((ROOT / "Cargo.lock").read_text())["package"]
@@ -58,10 +63,12 @@ def test_stub_names_what_the_package_has() -> None:
     } == EDITIONS
 
 
-def test_both_distributions_have_the_same_links_and_licence() -> None:
-    assert project("cobotwire")["urls"] == project("codegen")["urls"]
-    assert {"Documentation", "Repository", "Changelog", "Issues"} <= set(project("codegen")["urls"])
-    assert (ROOT / "codegen" / "LICENSE").read_text() == (ROOT / "LICENSE").read_text()
+@pytest.mark.parametrize("name", ADDED)
+def test_distributions_have_the_same_links_and_licence(name: str) -> None:
+    assert project("cobotwire")["urls"] == project(name)["urls"]
+    assert {"Documentation", "Repository", "Changelog", "Issues"} <= set(project(name)["urls"])
+    licence = PROJECTS[name].with_name("LICENSE").read_text()
+    assert licence == (ROOT / "LICENSE").read_text()
 
 
 def declared() -> set[str]:
@@ -70,7 +77,7 @@ def declared() -> set[str]:
     for path in PROJECTS.values():
         table = tomllib.loads(path.read_text("utf-8"))
         extras, groups = (
-            table["project"]["optional-dependencies"],
+            table["project"].get("optional-dependencies", {}),
             table.get("dependency-groups", {}),
         )
         stated += [*table["build-system"]["requires"], *table["project"]["dependencies"]]
@@ -106,7 +113,7 @@ def test_page_of_dependencies_names_each_and_no_version() -> None:
     assert not re.search(r"\d\.\d", table)
 
 
-@pytest.mark.parametrize("name", PROJECTS)
+@pytest.mark.parametrize("name", ["cobotwire", "codegen"])
 def test_extra_all_has_every_other_extra(name: str) -> None:
     extras = project(name)["optional-dependencies"]
     [everything] = extras.pop("all")
@@ -114,10 +121,11 @@ def test_extra_all_has_every_other_extra(name: str) -> None:
     assert sorted(named) == sorted(extras)
 
 
-def test_long_description_links_to_absolute_addresses_of_existing_files() -> None:
+@pytest.mark.parametrize("name", ADDED)
+def test_long_description_links_to_absolute_addresses_of_existing_files(name: str) -> None:
     """That of cobotwire is the README: tests/docs/test_readme.py."""
-    repository = project("codegen")["urls"]["Repository"]
-    links = LINK.findall((ROOT / "codegen" / "README.md").read_text(encoding="utf-8"))
+    repository = project(name)["urls"]["Repository"]
+    links = LINK.findall(PROJECTS[name].with_name("README.md").read_text(encoding="utf-8"))
     assert links
     assert [link for link in links if not link.startswith("https://")] == []
     prefix = f"{repository}/blob/main/"

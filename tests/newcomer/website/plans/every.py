@@ -15,6 +15,7 @@ PLANS: dict[str, Plan] = {
     "docs/guide/drive.md": guides.DRIVE,
     "docs/simulation.md": guides.SIMULATION,
     "docs/studio.md": guides.STUDIO,
+    "docs/lerobot.md": guides.LEROBOT,
     "docs/pymycobot.md": guides.PYMYCOBOT,
     "docs/contribute/attack.md": guides.ATTACK,
     "docs/contribute/searches.md": guides.SEARCHES,

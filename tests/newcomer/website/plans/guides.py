@@ -70,6 +70,16 @@ STUDIO = Plan(
     },
 )
 
+ARMS = NotRun("its arms serve LeRobot, which needs torch: tests/adapters/lerobot/on_lerobot.py")
+LEROBOT = Plan(
+    commands={
+        "pip install lerobot_robot_cobotwire": NotRun("it installs torch"),
+        "cobotwire sim --powered --tcp 127.0.0.1:9001": ARMS,
+        "cobotwire sim --powered --tcp 127.0.0.1:9002 --led hand.txt": ARMS,
+        "cobotwire call socket://127.0.0.1:9001 get_angles": ARMS,
+    }
+)
+
 PYMYCOBOT = Plan(
     programs={
         "from cobotwire import MyCobot280": Program(
