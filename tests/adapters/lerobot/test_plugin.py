@@ -87,6 +87,9 @@ def test_targets_are_clipped_and_the_newest_replaces_those_before_it() -> None:
         with pytest.raises(UsageError, match=r"allowed: (joint1\.pos|a finite number)"):
             robot.send_action(wrong)
     assert len(bench.requests) == 2
+    without_limits = Bench("pro400").connect()
+    with pytest.raises(UsageError, match="angles"):
+        without_limits.send_action(dict.fromkeys(JOINTS, 1e6))
 
 
 def test_joints_stay_inside_the_workspace_and_the_gripper_moves_when_its_target_changes(
@@ -101,9 +104,23 @@ def test_joints_stay_inside_the_workspace_and_the_gripper_moves_when_its_target_
     assert bench.requests == ["set_gripper_value", "send_angles", "set_gripper_value"]
     assert "would move the end to z -11.3 mm" in caplog.records[1].message
     assert len(caplog.records) == 2
-    for option in ({"workspace": [None, None, None]}, {"gripper": True}):
-        with pytest.raises(UsageError, match=r"states no geometry|cannot move a gripper"):
-            Bench("myarm_m750").connect(**option)
+    assert {type(value) for value in robot.get_observation().values()} == {float}
+
+
+@pytest.mark.parametrize(
+    ("option", "text"),
+    [
+        ({"workspace": [None, None, None]}, "states no geometry"),
+        ({"gripper": True}, "cannot move a gripper: use gripper=false"),
+        ({"max_speed": 140}, "limits.speed is 140"),
+        ({"silence": 0.0}, r"silence is 0\.0"),
+    ],
+)
+def test_wrong_option_is_refused_before_the_port_is_opened(option: Any, text: str) -> None:
+    with pytest.raises(UsageError, match=text):
+        plugin.CobotwireRobot(
+            plugin.CobotwireRobotConfig(edition="myarm_m750", port="nowhere", **option)
+        )
 
 
 @pytest.mark.parametrize("error", [None, KeyboardInterrupt()])
@@ -125,9 +142,13 @@ def test_disconnect_after_an_error_stops_the_arm(on_error: str, error: Any) -> N
 
 def test_arm_is_stopped_when_no_action_comes() -> None:
     bench = Bench()
-    robot = bench.connect(silence=0.5)
-    robot.send_action(POSE)
-    bench.clock.sleep(0.6)
+    robot = bench.connect(silence=0.5, max_speed=10)
+    for _ in range(3):
+        robot.send_action(POSE)
+        bench.clock.sleep(0.3)
+        time.sleep(0.05)
+    assert "stop" not in bench.requests
+    bench.clock.sleep(0.3)
     ends = time.monotonic() + 5.0
     while bench.requests[-1] != "stop" and time.monotonic() < ends:
         time.sleep(0.01)
