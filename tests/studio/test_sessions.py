@@ -19,7 +19,8 @@ from cobotwire.editions import mycobot280
 from cobotwire.editions.mycobot280 import Angles
 from cobotwire.editions.mycobot280 import messages as m
 from cobotwire.protocol.errors import UsageError
-from cobotwire.protocol.limits import Limits, limited, refusals
+from cobotwire.protocol.limits import Limits, limited
+from cobotwire.protocol.refusals import refusals
 from cobotwire.simulator import SimulatedArm, TcpServer
 from cobotwire.simulator.faults import find
 from cobotwire.studio.arm_line import UNANSWERED, ArmLine, PortOptions

@@ -8,7 +8,8 @@ from typing import Any
 from cobotwire.codec.interface import Codec
 from cobotwire.kinematics import coords_of, geometry_of
 from cobotwire.protocol.errors import UsageError
-from cobotwire.protocol.limits import AXES, Limits, refusals
+from cobotwire.protocol.limits import AXES, Limits
+from cobotwire.protocol.refusals import refusals
 from cobotwire.protocol.roles import row_index
 from cobotwire.protocol.table import Address, Command
 from cobotwire.session.request import EncodedRequest, RequestEncoder

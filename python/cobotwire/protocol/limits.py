@@ -10,9 +10,8 @@ from collections.abc import Sequence
 from math import isfinite
 from typing import Any, NamedTuple
 
-from cobotwire.protocol.effects import Stores, effect_of
 from cobotwire.protocol.errors import UsageError
-from cobotwire.protocol.roles import moves_arm, picked, row_index
+from cobotwire.protocol.roles import picked, row_index
 from cobotwire.protocol.table import Case, Command, Field, Number, Role, Table, Variant
 
 # No number on the wire is that large, and scaling it does not overflow.
@@ -27,9 +26,8 @@ class Limits(NamedTuple):
 
     None keeps the edition's limit of one part, or of all parts. ``joints`` and ``coords`` limit
     targets alone: commands that move the arm by a distance (``jog_increment``), or until it is
-    stopped, stay as they are. ``speed`` and ``workspace`` hold for everything that moves the arm: a
-    command that could exceed them, whatever its arguments, is refused (:func:`refusals`). Nothing
-    limits ``stop``.
+    stopped, stay as they are. ``speed`` and ``workspace`` hold for everything that moves the arm:
+    commands that could exceed them are refused (``protocol/refusals``). Nothing limits ``stop``.
 
     Attributes:
         joints: a range in degrees for each joint, base first.
@@ -74,25 +72,6 @@ def limited(table: Table, limits: Limits) -> Table:
     return table._replace(commands=commands)
 
 
-def refusals(table: Table, limits: Limits) -> dict[str, str]:
-    """Return the commands that are not sent within ``limits``, each with the reason.
-
-    With a workspace these are the motions to a place that is not known before they are sent, and
-    the settings that change what coordinates mean; with a speed, motions that take no percentage.
-    """
-    found = {}
-    for command in table.commands:
-        why = ""
-        if limits.workspace is not None:
-            why = _leaves_workspace(table, command)
-        if limits.speed is not None and not why and moves_arm(table, command):
-            capped = all(any(map(_is_speed, variant.fields)) for variant in command.request)
-            why = "" if capped else "limits.speed is set, and it takes no speed in percent"
-        if why:
-            found[command.name] = f"{command.name}() is refused: {why}"
-    return found
-
-
 def joint_limits(table: Table) -> list[Range]:
     """Return the limits of each joint: the ranges of targets, or else those that are stated.
 
@@ -121,6 +100,9 @@ def _names(table: Table, row: Role) -> list[str]:
 class _Rule:
     """The given ranges, and the names of the parts that they limit."""
 
+    # Whether ranges that reach beyond the edition's are cut to these.
+    _cuts = False
+
     def __init__(self, what: str, ranges: Ranges, names: list[str], wider: bool = False) -> None:
         self._what, self._wider, self.names = what, wider, names
         self._ranges = checked_ranges(what, ranges, len(names))
@@ -132,18 +114,24 @@ class _Rule:
             return number
         lowest, highest = _raw_range(number, given)
         inside = number.raw_range if self._wider else (number.minimum, number.maximum)
+        if self._cuts:
+            lowest, highest = max(lowest, inside[0]), min(highest, inside[1])
         if lowest < inside[0] or highest > inside[1] or lowest > highest:
             low, high = map(number.physical, inside)
             why = (
                 "what the wire carries" if self._wider else "the edition's; wider=True allows more"
             )
-            allowed = f"a range inside {low:g}..{high:g} {number.units}, {why}"
-            raise UsageError(f"limits.{self._what}[{part}]", given, allowed)
+            fits = f"a range inside {low:g}..{high:g} {number.units}, {why}"
+            meets = f"a range that meets {low:g}..{high:g} {number.units}"
+            argument = f"limits.{self._what}[{part}]"
+            raise UsageError(argument, given, meets if self._cuts else fits)
         return number._replace(minimum=lowest, maximum=highest)
 
 
 class _Workspace(_Rule):
-    """The ranges of x, y and z; the edition's stay where they are narrower."""
+    """The ranges of x, y and z."""
+
+    _cuts = True
 
     def __init__(self, workspace: Ranges, names: list[str]) -> None:
         box = dict(zip(AXES, checked_ranges("workspace", workspace, len(AXES))))
@@ -151,18 +139,6 @@ class _Workspace(_Rule):
             message = f"a workspace needs the coordinates x, y, z; this edition has {names}"
             raise UsageError("limits.workspace", workspace, message=message)
         super().__init__("workspace", [box.get(name) for name in names], names)
-
-    def number(self, part: int, number: Number) -> Number:
-        given = self._ranges[part]
-        if given is None:
-            return number
-        lowest, highest = _raw_range(number, given)
-        lowest, highest = max(lowest, number.minimum), min(highest, number.maximum)
-        if lowest > highest:
-            low, high = number.physical(number.minimum), number.physical(number.maximum)
-            allowed = f"a range of {self.names[part]} that meets {low:g}..{high:g} {number.units}"
-            raise UsageError(f"limits.workspace[{part}]", given, allowed)
-        return number._replace(minimum=lowest, maximum=highest)
 
 
 def checked_ranges(what: str, ranges: Ranges, count: int) -> list[Range | None]:
@@ -195,18 +171,12 @@ def _checked_speed(speed: float) -> float:
 
 
 def _slower(command: Command, cap: float) -> Command:
-    """Return a command of which each speed in percent is at most ``cap``."""
-    variants = command.request
-    if not any(_is_speed(field) for variant in variants for field in variant.fields):
-        return command
-    return command._replace(
-        request=tuple(
-            variant._replace(
-                fields=tuple(_capped(f, cap) if _is_speed(f) else f for f in variant.fields)
-            )
-            for variant in variants
-        )
-    )
+    """Return a command with each of its speeds in percent at most ``cap``."""
+    rows = [
+        tuple(_capped(field, cap) if is_speed(field) else field for field in variant.fields)
+        for variant in command.request
+    ]
+    return command._replace(request=tuple(map(Variant, rows)))
 
 
 def _capped(field: Field, cap: float) -> Field:
@@ -217,27 +187,10 @@ def _capped(field: Field, cap: float) -> Field:
     return field._replace(cases=tuple(cases))
 
 
-def _is_speed(field: Field) -> bool:
+def is_speed(field: Field) -> bool:
+    """Return whether a field is a speed in percent."""
     # How far a gripper opens is in percent too.
     return field.name == "speed" and all(number.unit == "percent" for number in field.numbers)
-
-
-# The state that decides what coordinates mean: of the end or a tool, from the base or the world.
-_FRAMES = frozenset({"tool", "world", "reference_frame", "end_type"})
-
-
-def _leaves_workspace(table: Table, command: Command) -> str:
-    """Return why a command could leave a workspace whose ranges its targets keep; or nothing."""
-    effect = effect_of(command)
-    if isinstance(effect, Stores) and not _FRAMES.isdisjoint(effect.values.values()):
-        return "it changes what coordinates mean, and limits.workspace is set"
-    if not moves_arm(table, command) or command.role in ("coordinate targets", "coordinate target"):
-        return ""
-    if command.role != "joint targets":
-        return "limits.workspace is set, and where the end would go is not known before"
-    if table.robot.geometry is None:
-        return f"limits.workspace is set, and edition {table.edition} states no geometry"
-    return ""
 
 
 def _command(command: Command, rule: _Rule) -> Command:

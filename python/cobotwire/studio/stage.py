@@ -11,7 +11,8 @@ from cobotwire import codec as codecs
 from cobotwire.editions import Edition
 from cobotwire.protocol.errors import UsageError
 from cobotwire.protocol.json_values import as_json_value
-from cobotwire.protocol.limits import Limits, limited, refusals
+from cobotwire.protocol.limits import Limits, limited
+from cobotwire.protocol.refusals import refusals
 from cobotwire.studio.controls import controls
 from cobotwire.studio.describing import Describer
 from cobotwire.studio.explained import Explainer
