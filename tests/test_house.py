@@ -39,6 +39,7 @@ ROOMS = (
     "inspect",
     "conformance",
     "studio",
+    "adapters",
     "cli",
 )
 # Each third-party library has one importer, so that it can be replaced in one place.
@@ -57,6 +58,7 @@ ONE_IMPORTER = {
     "libcst": ["pymycobot/migrate/"],
     "cryptography": ["inspect/ed25519.py"],
     "ruamel": ["simulator/faults/nodes.py"],
+    "mcp": ["adapters/mcp/server.py"],
     "starlette": ["studio/app.py", "studio/feed.py", "studio/serving.py"],
     "uvicorn": ["studio/accepting.py", "studio/serving.py"],
 }

@@ -28,6 +28,7 @@ VERBS = {
     "capture": "Show what recordings hold; cut, merge and repair them.",
     "sim": "Serve a simulated arm.",
     "studio": "Show an arm or a recording in the browser.",
+    "mcp": "Offer an arm to a language model.",
     "replay": "Print a recording, or serve it as an arm.",
     "plot": "Draw a recording.",
     "conform": "Test an arm, a client or a codec.",

@@ -1,0 +1,224 @@
+"""The server: it owns the arm, answers one client of MCP on stdin and stdout, and ends with it."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import threading
+from collections.abc import AsyncIterator, Coroutine
+from contextlib import suppress
+from typing import Any, NamedTuple, cast
+
+from mcp import types
+from mcp.server import Server, ServerRequestContext
+from mcp.server.stdio import stdio_server
+
+import cobotwire
+from cobotwire import editions
+from cobotwire.adapters.mcp.tools import STOP, Choice, ToolSpec, tools
+from cobotwire.client.aio import AsyncClient
+from cobotwire.client.aio_dead_man import AsyncDeadMan
+from cobotwire.protocol.errors import CobotwireError, did_you_mean
+from cobotwire.protocol.limits import Limits
+
+Context = ServerRequestContext[Any]
+INSTRUCTIONS = (
+    "These tools control a robot arm, {title}. {motion} Results have their units. "
+    "stop works at any time, also while another tool waits."
+)
+MOVES = "It moves for real: read where it is first, move slowly, and keep people in mind."
+WATCHES = "Only queries are permitted: the user starts the server with --allow-motion to move it."
+
+
+class Options(NamedTuple):
+    """The arm, and what a client of MCP may do with it.
+
+    Attributes:
+        port: its port or URL; ``edition``, ``baudrate``, ``record``, ``address`` as for clients.
+        allow_motion: whether anything but queries may be sent.
+        limits: what the client of the arm keeps within.
+        silence: seconds without a message after which a motion is stopped.
+        choice: which tools there are.
+    """
+
+    port: str
+    edition: str
+    baudrate: int | None = None
+    record: str | None = None
+    address: int | str | None = None
+    allow_motion: bool = False
+    limits: Limits = Limits()
+    silence: float = 60.0
+    choice: Choice = "basic"
+
+
+class ArmServer:
+    """The tools of one arm, which is open. Leaving its ``async with`` block stops a motion."""
+
+    def __init__(self, arm: AsyncClient, options: Options) -> None:
+        self._arm, self._options = arm, options
+        self._tools = tools(arm.table, options.limits, options.allow_motion, options.choice)
+        self._tasks: set[asyncio.Task[Any]] = set()
+        self._moving, self._stops = False, 0
+        watched = options.allow_motion and STOP in self._tools
+        self._dead_man = AsyncDeadMan(arm, options.silence) if watched else None
+        motion = MOVES if options.allow_motion else WATCHES
+        self.server = Server(
+            "cobotwire",
+            version=cobotwire.__version__,
+            instructions=INSTRUCTIONS.format(title=arm.table.title, motion=motion),
+            on_list_tools=self._list,
+            on_call_tool=self._call,
+            on_ping=self._ping,
+        )
+
+    async def __aenter__(self) -> ArmServer:
+        if self._dead_man is not None:
+            await self._dead_man.__aenter__()
+            self._dead_man.rest()
+        return self
+
+    async def __aexit__(self, *error: object) -> None:
+        for task in self._tasks:
+            task.cancel()
+        await asyncio.gather(*self._tasks, return_exceptions=True)
+        if self._dead_man is not None:
+            await self._dead_man.__aexit__()
+            if self._moving:
+                # If it cannot be sent, the port is gone.
+                with suppress(CobotwireError):
+                    await self._arm._stop_all()
+
+    def _heard(self, moves: bool) -> None:
+        """Note a message of the client; the arm is watched from a motion on until a stop."""
+        if self._dead_man is None:
+            return
+        if self._dead_man.stops != self._stops:
+            self._stops, self._moving = self._dead_man.stops, False
+        self._moving = self._moving or moves
+        if self._moving:
+            self._dead_man.alive()
+
+    async def _ping(self, context: Context, params: object) -> types.EmptyResult:
+        self._heard(False)
+        return types.EmptyResult()
+
+    async def _list(self, context: Context, params: object) -> types.ListToolsResult:
+        self._heard(False)
+        shown = [
+            types.Tool(
+                name=spec.name,
+                title=spec.command.title,
+                description=spec.description,
+                input_schema=spec.schema,
+                annotations=types.ToolAnnotations.model_validate(spec.hints),
+            )
+            for spec in self._tools.values()
+        ]
+        return types.ListToolsResult(tools=shown)
+
+    async def _call(
+        self, context: Context, params: types.CallToolRequestParams
+    ) -> types.CallToolResult:
+        try:
+            spec = self._tools.get(params.name)
+            if spec is None:
+                return _failed(self._unknown(params.name))
+            result = await self._run(self._send(spec, params.arguments or {}))
+        except CobotwireError as error:
+            return _failed(str(error))
+        text = types.TextContent(type="text", text=json.dumps(result, ensure_ascii=False))
+        return types.CallToolResult(content=[text], structured_content=result)
+
+    async def _run(self, work: Coroutine[Any, Any, Any]) -> Any:
+        """Run a call in a task of its own, which sends stop for a motion that is cancelled."""
+        task = asyncio.create_task(work)
+        self._tasks.add(task)
+        task.add_done_callback(self._tasks.discard)
+        try:
+            return await asyncio.shield(task)
+        except asyncio.CancelledError:
+            task.cancel()
+            raise
+
+    async def _send(self, spec: ToolSpec, given: dict[str, Any]) -> dict[str, Any]:
+        if spec.name == STOP:
+            await self._arm._stop_all()
+            self._moving = False
+            if self._dead_man is not None:
+                self._dead_man.rest()
+            return spec.result(None)
+        arguments = spec.arguments(given)
+        self._heard(spec.command.starts_motion)
+        method = getattr(self._arm, spec.name)
+        if isinstance(arguments, dict):
+            return spec.result(await method(**arguments))
+        return spec.result(await method(*arguments))
+
+    def _unknown(self, name: str) -> str:
+        everything = tools(self._arm.table, Limits(), True, "all")
+        if name not in everything:
+            return f"there is no tool {name!r}{did_you_mean(name, self._tools)}"
+        command = everything[name].command
+        if command.safety != "query" and not self._options.allow_motion:
+            return (
+                f"{name} is not a query ({command.safety}): the user starts the server with "
+                "--allow-motion to permit it"
+            )
+        return f"{name} is not offered: it is outside of the limits, or needs --tools all"
+
+
+def _failed(why: str) -> types.CallToolResult:
+    return types.CallToolResult(content=[types.TextContent(type="text", text=why)], is_error=True)
+
+
+def serve(options: Options) -> None:
+    """Serve until the client closes stdin, or Ctrl-C.
+
+    Raises:
+        UsageError: an option is not allowed.
+        LinkError: the port cannot be opened.
+        CaptureError: the recording is incomplete.
+    """
+    try:
+        asyncio.run(_serve(options))
+    except* BrokenPipeError:
+        # The client is gone; the arm was stopped.
+        return
+
+
+async def _lines() -> AsyncIterator[str]:
+    """Yield the lines of stdin; the thread that waits for one delays no end of the program."""
+    loop, lines = asyncio.get_running_loop(), asyncio.Queue[str | None]()
+
+    def read() -> None:
+        # The loop may have ended.
+        with (
+            open(0, encoding="utf-8", errors="replace", closefd=False) as file,
+            suppress(RuntimeError),
+        ):
+            for line in file:
+                loop.call_soon_threadsafe(lines.put_nowait, line)
+            loop.call_soon_threadsafe(lines.put_nowait, None)
+
+    threading.Thread(target=read, daemon=True).start()
+    while (line := await lines.get()) is not None:
+        yield line
+
+
+async def _serve(options: Options) -> None:
+    client = editions.load(options.edition).ASYNC_CLIENT
+    arm = client(
+        options.port,
+        options.baudrate,
+        limits=options.limits,
+        record=options.record,
+        address=options.address,
+    )
+    async with (
+        arm,
+        ArmServer(arm, options) as served,
+        stdio_server(cast(Any, _lines())) as (received, sent),
+    ):
+        server = served.server
+        await server.run(received, sent, server.create_initialization_options())
