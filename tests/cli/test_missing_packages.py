@@ -61,6 +61,7 @@ def _imported(path: Path) -> set[str]:
             ["plot", "arm.pcapng", "-o", "arm.svg"],
             "plotting needs matplotlib: pip install 'cobotwire[plot]'",
         ),
+        ("mcp", ["mcp", "/dev/null"], "cobotwire mcp needs mcp: pip install 'cobotwire[mcp]'"),
         *(
             (
                 package,

@@ -183,8 +183,7 @@ def serve(options: Options) -> None:
     try:
         asyncio.run(_serve(options))
     except* BrokenPipeError:
-        # The client is gone; the arm was stopped.
-        return
+        pass  # The client is gone; the arm was stopped.
 
 
 async def _lines() -> AsyncIterator[str]:

@@ -16,6 +16,7 @@ PLANS: dict[str, Plan] = {
     "docs/simulation.md": guides.SIMULATION,
     "docs/studio.md": guides.STUDIO,
     "docs/lerobot.md": guides.LEROBOT,
+    "docs/mcp.md": guides.MCP,
     "docs/pymycobot.md": guides.PYMYCOBOT,
     "docs/contribute/attack.md": guides.ATTACK,
     "docs/contribute/searches.md": guides.SEARCHES,

@@ -77,7 +77,13 @@ LEROBOT = Plan(
         "cobotwire sim --powered --tcp 127.0.0.1:9001": ARMS,
         "cobotwire sim --powered --tcp 127.0.0.1:9002 --led hand.txt": ARMS,
         "cobotwire call socket://127.0.0.1:9001 get_angles": ARMS,
-    }
+    },
+)
+
+MCP = Plan(
+    commands={
+        "pip install 'cobotwire[mcp]'": INSTALLED,
+    },
 )
 
 PYMYCOBOT = Plan(
