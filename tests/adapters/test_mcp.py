@@ -72,8 +72,8 @@ def test_smallest_arguments_of_a_schema_are_a_request_of_the_edition(name: str) 
         names = [each for each in known if each in (*first, *spec.schema["required"])]
         given = {each: _least(known[each]) for each in names}
         jsonschema.validate(given, spec.schema)
-        arguments = spec.arguments(given)
-        if isinstance(arguments, dict) and not _has_groups(spec):
+        positional, arguments = spec.arguments(given)
+        if not positional and not _has_groups(spec):
             encoder.encode_request(spec.command.request_type(**arguments))
 
 
@@ -107,8 +107,8 @@ def test_any_json_is_a_request_or_an_error_of_the_caller(data: st.DataObject) ->
     spec = SPECS[data.draw(st.integers(0, len(SPECS) - 1))]
     names = st.sampled_from([*spec.schema["properties"], "x"])
     try:
-        arguments = spec.arguments(data.draw(st.dictionaries(names, JSON, max_size=4)))
-        if isinstance(arguments, dict):
+        positional, arguments = spec.arguments(data.draw(st.dictionaries(names, JSON, max_size=4)))
+        if not positional:
             request = spec.command.request_type(**arguments)
             RequestEncoder(codecs.load(TABLE)).encode_request(request)
     except UsageError:

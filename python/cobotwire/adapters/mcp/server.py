@@ -15,10 +15,10 @@ from mcp.server.stdio import stdio_server
 
 import cobotwire
 from cobotwire import editions
-from cobotwire.adapters.mcp.tools import STOP, Choice, ToolSpec, tools
+from cobotwire.adapters.mcp.tools import STOP, Choice, tools
 from cobotwire.client.aio import AsyncClient
 from cobotwire.client.aio_dead_man import AsyncDeadMan
-from cobotwire.protocol.errors import CobotwireError, did_you_mean
+from cobotwire.protocol.errors import CobotwireError, UsageError, did_you_mean
 from cobotwire.protocol.limits import Limits
 
 Context = ServerRequestContext[Any]
@@ -33,12 +33,8 @@ WATCHES = "Only queries are permitted: the user starts the server with --allow-m
 class Options(NamedTuple):
     """The arm, and what a client of MCP may do with it.
 
-    Attributes:
-        port: its port or URL; ``edition``, ``baudrate``, ``record``, ``address`` as for clients.
-        allow_motion: whether anything but queries may be sent.
-        limits: what the client of the arm keeps within.
-        silence: seconds without a message after which a motion is stopped.
-        choice: which tools there are.
+    Without ``allow_motion`` only queries and stop are sent. ``silence`` are the seconds without a
+    message after which a motion is stopped; ``choice`` is which tools there are.
     """
 
     port: str
@@ -120,15 +116,17 @@ class ArmServer:
     async def _call(
         self, context: Context, params: types.CallToolRequestParams
     ) -> types.CallToolResult:
+        result: dict[str, Any] | None = None
         try:
-            spec = self._tools.get(params.name)
-            if spec is None:
-                return _failed(self._unknown(params.name))
-            result = await self._run(self._send(spec, params.arguments or {}))
+            result = await self._run(self._send(params.name, params.arguments or {}))
+            text = json.dumps(result, ensure_ascii=False)
         except CobotwireError as error:
-            return _failed(str(error))
-        text = types.TextContent(type="text", text=json.dumps(result, ensure_ascii=False))
-        return types.CallToolResult(content=[text], structured_content=result)
+            text = str(error)
+        return types.CallToolResult(
+            content=[types.TextContent(type="text", text=text)],
+            structured_content=result,
+            is_error=result is None,
+        )
 
     async def _run(self, work: Coroutine[Any, Any, Any]) -> Any:
         """Run a call in a task of its own, which sends stop for a motion that is cancelled."""
@@ -141,19 +139,19 @@ class ArmServer:
             task.cancel()
             raise
 
-    async def _send(self, spec: ToolSpec, given: dict[str, Any]) -> dict[str, Any]:
-        if spec.name == STOP:
+    async def _send(self, name: str, given: dict[str, Any]) -> dict[str, Any]:
+        spec = self._tools.get(name)
+        if spec is None:
+            raise UsageError("name", name, message=self._unknown(name))
+        if name == STOP:
             await self._arm._stop_all()
             self._moving = False
             if self._dead_man is not None:
                 self._dead_man.rest()
             return spec.result(None)
-        arguments = spec.arguments(given)
+        positional, named = spec.arguments(given)
         self._heard(spec.command.starts_motion)
-        method = getattr(self._arm, spec.name)
-        if isinstance(arguments, dict):
-            return spec.result(await method(**arguments))
-        return spec.result(await method(*arguments))
+        return spec.result(await getattr(self._arm, name)(*positional, **named))
 
     def _unknown(self, name: str) -> str:
         everything = tools(self._arm.table, Limits(), True, "all")
@@ -166,10 +164,6 @@ class ArmServer:
                 "--allow-motion to permit it"
             )
         return f"{name} is not offered: it is outside of the limits, or needs --tools all"
-
-
-def _failed(why: str) -> types.CallToolResult:
-    return types.CallToolResult(content=[types.TextContent(type="text", text=why)], is_error=True)
 
 
 def serve(options: Options) -> None:
@@ -192,12 +186,9 @@ async def _lines() -> AsyncIterator[str]:
 
     def read() -> None:
         # The loop may have ended.
-        with (
-            open(0, encoding="utf-8", errors="replace", closefd=False) as file,
-            suppress(RuntimeError),
-        ):
+        with open(0, "rb", closefd=False) as file, suppress(RuntimeError):
             for line in file:
-                loop.call_soon_threadsafe(lines.put_nowait, line)
+                loop.call_soon_threadsafe(lines.put_nowait, line.decode("utf-8", "replace"))
             loop.call_soon_threadsafe(lines.put_nowait, None)
 
     threading.Thread(target=read, daemon=True).start()

@@ -27,7 +27,6 @@ WAITED: dict[str, Role] = {
     "move_angles": "joint targets",
     "move_coords": "coordinate targets",
 }
-KEPT_BY_POWER = "It stays when the power is off: ask before you use it."
 
 
 class ToolSpec(NamedTuple):
@@ -47,12 +46,7 @@ class ToolSpec(NamedTuple):
     command: Command
     hints: dict[str, bool]
 
-    @property
-    def waits(self) -> bool:
-        """Whether it returns when the motion has ended."""
-        return self.name in WAITED
-
-    def arguments(self, given: Mapping[str, Any]) -> list[Any] | dict[str, Any]:
+    def arguments(self, given: Mapping[str, Any]) -> tuple[list[Any], dict[str, Any]]:
         """Return the arguments of the client's method.
 
         Raises:
@@ -60,15 +54,15 @@ class ToolSpec(NamedTuple):
         """
         words = [f"{name}={_word(name, value)}" for name, value in given.items()]
         parsed = parse(self.command, words)
-        if not self.waits:
-            return parsed
+        if self.name not in WAITED:
+            return [], parsed
         row = parsed.pop(_row(self.command))
-        return [row, *parsed.values()]
+        return [row, *parsed.values()], {}
 
     def result(self, value: Any) -> dict[str, Any]:
         """Return a result as a JSON object, with the unit of each number that has one."""
         if value is None:
-            return {"result": "the arm is there" if self.waits else "sent"}
+            return {"result": "the arm is there" if self.name in WAITED else "sent"}
         numbers = [n for variant in self.command.reply for f in variant.fields for n in f.numbers]
         fields = [f for variant in self.command.reply for f in variant.fields if f.numbers]
         units = {n.name: n.units for n in numbers if n.name and n.units}
@@ -120,7 +114,7 @@ def _spec(name: str, command: Command, form: Form) -> ToolSpec:
     if name in WAITED:
         about += " It returns when the arm is there, or says why it is not."
     if command.safety == "persistent write":
-        about += f" {KEPT_BY_POWER}"
+        about += " It stays when the power is off: ask before you use it."
     query = command.safety == "query"
     harmless = query or command.safety == "setting" or command.role in ("stop", "halt")
     hints = {
