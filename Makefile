@@ -23,7 +23,7 @@ REV ?= HEAD
 LEROBOT ?= lerobot==0.4.4
 CARGO_FUZZ := .cargo-tools/bin/cargo-fuzz
 
-.PHONY: set-up spec-mutants help demo test lint lint-and-rust python-test computing-tests simulating-tests calling-tests waiting-tests other-tests rust-test products gen targets docs bench plots picture answers table fuzz figures clean faults conform defects attack archives lerobot bench-archive bench-compare rust-asan robots layer demos front-end front-end-if-reachable four-hours studio-pictures explore nightly release-check figures-page every-edition
+.PHONY: set-up spec-mutants help demo test lint lint-and-rust python-test computing-tests simulating-tests calling-tests waiting-tests other-tests rust-test products gen targets docs bench plots picture answers table fuzz figures clean faults conform defects attack archives lerobot bench-archive bench-compare rust-asan robots layer demos front-end front-end-if-reachable four-hours studio-pictures explore nightly release-check figures-page every-edition urdf
 .DEFAULT_GOAL := help
 
 help: ## list the targets
@@ -192,6 +192,10 @@ nightly: .venv/.tools .venv/.native ## run the long searches one after another, 
 every-edition: set-up ## test all editions where `make test` tests a sample
 	EVERY_EDITION=1 $(BIN)/python -m pytest tests/codec/test_message_tables.py tests/docs/test_site.py \
 		tests/docs/test_robot_pages.py tests/mutation/test_mutants.py tests/conformance/survey
+
+urdf: .venv/.tools .venv/.native ## compare the poses of our URDF files with yourdfpy
+	$(BIN)/python -m pip install --quiet --no-compile --group urdf
+	$(BIN)/python -m pytest tests/kinematics/test_urdf.py
 
 archives: .venv/.tools .venv/.native ## export and query archives on a Dask cluster and an S3 server
 	$(BIN)/python -m pytest tests/capture/archive -o python_files='test_*.py on_*.py'

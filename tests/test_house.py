@@ -57,6 +57,8 @@ ONE_IMPORTER = {
     "pymycobot": ["conformance/codec/adapter/pymycobot.py"],
     "libcst": ["pymycobot/migrate/"],
     "cryptography": ["inspect/ed25519.py"],
+    "defusedxml": ["kinematics/urdf_reading.py"],
+    "yourdfpy": [],
     "ruamel": ["simulator/faults/nodes.py"],
     "mcp": ["adapters/mcp/server.py"],
     "starlette": ["studio/app.py", "studio/feed.py", "studio/serving.py"],

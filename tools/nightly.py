@@ -23,6 +23,7 @@ ROOT = Path(__file__).resolve().parent.parent
 LOGS = ROOT / "target" / "nightly"
 # The targets of the Makefile, the shortest first; with the variables that make a search longer.
 SEARCHES = {
+    "urdf": [],
     "archives": [],
     "every-edition": [],
     "robots": [],

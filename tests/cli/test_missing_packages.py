@@ -62,6 +62,11 @@ def _imported(path: Path) -> set[str]:
             "plotting needs matplotlib: pip install 'cobotwire[plot]'",
         ),
         ("mcp", ["mcp", "/dev/null"], "cobotwire mcp needs mcp: pip install 'cobotwire[mcp]'"),
+        (
+            "defusedxml",
+            ["sim", "--geometry", __file__],
+            f"{__file__}: reading a URDF needs defusedxml: pip install 'cobotwire[urdf]'",
+        ),
         *(
             (
                 package,

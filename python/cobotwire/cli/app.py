@@ -32,6 +32,7 @@ VERBS = {
     "replay": "Print a recording, or serve it as an arm.",
     "plot": "Draw a recording.",
     "conform": "Test an arm, a client or a codec.",
+    "urdf": "Write a model of the arm for ROS and others.",
     "commands": "List the commands, or describe one.",
     "completion": "Print the completion script of a shell.",
 }

@@ -14,10 +14,12 @@ from cobotwire import codec as codecs
 from cobotwire import editions
 from cobotwire.cli.shared.completers import complete_scenarios
 from cobotwire.cli.shared.edition_option import uses_edition
+from cobotwire.cli.shared.geometry_options import geometry_options
 from cobotwire.cli.shared.line_output import LineOutput
 from cobotwire.cli.shared.output import report_written
 from cobotwire.cli.shared.serving import serve
 from cobotwire.cli.shared.simulator_output import JsonLines, Lines
+from cobotwire.kinematics.urdf_reading import with_urdf
 from cobotwire.protocol.errors import UsageError
 from cobotwire.session.device import DeviceEvent
 from cobotwire.simulator import PtyServer, RunningClock, Server, SimulatedArm, TcpServer
@@ -67,6 +69,7 @@ def _list_scenarios(context: click.Context, option: click.Parameter, wanted: boo
     metavar="MODULE",
     help="What the device does for its commands: a module, or a .py file, with `behaviours`.",
 )
+@geometry_options
 @click.option("--quiet", is_flag=True, help="Print the port, but no traffic.")
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object per line.")
 @click.option(
@@ -99,6 +102,8 @@ def sim(
     no_acks: bool,
     led: str | None,
     behaviours: str | None,
+    geometry: str | None,
+    tip: str | None,
     quiet: bool,
     as_json: bool,
     view: str | None,
@@ -120,12 +125,13 @@ def sim(
     if scenario is None and seed is not None:
         raise UsageError("seed", seed, message="--seed needs --scenario")
     package = editions.load(edition)
+    table = with_urdf(package.TABLE, geometry, tip)
     output = JsonLines() if as_json else Lines()
     lines = LineOutput(output.left_out)
     clock = RunningClock(speed)
     on_note = None if quiet else lambda note: lines.print(output.note(note))
     arm = SimulatedArm(
-        package.TABLE,
+        table,
         clock=clock,
         on_note=on_note,
         powered=powered,
@@ -133,8 +139,8 @@ def sim(
         behaviours=None if behaviours is None else named(behaviours),
     )
     if led is not None:
-        arm.lead(read_points(led, package.TABLE.joints))
-    faults = None if scenario is None else find(scenario, package.TABLE)
+        arm.lead(read_points(led, table.joints))
+    faults = None if scenario is None else find(scenario, table)
     peers = _Peers(arm, clock, faults, seed, None if quiet else output, lines)
     server = _server(peers, clock, on_pty, tcp)
     with ExitStack() as stack:
@@ -144,15 +150,15 @@ def sim(
             # Imported here, as below: most runs need neither a table nor a plot.
             from cobotwire.cli.shared.joint_table import JointTable
 
-            table = stack.enter_context(JointTable(package, arm, clock))
-            lines.redirect(table.add_line)
-            between.append(table.update)
+            joints = stack.enter_context(JointTable(package, arm, clock))
+            lines.redirect(joints.add_line)
+            between.append(joints.update)
         if view is not None:
             from cobotwire.inspect.plot.live_pose import LivePose
 
             stack.callback(report_written, view)
             between.append(stack.enter_context(LivePose(package, arm, clock, view)).update)
-        serve(server, output.serving(server.url), between)
+        serve(server, output.serving(server.url, table), between)
 
 
 def _server(peers: _Peers, clock: RunningClock, on_pty: bool, tcp: str | None) -> Server:

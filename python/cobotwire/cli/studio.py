@@ -9,6 +9,7 @@ import click
 from cobotwire.cli.shared.arm_options import address_option, arm_options, parse_address
 from cobotwire.cli.shared.completers import complete_ports
 from cobotwire.cli.shared.edition_option import uses_edition
+from cobotwire.cli.shared.geometry_options import geometry_options
 from cobotwire.cli.shared.motion_options import MotionOptions, motion_options
 from cobotwire.cli.shared.output import print_line, report_written
 from cobotwire.studio.extras import check_extra
@@ -30,6 +31,7 @@ from cobotwire.studio.extras import check_extra
     help="The TCP port of the page [default: a free one].",
 )
 @motion_options(silence=0.5)
+@geometry_options
 @click.option("--no-browser", is_flag=True, help="Print the address, but open no browser.")
 @uses_edition
 def studio(
@@ -42,6 +44,8 @@ def studio(
     host: str,
     port: int,
     motion: MotionOptions,
+    geometry: str | None,
+    tip: str | None,
     no_browser: bool,
 ) -> None:
     """Show the arm at URL, or a RECORDING, on a page in the browser, until Ctrl-C.
@@ -85,6 +89,8 @@ def studio(
         not no_browser,
         motion.limits,
         motion.silence,
+        geometry,
+        tip,
     )
     with ExitStack() as at_end:
         serve(options, announce)

@@ -10,6 +10,8 @@ from collections.abc import Mapping
 from types import MappingProxyType
 from typing import Any, NamedTuple
 
+from cobotwire.protocol.printable import printable
+
 Record = dict[str, Any]
 # How far a link turns for a degree of each joint that turns it; joints count from 0.
 Shares = tuple[tuple[int, float], ...]
@@ -22,9 +24,11 @@ class Dimensions(NamedTuple):
         links: standard Denavit-Hartenberg parameters of each link, from the base on: offset and
             alpha in degrees, a and d in millimetres; then the joints that turn the link, or None
             if that is the joint of the same number.
+        unverified: the file that a user gave for it; empty: the edition states the geometry.
     """
 
     links: tuple[tuple[float, float, float, float, Shares | None], ...]
+    unverified: str = ""
 
 
 class Dynamics(NamedTuple):
@@ -165,6 +169,12 @@ class Robot(NamedTuple):
         """Say that the geometry is not known, and why if the edition states it."""
         why = f": {self.geometry_unknown}" if self.geometry_unknown else ""
         return f"the geometry of this arm is not known{why}"
+
+    @property
+    def geometry_remark(self) -> str:
+        """Say which file the geometry is from; empty if the edition states it, or none is known."""
+        file = "" if self.geometry is None else printable(self.geometry.unverified)
+        return file and f"the geometry is that of {file}, unverified"
 
 
 UNSTATED = Robot()

@@ -27,6 +27,7 @@ def robot_facts(table: Table) -> Facts:
         "limits": [list(limit) for limit in joint_limits(table)],
         "reach": round(reach, 1),
         "links": [list(link) for link in stated.links] if stated is not None else [],
+        "geometryRemark": table.robot.geometry_remark,
         "noGeometry": "" if geometry is not None else table.robot.why_no_geometry,
         "stop": "" if stop is None else stop.name,
     }

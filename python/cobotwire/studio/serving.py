@@ -19,6 +19,7 @@ from starlette.applications import Starlette
 from cobotwire import editions
 from cobotwire.capture import is_capture, read
 from cobotwire.editions import Edition
+from cobotwire.kinematics.urdf_reading import with_urdf
 from cobotwire.protocol.errors import CobotwireError, LinkError, UsageError
 from cobotwire.protocol.limits import Limits
 from cobotwire.studio.accepting import Server
@@ -52,6 +53,7 @@ class Options(NamedTuple):
         open_browser: whether to open the page.
         limits: what the arm's client keeps within.
         silence: seconds after which a motion that a page holds is stopped if the page is silent.
+        geometry, tip: the URDF whose arm is drawn and simulated, and the link of its flange.
     """
 
     source: str | None
@@ -66,6 +68,8 @@ class Options(NamedTuple):
     open_browser: bool = True
     limits: Limits | None = None
     silence: float = LONGEST_SILENCE_SECONDS
+    geometry: str | None = None
+    tip: str | None = None
 
 
 def serve(options: Options, announce: Callable[[Access], None]) -> None:
@@ -120,11 +124,13 @@ def staged(options: Options) -> Iterator[Stage]:
         CobotwireError: as :func:`serve`.
     """
     edition = editions.load(options.edition)
+    table = with_urdf(edition.TABLE, options.geometry, options.tip)
     with ExitStack() as stack:
         if options.source is not None and _is_recording(options.source):
             session = RecordedSession(options.source, options.edition)
             edition = _edition_of(session, edition)
-            stage = Stage(edition, session, Control(False))
+            table = with_urdf(edition.TABLE, options.geometry, options.tip)
+            stage = Stage(edition, session, Control(False), drawn=table)
             stack.callback(stage.close)
             yield stage
             return
@@ -136,7 +142,7 @@ def staged(options: Options) -> Iterator[Stage]:
             def remark(label: str, text: str) -> None:
                 remarks.append((time.monotonic(), label, text))
 
-            simulated = stack.enter_context(SimulatedLine(edition.TABLE, remark))
+            simulated = stack.enter_context(SimulatedLine(table, remark))
             url = simulated.url
         port = PortOptions(url, options.baudrate, options.record, options.address, options.limits)
         line = stack.enter_context(ArmLine(edition, port, options.rate))
@@ -152,6 +158,7 @@ def staged(options: Options) -> Iterator[Stage]:
             options.address,
             options.limits,
             options.silence,
+            table,
         )
         stack.callback(stage.close)
         yield stage

@@ -13,6 +13,7 @@ from cobotwire.protocol.errors import UsageError
 from cobotwire.protocol.json_values import as_json_value
 from cobotwire.protocol.limits import Limits, limited
 from cobotwire.protocol.refusals import refusals
+from cobotwire.protocol.table import Table
 from cobotwire.studio.controls import controls
 from cobotwire.studio.describing import Describer
 from cobotwire.studio.explained import Explainer
@@ -41,8 +42,14 @@ class Stage:
         address: int | str | None = None,
         limits: Limits | None = None,
         silence: float = LONGEST_SILENCE_SECONDS,
+        drawn: Table | None = None,
     ) -> None:
-        """``limits`` are those of the client; ``silence`` ends what a page holds, in seconds."""
+        """Show a session.
+
+        ``limits`` are those of the client; ``silence`` ends what a page holds, in seconds. The page
+        draws the arm of the table ``drawn``, whose geometry may be a user's; no check uses it.
+        """
+        self._drawn = drawn or edition.TABLE
         self.table, self.session, self.control = edition.TABLE, session, control
         self.explainer = Explainer(edition, codecs.load(self.table))
         self.preparer = Preparer(self.table, address, limits)
@@ -70,7 +77,7 @@ class Stage:
         session, live = self.session, isinstance(self.session, LiveSession)
         hello = {
             "page": viewer.page,
-            "robot": robot_facts(self.table),
+            "robot": robot_facts(self._drawn),
             "controls": controls(self.offered, refusals(self.table, self._limits)),
             "mode": "live" if live else "recording",
             "simulated": self.simulated is not None,

@@ -45,6 +45,14 @@ def test_picture_states_joint_angles_and_flange_position(tmp_path: Path) -> None
         assert text in drawn, text
 
 
+def test_picture_of_an_unverified_geometry_names_its_file(tmp_path: Path) -> None:
+    path, geometry = tmp_path / "pose.svg", TABLE.robot.geometry
+    assert geometry is not None
+    robot = TABLE.robot._replace(geometry=geometry._replace(unverified="a$1$.urdf"))
+    draw_pose(TABLE._replace(robot=robot), [0] * 6, str(path))
+    assert "the geometry is that of a$1$.urdf, unverified" in path.read_text()
+
+
 def test_pose_of_an_arm_with_unknown_geometry_is_rejected(tmp_path: Path) -> None:
     with pytest.raises(UsageError, match="edition mine: the geometry of this arm is not known"):
         draw_pose(

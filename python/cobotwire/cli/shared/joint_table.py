@@ -37,6 +37,7 @@ class JointTable:
         transport = MemoryTransport(arm.connect(lambda event, answer: None), clock)
         self._arm = edition.CLIENT(transport, timeout=REPLY_SECONDS)
         self._clock, self._began = clock, clock()
+        self._remark = arm.table.robot.geometry_remark or None
         self._live = Live(auto_refresh=False)
         self._lines: list[str] = []
         commands = edition.TABLE.commands
@@ -68,7 +69,7 @@ class JointTable:
         """Show the collected lines, and draw the table with the current state."""
         self._print_lines()
         title = f"{self._clock() - self._began:.1f} s of simulated time"
-        grid = Grid(title=title, show_header=False)
+        grid = Grid(title=title, caption=self._remark, show_header=False)
         for label, name in self._rows:
             grid.add_row(label, self._query(name))
         width = self._live.console.width - ECHO_COLUMNS

@@ -13,6 +13,7 @@ from cobotwire.codec.interface import Noise
 from cobotwire.diagnose.explain import format_message
 from cobotwire.protocol.json_values import as_json_value
 from cobotwire.protocol.printable import printable
+from cobotwire.protocol.table import Table
 from cobotwire.session.device import DeviceEvent, MalformedRequest, RequestReceived
 from cobotwire.simulator.arm import Note
 
@@ -28,9 +29,10 @@ def left_out(lines: int) -> str:
 class Lines:
     """Formats a line for people."""
 
-    def serving(self, url: str) -> str:
-        """Format the first line: the port to open."""
-        return url
+    def serving(self, url: str, table: Table) -> str:
+        """Format the first line: the port to open; a remark about the geometry may follow."""
+        remark = table.robot.geometry_remark
+        return f"{url}\n{self._line(None, 'note', remark)}" if remark else url
 
     def event(self, client: int | None, event: DeviceEvent, reply: bytes) -> str:
         """Format what the arm received, and its reply."""
@@ -65,9 +67,11 @@ class Lines:
 class JsonLines:
     """Formats a JSON object per line."""
 
-    def serving(self, url: str) -> str:
-        """Format the first line: the port to open."""
-        return self._object(None, {"event": "serving", "url": url})
+    def serving(self, url: str, table: Table) -> str:
+        """Format the first line: the port to open, and a remark about the geometry."""
+        remark = table.robot.geometry_remark
+        remarks = {"geometry": remark} if remark else {}
+        return self._object(None, {"event": "serving", "url": url, **remarks})
 
     def event(self, client: int | None, event: DeviceEvent, reply: bytes) -> str:
         """Format what the arm received, and its reply."""

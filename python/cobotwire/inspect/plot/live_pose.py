@@ -27,7 +27,7 @@ class LivePose:
         Raises:
             UsageError: the picture cannot be drawn, or the file cannot be written.
         """
-        self._table, self._path = edition.TABLE, path
+        self._table, self._path = arm.table, path
         transport = MemoryTransport(arm.connect(lambda event, answer: None), clock)
         self._arm = edition.CLIENT(transport, timeout=REPLY_SECONDS)
         self._joints = edition.TABLE.in_role("joints").name

@@ -49,7 +49,10 @@ def draw(table: Table, angles: Sequence[float], path: str) -> None:
         side.axhline(0, color="#666666", linewidth=0.8)
         joints = "  ".join(f"J{joint + 1} {angle:.1f}°" for joint, angle in enumerate(angles))
         x, y, z = found[-1]
-        figure.suptitle(f"{joints}\nflange at x {x:.1f}  y {y:.1f}  z {z:.1f} mm", fontsize=10)
+        title = [joints, f"flange at x {x:.1f}  y {y:.1f}  z {z:.1f} mm"]
+        # The name of a file must not be read as a formula.
+        remark = table.robot.geometry_remark.replace("$", r"\$")
+        figure.suptitle("\n".join(filter(None, [*title, remark])), fontsize=10)
         save(figure, path)
 
 

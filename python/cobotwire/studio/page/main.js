@@ -71,6 +71,8 @@ function begin(hello) {
   document.body.classList.toggle("undrawn", !drawn);
   byId("no-geometry").hidden = drawn;
   byId("no-geometry").textContent = `The arm is not drawn: ${hello.robot.noGeometry.replace(/\.$/, "")}.`;
+  byId("geometry-remark").hidden = !hello.robot.geometryRemark;
+  byId("geometry-remark").textContent = hello.robot.geometryRemark;
   // After a new connection the server sends the past again.
   if (parts) clear();
   else parts = make(hello, recorded);

@@ -17,6 +17,7 @@ PLANS: dict[str, Plan] = {
     "docs/studio.md": guides.STUDIO,
     "docs/lerobot.md": guides.LEROBOT,
     "docs/mcp.md": guides.MCP,
+    "docs/urdf.md": guides.URDF,
     "docs/pymycobot.md": guides.PYMYCOBOT,
     "docs/contribute/attack.md": guides.ATTACK,
     "docs/contribute/searches.md": guides.SEARCHES,

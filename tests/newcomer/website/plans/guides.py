@@ -86,6 +86,21 @@ MCP = Plan(
     },
 )
 
+URDF = Plan(
+    prepare="cobotwire urdf mycobot280 -o pro630.urdf",
+    commands={
+        "cobotwire urdf mycobot280 -o mycobot280.urdf": Expected("wrote mycobot280.urdf"),
+        "cobotwire urdf mycobot280 --prefix left_ -o left.urdf": Expected("wrote left.urdf"),
+        "pip install 'cobotwire[urdf]'": INSTALLED,
+        "cobotwire --edition pro630 sim --geometry pro630.urdf": Expected(
+            "unverified", served=True
+        ),
+        "cobotwire --edition pro630 studio --geometry pro630.urdf": Expected(
+            STUDIO_PAGE, served=True
+        ),
+    },
+)
+
 PYMYCOBOT = Plan(
     programs={
         "from cobotwire import MyCobot280": Program(

@@ -28,6 +28,7 @@ README = Plan(
 CLI = Plan(
     prepare=PREPARE,
     commands={
+        "cobotwire urdf mycobot280 -o arm.urdf": Expected("wrote arm.urdf"),
         f"cobotwire call {PORT} power_on": Expected(r"sent; acknowledged"),
         f"cobotwire call {PORT} send_angles 0,0,0,0,0,0 speed=30": Expected(r"sent"),
         "cobotwire decode FE FE 06 21 01 00 1D 14 FA": Expected(r"send_angle\(joint=1"),
