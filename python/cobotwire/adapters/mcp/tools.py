@@ -16,8 +16,8 @@ from cobotwire.studio.forms import Form, forms
 
 Choice = Literal["basic", "all"]
 STOP = "stop"
-# What a model needs to move an arm and to see what came of it; with all commands, the largest
-# editions have more tools than clients of MCP accept, and models choose worse among many.
+# What a model needs to move an arm and to see what came of it. Models choose worse among many
+# tools, and some clients limit the number; most editions have a hundred commands.
 BASIC: tuple[Role, ...] = (
     *("joints", "coordinates", "moving", "powered", "paused", "error", "version"),
     *("gripper", "light"),

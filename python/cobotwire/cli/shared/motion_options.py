@@ -8,20 +8,14 @@ from typing import Any, NamedTuple
 
 import click
 
+from cobotwire.client.opening import check_seconds
 from cobotwire.protocol.limits import AXES, Limits, Range, checked_ranges
 
 Verb = Callable[..., Any]
-LONGEST_SILENCE = 3600
 
 
 class MotionOptions(NamedTuple):
-    """What others may do to the arm.
-
-    Attributes:
-        allowed: whether they may send anything but queries.
-        limits: what the client of the arm keeps within.
-        silence: seconds without a sign of life after which the arm is stopped.
-    """
+    """Whether others may send more than queries, and what ends or limits that."""
 
     allowed: bool
     limits: Limits
@@ -64,9 +58,9 @@ def motion_options(silence: float) -> Callable[[Verb], Verb]:
         ),
         click.option(
             "--max-speed",
-            type=click.FloatRange(1, 100),
+            type=float,
             metavar="PERCENT",
-            help="The highest speed; motions without a speed in percent are refused.",
+            help="The highest speed, 1 to 100; motions without a speed in percent are refused.",
         ),
         click.option(
             "--workspace",
@@ -76,7 +70,7 @@ def motion_options(silence: float) -> Callable[[Verb], Verb]:
         ),
         click.option(
             "--silence",
-            type=click.FloatRange(0, LONGEST_SILENCE, min_open=True, max_open=True),
+            type=float,
             metavar="SECONDS",
             default=silence,
             show_default=True,
@@ -94,6 +88,7 @@ def motion_options(silence: float) -> Callable[[Verb], Verb]:
             silence: float,
             **named: Any,
         ) -> Any:
+            check_seconds("silence", silence)
             limits = Limits(speed=max_speed, workspace=workspace)
             motion = MotionOptions(allow_motion, limits, silence)
             return verb(*arguments, motion=motion, **named)
