@@ -34,7 +34,7 @@ OPTIONS = dict(_verbs(app, "cobotwire"))
 def unknown_options(text: str) -> list[str]:
     """Return the options in calls of cobotwire that the verb or the program does not have."""
     found = []
-    for call in re.finditer(r"\bcobotwire ([^`|#\n]+)", text):
+    for call in re.finditer(r"(?<!=)\bcobotwire ([^`|#\n]+)", text):
         words = call[1].split(" -- ")[0].split()
         verb = "cobotwire"
         for word in words:

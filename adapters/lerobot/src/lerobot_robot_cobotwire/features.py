@@ -11,7 +11,8 @@ from typing import Any
 
 from cobotwire import Limits, UsageError
 from cobotwire.protocol.effects import Effect, Moves, Reports, Sets, Stores, effect_of
-from cobotwire.protocol.limits import joint_limits, limited, refusals
+from cobotwire.protocol.limits import joint_limits, limited
+from cobotwire.protocol.refusals import refusals
 from cobotwire.protocol.table import Command, Table
 
 # Its position is its opening in percent.
