@@ -23,7 +23,7 @@ REV ?= HEAD
 LEROBOT ?= lerobot==0.4.4
 CARGO_FUZZ := .cargo-tools/bin/cargo-fuzz
 
-.PHONY: set-up spec-mutants help demo test lint lint-and-rust python-test computing-tests simulating-tests calling-tests waiting-tests other-tests rust-test products gen targets docs bench plots picture answers table fuzz figures clean faults conform defects attack archives lerobot bench-archive bench-compare rust-asan robots layer demos front-end front-end-if-reachable four-hours studio-pictures explore nightly release-check figures-page every-edition urdf
+.PHONY: set-up spec-mutants help demo test lint lint-and-rust python-test computing-tests simulating-tests calling-tests waiting-tests other-tests rust-test products gen targets docs bench plots smoothness picture answers table fuzz figures clean faults conform defects attack archives lerobot bench-archive bench-compare rust-asan robots layer demos front-end front-end-if-reachable four-hours studio-pictures explore nightly release-check figures-page every-edition urdf
 .DEFAULT_GOAL := help
 
 help: ## list the targets
@@ -153,6 +153,9 @@ plots: .venv/.tools .venv/.native ## measure and draw the curves of docs/; takes
 	mkdir -p target
 	$(BIN)/python bench/resync.py --frames 100000 --json target/resync.json
 	$(BIN)/python bench/plot_resync.py target/resync.json docs/plots
+
+smoothness: .venv/.tools .venv/.native ## compare the speeds of joints along a path; draw the plot of docs/motion.md
+	$(BIN)/python bench/smoothness.py --plot docs/plots/smoothness.svg
 
 picture: .venv/.tools .venv/.native ## record the picture of the README: a simulated arm, a program, monitor
 	PYTHONPATH=tests $(BIN)/python tools/record_picture.py docs/pictures

@@ -54,6 +54,7 @@ ONE_IMPORTER = {
     "pyarrow": ["codec/arrow", "capture/archive/scanning.py", "capture/export/"],
     "mcap": ["capture/export/formats/mcap_file.py"],
     "fsspec": ["capture/export/inputs.py"],
+    "ruckig": ["kinematics/jerk_limited.py"],
     "pymycobot": ["conformance/codec/adapter/pymycobot.py"],
     "libcst": ["pymycobot/migrate/"],
     "cryptography": ["inspect/ed25519.py"],
@@ -194,7 +195,7 @@ def test_importing_the_package_loads_no_extra() -> None:
     script = (
         "import sys, cobotwire\n"
         "loaded = {name.split('.')[0] for name in sys.modules}\n"
-        "extras = 'click rich numpy pyarrow ruamel jinja2 matplotlib pytest scipy uvicorn'\n"
+        "extras = 'click rich numpy pyarrow ruamel jinja2 matplotlib pytest scipy uvicorn ruckig'\n"
         "print(sorted(loaded & set(extras.split())))"
     )
     result = subprocess.run(

@@ -21,6 +21,7 @@ FILES = {
     "aio.py": "blocking.py",
     "aio_events.py": "event_streams.py",
     "aio_streaming.py": "streaming.py",
+    "aio_following.py": "following.py",
     "aio_moving.py": "moving.py",
     "aio_two_arms.py": "two_arms.py",
 }
@@ -152,8 +153,12 @@ RULES = [
     (r"\bawait ", ""),
     (r"\b__a(enter|exit|iter|next)__", r"__\1__"),
     (r"\bStopAsyncIteration\b", "StopIteration"),
-    (r"\bAsync(Client|Connection|EventStream|MovingClient|Stream|TwoArms)\b", r"\1"),
-    (r"\bclient\.aio_(connection|streaming)\b", r"client.\1"),
+    (
+        r"\bAsync(Client|Connection|EventStream|FollowingClient|MovingClient|Stream|TwoArms)\b",
+        r"\1",
+    ),
+    (r" \| AsyncTargets\b", ""),
+    (r"\bclient\.aio_(connection|following|streaming)\b", r"client.\1"),
     (r"\bclient\.aio_events\b", "client.event_streams"),
     (r"\bclient\.aio\b", "client.blocking"),
     (r"\bimport asyncio\n", ""),

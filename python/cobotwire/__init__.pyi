@@ -12,6 +12,7 @@ from cobotwire.inspect.identification import identify as identify
 from cobotwire.protocol.errors import CaptureError as CaptureError
 from cobotwire.protocol.errors import CobotwireError as CobotwireError
 from cobotwire.protocol.errors import EditionUnknown as EditionUnknown
+from cobotwire.protocol.errors import FollowFailed as FollowFailed
 from cobotwire.protocol.errors import LinkError as LinkError
 from cobotwire.protocol.errors import MotionTimeout as MotionTimeout
 from cobotwire.protocol.errors import ProtocolError as ProtocolError
@@ -20,6 +21,9 @@ from cobotwire.protocol.errors import RequestRefused as RequestRefused
 from cobotwire.protocol.errors import UsageError as UsageError
 from cobotwire.protocol.joints import Joint as Joint
 from cobotwire.protocol.limits import Limits as Limits
+from cobotwire.session.paths import FollowReport as FollowReport
+from cobotwire.session.paths import PathLimits as PathLimits
+from cobotwire.session.paths import Waypoint as Waypoint
 from cobotwire.session.pending import RetryPolicy as RetryPolicy
 from cobotwire.session.sample import Sample as Sample
 from cobotwire.session.sample import StreamReport as StreamReport

@@ -17,6 +17,7 @@ GUIDE = ROOT / "docs" / "guide"
 PAGES = [
     ROOT / "README.md",
     ROOT / "docs" / "start.md",
+    ROOT / "docs" / "motion.md",
     *sorted({*GUIDE.glob("*.md")} - {GUIDE / "programs.md"}),
 ]
 

@@ -27,6 +27,7 @@ QUESTIONS = {
     "free mode drag": "reference/mycobot280/power.html#set-free-mode",
     "connect over wifi tcp": "reference/mycobot280/network.html#set-server-port",
     "timeout no reply": "api/errors.html",
+    "pause between points": "motion.html#pause-between-points",
     "asyncio": "guide/drive.html#many-threads-or-asyncio",
     "wireshark": "wireshark.html",
     "decode hex": "decoder.html",

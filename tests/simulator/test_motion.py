@@ -49,6 +49,43 @@ def test_axes_stop_together_within_speed_and_acceleration(
     assert middle == pytest.approx([one / 2 for one in target], abs=1e-6)
 
 
+commands = st.sampled_from(["go", "queue", "brake", "pause", "resume", "forget", "look"])
+
+
+@given(st.lists(st.tuples(st.floats(0.001, 1.5), commands, points, rates), max_size=12))
+def test_lagging_axes_are_where_others_were_before(
+    orders: list[tuple[float, str, tuple[float, ...], float]],
+) -> None:
+    lag, now, times = 0.125, 1.0, []
+    prompt, late = Axes((0.0, 0.0, 0.0), MOST), Axes((0.0, 0.0, 0.0), MOST, lag)
+    # Where the prompt axes are, at the times at which the others are there.
+    expected: list[tuple[float, tuple[float, ...], tuple[float, ...]]] = []
+    for wait, command, target, rate in orders:
+        for _ in range(3):
+            now += wait / 3
+            expected.append((now + lag, prompt.position(now), prompt.speed(now)))
+        times.append((now, command, target, rate))
+        _order(prompt, command, target, rate, now)
+    looks: list[tuple[float, Any]] = [(at, (place, speed)) for at, place, speed in expected]
+    for at, what in sorted([*looks, *((at, one) for at, *one in times)], key=lambda each: each[0]):
+        if isinstance(what, list):
+            command, target, rate = what
+            _order(late, command, target, rate, at)
+        else:
+            assert late.position(at) == pytest.approx(what[0], abs=1e-6)
+            assert late.speed(at) == pytest.approx(what[1], abs=1e-6)
+    assert not late.moving(now + 1000)
+
+
+def _order(axes: Axes, command: str, target: tuple[float, ...], rate: float, now: float) -> None:
+    if command in ("go", "queue"):
+        axes.go(target, rate, now, queue=command == "queue")
+    elif command == "look":
+        axes.target(now)
+    else:
+        getattr(axes, command)(now)
+
+
 def _on_the_way(target: tuple[float, ...], rate: float) -> Axes:
     axes = Axes((0.0, 0.0, 0.0), MOST)
     axes.go(target, rate, 0.0)

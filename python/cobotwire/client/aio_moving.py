@@ -8,7 +8,7 @@ from contextlib import AbstractContextManager
 from typing import Any
 
 from cobotwire.client import events
-from cobotwire.client.aio import AsyncClient
+from cobotwire.client.aio_following import AsyncFollowingClient
 from cobotwire.client.opening import check_seconds
 from cobotwire.protocol import roles
 from cobotwire.protocol.errors import MotionTimeout, ProtocolError, ReplyTimeout
@@ -21,7 +21,7 @@ MOTION_SECONDS = 30.0
 HOME_SPEED, GRIPPER_SPEED = 10, 50
 
 
-class AsyncMovingClient(AsyncClient):
+class AsyncMovingClient(AsyncFollowingClient):
     """Moves the arm and waits until it is there, by commands to which the edition gives a role.
 
     A call that fails or is cancelled sends ``stop`` before its error is raised, unless the client

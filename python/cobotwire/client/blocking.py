@@ -107,6 +107,7 @@ class Client:
         self._views: dict[int, Self] = {}
         codec_used = self._settings.codec
         speed = self.table.baudrate if baudrate is None else baudrate
+        self._baudrate = speed
         opener = PortOpener(port, speed, codec_used, record)
         exchange, longest = Exchange(codec_used), check_deadline(deadline)
         self._connection = Connection(opener, exchange, trace, longest)
@@ -330,16 +331,21 @@ class Client:
             return False
         return True
 
-    def _call(self, request: Request[Result], longest: float | None = None) -> Result:
+    def _call(
+        self,
+        request: Request[Result],
+        longest: float | None = None,
+        deadline: float | None = None,
+    ) -> Result:
         """Send a request, wait for its reply, and return the reply's result.
 
-        ``longest`` limits the usual deadline, in seconds.
+        ``longest`` limits the usual time for a reply, in seconds; ``deadline`` that of the call.
         """
         encoded = self._encoder.encode_request(request)
         wait, retry = self._settings.timeout, self._settings.retry
         if longest is not None:
             wait = self._settings.at_most(longest, encoded.command)
-        done = self._connection.request(encoded, retry, wait)
+        done = self._connection.request(encoded, retry, wait, deadline)
         return request.result_of(self._connection.firmware.result(done))
 
     def _send(

@@ -83,16 +83,23 @@ class Connection:
             steps.leading.resign()
 
     def request(
-        self, request: EncodedRequest, policy: RetryPolicy, wait: float | None
+        self,
+        request: EncodedRequest,
+        policy: RetryPolicy,
+        wait: float | None,
+        deadline: float | None = None,
     ) -> PendingRequest:
         """Send a request and wait until it is done.
+
+        ``deadline`` limits this call further than those of the client.
 
         Raises:
             LinkError: the transport is gone.
         """
         steps = self._steps
         now = self.now()
-        pending = PendingRequest(request, wait, policy, now, now + self._deadline)
+        longest = self._deadline if deadline is None else min(deadline, self._deadline)
+        pending = PendingRequest(request, wait, policy, now, now + longest)
         try:
             steps.start(pending)
             steps.wait(pending)

@@ -3,13 +3,51 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
+from cobotwire.kinematics.descent import Effort
+from cobotwire.kinematics.geometry import Angles, Geometry
+from cobotwire.kinematics.inverse import nearest
+from cobotwire.kinematics.nearness import Limits
 from cobotwire.kinematics.pose import Pose, Vector
+
+# A straight line is solved at points that are at most this far apart.
+STEP_MILLIMETRES, STEP_DEGREES = 7.0, 3.0
+# A joint that would turn more than this between two such points cannot follow, in degrees. The
+# elbow of a straight arm of the 280 turns by 30 degrees in the first step towards the base.
+LARGEST_TURN = 35.0
 
 Quaternion = tuple[float, float, float, float]
 # Below this sine of half the turn, there is no axis to turn about.
 UNTURNED = 1e-9
+
+
+def steps_between(start: Pose, end: Pose) -> int:
+    """Return in how many steps a straight line is solved."""
+    way, turn = start.distance(end)
+    return max(math.ceil(way / STEP_MILLIMETRES), math.ceil(turn / STEP_DEGREES), 1)
+
+
+def angles_along(
+    geometry: Geometry,
+    flanges: Iterable[Pose],
+    start: Angles,
+    limits: Limits,
+    effort: Effort | None = None,
+) -> list[Angles]:
+    """Return the angles for poses of the flange that are close to each other.
+
+    The list ends before the first pose to which the joints cannot follow. ``effort`` bounds the
+    search for all of them; None: each has its own.
+    """
+    points: list[Angles] = []
+    for flange in flanges:
+        before = points[-1] if points else start
+        found = nearest(geometry, flange, before, limits, LARGEST_TURN, effort)
+        if found is None or max(abs(a - b) for a, b in zip(found, before)) > LARGEST_TURN:
+            break
+        points.append(found)
+    return points
 
 
 def straight_line(start: Pose, end: Pose, steps: int) -> Iterator[Pose]:

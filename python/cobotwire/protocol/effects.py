@@ -14,8 +14,12 @@ from collections.abc import Iterator, Mapping
 from functools import cache
 from typing import Any, Literal, NamedTuple
 
+from cobotwire.protocol.errors import UsageError
 from cobotwire.protocol.robot import real
 from cobotwire.protocol.table import Command, Field, Table
+
+# The state of an arm that says whether a new target replaces the present one.
+FRESH = "fresh_mode"
 
 Part = Literal["joints", "joint", "end", "gripper"]
 Control = Literal["stop", "halt", "pause", "resume", "forget"]
@@ -187,6 +191,33 @@ def each_case(effect: Effect | None) -> Iterator[Effect]:
         yield from effect.cases.values()
     elif effect is not None:
         yield effect
+
+
+def fresh_mode(table: Table) -> tuple[Command, str, Command | None]:
+    """Return what sets whether a new target replaces the present one, and what reports it.
+
+    Returns:
+        The setting; its argument, which is 1 if a new target replaces the old one and 0 if it
+        waits; the query, None if the edition has none.
+
+    Raises:
+        UsageError: the edition has no such setting.
+    """
+    setting = query = None
+    for command in table.commands:
+        effect = effect_of(command)
+        if isinstance(effect, Reports) and FRESH in effect.values.values():
+            query = command
+        elif isinstance(effect, Stores) and FRESH in effect.values.values():
+            argument = next(name for name, state in effect.values.items() if state == FRESH)
+            setting = command, argument
+    if setting is not None:
+        return *setting, query
+    message = (
+        f"edition {table.edition} has no command by which a new target replaces the present one, "
+        "so the arm would queue the targets of a path"
+    )
+    raise UsageError("edition", table.edition, message=message)
 
 
 def empty_value(field: Field) -> int:

@@ -311,6 +311,18 @@ class MotionTimeout(CobotwireError, TimeoutError):
         super().__init__("; ".join([first, *state.sentences(), *sent]))
 
 
+class FollowFailed(CobotwireError, TimeoutError):
+    """The arm did not follow its path to the end.
+
+    Attributes:
+        report: how far it came: a :class:`~cobotwire.session.paths.FollowReport`.
+    """
+
+    def __init__(self, why: str, report: Any) -> None:
+        self.report = report
+        super().__init__(f"{why}, {report}")
+
+
 class ArmNotReady(CobotwireError):
     """The arm reports that it does not obey a motion.
 

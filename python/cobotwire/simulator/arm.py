@@ -60,6 +60,7 @@ class SimulatedArm:
         acks: bool = True,
         powered: bool = False,
         geometry: Geometry | None = None,
+        lag: float = 0.0,
         on_note: Callable[[Note], None] | None = None,
         behaviours: Mapping[str, Behaviour] | None = None,
     ) -> None:
@@ -75,6 +76,7 @@ class SimulatedArm:
             geometry: the lengths of the links; None: those that the edition states. If
                 it states none, the arm does not reply to queries of coordinates, and rejects
                 motions to coordinates.
+            lag: by how many seconds the joints run after the motion that the arm computes.
             on_note: called with each new note; ``notes`` keeps the last 1000.
             behaviours: what the arm does for its commands, instead of the behaviour that comes with
                 cobotwire; None: those that installed packages provide for the edition (entry
@@ -88,6 +90,7 @@ class SimulatedArm:
         self._on_note = on_note
         self._notes: deque[Note] = deque(maxlen=NOTES_KEPT)
         self._geometry = geometry or geometry_of(table)
+        self._lag = lag
         devices: list[int | None] = [device.value for device in devices_of(table)]
         # The state of each device by its address; None where frames have no address.
         self._states: dict[int | None, ArmState] = {
@@ -266,4 +269,4 @@ class SimulatedArm:
 
     def new_state(self, address: int | None = None) -> ArmState:
         """Return the state after the start of the device that has an address, or of the arm."""
-        return new_state(self.table, self._geometry, address)
+        return new_state(self.table, self._geometry, address, self._lag)

@@ -14,12 +14,14 @@ from cobotwire.simulator.start import coordinates, steps
 from cobotwire.simulator.state import ArmState
 
 
-def new_state(table: Table, geometry: Geometry | None, address: int | None) -> ArmState:
+def new_state(
+    table: Table, geometry: Geometry | None, address: int | None, lag: float = 0.0
+) -> ArmState:
     """Return the state after the start of a device with an address, or of the arm."""
     device = _device(table, address)
     joints = (device.joints if device else 0) or table.joints
     own_geometry = geometry if joints == table.joints else None
-    state = ArmState(joints, own_geometry, table.robot, coordinates(table), steps(table))
+    state = ArmState(joints, own_geometry, table.robot, coordinates(table), steps(table), lag)
     for joint, (lowest, highest) in enumerate(joint_limits(table)[:joints]):
         state.minimum[joint], state.maximum[joint] = lowest, highest
     begin(table, state)

@@ -9,6 +9,7 @@ from typing import Any
 from cobotwire.kinematics import Pose
 from cobotwire.kinematics.coordinates import places_of, pose_with
 from cobotwire.kinematics.pose import turned_about
+from cobotwire.kinematics.straight import STEP_DEGREES, STEP_MILLIMETRES
 from cobotwire.protocol.effects import Moves
 from cobotwire.protocol.fields import Field, named_fields
 from cobotwire.protocol.table import Command
@@ -16,8 +17,6 @@ from cobotwire.simulator.built_in import unit_of
 from cobotwire.simulator.replies import Unanswerable
 from cobotwire.simulator.state import ArmState
 from cobotwire.simulator.targets import (
-    STEP_DEGREES,
-    STEP_MILLIMETRES,
     go_to_angle,
     go_to_angles,
     go_to_coords,

@@ -49,6 +49,8 @@ class ArmState:
     # Where the coordinates of the edition stand among x, y, z, rx, ry and rz.
     coordinates: tuple[int, ...] = ALL_SIX
     steps: Steps = NO_STEPS
+    # By how many seconds the joints lag behind the motion that the arm computes.
+    lag: float = 0.0
     powered: bool = False
     connected: bool = True
     free: bool = False
@@ -87,7 +89,7 @@ class ArmState:
 
     def __post_init__(self) -> None:
         start = self.robot.start_angles or (0.0,) * self.joints
-        self.angles = Axes(start, self.motion.acceleration)
+        self.angles = Axes(start, self.motion.acceleration, self.lag)
         self.enabled = [False] * self.joints
         self.minimum = [-HALF_TURN] * self.joints
         self.maximum = [HALF_TURN] * self.joints

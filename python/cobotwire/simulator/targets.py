@@ -12,15 +12,10 @@ from collections.abc import Callable, Iterable, Mapping
 
 from cobotwire.kinematics import Effort, Pose, nearest
 from cobotwire.kinematics.descent import STEPS_OF_A_REQUEST
-from cobotwire.kinematics.straight import straight_line
+from cobotwire.kinematics.straight import angles_along, steps_between, straight_line
 from cobotwire.simulator.replies import Unanswerable
 from cobotwire.simulator.state import ArmState
 
-# A straight line is solved at points that are at most this far apart.
-STEP_MILLIMETRES, STEP_DEGREES = 7.0, 3.0
-# A joint that would turn more than this between two such points cannot follow, in degrees. The
-# elbow of a straight arm of the 280 turns by 30 degrees in the first step towards the base.
-LARGEST_TURN = 35.0
 # One turn in steps of three degrees; in steps of seven millimetres, beyond any reach.
 JOG_STEPS = 121
 
@@ -144,8 +139,9 @@ def go_to_coords(
         return go_to_angles(arm, goal, speed, now)
     here = arm.end(start)
     assert here is not None, "the geometry is known"
-    points = _follow(arm, straight_line(here, end, _steps(here, end)), start, effort)
-    if not points:
+    steps = steps_between(here, end)
+    points = _follow(arm, straight_line(here, end, steps), start, effort)
+    if len(points) < steps:
         why = f"rejected: the joints cannot follow a straight line{_ended(effort)}"
         return reject(arm, why, arm.error_codes.no_straight_line)
     _go_along(arm, points, speed, now, queue=arm.queues)
@@ -175,7 +171,7 @@ def jog(
         raise Unanswerable
     effort = Effort()
     ends = (way(here, step * n) for n in range(1, JOG_STEPS))
-    points = _follow(arm, ends, start, effort, whole=False)
+    points = _follow(arm, ends, start, effort)
     if not points:
         why = f"rejected: the end cannot move in this direction{_ended(effort)}"
         return reject(arm, why, arm.error_codes.no_solution)
@@ -213,19 +209,10 @@ def _ended(effort: Effort) -> str:
     return "" if effort.left else f"; the search ended after {STEPS_OF_A_REQUEST} steps"
 
 
-def _follow(
-    arm: ArmState, ends: Iterable[Pose], start: Point, effort: Effort, *, whole: bool = True
-) -> list[Point]:
-    """Return the angles along a way; if its end cannot be reached, nothing, or the first part."""
+def _follow(arm: ArmState, ends: Iterable[Pose], start: Point, effort: Effort) -> list[Point]:
+    """Return the angles along a way, as far as the joints can follow."""
     assert arm.geometry is not None, "the caller has checked this"
-    limits, points = arm.limits(), [start]
-    for end in ends:
-        target = arm.flange_for(end)
-        found = nearest(arm.geometry, target, points[-1], limits, LARGEST_TURN, effort)
-        if found is None or max(abs(a - b) for a, b in zip(found, points[-1])) > LARGEST_TURN:
-            return [] if whole else points[1:]
-        points.append(found)
-    return points[1:]
+    return angles_along(arm.geometry, map(arm.flange_for, ends), start, arm.limits(), effort)
 
 
 def _go_along(arm: ArmState, points: list[Point], speed: int, now: float, *, queue: bool) -> None:
@@ -242,8 +229,3 @@ def _note_a_pause(arm: ArmState) -> None:
     """Note that a motion has to wait: no reply reports it."""
     if arm.paused:
         arm.remarks.append("waits: the arm is paused until resume")
-
-
-def _steps(start: Pose, end: Pose) -> int:
-    way, turn = start.distance(end)
-    return max(math.ceil(way / STEP_MILLIMETRES), math.ceil(turn / STEP_DEGREES), 1)

@@ -39,6 +39,7 @@ RESERVED_COMMANDS = _ANNOTATIONS | {
     "close_gripper",
     "codec",
     "events",
+    "follow",
     "go_home",
     "on",
     "listen",

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Sequence
+from copy import copy
 
 from cobotwire.simulator.motion.hand import Hand, TimedPoint
 from cobotwire.simulator.motion.legs import Leg, Plan, Point, Route, Turn
@@ -16,8 +17,15 @@ class Axes:
     pass in steps of any size.
     """
 
-    def __init__(self, position: Sequence[float], acceleration: float) -> None:
-        """``acceleration`` is the largest one, in units per square second."""
+    def __init__(self, position: Sequence[float], acceleration: float, lag: float = 0.0) -> None:
+        """``acceleration`` is the largest one, in units per square second.
+
+        With a ``lag`` the axes are where they were to be that many seconds ago, as servos are that
+        run after their target.
+        """
+        self._lag = lag
+        # The axes as they were planned until some command came; the last one until then.
+        self._past: deque[tuple[float, Axes]] = deque()
         self._rest: Point = tuple(position)
         self._acceleration = acceleration
         self._leg: Leg | Hand | None = None
@@ -27,11 +35,15 @@ class Axes:
 
     def position(self, now: float) -> Point:
         """Return where the axes are."""
+        if self._lags:
+            return self._before(now).position(now - self._lag)
         leg = self._at(now)
         return self._rest if leg is None else leg.position(now - self._since)
 
     def speed(self, now: float) -> Point:
         """Return how fast each axis is, in units per second."""
+        if self._lags:
+            return self._before(now).speed(now - self._lag)
         leg = self._at(now)
         return (0.0,) * len(self._rest) if leg is None else leg.speed(now - self._since)
 
@@ -57,6 +69,8 @@ class Axes:
 
     def moving(self, now: float) -> bool:
         """Return whether the axes move."""
+        if self._lags and self._before(now).moving(now - self._lag):
+            return True
         return self._at(now) is not None
 
     def go(self, target: Sequence[float], rate: float, now: float, *, queue: bool = False) -> None:
@@ -65,6 +79,7 @@ class Axes:
         Otherwise forget the present motion and all waiting targets: moving axes turn to the new
         target without stopping.
         """
+        self._keep(now)
         plan = Plan((tuple(target),), rate)
         leg = self._at(now)
         if leg is None or queue or self._paused:
@@ -83,6 +98,7 @@ class Axes:
 
         Without ``queue``, moving axes stop first, since their present motion is another route.
         """
+        self._keep(now)
         if not queue and not self._paused:
             self.brake(now)
         self._add(Plan(tuple(points), rate), now, queue)
@@ -97,6 +113,7 @@ class Axes:
 
     def brake(self, now: float) -> None:
         """Brake, and forget every target."""
+        self._keep(now)
         leg = self._at(now)
         self._waiting.clear()
         if leg is not None:
@@ -107,6 +124,7 @@ class Axes:
         self._rest = self.position(now)
         self._leg = None
         self._waiting.clear()
+        self._past.clear()
 
     def lead(self, points: Sequence[TimedPoint], now: float) -> None:
         """Let a hand lead the axes from where they are; forget every target."""
@@ -120,6 +138,7 @@ class Axes:
 
     def forget(self, now: float) -> None:
         """Forget the waiting targets; the present motion continues."""
+        self._keep(now)
         self._at(now)
         self._waiting.clear()
 
@@ -130,6 +149,7 @@ class Axes:
 
     def pause(self, now: float) -> None:
         """Brake, and keep the targets."""
+        self._keep(now)
         leg = self._at(now)
         if self._paused:
             return
@@ -141,17 +161,41 @@ class Axes:
 
     def resume(self, now: float) -> None:
         """Continue towards the targets, from standstill."""
+        self._keep(now)
         if self._at(now) is None and self._paused:
             self._since = now
         self._paused = False
         if self._leg is None:
             self._start()
 
+    @property
+    def _lags(self) -> bool:
+        return self._lag > 0 and not isinstance(self._leg, Hand)
+
+    def _keep(self, now: float) -> None:
+        """Keep the present plan until ``now``, for as long as the axes run after it."""
+        if self._lag:
+            self._past.append((now, self._without_lag()))
+
+    def _without_lag(self) -> Axes:
+        """Return the same axes without a lag."""
+        found = copy(self)
+        found._lag, found._waiting = 0.0, self._waiting.copy()
+        return found
+
+    def _before(self, now: float) -> Axes:
+        """Return the axes whose plan the lagging ones are at now."""
+        while self._past and self._past[0][0] <= now - self._lag:
+            self._past.popleft()
+        return self._past[0][1] if self._past else self._without_lag()
+
     def _braked(self, leg: Leg | Hand, now: float) -> Leg | Hand:
         return leg.braked(now - self._since, self._acceleration)
 
     def _at(self, now: float) -> Leg | Hand | None:
         """Return the present leg; end those that are over by now."""
+        if self._leg is not None and now >= self._since + self._leg.duration:
+            self._keep(now)
         while self._leg is not None and now >= self._since + self._leg.duration:
             self._since += self._leg.duration
             self._rest = self._leg.end

@@ -1,0 +1,179 @@
+"""Motions with limited speed, acceleration and jerk, by ruckig: the extra ``motion``.
+
+Ruckig's community edition plans from any state to one target; a path with several waypoints is a
+:class:`~cobotwire.kinematics.curve.Curve`, along which one number moves.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from importlib import import_module
+from itertools import accumulate, pairwise
+from operator import truediv
+from statistics import median
+from typing import Any, NamedTuple
+
+from cobotwire.kinematics.curve import Curve, Point
+from cobotwire.protocol.errors import UsageError
+from cobotwire.protocol.lazy import import_aside
+
+# A derivative that is smaller than this counts as zero.
+STRAIGHT = 1e-9
+# How often bends are slowed down further, and what counts as slow enough.
+ROUNDS, ENOUGH = 30, 1.02
+# A motion is checked at times that are no further apart, and at least at so many.
+SAMPLE_SECONDS, LEAST_SAMPLES = 0.005, 200
+
+
+class Bounds(NamedTuple):
+    """The largest speed, acceleration and jerk of each joint, in degrees and seconds."""
+
+    speed: Point
+    acceleration: Point
+    jerk: Point
+
+
+def load_ruckig() -> Any:
+    """Return the library.
+
+    Raises:
+        UsageError: it is not installed.
+    """
+    import_aside("ruckig")
+    try:
+        return import_module("ruckig")
+    except ImportError:
+        message = "follow() needs ruckig: pip install 'cobotwire[motion]'"
+        raise UsageError("ruckig", message=message) from None
+
+
+class Along:
+    """A motion along a curve, from rest to rest, within bounds; times are seconds from its start.
+
+    The speed along the curve is the highest that the sharpest bend allows.
+    """
+
+    def __init__(self, curve: Curve, bounds: Bounds) -> None:
+        ruckig = load_ruckig()
+        self._curve = curve
+        speed, acceleration, jerk = _along(curve, bounds)
+        wanted = ruckig.InputParameter(1)
+        wanted.current_position, wanted.target_position = [0.0], [curve.length]
+        wanted.max_velocity, wanted.max_acceleration = [speed], [acceleration]
+        wanted.max_jerk = [jerk]
+        self._law = ruckig.Trajectory(1)
+        ruckig.Ruckig(1).calculate(wanted, self._law)
+        self._slower = 1.0
+        self.seconds: float = self._law.duration
+        # Bends and changes of speed come together; slowed down, the motion obeys all bounds.
+        self._slower = max(1.0, *(each.slower for each in excesses(self, bounds)))
+        self.seconds *= self._slower
+
+    def at(self, time: float) -> tuple[Point, float]:
+        """Return where the joints are, and the speed of the fastest one."""
+        (done,), (pace,), _ = self._law.at_time(time / self._slower)
+        speeds = self._curve.at(done, 1)
+        return self._curve.at(done), pace / self._slower * max(map(abs, speeds))
+
+
+class InTime:
+    """A motion along a curve of which the knots are times."""
+
+    def __init__(self, curve: Curve) -> None:
+        self._curve, self.seconds = curve, curve.length
+
+    def at(self, time: float) -> tuple[Point, float]:
+        """Return where the joints are, and the speed of the fastest one."""
+        return self._curve.at(time), max(map(abs, self._curve.at(time, 1)))
+
+
+class Excess(NamedTuple):
+    """By how much a motion uses a bound: the joint that comes nearest to it, or exceeds it most.
+
+    ``slower`` is how many times as long the motion would take to reach the bound exactly.
+    """
+
+    bound: str
+    joint: int
+    needed: float
+    allowed: float
+    slower: float
+
+
+def excesses(motion: Along | InTime, bounds: Bounds) -> list[Excess]:
+    """Return how a motion uses each of the bounds, from positions at short intervals."""
+    samples = max(LEAST_SAMPLES, math.ceil(motion.seconds / SAMPLE_SECONDS))
+    step = motion.seconds / samples
+    rows = [motion.at(sample * step)[0] for sample in range(samples + 1)]
+    # It rests before and after.
+    rows = [rows[0]] * 3 + rows + [rows[-1]] * 3
+    found = []
+    for order, (bound, most) in enumerate(zip(Bounds._fields, bounds), 1):
+        rows = [tuple((b - a) / step for a, b in zip(*pair)) for pair in pairwise(rows)]
+        needed = [max(map(abs, axis)) for axis in zip(*rows)]
+        shares = list(map(truediv, needed, most))
+        joint = shares.index(max(shares))
+        slower = shares[joint] ** (1 / order)
+        found.append(Excess(bound, joint, needed[joint], most[joint], slower))
+    return found
+
+
+class Chase:
+    """Joints that run after a target that may change at each step, and stop at it."""
+
+    def __init__(self, start: Point, bounds: Bounds, step: float) -> None:
+        """``step`` is the time of a step in seconds."""
+        ruckig = load_ruckig()
+        joints = len(start)
+        self._finished = ruckig.Result.Finished
+        self._ruckig = ruckig.Ruckig(joints, step)
+        self._state, self._next = ruckig.InputParameter(joints), ruckig.OutputParameter(joints)
+        self._state.current_position = self._state.target_position = list(start)
+        self._state.max_velocity = list(bounds.speed)
+        self._state.max_acceleration = list(bounds.acceleration)
+        self._state.max_jerk = list(bounds.jerk)
+        self.arrived = True
+
+    def step(self, target: Sequence[float]) -> tuple[Point, float]:
+        """Move on for the time of a step; return where the joints are, and the highest speed."""
+        self._state.target_position = list(target)
+        self.arrived = self._ruckig.update(self._state, self._next) == self._finished
+        self._next.pass_to_input(self._state)
+        return tuple(self._next.new_position), max(map(abs, self._next.new_velocity))
+
+
+def paced(points: Sequence[Point], bounds: Bounds) -> Curve:
+    """Return a curve through points on which a speed of 1 is within the bounds everywhere, nearly.
+
+    The speed is even where it can be: the steps between points are those of the fastest joint, as
+    long as a usual piece allows. Around sharper bends they are made longer, until the joints can
+    follow.
+    """
+    steps = [
+        max(map(truediv, (abs(b - a) for a, b in zip(one, two)), bounds.speed))
+        for one, two in pairwise(points)
+    ]
+    for number in range(ROUNDS):
+        curve = Curve([0.0, *accumulate(steps)], points, rests=False)
+        needs = [max(need) for need in zip(*(_needs(curve, order, bounds) for order in (1, 2, 3)))]
+        if max(needs) < ENOUGH:
+            break
+        if number == 0:
+            needs = [median(needs)] * len(needs)
+        steps = [step * max(1.0, need) for step, need in zip(steps, needs)]
+    return curve
+
+
+def _needs(curve: Curve, order: int, bounds: Bounds) -> list[float]:
+    """Return how many times as long each piece must take for the sake of a derivative."""
+    most = bounds[order - 1]
+    return [max(map(truediv, each, most)) ** (1 / order) for each in curve.largest(order)]
+
+
+def _along(curve: Curve, bounds: Bounds) -> tuple[float, float, float]:
+    """Return a speed, acceleration and jerk along a curve that each joint may reach, each alone."""
+    speed = 1 / max(max(_needs(curve, order, bounds)) for order in (1, 2, 3))
+    first = [max((STRAIGHT, *axis)) for axis in zip(*curve.largest(1))]
+    acceleration = min(map(truediv, bounds.acceleration, first))
+    return speed, acceleration, min(map(truediv, bounds.jerk, first))
