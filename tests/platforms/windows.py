@@ -31,7 +31,7 @@ THIRD_PARTY = ("click", "rich.console", "rich.live", "rich.progress", "serial.to
 # Only imported in the test that imports all of our modules.
 EXTRAS = (
     *("libcst.codemod", "matplotlib.backends.backend_agg", "matplotlib.font_manager", "pytest"),
-    *("starlette.applications", "uvicorn.server"),
+    *("mcp.server", "starlette.applications", "uvicorn.server"),
 )
 
 ABSENT_MODULES = (
