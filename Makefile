@@ -141,6 +141,7 @@ bench: .venv/.tools .venv/.native ## compare speeds with their limits; count los
 	$(BIN)/python bench/pipelining.py
 	$(BIN)/python bench/pymycobot_session.py
 	$(BIN)/python bench/waiting.py
+	$(BIN)/python bench/tap.py
 
 bench-archive: .venv/.tools .venv/.native ## compare one and two workers on a raw file of 2 GB; takes minutes
 	$(BIN)/python bench/archive_workers.py

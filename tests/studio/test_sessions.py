@@ -145,6 +145,7 @@ def test_page_offers_what_a_workspace_allows_and_the_server_refuses_the_rest() -
                 send(command, **given)
         assert "did not say that the button is held" in asyncio.run(hold())[0]
         assert isinstance(stage.session, LiveSession)
+        assert isinstance(stage.session.line, ArmLine)
         sent = [frame[3] for frame in _sent(stage.session.line)]
         assert [each for each in sent if each in (0x22, 0x29, 0x30)] == [0x22, 0x22, 0x29]
 

@@ -114,6 +114,9 @@ class Recorder:
     If a write fails, for example because the disk is full, the client's call does not fail. Instead
     the error is logged, the recording stops, and :meth:`close` raises an error. In a forked child
     it records nothing, since the capture is the parent's.
+
+    Attributes:
+        failure: the error that ended the recording; None if there was none.
     """
 
     def __init__(
@@ -143,7 +146,7 @@ class Recorder:
         # Read once, so that setting the clock does not turn the recording's time back.
         self._epoch_ns = time.time_ns() - time.monotonic_ns()
         self._lock = threading.Lock()
-        self._failure: OSError | ValueError | None = None
+        self.failure: OSError | ValueError | None = None
         self._ended = False
         forks.watch(self)
 
@@ -177,9 +180,9 @@ class Recorder:
             self._ended = True
             self._write(self._sent.flush())
             self._write(self._received.flush())
-            if self._failure is not None:
-                detail = f"the recording is incomplete: {self._failure}"
-                raise CaptureError(self._name, self._writer.size, detail) from self._failure
+            if self.failure is not None:
+                detail = f"the recording is incomplete: {self.failure}"
+                raise CaptureError(self._name, self._writer.size, detail) from self.failure
 
     def leave_to_parent(self) -> None:
         """Record nothing from now on; called in a forked child."""
@@ -189,11 +192,11 @@ class Recorder:
 
     def _write(self, packets: Iterable[Packet]) -> None:
         for packet in packets:
-            if self._failure is not None:
+            if self.failure is not None:
                 return
             try:
                 self._writer.packet(packet._replace(interface=self._index))
             # A closed file raises ValueError.
             except (OSError, ValueError) as error:
-                self._failure = error
+                self.failure = error
                 _log.load().error("recording to %s stopped: %s", printable(self._name), error)

@@ -21,6 +21,9 @@ class Recording:
     ``TappedTransport(open_transport(url, baudrate), recording.record)`` passes it each chunk when
     the chunk is read or written. As the ``trace`` of a client it also gets every byte, but only
     when the frame is complete.
+
+    Attributes:
+        incomplete: why bytes are missing, if they are; then the file is not marked as finished.
     """
 
     def __init__(
@@ -48,7 +51,7 @@ class Recording:
             self._file = open(path, "xb")  # noqa: SIM115  (closed by close())
         except (OSError, ValueError) as error:
             raise unusable_file("record", path, error) from None
-        self._name = str(path)
+        self._name, self.incomplete = str(path), ""
         try:
             self._writer = CaptureWriter(self._file, application)
             self._recorder = Recorder(
@@ -71,6 +74,11 @@ class Recording:
         """Record a chunk that was read or written at ``at``, in ``time.monotonic()`` seconds."""
         self._recorder.record(direction, data, at)
 
+    @property
+    def failure(self) -> OSError | ValueError | None:
+        """The error that ended the recording; None if there was none."""
+        return self._recorder.failure
+
     def __enter__(self) -> Self:
         return self
 
@@ -92,6 +100,9 @@ class Recording:
             return
         try:
             self._recorder.close()
+            if self.incomplete:
+                detail = f"the recording is incomplete: {self.incomplete}"
+                raise CaptureError(self._name, self._writer.size, detail)
             self._writer.finish()
         except OSError as error:
             raise CaptureError(

@@ -20,6 +20,7 @@ VERBS = {
     "doctor": "Examine an arm and its port; give advice.",
     "survey": "Find out which facts a real arm confirms.",
     "monitor": "Show joints, coordinates, rate, errors.",
+    "tap": "Watch a program and its arm.",
     "call": "Send one command; print the result.",
     "run": "Run a program written for pymycobot.",
     "migrate": "Rewrite a program for our clients.",

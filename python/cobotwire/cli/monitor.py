@@ -22,7 +22,9 @@ from cobotwire.cli.shared.completers import complete_ports
 from cobotwire.cli.shared.edition_option import uses_edition
 from cobotwire.cli.shared.output import ECHO_COLUMNS, print_line
 from cobotwire.inspect import Monitor, Observation
-from cobotwire.inspect.monitor import monitored
+from cobotwire.inspect.following import SCHEME, FollowedRecording
+from cobotwire.inspect.monitor import FollowingMonitor, monitored
+from cobotwire.protocol.errors import UsageError
 from cobotwire.protocol.json_values import as_json_value
 
 # The width of a number with its name and the space after it; of borders, less the last such space.
@@ -49,33 +51,46 @@ def monitor(
 ) -> None:
     """Show joints and coordinates of the arm at URL, the sample rate, errors and noise.
 
+    With follow:FILE, nothing is sent: the values are those that another program queries, which
+    records them to FILE, such as cobotwire tap.
+
     Only queries are sent. A query without a reply in time is repeated, and each repeat counts as a
     request. The reply to an unanswered request may still come: then it is late. On a terminal the
     output is a live table. Elsewhere, or with --json, it is one line per sample. Ctrl-C closes the
     port and finishes the recording.
     """
-    package = editions.load(edition)
-    table = package.TABLE
-    monitored(table)
     try:
+        if port.startswith(SCHEME):
+            if record is not None:
+                message = "with follow:FILE there is nothing to record"
+                raise UsageError("record", record, message=message)
+            with FollowedRecording(port, edition) as followed:
+                _print(port, FollowingMonitor(followed, rate).samples(count), as_json)
+            return
+        package = editions.load(edition)
+        table = package.TABLE
+        monitored(table)
         with (
             open_arm(port, table, baudrate, record) as transport,
             package.CLIENT(transport, on_error="leave") as arm,
         ):
-            samples = Monitor(arm, codecs.load(table), rate).samples(count)
-            if as_json or not sys.stdout.isatty():
-                for sample in samples:
-                    print_line(_as_json(sample) if as_json else _line(sample))
-                return
-            with Live(console=Console(), auto_refresh=False) as live:
-                width = live.console.width - ECHO_COLUMNS
-                for sample in samples:
-                    shown = Constrain(_grid(port, sample, width), width)
-                    with _signals_wait():
-                        live.update(shown, refresh=True)
+            _print(port, Monitor(arm, codecs.load(table), rate).samples(count), as_json)
     except KeyboardInterrupt:
         # Ctrl-C is the usual way to end this verb, not a failure.
         sys.exit(0)
+
+
+def _print(port: str, samples: Iterator[Observation], as_json: bool) -> None:
+    if as_json or not sys.stdout.isatty():
+        for sample in samples:
+            print_line(_as_json(sample) if as_json else _line(sample))
+        return
+    with Live(console=Console(), auto_refresh=False) as live:
+        width = live.console.width - ECHO_COLUMNS
+        for sample in samples:
+            shown = Constrain(_grid(port, sample, width), width)
+            with _signals_wait():
+                live.update(shown, refresh=True)
 
 
 @contextmanager

@@ -4,29 +4,20 @@ from __future__ import annotations
 
 import json
 from functools import partial
-from typing import Any
 
 import click
 
-from cobotwire.capture import CaptureReader, Packet
+from cobotwire.capture import CaptureReader
 from cobotwire.capture.streams import packets_of_interface
 from cobotwire.cli.shared.edition_option import uses_edition
 from cobotwire.cli.shared.line_output import LineOutput
 from cobotwire.cli.shared.output import as_hex, fold, print_line
-from cobotwire.cli.shared.recordings import (
-    ARROWS,
-    interface_option,
-    open_recording,
-    seconds_column,
-    warn_if_incomplete,
-)
+from cobotwire.cli.shared.packet_lines import meaning_of, packet_as_json, packet_line
+from cobotwire.cli.shared.recordings import interface_option, open_recording, warn_if_incomplete
 from cobotwire.cli.shared.serving import serve
 from cobotwire.cli.shared.simulator_output import left_out
-from cobotwire.codec.interface import Codec
-from cobotwire.diagnose.explain import format_message
 from cobotwire.inspect.captured import codec_of_interface
-from cobotwire.protocol.errors import ProtocolError, UsageError
-from cobotwire.protocol.printable import printable
+from cobotwire.protocol.errors import UsageError
 from cobotwire.simulator import ReplayedArm, ReplayedRequest
 from cobotwire.simulator.local import local_server
 
@@ -95,52 +86,11 @@ def _print_timeline(
     start: int | None = None
     for packet in capture if interface is None else packets_of_interface(capture, interface):
         start = packet.time_ns if start is None else start
-        meaning = _meaning(packet, codec_of_interface(capture, packet.interface, edition))
+        meaning = meaning_of(packet, codec_of_interface(capture, packet.interface, edition))
         after = (packet.time_ns - start) / 1e9 if capture.timed else None
         if as_json:
-            print_line(json.dumps(_as_json(capture, packet, after, meaning)))
+            url = capture.interfaces[packet.interface].url
+            print_line(json.dumps(packet_as_json(packet, url, after, meaning)))
             continue
         label = f" interface {packet.interface}" if len(capture.interfaces) > 1 else ""
-        data, pause = as_hex(packet.data), _pause(packet)
-        when = f"{seconds_column(after)}{label}"
-        print_line(fold(f"{when} {ARROWS[packet.direction]} {data}   {meaning}{pause}"))
-
-
-def _meaning(packet: Packet, codec: Codec) -> str:
-    if packet.kind == "noise":
-        return f"noise ({printable(packet.reason)})"
-    if packet.kind == "bytes" or packet.direction == "unknown":
-        return "bytes"
-    try:
-        return format_message(
-            codec.decode("request" if packet.direction == "sent" else "reply", packet.data)
-        )
-    except ProtocolError as error:
-        # The frame was recorded with another edition.
-        return str(error)
-
-
-def _pause(packet: Packet) -> str:
-    if not packet.pieces:
-        return ""
-    seconds = (packet.pieces[-1].time_ns - packet.time_ns) / 1e9
-    return f"   (in {len(packet.pieces)} pieces, the last after {seconds:.6f} s)"
-
-
-def _as_json(
-    capture: CaptureReader, packet: Packet, after: float | None, meaning: str
-) -> dict[str, Any]:
-    pieces = [
-        {"size": size, "after": (time_ns - packet.time_ns) / 1e9} for size, time_ns in packet.pieces
-    ]
-    return {
-        "time_ns": None if after is None else packet.time_ns,
-        "after": after,
-        "url": capture.interfaces[packet.interface].url,
-        "direction": packet.direction,
-        "kind": packet.kind,
-        "reason": packet.reason,
-        "data": as_hex(packet.data),
-        "meaning": meaning,
-        "pieces": pieces,
-    }
+        print_line(packet_line(packet, after, meaning, label))

@@ -51,8 +51,9 @@ def studio(
     """Show the arm at URL, or a RECORDING, on a page in the browser, until Ctrl-C.
 
     URL is a serial port, or a URL such as socket://host:9000. Without it, a simulated arm is
-    started, which the page may move. The page shows the arm in 3D, curves, and every frame on the
-    line, byte by byte; sliders and buttons move the arm.
+    started, which the page may move. follow:RECORDING shows what another program records while it
+    does, such as cobotwire tap. The page shows the arm in 3D, curves, and every frame on the line,
+    byte by byte; sliders and buttons move the arm.
 
     The first line of output is the address of the page. It contains a secret: whoever has it can
     see the page. Only programs on this machine reach the page, unless --host says otherwise.

@@ -5,17 +5,25 @@ from __future__ import annotations
 import time
 from collections import deque
 from collections.abc import Iterator
+from itertools import repeat
+from math import inf
 from typing import Any, NamedTuple
 
+from cobotwire import codec as codecs
 from cobotwire.client import Client
-from cobotwire.codec.interface import Codec
+from cobotwire.codec.interface import Codec, Frame
+from cobotwire.inspect.following import FollowedRecording
 from cobotwire.inspect.traffic_listener import DiagnosingListener
-from cobotwire.protocol.errors import ProtocolError, ReplyTimeout, UsageError
+from cobotwire.protocol.errors import LinkError, ProtocolError, ReplyTimeout, UsageError
+from cobotwire.protocol.messages import Reply
 from cobotwire.protocol.table import Command, Role, Table
+from cobotwire.session import Traffic, UnexpectedFrame
 
 # The rate is computed over this many samples, the most recent ones.
 WINDOW = 10
 FASTEST = 1000.0
+# Older values are not shown as the present ones.
+FRESH_SECONDS = 2.0
 ROLES: tuple[Role, ...] = ("joints", "coordinates")
 
 
@@ -57,6 +65,17 @@ def monitored(table: Table) -> list[Command]:
     raise UsageError("edition", table.edition, message=message)
 
 
+def check_rate(rate: float) -> float:
+    """Return a number of samples a second.
+
+    Raises:
+        UsageError: it is not allowed.
+    """
+    if not 0 < rate <= FASTEST:
+        raise UsageError("rate", rate, f"above 0, up to {FASTEST:g}")
+    return rate
+
+
 class Monitor:
     """Samples the joints and coordinates of an arm, and listens to the port in between.
 
@@ -70,9 +89,7 @@ class Monitor:
         Raises:
             UsageError: the rate is not allowed, or the edition has no query to monitor.
         """
-        if not 0 < rate <= FASTEST:
-            raise UsageError("rate", rate, f"above 0, up to {FASTEST:g}")
-        self._arm, self._rate = arm, rate
+        self._arm, self._rate = arm, check_rate(rate)
         self._commands = monitored(codec.table)
         self._listener = DiagnosingListener(codec)
         self._answered = 0
@@ -133,3 +150,86 @@ class Monitor:
             return None
         self._answered += 1
         return value
+
+
+class FollowingMonitor:
+    """Shows the joints and coordinates that another program queries, and sends nothing.
+
+    A value is that of the newest reply; None if none came for ``FRESH_SECONDS``. The rate is that
+    of the replies with joints. A reply belongs to the newest request of its id, so none is late.
+    """
+
+    def __init__(self, followed: FollowedRecording, rate: float) -> None:
+        """Take ``rate`` samples a second; raise as :class:`Monitor`."""
+        self._interval = 1 / check_rate(rate)
+        self._followed = followed
+        self._listener = DiagnosingListener(codecs.load(followed.table))
+        self._values = {command: (-inf, None) for command in monitored(followed.table)}
+        self._times: deque[float] = deque(maxlen=WINDOW)
+        self._replied = {each.id for each in followed.table.commands if each.requires_reply}
+        # The ids of requests that have no reply yet; how many got none before they were repeated.
+        self._open: set[int] = set()
+        self._unanswered = 0
+        self._error = ""
+
+    def samples(self, count: int | None = None) -> Iterator[Observation]:
+        """Yield ``count`` samples, or samples until the recording ends.
+
+        Raises:
+            LinkError: the recording has ended.
+        """
+        started = due = time.monotonic()
+        for _ in repeat(None) if count is None else repeat(None, count):
+            due = max(due + self._interval, time.monotonic())
+            time.sleep(max(0.0, due - time.monotonic()))
+            # Read first: what came before it is still shown.
+            problem, self._error = self._followed.problem, ""
+            for traffic in self._followed.take():
+                self._take(traffic)
+            yield self._sample(started)
+            if problem:
+                raise LinkError(self._followed.source, problem)
+
+    def _take(self, traffic: Traffic) -> None:
+        self._listener(traffic)
+        if isinstance(traffic.event, UnexpectedFrame):
+            frame = traffic.event.frame
+            self._open.discard(frame.command)
+            for command in self._values:
+                if command.id == frame.command:
+                    self._read(command, frame, traffic.time)
+        elif traffic.event is None and (id := self._id_of(traffic.data)) in self._replied:
+            self._unanswered += id in self._open
+            self._open.add(id)
+
+    def _id_of(self, request: bytes) -> int:
+        frame = self._followed.table.frame
+        return frame.read_id(request) if len(request) >= frame.head_size else -1
+
+    def _read(self, command: Command, frame: Frame, at: float) -> None:
+        try:
+            reply = frame.decode("reply", of=command.name).typed
+        except ProtocolError as error:
+            self._error = str(error)
+            return
+        assert isinstance(reply, Reply), "decoded as a reply"
+        self._values[command] = at, reply.result
+        if command is next(iter(self._values)):
+            self._times.append(at)
+
+    def _sample(self, started: float) -> Observation:
+        now, listener = time.monotonic(), self._listener
+        listener.flush()
+        fresh = now - FRESH_SECONDS
+        span = self._times[-1] - self._times[0] if self._times else 0.0
+        return Observation(
+            time=now - started,
+            values={each.name: v if at > fresh else None for each, (at, v) in self._values.items()},
+            rate=(len(self._times) - 1) / span if span and self._times[-1] > fresh else 0.0,
+            sent=listener.sent,
+            unanswered=self._unanswered + len(self._open),
+            late=0,
+            noise=listener.noise,
+            diagnosis=str(listener.findings),
+            error=self._error,
+        )

@@ -21,6 +21,60 @@ except ModuleNotFoundError:  # Windows
 HAS_PTYS = termios is not None
 
 
+class Pty:
+    """A pseudo-terminal in raw mode; ``url`` is the port that programs open.
+
+    Attributes:
+        master: the server's end, which never blocks.
+        openings: reports when programs open and close the port; None where the system does not.
+    """
+
+    def __init__(self) -> None:
+        """Create it.
+
+        Raises:
+            LinkError: the system has no pseudo-terminals.
+        """
+        if not HAS_PTYS:
+            raise LinkError("pty", "this system has no pseudo-terminals: serve TCP instead")
+        self.master, slave = os.openpty()
+        # Raw mode: a terminal would echo the requests and swallow some of their bytes.
+        tty.setraw(slave)
+        # A client that does not read must not block the server.
+        os.set_blocking(self.master, False)
+        self.url = os.ttyname(slave)
+        self._held: list[int] = [slave]
+        self.openings: Openings | None = None
+        with suppress(OSError):
+            self.openings = Openings(self.url)
+            # While this process has the slave open, nothing reports that the last client closed it.
+            os.close(self._held.pop())
+
+    @property
+    def hung_up(self) -> bool:
+        """Whether no program has the port open."""
+        poll = select.poll()
+        poll.register(self.master, 0)
+        return any(event & select.POLLHUP for _, event in poll.poll(0))
+
+    def drop_unread(self) -> None:
+        """Drop what the last program did not read."""
+        if self.openings is None:
+            return
+        with self.openings.ignored(), suppress(OSError):
+            slave = os.open(self.url, os.O_RDWR | os.O_NOCTTY | os.O_NONBLOCK)
+            termios.tcflush(slave, termios.TCIFLUSH)
+            os.close(slave)
+
+    def close(self) -> None:
+        """Close it: a program that has it open finds it hung up."""
+        for descriptor in (self.master, *self._held):
+            os.close(descriptor)
+        if self.openings is not None:
+            self.openings.close()
+            self.openings = None
+
+
 class PtyServer(Server):
     """Serves a peer on a pty while its ``with`` block runs; ``url`` is the port to open.
 
@@ -35,29 +89,17 @@ class PtyServer(Server):
         Raises:
             LinkError: the system has no pseudo-terminals.
         """
-        if not HAS_PTYS:
-            raise LinkError("pty", "this system has no pseudo-terminals: serve TCP instead")
+        self._pty = Pty()
         super().__init__(clock)
-        self._master, slave = os.openpty()
-        # Raw mode: a terminal would echo the requests and swallow some of their bytes.
-        tty.setraw(slave)
-        # A client that does not read must not block the server.
-        os.set_blocking(self._master, False)
-        self.url = os.ttyname(slave)
+        self._master, self.url = self._pty.master, self._pty.url
         # Whether a program has the port open; always, if the system does not report it.
-        self._opened = True
+        self._opened = self._pty.openings is None
         # Whether a program has closed the port since the last one opened it.
         self._left = False
-        self._held: list[int] = [slave]
         self._connect(Endpoint(self._master, self._read, self._write, self._close), peer)
-        self._openings: Openings | None = None
-        with suppress(OSError):
-            self._openings = Openings(self.url)
-            # While this process has the slave open, nothing reports that the last client closed it.
-            os.close(self._held.pop())
-            self._selector.register(self._openings.descriptor, READ)
+        if self._pty.openings is not None:
+            self._selector.register(self._pty.openings.descriptor, READ)
             self._selector.unregister(self._master)
-            self._opened = False
 
     def _ready(self, descriptor: int, events: int) -> None:
         self._note_openings()
@@ -69,7 +111,7 @@ class PtyServer(Server):
 
         The kernel reports openings before the bytes that follow them.
         """
-        for opening in self._openings.read() if self._openings else ():
+        for opening in self._pty.openings.read() if self._pty.openings else ():
             if opening and self._left:
                 self._forget_client()
             if opening and not self._opened:
@@ -87,7 +129,7 @@ class PtyServer(Server):
         except BlockingIOError:
             raise
         except OSError:
-            if self._openings is None:
+            if self._pty.openings is None:
                 raise
         # No program has the port open.
         if self._opened:
@@ -102,28 +144,15 @@ class PtyServer(Server):
 
     def _forget_client(self) -> None:
         """Drop the incomplete request of the last client, and the replies that it did not read."""
-        if self._openings is None or self._master not in self._clients:
+        if self._pty.openings is None or self._master not in self._clients:
             return
         self._clients[self._master].connection.forget_client()
-        with self._openings.ignored(), suppress(OSError):
-            slave = os.open(self.url, os.O_RDWR | os.O_NOCTTY | os.O_NONBLOCK)
-            termios.tcflush(slave, termios.TCIFLUSH)
-            os.close(slave)
-        if not self._opened and not _hung_up(self._master):
+        self._pty.drop_unread()
+        if not self._opened and not self._pty.hung_up:
             self._register()
 
     def _close(self) -> None:
-        for descriptor in (self._master, *self._held):
-            os.close(descriptor)
-        if self._openings is not None:
-            if self._openings.descriptor in self._selector.get_map():
-                self._selector.unregister(self._openings.descriptor)
-            self._openings.close()
-            self._openings = None
-
-
-def _hung_up(master: int) -> bool:
-    """Return whether no program has the slave of a pty open."""
-    poll = select.poll()
-    poll.register(master, 0)
-    return any(event & select.POLLHUP for _, event in poll.poll(0))
+        openings = self._pty.openings
+        if openings is not None and openings.descriptor in self._selector.get_map():
+            self._selector.unregister(openings.descriptor)
+        self._pty.close()

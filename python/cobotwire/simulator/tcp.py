@@ -55,14 +55,11 @@ class TcpServer(Server):
             UsageError: there is no such port number.
             LinkError: it is not possible to listen on the address.
         """
-        self._listening = _listen(host, port)
+        self._listening = listen(host, port)
         super().__init__(clock)
         self._new_peer = connect
-        bound, number = self._listening.getsockname()[:2]
-        self.loopback = ip_address(bound).is_loopback
-        # A server that listens on all addresses is reached by loopback, too.
-        shown = LOOPBACK if ip_address(bound).is_unspecified else bound
-        self.url = f"socket://{f'[{shown}]' if ':' in shown else shown}:{number}"
+        self.url = url_of(self._listening)
+        self.loopback = ip_address(self._listening.getsockname()[0]).is_loopback
         # Since when no client can be accepted; None: they can.
         self._paused_at: float | None = None
         self._selector.register(self._listening, selectors.EVENT_READ)
@@ -149,7 +146,16 @@ def address(text: str) -> tuple[str, int]:
     return host.removeprefix("[").removesuffix("]") or LOOPBACK, int(number)
 
 
-def _listen(host: str, port: int) -> socket.socket:
+def url_of(listening: socket.socket) -> str:
+    """Return what a program on this machine opens to reach a socket that listens."""
+    bound, number = listening.getsockname()[:2]
+    # A server that listens on all addresses is reached by loopback, too.
+    shown = LOOPBACK if ip_address(bound).is_unspecified else bound
+    return f"socket://{f'[{shown}]' if ':' in shown else shown}:{number}"
+
+
+def listen(host: str, port: int) -> socket.socket:
+    """Listen; raise as :class:`TcpServer`."""
     if not 0 <= port <= HIGHEST_PORT:
         raise UsageError("port", port, f"0 (any that is free) ..{HIGHEST_PORT}")
     family = socket.AF_INET6 if ":" in host else socket.AF_INET

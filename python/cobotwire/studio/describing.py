@@ -94,7 +94,8 @@ def _written(
             "x": entry.finding.describe()[:SHOWN_TEXT],
         }
     if message is None and entry.direction == "sent":
-        return written | {"k": "noise", "l": "fill", "x": "fill bytes end a request that was cut"}
+        what = "no request of the edition, such as fill bytes that end a request that was cut"
+        return written | {"k": "noise", "l": "fill", "x": what}
     if message is None:
         what = "not a frame of the edition" if error is None else str(error)
         return written | {"k": "noise", "l": "illegal", "x": what[:SHOWN_TEXT]}

@@ -9,6 +9,7 @@ from typing import Any
 
 from cobotwire import codec as codecs
 from cobotwire.capture.packet import Interface
+from cobotwire.inspect.following import FollowedRecording
 from cobotwire.studio.arm_line import ArmLine
 from cobotwire.studio.describing import Describer
 from cobotwire.studio.entries import Entry, LiveEntries
@@ -24,7 +25,9 @@ REMARKS = 1000
 class LiveSession:
     """The entries of one line, and the pages that watch it."""
 
-    def __init__(self, line: ArmLine, remarks: deque[tuple[float, str, str]]) -> None:
+    def __init__(
+        self, line: ArmLine | FollowedRecording, remarks: deque[tuple[float, str, str]]
+    ) -> None:
         """``remarks`` are added by other threads: when, of what kind, and the text."""
         self.line = line
         self._start = time.monotonic()

@@ -19,6 +19,7 @@ from starlette.applications import Starlette
 from cobotwire import editions
 from cobotwire.capture import is_capture, read
 from cobotwire.editions import Edition
+from cobotwire.inspect.following import SCHEME, FollowedRecording
 from cobotwire.kinematics.urdf_reading import with_urdf
 from cobotwire.protocol.errors import CobotwireError, LinkError, UsageError
 from cobotwire.protocol.limits import Limits
@@ -44,7 +45,8 @@ class Options(NamedTuple):
     """What to show and how.
 
     Attributes:
-        source: a port, a URL or the file of a recording; None: a simulated arm.
+        source: a port, a URL, the file of a recording, ``follow:`` and one that grows; None: a
+            simulated arm.
         edition: the name of the edition.
         baudrate, record, address: as for other verbs.
         rate: how often a second the arm is polled; 0: never.
@@ -126,9 +128,8 @@ def staged(options: Options) -> Iterator[Stage]:
     edition = editions.load(options.edition)
     table = with_urdf(edition.TABLE, options.geometry, options.tip)
     with ExitStack() as stack:
-        if options.source is not None and _is_recording(options.source):
-            session = RecordedSession(options.source, options.edition)
-            edition = _edition_of(session, edition)
+        if (shown := _recorded(options, stack)) is not None:
+            edition, session = shown
             table = with_urdf(edition.TABLE, options.geometry, options.tip)
             stage = Stage(edition, session, Control(False), drawn=table)
             stack.callback(stage.close)
@@ -162,6 +163,23 @@ def staged(options: Options) -> Iterator[Stage]:
         )
         stack.callback(stage.close)
         yield stage
+
+
+def _recorded(
+    options: Options, stack: ExitStack
+) -> tuple[Edition, LiveSession | RecordedSession] | None:
+    """Return the recording that is shown, finished or still growing; None for an arm."""
+    source, edition = options.source, editions.load(options.edition)
+    if source is not None and source.startswith(SCHEME):
+        if options.record is not None or options.allow_motion:
+            message = "with follow:FILE there is nothing to record, and nothing moves"
+            raise UsageError("source", source, message=message)
+        followed = stack.enter_context(FollowedRecording(source, options.edition))
+        return followed.edition, LiveSession(followed, deque())
+    if source is None or not _is_recording(source):
+        return None
+    session = RecordedSession(source, options.edition)
+    return _edition_of(session, edition), session
 
 
 def _stop_at_end(line: ArmLine) -> None:

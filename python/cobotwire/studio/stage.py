@@ -9,11 +9,13 @@ from typing import Any
 
 from cobotwire import codec as codecs
 from cobotwire.editions import Edition
+from cobotwire.inspect.following import FollowedRecording
 from cobotwire.protocol.errors import UsageError
 from cobotwire.protocol.json_values import as_json_value
 from cobotwire.protocol.limits import Limits, limited
 from cobotwire.protocol.refusals import refusals
 from cobotwire.protocol.table import Table
+from cobotwire.studio.arm_line import ArmLine
 from cobotwire.studio.controls import controls
 from cobotwire.studio.describing import Describer
 from cobotwire.studio.explained import Explainer
@@ -179,9 +181,13 @@ class Stage:
         """
         await asyncio.get_running_loop().run_in_executor(self._stopper, self._line().stop)
 
-    def _line(self) -> Any:
+    def _line(self) -> ArmLine:
         if not isinstance(self.session, LiveSession):
             raise NotPermitted("a recording cannot be sent anything")
+        if isinstance(self.session.line, FollowedRecording):
+            raise NotPermitted(
+                "what is recorded is only shown: stop the program there, or the arm by its switch"
+            )
         return self.session.line
 
     def _show(self) -> None:

@@ -11,11 +11,14 @@ import click
 
 from cobotwire.cli.shared.exit_codes import note_signal
 from cobotwire.cli.shared.output import print_line
+from cobotwire.inspect.tap.forwarder import Forwarder
 from cobotwire.simulator.server import Server
 
 
 def serve(
-    server: Server, first_line: str | None = None, between: Sequence[Callable[[], None]] = ()
+    server: Server | Forwarder,
+    first_line: str | None = None,
+    between: Sequence[Callable[[], None]] = (),
 ) -> None:
     """Print the port (or ``first_line``), and serve it until Ctrl-C or SIGTERM.
 

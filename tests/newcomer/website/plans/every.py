@@ -18,6 +18,7 @@ PLANS: dict[str, Plan] = {
     "docs/lerobot.md": guides.LEROBOT,
     "docs/mcp.md": guides.MCP,
     "docs/urdf.md": guides.URDF,
+    "docs/tap.md": guides.TAP,
     "docs/pymycobot.md": guides.PYMYCOBOT,
     "docs/contribute/attack.md": guides.ATTACK,
     "docs/contribute/searches.md": guides.SEARCHES,

@@ -101,6 +101,17 @@ URDF = Plan(
     },
 )
 
+TAP = Plan(
+    {
+        "cobotwire tap /dev/ttyACM0": Expected(r"/dev/pts/\d+", served=True),
+        "cobotwire tap /dev/ttyACM0 --record run.pcapng": Expected(
+            r"follow:run\.pcapng", served=True
+        ),
+        "cobotwire studio follow:run.pcapng": NotRun("the recording does not grow any longer"),
+        "cobotwire monitor follow:run.pcapng": NotRun("the recording does not grow any longer"),
+    }
+)
+
 PYMYCOBOT = Plan(
     programs={
         "from cobotwire import MyCobot280": Program(

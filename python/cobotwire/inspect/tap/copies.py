@@ -1,0 +1,90 @@
+"""The pipe from the forwarder to the watching process: it never makes the forwarder wait."""
+
+from __future__ import annotations
+
+import os
+import select
+from collections.abc import Iterator
+from contextlib import suppress
+from struct import Struct
+from typing import Literal, NamedTuple
+
+try:
+    import fcntl
+except ModuleNotFoundError:  # Windows
+    fcntl = None  # type: ignore[assignment]
+
+Kind = Literal["sent", "received", "held", "note", "dropped"]
+KINDS: tuple[Kind, ...] = ("sent", "received", "held", "note", "dropped")
+HEAD = Struct("<BdH")
+# A write of at most so many bytes is taken as a whole or not at all.
+PIECE = getattr(select, "PIPE_BUF", 512) - HEAD.size
+# Where the system permits it: more than half a minute of a full line at 115,200 baud both ways.
+PIPE_SIZE = 1 << 20
+
+
+class Copy(NamedTuple):
+    """What the forwarder did.
+
+    ``sent`` was written to the arm and ``received`` read from it; ``held`` was not forwarded;
+    ``note`` is a text; ``dropped`` is the number of bytes of which there is no copy.
+    """
+
+    kind: Kind
+    time: float
+    data: bytes
+
+
+class Copies:
+    """The forwarder's end of the pipe."""
+
+    def __init__(self, descriptor: int) -> None:
+        os.set_blocking(descriptor, False)
+        with suppress(AttributeError, OSError):
+            fcntl.fcntl(descriptor, fcntl.F_SETPIPE_SZ, PIPE_SIZE)
+        self._descriptor = descriptor
+        # Bytes without a copy that were not reported yet.
+        self._dropped = 0
+
+    def put(self, kind: Kind, data: bytes, time: float) -> None:
+        """Copy ``data``; if the reader is too slow, drop it, and count it for the reader."""
+        for start in range(0, len(data), PIECE):
+            piece = data[start : start + PIECE]
+            if self._dropped and self._write("dropped", b"%d" % self._dropped, time):
+                self._dropped = 0
+            if self._dropped or not self._write(kind, piece, time):
+                self._dropped += len(piece)
+
+    def _write(self, kind: Kind, data: bytes, time: float) -> bool:
+        try:
+            os.write(self._descriptor, HEAD.pack(KINDS.index(kind), time, len(data)) + data)
+        except OSError:
+            # It is full, or the reader is gone.
+            return False
+        return True
+
+    def close(self) -> None:
+        """End the copies. What was dropped last is reported if the reader takes it in a second."""
+        if self._dropped:
+            select.select([], [self._descriptor], [], 1.0)
+            self._write("dropped", b"%d" % self._dropped, 0.0)
+        os.close(self._descriptor)
+
+
+class CopyReader:
+    """The watching process's end of the pipe."""
+
+    def __init__(self) -> None:
+        self._rest = b""
+
+    def feed(self, data: bytes) -> Iterator[Copy]:
+        """Take what was read from the pipe; yield the complete copies."""
+        data, at = self._rest + data, 0
+        while len(data) - at >= HEAD.size:
+            kind, time, size = HEAD.unpack_from(data, at)
+            end = at + HEAD.size + size
+            if end > len(data):
+                break
+            yield Copy(KINDS[kind], time, data[at + HEAD.size : end])
+            at = end
+        self._rest = data[at:]
