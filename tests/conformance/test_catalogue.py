@@ -49,8 +49,8 @@ def test_clause_is_never_given_to_another_test_case(monkeypatch: pytest.MonkeyPa
     clauses = CLAUSES
     numbers = {case: number for number, case in enumerate(clauses, 1)}
     for changed, message in (
-        ((clauses[1], clauses[0], *clauses[2:]), "are not those of version 7"),
-        (clauses[1:], "are not those of version 7"),
+        ((clauses[1], clauses[0], *clauses[2:]), "are not those of version 1"),
+        (clauses[1:], "are not those of version 1"),
         ((*clauses, clauses[0]), "a test case has two clauses"),
         ((*clauses, "later"), ""),
     ):

@@ -69,7 +69,7 @@ def _cases(cases: Iterable[TestCase]) -> list[list[str]]:
 def misnumbered() -> str:
     """Return what is wrong with the numbers of the clauses; empty: nothing."""
     for each in HISTORY:
-        if each.clauses is not None and _digest(CLAUSES[: each.clauses]) != each.of_clauses:
+        if _digest(CLAUSES[: each.clauses]) != each.of_clauses:
             return f"the first {each.clauses} clauses are not those of version {each.number}"
     for case in (case.id for suite in SUITES for case in suite.cases):
         if case not in NUMBERS:
