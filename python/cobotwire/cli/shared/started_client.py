@@ -8,12 +8,10 @@ import tempfile
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
-from cobotwire.conformance.last_words import ending
-from cobotwire.protocol.errors import LinkError, UsageError
+from cobotwire.conformance import programs
+from cobotwire.protocol.errors import UsageError
 
 PORT_WORD = "{port}"
-# How long a client may take to end after it was asked to, in seconds.
-ENDING = 2.0
 
 
 @contextmanager
@@ -41,34 +39,18 @@ def started_client(command: str | None, port: str) -> Iterator[Callable[[], str 
         message = f"--command needs a program, and {PORT_WORD} where it takes the port to open"
         raise UsageError("command", command, message=message)
     with tempfile.TemporaryFile() as diagnostics:
-        try:
-            # Its output would mix with ours, of which the first line is the port.
-            process = subprocess.Popen(  # noqa: S603  (running the caller's command is the point)
-                words,
-                stdin=subprocess.DEVNULL,
-                stdout=subprocess.DEVNULL,
-                stderr=diagnostics,
-                start_new_session=True,
-            )
-        except OSError as error:
-            raise LinkError(words[0], f"cannot be started: {error.strerror or error}") from error
+        # Its output would mix with ours, of which the first line is the port.
+        process = programs.start(
+            words, words[0], subprocess.DEVNULL, subprocess.DEVNULL, diagnostics
+        )
 
         def ended() -> str | None:
             code = process.poll()
             if code is None:
                 return None
-            return f"the client: {ending(code, diagnostics)}" if code else ""
+            return f"the client: {programs.ending(code, diagnostics)}" if code else ""
 
         try:
             yield ended
         finally:
-            _stop(process)
-
-
-def _stop(process: subprocess.Popen[bytes]) -> None:
-    process.terminate()
-    try:
-        process.wait(ENDING)
-    except subprocess.TimeoutExpired:
-        process.kill()
-        process.wait()
+            programs.end(process)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import json
+import os
 import subprocess
 import tempfile
 import time
@@ -11,9 +12,9 @@ from collections.abc import Sequence
 from types import TracebackType
 from typing import Any, Protocol, Self
 
+from cobotwire.conformance import programs
 from cobotwire.conformance.codec.questions.question import Json
 from cobotwire.conformance.device.program_transport import DescriptorEnd
-from cobotwire.conformance.last_words import ending
 from cobotwire.protocol.errors import CobotwireError, LinkError
 
 # A longer line is not an answer: real answers need less than a hundredth of it.
@@ -59,6 +60,8 @@ class Program:
         self._command = list(command)
         self._timeout = timeout
         self._process: subprocess.Popen[bytes] | None = None
+        # Our ends of its standard input and output, while it runs.
+        self._ends: list[DescriptorEnd] = []
         self._output = b""
         self._count = 0
         self._greeting: Json | None = None
@@ -104,39 +107,28 @@ class Program:
         process, self._process, self._output = self._process, None, b""
         if process is None:
             return
-        for stream in (process.stdin, process.stdout):
-            # An error is ignored: the command need not read the rest of its input.
-            with contextlib.suppress(BrokenPipeError):
-                if stream is not None:
-                    stream.close()
-        try:
+        while self._ends:
+            self._ends.pop().close()
+        with contextlib.suppress(subprocess.TimeoutExpired):
             process.wait(0.5)
-        except subprocess.TimeoutExpired:
-            process.kill()
-            process.wait()
+        programs.end(process)
 
     def _start(self) -> subprocess.Popen[bytes]:
-        try:
-            process = subprocess.Popen(  # noqa: S603  (running the caller's command is the point)
-                self._command,
-                stdin=subprocess.PIPE,
-                stdout=subprocess.PIPE,
-                stderr=self._diagnostics,
-                bufsize=0,
-            )
-        except OSError as error:
-            raise LinkError(" ".join(self._command), error.strerror or str(error)) from error
+        name, pipe = " ".join(self._command), subprocess.PIPE
+        process = programs.start(self._command, name, pipe, pipe, self._diagnostics)
+        for stream in (process.stdin, process.stdout):
+            assert stream is not None, "both are pipes"
+            self._ends.append(DescriptorEnd(os.dup(stream.fileno()), name))
+            stream.close()
         self._process = process
         return process
 
     def _exchange(self, process: subprocess.Popen[bytes], line: bytes, seconds: float) -> bytes:
         """Send a line, and return the next line of the answers."""
-        assert process.stdin is not None
-        assert process.stdout is not None
         deadline = time.monotonic() + seconds
+        to_codec, output = self._ends
         try:
-            DescriptorEnd(process.stdin.fileno(), "input").write(line)
-            output = DescriptorEnd(process.stdout.fileno(), "output")
+            to_codec.write(line)
             while b"\n" not in self._output:
                 left = deadline - time.monotonic()
                 data = output.read(max(0.0, left))
@@ -169,7 +161,7 @@ class Program:
             code = process.wait(1.0)
         except subprocess.TimeoutExpired:
             return NoAnswer("silent", "it closed its output but is still running")
-        how = ending(code, self._diagnostics)
+        how = programs.ending(code, self._diagnostics)
         if code:
             return NoAnswer("crashed", how)
         return NoAnswer("ended", f"it did not answer question {self._count}; {how}")

@@ -3,71 +3,41 @@
 from __future__ import annotations
 
 import os
-import select
 import time
 from collections.abc import Callable
 from typing import NoReturn
 
 from cobotwire.protocol.errors import LinkError
 from cobotwire.transport import Transport
+from cobotwire.transport.descriptor import DescriptorTransport
 
-READ_SIZE = 4096
-# A write may take this long, in seconds.
-WRITING = 2.0
+# Bits per second that a program takes at least.
+SLOWEST = 9600
 # How often a read checks whether the program still runs, in seconds.
 CHECKS = 0.05
 # How long a program that has closed its end may take to end, in seconds.
 CLOSING = 0.5
 
 
-class DescriptorEnd:
-    """A transport over an open descriptor: our end of a socket pair or pseudo-terminal."""
+class DescriptorEnd(DescriptorTransport):
+    """A transport over an open descriptor: our end of a socket pair, pseudo-terminal or pipe."""
 
     def __init__(self, descriptor: int, url: str) -> None:
-        self.url = url
-        self._descriptor = descriptor
-        os.set_blocking(descriptor, False)
+        self._given, self._opened = descriptor, False
+        super().__init__(url, SLOWEST)
 
-    def read(self, timeout: float) -> bytes:
-        """Return the received bytes, as soon as there are any; empty after ``timeout`` seconds.
+    def _connect(self) -> int:
+        os.set_blocking(self._given, False)
+        self._opened = True
+        return self._given
 
-        Raises:
-            LinkError: the other end is closed.
-        """
-        try:
-            if not select.select([self._descriptor], [], [], timeout)[0]:
-                return b""
-            data = os.read(self._descriptor, READ_SIZE)
-        except BlockingIOError:
-            return b""
-        except (OSError, ValueError) as error:
-            raise LinkError(self.url, f"cannot be read: {error}") from error
-        if not data:
-            raise LinkError(self.url, "cannot be read: the other end is closed")
-        return data
+    def _release(self) -> None:
+        if self._opened:
+            self._opened = False
+            os.close(self._given)
 
-    def write(self, data: bytes) -> None:
-        """Send all of ``data``.
-
-        Raises:
-            LinkError: the other end is closed, or takes no bytes.
-        """
-        while data:
-            try:
-                ready = select.select([], [self._descriptor], [], WRITING)[1]
-                data = data[os.write(self._descriptor, data) :] if ready else data
-            except BlockingIOError:
-                continue
-            except (OSError, ValueError) as error:
-                raise LinkError(self.url, f"cannot be written: {error}") from error
-            if not ready:
-                raise LinkError(self.url, f"takes no bytes for {WRITING:g} s")
-
-    def close(self) -> None:
-        """Close the descriptor."""
-        descriptor, self._descriptor = self._descriptor, -1
-        if descriptor >= 0:
-            os.close(descriptor)
+    def _end_of_data(self) -> str:
+        return "the other end is closed"
 
 
 class WatchedTransport:

@@ -11,12 +11,11 @@ import sys
 import tempfile
 import time
 from collections.abc import Sequence
-from contextlib import suppress
 from types import TracebackType
 from typing import Literal, Self
 
 from cobotwire.conformance.device.program_transport import DescriptorEnd, WatchedTransport
-from cobotwire.conformance.last_words import ending
+from cobotwire.conformance.programs import end, ending, start
 from cobotwire.protocol.errors import LinkError, UsageError
 from cobotwire.transport import Transport, open_transport
 
@@ -26,8 +25,8 @@ ATTACH: tuple[Attach, ...] = ("stdio", "pty", "port")
 PORT_WORD = "{port}"
 # A URL or device name that a program prints, and that can be opened as a port.
 PRINTED_PORT = re.compile(rb"(?:socket|rfc2217)://\S+|/dev/\S+|\bCOM\d+\b")
-# The limits, in seconds, for the program to print its port and to end after SIGTERM.
-STARTING, ENDING = 10.0, 2.0
+# The limit, in seconds, for the program to print its port.
+STARTING = 10.0
 # The output is searched for a port every POLL seconds, in its first READ_SIZE bytes.
 POLL = 0.02
 READ_SIZE = 4096
@@ -108,7 +107,7 @@ class StartedDevice:
     def stop(self) -> None:
         """Close the transport, and end the program and the programs that it has started."""
         self.transport.close()
-        _end(self._process)
+        end(self._process)
         self.ended()
         self._release()
 
@@ -116,11 +115,12 @@ class StartedDevice:
         self, command: list[str], attach: Attach, baudrate: int
     ) -> tuple[subprocess.Popen[bytes], Transport]:
         if attach == "port":
-            process = self._popen(command, subprocess.DEVNULL, self._output.fileno())
+            output = self._output.fileno()
+            process = start(command, self.name, subprocess.DEVNULL, output, self._diagnostics)
             try:
                 return process, open_transport(self._printed_port(process), baudrate)
             except BaseException:
-                _end(process)
+                end(process)
                 raise
         ours, theirs, path = _pty() if attach == "pty" else _pair()
         self._ends.append(theirs)
@@ -129,7 +129,7 @@ class StartedDevice:
         named = placed != command
         ends = (subprocess.DEVNULL, self._output.fileno()) if named else (theirs, theirs)
         try:
-            process = self._popen(placed, *ends)
+            process = start(placed, self.name, *ends, self._diagnostics)
         except BaseException:
             inner.close()
             raise
@@ -137,18 +137,6 @@ class StartedDevice:
             # Only the program keeps its end open: once it has ended, reads report that.
             os.close(self._ends.pop())
         return process, inner
-
-    def _popen(self, command: list[str], stdin: int, stdout: int) -> subprocess.Popen[bytes]:
-        try:
-            return subprocess.Popen(  # noqa: S603  (running the caller's command is the point)
-                command,
-                stdin=stdin,
-                stdout=stdout,
-                stderr=self._diagnostics,
-                start_new_session=True,
-            )
-        except OSError as error:
-            raise LinkError(self.name, f"cannot be started: {error.strerror or error}") from error
 
     def _printed_port(self, process: subprocess.Popen[bytes]) -> str:
         """Wait until the program prints a port or URL."""
@@ -194,18 +182,3 @@ def _pty() -> tuple[int, int, str]:
     # Raw mode: a terminal would echo the requests and swallow some of their bytes.
     tty.setraw(theirs)
     return ours, theirs, os.ttyname(theirs)
-
-
-def _end(process: subprocess.Popen[bytes]) -> None:
-    """End a program and its session."""
-    with suppress(OSError):
-        if hasattr(os, "killpg"):
-            os.killpg(process.pid, 15)
-        else:
-            process.terminate()
-    try:
-        process.wait(ENDING)
-    except subprocess.TimeoutExpired:
-        with suppress(OSError):
-            os.killpg(process.pid, 9) if hasattr(os, "killpg") else process.kill()
-        process.wait()
