@@ -62,6 +62,7 @@ ONE_IMPORTER = {
     "yourdfpy": [],
     "ruamel": ["simulator/faults/nodes.py"],
     "mcp": ["adapters/mcp/server.py"],
+    "cyclonedds": ["adapters/ros2/dds.py"],
     "starlette": ["studio/app.py", "studio/feed.py", "studio/serving.py"],
     "uvicorn": ["studio/accepting.py", "studio/serving.py"],
 }

@@ -64,7 +64,17 @@ def test_ports_are_completed_for_every_verb_that_opens_one(
         for parameter in verb.params
         if isinstance(parameter, click.Argument) and parameter.metavar == "URL"
     }
-    names = ("call", "doctor", "identify", "mcp", "monitor", "survey", "tap", "conform device")
+    names = (
+        "call",
+        "doctor",
+        "identify",
+        "mcp",
+        "monitor",
+        "ros2",
+        "survey",
+        "tap",
+        "conform device",
+    )
     assert completed == {name: ["/dev/ttyACM7"] for name in names}
 
 

@@ -61,6 +61,11 @@ def _imported(path: Path) -> set[str]:
             ["plot", "arm.pcapng", "-o", "arm.svg"],
             "plotting needs matplotlib: pip install 'cobotwire[plot]'",
         ),
+        (
+            "cyclonedds",
+            ["ros2", "/dev/null"],
+            "cobotwire ros2 needs cyclonedds: pip install 'cobotwire[ros2]'",
+        ),
         ("mcp", ["mcp", "/dev/null"], "cobotwire mcp needs mcp: pip install 'cobotwire[mcp]'"),
         (
             "defusedxml",

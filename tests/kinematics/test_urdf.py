@@ -106,7 +106,7 @@ def test_joints_have_the_limits_and_the_speed_of_the_edition() -> None:
         f"left_{link}" for link in ("base", *(f"link{n}" for n in range(1, 7)), "flange")
     ]
     joints = robot.findall("joint")[:-1]
-    assert [joint.get("name") for joint in joints] == [f"left_joint{n}" for n in range(1, 7)]
+    assert [joint.get("name") for joint in joints] == [f"left_j{n}" for n in range(1, 7)]
     for joint, ends in zip(joints, joint_limits(TABLE)):
         limit = _attributes(joint, "limit", lower="", upper="", velocity="", effort="")
         stated = math.degrees(limit["lower"][0]), math.degrees(limit["upper"][0])

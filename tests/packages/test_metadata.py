@@ -118,7 +118,8 @@ def test_extra_all_has_every_other_extra(name: str) -> None:
     extras = project(name)["optional-dependencies"]
     [everything] = extras.pop("all")
     named = everything.partition("[")[2].rstrip("]").split(",")
-    assert sorted(named) == sorted(extras)
+    # cyclonedds has no wheel for some machines, where the others install.
+    assert sorted(named) == sorted({*extras} - {"ros2"})
 
 
 @pytest.mark.parametrize("name", ADDED)

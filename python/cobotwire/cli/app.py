@@ -30,6 +30,7 @@ VERBS = {
     "sim": "Serve a simulated arm.",
     "studio": "Show an arm or a recording in the browser.",
     "mcp": "Offer an arm to a language model.",
+    "ros2": "Publish an arm on the topics of ROS 2.",
     "replay": "Print a recording, or serve it as an arm.",
     "plot": "Draw a recording.",
     "conform": "Test an arm, a client or a codec.",

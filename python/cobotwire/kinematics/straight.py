@@ -67,14 +67,14 @@ def straight_line(start: Pose, end: Pose, steps: int) -> Iterator[Pose]:
 
 def _half_turn(turn: Pose) -> tuple[float, Vector]:
     """Return half the angle of a turn in radians, and its axis."""
-    w, x, y, z = _quaternion(turn)
+    w, x, y, z = quaternion(turn)
     sine = math.hypot(x, y, z)
     if sine < UNTURNED:
         return 0.0, (0.0, 0.0, 1.0)
     return math.atan2(sine, w), (x / sine, y / sine, z / sine)
 
 
-def _quaternion(turn: Pose) -> Quaternion:
+def quaternion(turn: Pose) -> Quaternion:
     """Return the unit quaternion of a turn; its real part is not negative."""
     (xx, xy, xz), (yx, yy, yz), (zx, zy, zz), _ = turn
     squares = (1 + xx + yy + zz, 1 + xx - yy - zz, 1 - xx + yy - zz, 1 - xx - yy + zz)

@@ -46,7 +46,7 @@ def write_urdf(table: Table, prefix: str = "") -> str:
     SubElement(robot, "link", name=parent)
     for number, link in enumerate([*geometry.links, STILL], 1):
         end = number > geometry.joints
-        added = SubElement(robot, "joint", name=f"{prefix}end" if end else f"{prefix}joint{number}")
+        added = SubElement(robot, "joint", name=f"{prefix}end" if end else f"{prefix}j{number}")
         child = f"{prefix}flange" if end else f"{prefix}link{number}"
         SubElement(added, "parent", link=parent)
         SubElement(added, "child", link=child)

@@ -1,4 +1,4 @@
-"""MCAP files hold all messages in the order of their times, and what Foxglove draws."""
+"""MCAP files hold all messages in the order of their times, and messages of ROS 2."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ import jsonschema
 import pyarrow as pa
 import pytest
 from mcap.reader import make_reader
+from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
 from capture.export.exporting import START, export, polled, recording, reply
 from cobotwire.capture import Packet
@@ -32,14 +33,20 @@ class Written(NamedTuple):
 
 
 def written(path: Path) -> list[Written]:
-    """Return the messages of a file, each checked with the schema of its channel."""
+    """Return the messages of a file, read as the schema of the channel says; CDR by rosbags."""
     found = []
     with path.open("rb") as file:
         for schema, channel, message in make_reader(file, validate_crcs=True).iter_messages():
             assert schema is not None
-            assert (schema.encoding, channel.message_encoding) == ("jsonschema", "json")
-            content = json.loads(message.data)
-            jsonschema.validate(content, json.loads(schema.data))
+            if schema.encoding == "ros2msg":
+                assert channel.message_encoding == "cdr"
+                store = get_typestore(Stores.EMPTY)
+                store.register(get_types_from_msg(schema.data.decode(), schema.name))
+                content = store.deserialize_cdr(message.data, schema.name)
+            else:
+                assert (schema.encoding, channel.message_encoding) == ("jsonschema", "json")
+                content = json.loads(message.data)
+                jsonschema.validate(content, json.loads(schema.data))
             found.append(Written(schema.name, channel.topic, message.log_time, content))
     return found
 
@@ -59,8 +66,8 @@ def test_each_message_of_each_robot_is_a_channel(arm: list[Written]) -> None:
         ("/arm/get_angles/request", "cobotwire.get_angles.request"),
         ("/arm/get_angles/reply", "cobotwire.get_angles.reply"),
         ("/arm/is_power_on/reply", "cobotwire.is_power_on.reply"),
-        ("/arm/joint_states", "foxglove.JointStates"),
-        ("/arm/end", "foxglove.PoseInFrame"),
+        ("/arm/joint_states", "sensor_msgs/msg/JointState"),
+        ("/arm/tf", "tf2_msgs/msg/TFMessage"),
     }
     assert arm[-1].content == {"powered": True}
 
@@ -76,26 +83,30 @@ def test_messages_are_in_the_order_of_their_times(tmp_path: Path) -> None:
 
 
 def test_joint_states_are_in_radians(arm: list[Written]) -> None:
-    states = [each for each in arm if each.schema == "foxglove.JointStates"]
+    states = [each for each in arm if each.schema == "sensor_msgs/msg/JointState"]
     second = states[1].content
-    assert second["timestamp"] == {"sec": START // 10**9, "nsec": 23_000_000}
-    assert [joint["name"] for joint in second["joints"]] == ["j1", "j2", "j3", "j4", "j5", "j6"]
-    positions = [joint["position"] for joint in second["joints"]]
-    assert positions == pytest.approx([math.radians(0.01 + joint) for joint in range(6)])
+    assert (second.header.stamp.sec, second.header.stamp.nanosec) == (START // 10**9, 23_000_000)
+    assert second.name == ["j1", "j2", "j3", "j4", "j5", "j6"]
+    assert list(second.position) == pytest.approx(
+        [math.radians(0.01 + joint) for joint in range(6)]
+    )
 
 
 def test_pose_of_the_end_is_that_of_the_geometry(tmp_path: Path) -> None:
     angles = [10.0, -20.0, 30.0, -40.0, 50.0, -60.0]
     packets = [Packet(START, "received", reply("get_angles", angles))]
     export(tmp_path / "arm.mcap", recording(tmp_path / "a.pcapng", packets), format="mcap")
-    (pose,) = [e.content for e in written(tmp_path / "arm.mcap") if e.topic.endswith("/end")]
+    (tf,) = [e.content for e in written(tmp_path / "arm.mcap") if e.topic.endswith("/tf")]
+    (moved,) = tf.transforms
     geometry = geometry_of(load().TABLE)
     assert geometry is not None
     expected = flange(geometry, angles)
-    assert pose["frame_id"] == "base"
-    position, turn = pose["pose"]["position"], pose["pose"]["orientation"]
-    assert [position[axis] * 1000 for axis in "xyz"] == pytest.approx(expected.origin)
-    x, y, z, w = (turn[part] for part in "xyzw")
+    assert (moved.header.frame_id, moved.child_frame_id) == ("base", "a/end")
+    position, turn = moved.transform.translation, moved.transform.rotation
+    assert [position.x * 1000, position.y * 1000, position.z * 1000] == pytest.approx(
+        expected.origin
+    )
+    x, y, z, w = turn.x, turn.y, turn.z, turn.w
     assert math.hypot(x, y, z, w) == pytest.approx(1)
     # The axes of the rotation that the quaternion stands for.
     assert [1 - 2 * (y * y + z * z), 2 * (x * y + z * w), 2 * (x * z - y * w)] == pytest.approx(

@@ -1,4 +1,4 @@
-"""Import the packages that an export needs, or say which extra installs them."""
+"""Import the packages that a purpose needs, or say which extra installs them."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import Any, Literal
 
 from cobotwire.protocol.errors import UsageError
 
-Extra = Literal["arrow", "mcap", "fsspec", "zstd", "dask"]
+Extra = Literal["arrow", "mcap", "fsspec", "zstd", "dask", "ros2"]
 
 
 def needed(package: str, extra: Extra, purpose: str) -> Any:

@@ -17,6 +17,7 @@ PLANS: dict[str, Plan] = {
     "docs/studio.md": guides.STUDIO,
     "docs/lerobot.md": guides.LEROBOT,
     "docs/mcp.md": guides.MCP,
+    "docs/ros2.md": guides.ROS2,
     "docs/urdf.md": guides.URDF,
     "docs/tap.md": guides.TAP,
     "docs/pymycobot.md": guides.PYMYCOBOT,

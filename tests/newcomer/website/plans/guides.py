@@ -80,6 +80,16 @@ LEROBOT = Plan(
     },
 )
 
+ROS2 = Plan(
+    commands={
+        "pip install 'cobotwire[ros2]'": NotRun("not every machine has a wheel"),
+        "cobotwire sim --tcp 127.0.0.1:9000": Expected(r"socket://127\.0\.0\.1:9000", served=True),
+        "cobotwire ros2 socket://127.0.0.1:9000": NotRun("the extra is not installed"),
+        "cobotwire ros2 socket://127.0.0.1:9000 --allow-motion": NotRun("as above"),
+    },
+    programs={"import rclpy": NotRun("ROS 2 is not installed")},
+)
+
 MCP = Plan(
     commands={
         "pip install 'cobotwire[mcp]'": INSTALLED,

@@ -41,6 +41,7 @@ CLI = Plan(
         f"cobotwire doctor {PORT}": Expected(r"mycobot280|firmware|version"),
         f"cobotwire survey {PORT} -o survey.zip": Expected(r"facts: \d+ confirmed, 0 contradicted"),
         "cobotwire studio": Expected(r"http://127\.0\.0\.1:\d+", served=True),
+        f"cobotwire ros2 {PORT}": NotRun("the extra is not installed"),
         f"cobotwire mcp {PORT}": NotRun("a client of MCP starts it"),
         f"cobotwire tap {PORT}": Expected(r"/dev/pts/\d+", served=True),
         f"cobotwire monitor {PORT} --record arm.pcapng": Expected(r"get_angles", served=True),

@@ -1,8 +1,8 @@
 """Write messages to an MCAP file, which Foxglove, PlotJuggler and other robotics tools open.
 
 Each message of each robot is a channel with JSON objects; so is each message of each device, if
-several devices share a line. The angles of the joints are also
-``foxglove.JointStates``, and the pose of the arm's end is a ``foxglove.PoseInFrame``.
+several devices share a line. The angles of the joints and the pose of the arm's end are also
+messages of ROS 2.
 """
 
 from __future__ import annotations
@@ -17,8 +17,9 @@ from mcap.writer import Writer
 
 from cobotwire.capture.export.batch import Batch
 from cobotwire.capture.export.formats import mcap_schemas as schemas
-from cobotwire.capture.export.formats.mcap_motion import TOPICS, Motion
+from cobotwire.capture.export.formats.mcap_motion import Motion
 from cobotwire.capture.export.plan import ExportPlan
+from cobotwire.capture.export.ros_messages import schema_text, serialised
 from cobotwire.capture.export.tables import OWN
 
 # Rows that become Python objects at a time.
@@ -26,11 +27,21 @@ ROWS = 4096
 
 
 class Record(NamedTuple):
-    """A message of a channel: when, where, and its content as JSON."""
+    """A message of a channel: when, where, and its content."""
 
     time_ns: int
     channel: int
     data: bytes
+
+
+class Encoding(NamedTuple):
+    """How MCAP names the language of a schema, and the encoding of the messages."""
+
+    schema: str
+    message: str
+
+
+JSON, ROS_2 = Encoding("jsonschema", "json"), Encoding("ros2msg", "cdr")
 
 
 class McapSink:
@@ -56,35 +67,37 @@ class McapSink:
     def _records(self, batch: Batch) -> Iterator[Record]:
         """Yield the records of a batch, in the order of its rows."""
         motion = self._motion(batch.edition)
-        schema = schemas.of_table(f"cobotwire.{batch.message.label}", batch.table.schema)
+        title = f"cobotwire.{batch.message.label}"
+        schema = json.dumps(schemas.of_table(title, batch.table.schema))
         name = f"{batch.message.command}/{batch.message.direction}"
         for block in batch.table.to_batches(max_chunksize=ROWS):
             times = block.column("time").cast("int64").to_pylist()
             dropped = [name for name in block.schema.names if name in OWN]
             rows = zip(times, _devices(batch, block), block.drop_columns(dropped).to_pylist())
             for time_ns, device, fields in rows:
-                channel = self._channel(f"{device}/{name}", schema, batch.edition)
+                channel = self._channel(f"{device}/{name}", batch.edition, title, schema, JSON)
                 yield Record(time_ns, channel, _json(fields))
-                for derived, value in motion.derived(batch.message, fields, time_ns):
-                    topic = f"{device}/{TOPICS[derived['title']]}"
-                    yield Record(
-                        time_ns, self._channel(topic, derived, batch.edition), _json(value)
-                    )
+                for topic, kind, content in motion.derived(batch.message, fields, time_ns, device):
+                    text = schema_text(kind)
+                    channel = self._channel(f"{device}/{topic}", batch.edition, kind, text, ROS_2)
+                    yield Record(time_ns, channel, serialised(kind, content))
 
     def _motion(self, edition: str) -> Motion:
         if edition not in self._motions:
             self._motions[edition] = Motion(self._plan.editions, edition)
         return self._motions[edition]
 
-    def _channel(self, topic: str, schema: schemas.Schema, edition: str) -> int:
+    def _channel(
+        self, topic: str, edition: str, title: str, schema: str, encoding: Encoding
+    ) -> int:
         if topic not in self._channels:
-            title = schema["title"]
             if title not in self._schemas:
-                content = json.dumps(schema).encode()
-                self._schemas[title] = self._writer.register_schema(title, "jsonschema", content)
+                self._schemas[title] = self._writer.register_schema(
+                    title, encoding.schema, schema.encode()
+                )
             table = self._plan.editions.codec(edition).table
             self._channels[topic] = self._writer.register_channel(
-                topic, "json", self._schemas[title], {"edition": table.edition}
+                topic, encoding.message, self._schemas[title], {"edition": table.edition}
             )
         return self._channels[topic]
 

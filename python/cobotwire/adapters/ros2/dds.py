@@ -1,0 +1,163 @@
+"""Exchange the messages of ROS 2 on DDS, with its names of topics and types, and its QoS."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import suppress
+from functools import cache
+from typing import Any, NamedTuple
+from xml.sax.saxutils import quoteattr
+
+from cyclonedds.core import DDSException, Policy, Qos
+from cyclonedds.domain import Domain, DomainParticipant
+from cyclonedds.idl import IdlStruct, make_idl_struct, types
+from cyclonedds.internal import InvalidSample
+from cyclonedds.pub import DataWriter
+from cyclonedds.sub import DataReader
+from cyclonedds.topic import Topic
+from cyclonedds.util import duration
+
+from cobotwire.capture.export.ros_messages import Message, fields_of, serialised
+from cobotwire.protocol.errors import LinkError, UsageError
+
+# A reader that does not acknowledge delays a message by at most that; then it is dropped.
+BLOCKED_MS = 100
+# So many messages ROS 2 keeps for a slow reader, unless a topic needs more.
+DEPTH = 10
+LOOPBACK = "127.0.0.1"
+# Participants find each other only if they are configured alike. This is what ROS 2 gives Cyclone
+# DDS for the range LOCALHOST: check_create_domain in rmw_node.cpp of rmw_cyclonedds_cpp.
+_ON_THIS_COMPUTER = (
+    "<General><AllowMulticast>false</AllowMulticast></General><Discovery>"
+    "<ParticipantIndex>auto</ParticipantIndex><MaxAutoParticipantIndex>32</MaxAutoParticipantIndex>"
+    '<Peers><Peer address="localhost"/></Peers></Discovery>'
+)
+_TYPES = {each: getattr(types, each) for each in ("byte", "int32", "uint32", "float64")}
+
+
+class Network(NamedTuple):
+    """Where participants find ours: in words, and as Cyclone DDS's configuration."""
+
+    name: str
+    configuration: str
+    local: bool
+
+
+def network(interface: str | None, environment: Mapping[str, str] = os.environ) -> Network:
+    """Return what the name or address of an interface, or else the variables of ROS 2, choose.
+
+    ``CYCLONEDDS_URI`` can change the configuration, as for ROS 2.
+
+    Raises:
+        UsageError: a variable has a value that is not allowed here.
+    """
+    only = _variable(environment, "ROS_LOCALHOST_ONLY", "0", "1")
+    reach = ("LOCALHOST", "SUBNET", "SYSTEM_DEFAULT")
+    found = _variable(environment, "ROS_AUTOMATIC_DISCOVERY_RANGE", *reach)
+    if interface is None and only == "1":
+        # As in ROS 2 Humble and older.
+        interface = LOOPBACK
+    if interface is not None:
+        key = "address" if interface.replace(".", "").isdigit() or ":" in interface else "name"
+        chosen = f"<NetworkInterface {key}={quoteattr(interface)}/>"
+        config = f"<General><Interfaces>{chosen}</Interfaces></General>"
+        name, local = interface, interface in ("lo", LOOPBACK)
+    elif found == "LOCALHOST" or not (found or only):
+        name, config, local = "this computer", _ON_THIS_COMPUTER, True
+    else:
+        name, config, local = "the default network", "", False
+    given = environment.get("CYCLONEDDS_URI", "")
+    return Network(name, f"<CycloneDDS><Domain>{config}</Domain></CycloneDDS>,{given}", local)
+
+
+class Participant:
+    """Takes part in a domain as long as this object exists."""
+
+    def __init__(self, domain: int, network: Network) -> None:
+        """Join a domain.
+
+        Raises:
+            LinkError: the network interface does not exist.
+        """
+        try:
+            # The domain is closed with this object.
+            self._domain = Domain(domain, network.configuration)
+            self._participant = DomainParticipant(domain)
+        except DDSException as error:
+            raise LinkError(
+                f"DDS on {network.name}", "cannot be opened; Cyclone DDS says why"
+            ) from error
+
+    def publisher(self, topic: str, kind: str, depth: int = DEPTH) -> Callable[[Message], None]:
+        """Return what publishes a message; DDS keeps ``depth`` of them for slow readers."""
+        writer = DataWriter(self._participant, *self._topic(topic, kind, depth))
+
+        def publish(message: Message) -> None:
+            sample = object.__new__(struct_of(kind))
+            sample.cdr = serialised(kind, message)
+            with suppress(DDSException):
+                writer.write(sample)
+
+        return publish
+
+    def reader(self, topic: str, kind: str) -> Reader:
+        """Return what receives a topic."""
+        return Reader(DataReader(self._participant, *self._topic(topic, kind, DEPTH)))
+
+    def _topic(self, topic: str, kind: str, depth: int) -> tuple[Topic[Any], Qos]:
+        """Return a topic with ROS 2's usual QoS: reliable, and for those who read now."""
+        qos = Qos(
+            Policy.Reliability.Reliable(duration(milliseconds=BLOCKED_MS)),
+            Policy.Durability.Volatile,
+            Policy.History.KeepLast(depth),
+            Policy.DataRepresentation(use_cdrv0_representation=True),
+        )
+        return Topic(self._participant, f"rt/{topic}", struct_of(kind), qos=qos), qos
+
+
+class Reader:
+    """Receives the messages of a topic."""
+
+    def __init__(self, reader: DataReader[Any]) -> None:
+        self._reader = reader
+
+    @property
+    def has_writers(self) -> bool:
+        """Whether a participant publishes the topic."""
+        return bool(self._reader.get_matched_publications())
+
+    def take(self) -> Iterator[Any]:
+        """Yield the messages that came since the last call; None for one that is damaged."""
+        for _ in range(DEPTH):
+            try:
+                found = self._reader.take(1)
+            except Exception:
+                # The participant may be any program, and its bytes any bytes.
+                yield None
+                return
+            if not found:
+                return
+            if not isinstance(found[0], InvalidSample):
+                yield found[0]
+
+
+@cache
+def struct_of(kind: str) -> type[IdlStruct]:
+    """Return the DDS type of a message: ``sensor_msgs::msg::dds_::JointState_``, for example."""
+    package, _, name = kind.split("/")
+    fields = {}
+    for field in fields_of(kind):
+        one = str if field.kind == "string" else _TYPES.get(field.kind) or struct_of(field.kind)
+        fields[field.name] = types.sequence[one] if field.many else one
+    made: type[IdlStruct] = make_idl_struct(f"{name}_", f"{package}.msg.dds_.{name}_", fields)
+    # The bytes of MCAP files are those of DDS.
+    made.serialize = lambda self, **options: self.cdr
+    return made
+
+
+def _variable(environment: Mapping[str, str], name: str, *allowed: str) -> str:
+    value = environment.get(name, "")
+    if value not in ("", *allowed):
+        raise UsageError(name, value, ", ".join(allowed))
+    return value
