@@ -18,14 +18,15 @@ from cobotwire_codegen.language.limits import COMMAND_LIMITS, LIMITS, Limit
 from cobotwire_codegen.language.records import Choice, Key, Record
 from cobotwire_codegen.language.reference import language_page
 from cobotwire_codegen.language.schema import editor_schema, records
+from cobotwire_codegen.language.shapes import Word
 from cobotwire_codegen.load import Node, parse
 from cobotwire_codegen.project import edition_files
 from cobotwire_codegen.reader import Reader
 from codegen.author import samples
-from codegen.author.schema_walk import plain
 from random_formats import in_format
 
 RECORDS = [one for one in records(FILES.values()) if not isinstance(one, Choice)]
+DEFINITIONS = editor_schema([])["definitions"]
 WITH_EXAMPLE = [record for record in RECORDS if record.EXAMPLE]
 
 
@@ -58,15 +59,28 @@ def test_reading_a_key_that_the_record_does_not_describe_fails() -> None:
 
 @pytest.mark.parametrize("record", WITH_EXAMPLE, ids=_name)
 def test_example_of_a_record_is_valid_by_schema_and_reader(record: type[Record]) -> None:
-    node = parse(record.EXAMPLE, "example.yaml")
-    schema = editor_schema([])
-    rule = {"$ref": f"#/definitions/{record.definition()}", "definitions": schema["definitions"]}
-    assert [error.message for error in Draft7Validator(rule).iter_errors(plain(node))] == []
-    problems: list[Problem] = []
+    assert _refused(record, record.EXAMPLE) == ([], [])
+
+
+def _refused(record: type[Record], text: str) -> tuple[list[str], list[str]]:
+    """Return what the schema and the reader say about a record that is written like this."""
+    node, problems = parse(text, "example.yaml"), list[Problem]()
+    rule = {"$ref": f"#/definitions/{record.definition()}", "definitions": DEFINITIONS}
     reader = Reader(node, record, "the example", problems)
     for key in record.keys().values():
         reader.get(key)
-    assert problems == []
+    messages = [error.message for error in Draft7Validator(rule).iter_errors(samples.plain(node))]
+    return messages, [str(problem) for problem in problems]
+
+
+@pytest.mark.parametrize("record", RECORDS, ids=_name)
+def test_unknown_key_or_word_is_rejected_by_schema_and_reader(record: type[Record]) -> None:
+    for said in _refused(record, "zz_unknown: 1"):
+        assert any("zz_unknown" in text for text in said)
+    for key in record.keys().values():
+        if isinstance(key.shape, Word):
+            for said in _refused(record, f"{key.name}: zzz"):
+                assert any("zzz" in text for text in said), key.name
 
 
 @pytest.mark.parametrize("record", RECORDS, ids=_name)

@@ -131,12 +131,22 @@ def _types(shape: Known, given: str, edition: Edition) -> Iterator[str]:
     """Yield the two types that differ least from a type and need as many bytes."""
     if shape.definition == "wire_name":
         yield from [wire.name for wire in edition.wires if wire.name != given][:2]
-        return
+    else:
+        key = (edition.name, shape.definition, given)
+        if key not in _NEAREST:
+            _NEAREST[key] = _nearest(shape, given, edition)
+        yield from _NEAREST[key]
+
+
+_NEAREST: dict[tuple[str, str, str], list[str]] = {}
+
+
+def _nearest(shape: Known, given: str, edition: Edition) -> list[str]:
     types = {type.name: type for type in edition.types}
     if shape.definition == "quantity_name":
         types = {name: type for name, type in types.items() if isinstance(type, Quantity)}
     if given not in types:
-        return
+        return []
     facts = _facts_of_type(types[given])
     others = []
     for name, type in types.items():
@@ -144,7 +154,7 @@ def _types(shape: Known, given: str, edition: Edition) -> Iterator[str]:
         if type.size == types[given].size and theirs != facts:
             alike = sum(a == b for a, b in zip(facts, theirs))
             others.append((-alike, name))
-    yield from [name for _, name in sorted(others)[:2]]
+    return [name for _, name in sorted(others)[:2]]
 
 
 def _facts_of_type(type: Type) -> tuple[object, ...]:

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
 
+import vectors
 from cobotwire_codegen.build import build_edition
 from cobotwire_codegen.check import check
 from cobotwire_codegen.errors import SpecError
@@ -18,7 +19,7 @@ from cobotwire_codegen.publish import edition_json
 from spec_statements import STATEMENTS
 
 ROOT = Path(__file__).resolve().parent.parent.parent
-# The files by edition. A change of a base may also be noticed in its deltas.
+# The files by edition. A change may be noticed in each edition that uses the file.
 PATHS = {path.stem: path for path in spec_files(ROOT)}
 # What explains a fact, and where it stands.
 PROSE = {"doc", "title", "notes", "place"}
@@ -49,13 +50,14 @@ def files(edition: str) -> Iterator[Path]:
 @lru_cache(maxsize=len(PATHS))
 def built(edition: str) -> Edition:
     """Return an edition as it is."""
-    return build_edition(PATHS[edition], ROOT)
+    return vectors.editions().get(edition) or build_edition(PATHS[edition], ROOT)
 
 
-@lru_cache(maxsize=len(PATHS))
-def _deltas(edition: str) -> list[str]:
-    """Return the editions that an edition is the base of."""
-    return [name for name in PATHS if edition in built(name).bases]
+@lru_cache(maxsize=256)
+def _users(path: Path) -> list[str]:
+    """Return the editions that a file, or one of their bases, is a part of."""
+    owners = {name for name in PATHS if path in files(name)}
+    return [name for name in PATHS if owners & {name, *built(name).bases}]
 
 
 @lru_cache(maxsize=len(PATHS))
@@ -77,7 +79,7 @@ def _without_prose(value: object) -> object:
 def judged(edition: str, path: Path, node: Node) -> Verdict:
     """Return what notices that a file of an edition has other content."""
     equal = True
-    for name in (edition, *_deltas(edition)):
+    for name in {edition: 0, **dict.fromkeys(_users(path))}:
         try:
             made = build_edition(PATHS[name], ROOT, {path: node})
             check(made)

@@ -16,120 +16,25 @@ from cobotwire_codegen.language.words import BUILT_IN
 from cobotwire_codegen.model import Command, Edition, Effect, Quantity, Type
 from spec_statements.meanings import fits
 
-# Name, then description, and the effect. The first pattern that fits decides.
+# Name, then description, and the effect, if it is no report and no motion. The first pattern that
+# fits decides.
 EFFECTS = (
     (r"power_on", r"Switches", "sets powered=True held=True free=False connected=True"),
     (r"power_off", r"Switches .* disconnects", "sets powered=False held=False connected=False"),
-    (r"release_all_\w+", r"Switches all .* off", "sets held=False"),
-    (r"release_\w+", r"Switches .* one joint off", "sets held=False at joint"),
-    (r"focus_all_\w+", r"Switches .* all joints on", "sets held=True"),
-    (r"focus_\w+", r"Switches .* one joint on", "sets held=True at joint"),
+    (r"power_off", r"Switches", "sets powered=False held=False"),
+    (r"release_all_\w+", r"Switches .*\ball .* off", "sets held=False"),
+    (r"release_\w+", r"Switches .*\bone .* off", "sets held=False at joint"),
+    (r"focus_all_\w+", r"Switches .*\ball .* on", "sets held=True"),
+    (r"focus_\w+", r"Switches .*\bone .* on", "sets held=True at joint"),
     (r"joint_brake", r"Brakes the motor of one joint", "does halt at joint"),
     (r"pause|resume", r"Pauses|Continues", r"does \g<0>"),
     (r"jog_stop", r"Stops a motion", "does halt"),
-    (r"clear_queue", r"Discards the targets", "does forget"),
-    (r"clear_error_\w+", r"Clears the controller's error", "sets error=0"),
-    # Motions.
-    (
-        r"jog_angle",
-        r"Turns one joint in one direction.* until",
-        "moves joint at joint until=limit direction=direction speed=speed",
-    ),
-    (
-        r"jog_coord",
-        r"Moves the end along or about one axis.* until",
-        "moves end until=limit about=axis direction=direction speed=speed",
-    ),
-    (
-        r"jog_rpy",
-        r"Turns the end about a fixed axis.* until",
-        "moves end until=limit about=axis keeps=position direction=direction speed=speed",
-    ),
-    (
-        r"jog_increment_coord",
-        r"Moves the end .* by a step",
-        "moves end by=increment about=axis speed=speed",
-    ),
-    (
-        r"jog_increment\w*",
-        r"Turns one joint by an angle",
-        "moves joint at joint by=increment speed=speed",
-    ),
-    (
-        r"set_encoder",
-        r"Moves one joint.*, at a speed",
-        "moves joint at joint to=encoder speed=speed",
-    ),
-    (r"set_encoder", r"Moves one joint", "moves joint at joint to=encoder"),
-    (r"set_encoders", r"Moves all", "moves joints to=encoders speed=speed"),
-    (r"set_encoders_drag", r"Moves all", "moves joints to=encoders speed=speeds"),
-    (r"set_gripper_value", r"Moves the gripper", "moves gripper to=value speed=speed"),
-    (
-        r"set_gripper_state",
-        r"Opens or closes",
-        "by state: OPEN moves gripper to=100 speed=speed; CLOSE moves gripper to=0 speed=speed",
-    ),
-    (
-        r"set_gripper_state",
-        r"Opens, closes or releases",
-        "by state: OPEN moves gripper to=100 speed=speed; CLOSE moves gripper to=0 speed=speed; "
-        "RELEASE sets gripper_held=False",
-    ),
+    (r"stop_robot", r"Stops the motion", "does stop"),
+    (r"clear_(recv_)?queue", r"Discards", "does forget"),
+    (r"clear_(error_information|robot_err)", r"Clears the", "sets error=0"),
     (r"init_gripper", r"Initializes the gripper", "sets opening=100 assumed"),
-    (r"set_gripper_calibration", r"Makes .* position its zero", "zeroes gripper"),
-    (r"set_servo_calibration", r"Makes .* position of a joint", "zeroes joint at joint"),
-    # State that the arm has anyway.
-    (r"get_encoder", r"Reads the encoder position of one joint", "reports angles at joint"),
-    (r"get_encoders", r"Reads the encoder positions", "reports angles"),
-    (r"get_radians", r"Reads the angles .* in radians", "reports angles"),
-    (r"get_(angles|coords)_plan", r"Reads the planned", r"reports planned_\1"),
-    (r"get_angles_coords", r"Reads the angles .*, and", "reports angles=angles coords=coords"),
-    (r"get_servo_speeds", r"Reads the speeds", "reports speeds"),
-    (r"get_gripper_value", r"Reads how far the gripper is open", "reports opening"),
-    (r"is_(gripper_moving)", r"Reports whether the gripper is moving", r"reports \1"),
-    (r"is_servo_enable", r"Reports .* is connected", "reports held at joint assumed"),
-    (r"is_all_servo_enable", r"Reports whether all servos", "reports held"),
-    (r"is_controller_(connected)", r"Reports whether .* reaches", r"reports \1"),
-    (r"(set|is)_free_mode", r"In free mode|Reports .* in free mode", "set: free"),
-    (r"get_joint_min_angle", r"Reads the smallest", "reports lowest at joint"),
-    (r"get_joint_max_angle", r"Reads the largest", "reports highest at joint"),
-    (r"set_joint_min", r"Sets the smallest", "stores lowest at joint"),
-    (r"set_joint_max", r"Sets the largest", "stores highest at joint"),
-    (r"get_reboot_count", r"Reads how often the controller has started", "reports starts"),
-    # State that the edition declares; `set` is stores for a setter, reports for its query.
-    (r"(?:set|get)_(tool|world)_reference", r"(Sets|Reads) the position of", r"set: \1"),
-    (r"(?:set|get)_(gripper)_protect_(current)", r"(Sets|Reads) the current", r"set: \1_\2"),
-    (r"(?:set|get)_HTS_(gripper_torque)", r"(Sets|Reads) the torque", r"set: \1"),
-    (r"(?:set|get)_transponder_mode", r"(Sets|Reports) whether the board", "set: transparent_mode"),
-    (r"(?:set|get)_servo_data", r"(Writes|Reads) one", "set: registers at joint register"),
-    (r"\w+_digital_(?:output|input)", r"(Sets|Reads) the level", "set: pins at pin"),
-    (r"\w+_basic_(?:output|input)", r"(Sets|Reads) the level", "set: basic_pins at pin"),
-    (r"set_pin_mode", r"Makes a pin", "stores pin_modes at pin"),
-    (
-        r"set_pwm_output",
-        r"Outputs pulses",
-        "stores frequency=pulse_frequency duty=pulse_duty at channel",
-    ),
-    (r"set_color", r"Sets the colour", "stores red=red green=green blue=blue"),
-    (r"get_ssid_pwd", r"Reads the name and the password", "reports ssid=ssid password=password"),
-    (r"set_ssid_pwd", r"Sets the name and the password", "stores account=ssid password=password"),
-    (r"set_(server_port)", r"Sets the TCP port", r"stores \1"),
-    (r"set_(vision_mode)", r"Turns vision mode", r"stores \1"),
-    (r"check_async_or_sync", r"Reports whether .* synchronously", "reports synchronous_mode"),
-    (r"get_modify_version", r"Reads the revision", "reports revision"),
-    (r"get_(system_version|basic_version|tof_distance)", r"Reads the", r"reports \1"),
-    (r"read_next_error", r"Reads one error byte for each joint", "reports joint_errors"),
-    (r"get_(servo)_status", r"Reads the faults", r"reports \1_faults"),
-    (r"get_(servo)_temps", r"Reads the temperatures", r"reports \1_temperatures"),
-    (r"get_(servo_voltages)", r"Reads the voltages", r"reports \1"),
-    (r"(?:set|get)_(\w+)", r"Sets|Reads|Reports", r"set: \1"),
-    # Calculations, recordings, and what nothing tells.
-    (r"angles_to_coords", r"Calculates the coordinates", "computes coords from=angles"),
-    (r"solve_\w+", r"Calculates joint angles", "computes angles from=coords near=angles"),
-    (r"drag_get_record_len", r"Reads how many points", "list points report=count"),
-    (r"drag_clear_\w+", r"Deletes the recording", "list points clear=all"),
-    (r"drag_\w+|(backup|restore)_\w+", r"Starts|Ends|Reads|Saves|Restores", "python"),
-    (r"move_round|set_four_\w+", r"Turns a|Makes", "unknown"),
+    (r"angles_to_coords", r"Calculates the", "computes coords from=angles"),
+    (r"solve_\w+", r"Calculates .*angles", "computes angles from=coords near=angles"),
 )
 
 
@@ -147,8 +52,6 @@ def in_words(effect: Effect) -> str:
     return " ".join(filter(None, words))
 
 
-# The editions with a row of EFFECTS for each command; those of others are held by their words.
-IN_ROWS = ("mycobot", "mycobot280")
 # Words that say the same as the words of a state.
 SAYS: dict[str, str] = {
     "angles": r"encoder|radian|target_angle",
@@ -177,6 +80,7 @@ SAYS: dict[str, str] = {
 # Commands with words that name other state as well: what they are about.
 ABOUT = (
     (r"power_on", "powered held free connected"),
+    (r"get_robot_power_status", "powered"),
     (r"(release|focus)_(all_)?servos?", "held"),
     (r"get_encoder", "angles"),
     (r"[sg]et_digital_(out|in)put", "pins end_pins"),
@@ -212,10 +116,16 @@ def named(edition: Edition) -> Iterator[str]:
             if not command.event and edition.states:
                 yield f"{command.name} has no effect"
             continue
-        if edition.name in IN_ROWS or effect.by_role:
+        if effect.by_role:
             continue
         text = _text(command)
         for label, each in (("", effect), *effect.cases):
+            kept = [value for _, value in each.values]
+            if each.verb in ("reports", "stores") and 1 < len({*kept}) < len(kept):
+                yield f"{command.name} {each.verb} one state for two of its fields"
+            single = "joint" in {f.name for variant in command.requests for f in variant}
+            if single and "all" not in command.name and kept and "joint" not in each.at:
+                yield f"{command.name} {each.verb} the same for every joint"
             for field, value in each.values if each.verb in ("reports", "stores", "sets") else ():
                 state = str(value if each.verb != "sets" else field)
                 several = each.verb != "sets" and (len(each.values) > 1 or label)
@@ -259,18 +169,18 @@ def _says(word: str, text: str) -> bool:
 
 def effects(edition: Edition) -> Iterator[str]:
     """Report commands with another effect than their name and description tell."""
-    for command in edition.commands if edition.name in IN_ROWS else ():
-        if command.effect is None:
-            yield f"{command.name} has no effect"
-        elif not command.effect.by_role:
+    for command in edition.commands:
+        effect = command.effect
+        if effect is not None and effect.verb in ("sets", "does", "computes"):
             found = (
                 (re.fullmatch(n, command.name), e) for n, d, e in EFFECTS if fits(command, n, d)
             )
-            wanted = next((match.expand(effect) for match, effect in found if match), "unstated")
-            verb = "reports" if command.safety == "query" else "stores"
-            stated, wanted = in_words(command.effect), wanted.replace("set:", verb, 1)
-            if stated != wanted:
-                yield f"{command.name} {stated}, but its description says {wanted}"
+            wanted = next((match.expand(effect) for match, effect in found if match), "")
+            # No query of the myArm M and C reports free mode.
+            if command.name == "power_on" and edition.name.startswith("myarm_"):
+                wanted = "sets powered=True held=True"
+            if wanted and not effect.by_role and in_words(effect) != wanted:
+                yield f"{command.name} {in_words(effect)}, but its description says {wanted}"
 
 
 # Queries report these for more or fewer joints than the edition counts, or setters narrow them.
@@ -308,14 +218,22 @@ def states(edition: Edition) -> Iterator[str]:
 
 
 def speeds(edition: Edition) -> Iterator[str]:
-    """Report motions that take no notice of the speed in their request."""
+    """Report motions that take no notice of the speed in their request, or have another type."""
     for command in edition.commands:
-        arguments = {field.name for variant in command.requests for field in variant}
+        arguments = {f.name: f.type.name for variant in command.requests for f in variant}
         effect = command.effect
         moves = effect is not None and effect.verb == "moves"
         heeded = effect is not None and effect.option("speed") == "speed"
         if moves and "speed" in arguments and not heeded:
             yield f"{command.name} does not move at the speed that is given"
+        known = ("speed", "motion_speed")
+        if (
+            moves
+            and effect
+            and effect.what != "gripper"
+            and arguments.get("speed", "speed") not in known
+        ):
+            yield f"the speed of {command.name} is a {arguments['speed']}"
 
 
 # How a motion uses its arguments.
@@ -348,9 +266,22 @@ def arguments(edition: Edition) -> Iterator[str]:
                         yield f"{command.name} uses {name} as {used.get(name)}"
                 if ("joint" in given) != ("joint" in each.at):
                     yield f"{command.name} moves at {each.at}"
+                if ("rpy" in command.name) != (each.option("keeps") == "position"):
+                    yield f"{command.name} keeps {each.option('keeps')}"
                 part = "gripper" if "gripper" in command.name else each.what
                 if part != each.what or (each.what == "gripper") != ("gripper" in command.name):
                     yield f"{command.name} moves {each.what}"
+
+
+def openings(edition: Edition) -> Iterator[str]:
+    """Report grippers that open or close to another percentage, or are held when released."""
+    for command in edition.commands:
+        for member, each in command.effect.cases if command.effect else ():
+            wanted = {"OPEN": 100, "CLOSE": 0}.get(member)
+            if each.what == "gripper" and each.option("to") not in (wanted, str(wanted)):
+                yield f"{command.name} moves the gripper to {each.option('to')} for {member}"
+            if member == "RELEASE" and each.values != (("gripper_held", False),):
+                yield f"{command.name} holds the gripper that it releases"
 
 
 def switches(edition: Edition) -> Iterator[str]:
@@ -379,4 +310,4 @@ def _alike(kept: Type | None, type: Type | None, left: list[Type | None]) -> boo
     return [part for _, part in type.parts] == [kept] * int(bounds[1] - bounds[0] + 1)
 
 
-RULES = (named, effects, states, speeds, arguments, switches)
+RULES = (named, effects, states, speeds, arguments, openings, switches)

@@ -1,15 +1,18 @@
-"""States facts of the transport, and defaults of arguments, as the maker's library has them."""
+"""States transport, defaults, limits and the number of joints as the maker's library has them."""
 
 from __future__ import annotations
 
 import inspect
 import re
 from collections.abc import Iterator
+from fractions import Fraction
 from functools import lru_cache
+from math import ceil, floor
 
-from cobotwire_codegen.model import Edition
-from pymycobot_classes import library
+from cobotwire_codegen.model import Edition, Quantity
+from pymycobot_classes import RobotLimit, library
 from robots.classes import ROBOTS
+from spec_statements.quantities import quantities_of
 
 MAKER = library("MyCobot280")
 # The document's edition has the defaults of the class for newer firmware.
@@ -92,4 +95,114 @@ def _defaults(peer: str, name: str) -> tuple[int | None, ...]:
     return tuple(None if p.default in (p.empty, None) else int(p.default) for p in given)
 
 
-RULES = (transport, defaults)
+# Tables of limits with another name than the class. The page on the X1 has the limits of its table,
+# which differ from those of the class for serial ports in joint 12.
+TABLES = {
+    "mercury_a1": "Mercury",
+    "mercury_b1": "MercurySocket",
+    "mercury_x1": "MercurySocket",
+    "mycobot280_rdkx5": "MyCobot280RDK-X5",
+}
+LIMITED = r"(j\d+|s\d|arm|flange|([xy]_)?reach|height)(_step)?(_angle|_radian|_limit|_encoder)?"
+# What the arguments of commands with a role go to.
+TARGETS = ("joint target", "joint targets", "coordinate target", "coordinate targets")
+AXES = {"x": "x_reach", "y": "y_reach", "z": "height"}
+AXES |= dict.fromkeys(("rx", "ry", "rz", "theta"), "turn")
+MOST = 0x7FFF  # what a signed word can hold
+# The maker sells the Pro 400, which has no table, as an arm with six axes. A servo turns one.
+JOINTS = {"pro400": 6, "servo_bus": 1}
+# Types that number joints, and numbers of head, waist and all joints.
+NUMBERS = ("joint", "restored_joint", "servo_or_all")
+BESIDE = {11, 12, 13, 254}
+
+
+@lru_cache(maxsize=32)
+def _limits(edition: str) -> tuple[int | None, dict[str, tuple[float, float]]]:
+    """Return how many joints the library's table of limits has, and its limits by what they are."""
+    name = TABLES.get(edition) or getattr(CLASSES.get(edition), "peer", "")
+    table = RobotLimit.robot_limit.get(name)
+    if table is None:
+        return None, {}
+    joints = table.get("joint_id", [*range(1, len(table["angles_min"]) + 1)])
+    ends = {f"j{n}": e for n, e in zip(joints, zip(table["angles_min"], table["angles_max"]))}
+    ends.update(arm=ends["j1"], flange=ends[f"j{min(6, len(ends))}"])
+    encoders = zip(table.get("encoders_min", ()), table.get("encoders_max", ()))
+    ends.update({f"s{n}": e for n, e in enumerate(encoders, 1)})
+    two = edition != "mercury_a1" and "left_coords_min" in table
+    sides = ["left_", "right_"] if two else [""] if "coords_min" in table else []
+    for at, what in enumerate(("x_reach", "y_reach", "height", "turn") if sides else ()):
+        low, high = ([table[f"{s}coords_{end}"][at] for s in sides] for end in ("min", "max"))
+        ends[what] = min(low), max(high)
+    if sides:
+        ends["reach"] = ends["x_reach"]
+    return sum(joint < 10 for joint in joints), ends
+
+
+def _limited(edition: Edition) -> Iterator[tuple[str, str, bool, Quantity]]:
+    """Yield the types that have limits by their names or by the roles of commands.
+
+    A name, what the limits are of, and whether the type is a step comes with each.
+    """
+    for command in edition.commands:
+        for field in command.fields:
+            for type in quantities_of(field):
+                if found := re.fullmatch(LIMITED, type.name):
+                    yield type.name, found[1], bool(found[3]), type
+        for field in command.fields if command.role in TARGETS else ():
+            cases = [(member.name, part) for member, t in field.cases for _, part in t.parts]
+            for label, part in cases or field.type.parts:
+                what = f"j{label}" if label.isdigit() else label.lower()
+                # Of a single number, nothing says which joint or axis it is for.
+                if isinstance(part, Quantity) and part.unit in ("degree", "millimetre"):
+                    yield f"{command.name} {label}", AXES.get(what, what), False, part
+
+
+def limits(edition: Edition) -> Iterator[str]:
+    """Report targets that go to another limit than the library's, or further steps."""
+    # The document states no limits of targets.
+    ends = _limits(edition.name)[1] if edition.name != "mycobot" else {}
+    for name, what, step, type in _limited(edition) if ends else ():
+        if what not in ends:
+            if re.fullmatch(r"(j\d+)?", what):
+                yield f"{name}: the library's table has limits for each joint, but not for this"
+            continue
+        low, high = (Fraction(str(end)) for end in ends[what])
+        if step:
+            low, high = low - high, high - low
+        steps = [max(-MOST, ceil(low / type.scale)), min(MOST, floor(high / type.scale))]
+        if [*type.bounds] != steps:
+            yield f"{name} goes from {type.bounds}; the library's table {steps}"
+
+
+def joints(edition: Edition) -> Iterator[str]:
+    """Report another number of joints than the library's table has, in lists and as numbers."""
+    wanted = JOINTS.get(edition.name, _limits(edition.name)[0])
+    if wanted is None:
+        return
+    if edition.joints != wanted:
+        yield f"there are {edition.joints} joints; the library's table has {wanted}"
+    for type in {
+        field.type.name: field.type for c in edition.commands for field in c.fields
+    }.values():
+        numbers = [int(n) for label, _ in type.parts for n in re.findall(r"^j(\d)(?!\d)", label)]
+        if numbers and max(numbers) != wanted:
+            yield f"{type.name} ends with joint {max(numbers)}; the library's table with {wanted}"
+        if isinstance(type, Quantity) and type.name in NUMBERS:
+            low, high = type.range or (0, -1)
+            numbers = [*type.choices] or [*range(int(low), int(high) + 1)]
+            if {*range(1, wanted + 1)} != {*numbers} - BESIDE:
+                yield f"{type.name} has the joints {numbers}; the library's table {wanted}"
+
+
+def commands(edition: Edition) -> Iterator[str]:
+    """Report commands without a method in the library's class, and without a reason for that."""
+    robot = CLASSES.get(edition.name)
+    if robot is not None and edition.name != "mycobot":  # the document is older than the class
+        methods = {*robot.public, *robot.lacking}
+        for command in edition.commands:
+            known = {command.name, robot.methods.get(command.name)} & methods
+            if not command.event and not known:
+                yield f"the library's class has no {command.name}"
+
+
+RULES = (transport, defaults, limits, joints, commands)

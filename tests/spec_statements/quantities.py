@@ -7,28 +7,6 @@ from collections.abc import Iterator
 
 from cobotwire_codegen.model import Edition, Field, Quantity
 
-# The last words of a quantity's name, and its unit.
-UNITS = (
-    (r"(filter|serial|queue)_length|finger_angle", ""),  # entries, bytes, commands, raw numbers
-    (r"(\w+_)?(angle|rotation|rotation_step|radian|limit|over_shoot|deviation)", "degree"),
-    (r"joint_top_speed", "degree_per_second"),
-    (r"end_top_speed", "millimetre_per_second"),
-    (r"end_top_acceleration", "millimetre_per_second_squared"),
-    (r"(\w+_)?(length|reach|height|reach_step|height_step|distance|radius)", "millimetre"),
-    (r"(gripper_|motion_|finger_|\w*bus_)?speed|(\w+_)?opening|(\w+_)?planned", "percent"),
-    (r"joint_percent|threshold|compensation|duty|(\w+_)?hand_position", "percent"),
-    (r"(measured_|s\d_)?encoder", "tick"),
-    (r"(target_)?servo_speed", "step_per_second"),
-    (r"motor_speed", "revolution_per_minute"),
-    (r"volt(age)?", "volt"),
-    (r"temperature|celsius", "degree_celsius"),
-    (r"((reported|small_servo|servo|motor)_)?current", "milliampere"),
-    (r"frequency", "hertz"),
-    (r"(external_)?baud(_rate)?", "baud"),
-    (r"(serial|external)_timeout", "millisecond"),
-)
-# Numbers that the sources of an edition print without a unit.
-UNITLESS = r"mybuddy (current|frequency)|pro450 temperature|my(cobot(280|320)|arm)\S* duty"
 # The names of fields, and the units that their types then have; other fields have no unit.
 FIELDS = (
     (r"angles?|radians|(current|target)_angle", {"degree"}),
@@ -81,7 +59,8 @@ PARTS = (
 )
 
 
-def _quantities(field: Field) -> Iterator[Quantity]:
+def quantities_of(field: Field) -> Iterator[Quantity]:
+    """Yield the quantities that a field may hold."""
     for type in (field.type, *(case for _, case in field.cases)):
         for _, part in type.parts:
             if isinstance(part, Quantity):
@@ -91,17 +70,6 @@ def _quantities(field: Field) -> Iterator[Quantity]:
 def names(edition: Edition) -> tuple[str, ...]:
     """Return the name of an edition, then those of its bases."""
     return (edition.name, *edition.bases)
-
-
-def units(edition: Edition) -> Iterator[str]:
-    """Report quantities with another unit than their name tells."""
-    for type in edition.types:
-        if isinstance(type, Quantity):
-            found = [unit for name, unit in UNITS if re.fullmatch(name, type.name)]
-            if any(re.fullmatch(UNITLESS, f"{of} {type.name}") for of in names(edition)):
-                found = [""]
-            if type.unit != (found or [""])[0]:
-                yield f"{type.name} has the unit {type.unit!r}, but its name says {found}"
 
 
 def field_units(edition: Edition) -> Iterator[str]:
@@ -120,18 +88,9 @@ def field_units(edition: Edition) -> Iterator[str]:
             for pattern, units in reversed(OTHERWISE):
                 if any(re.fullmatch(pattern, f"{of} {full}") for of in names(edition)):
                     wanted = units
-            given = {part.unit for part in _quantities(field)}
+            given = {part.unit for part in quantities_of(field)}
             if given and given != (wanted or {""}):
                 yield f"{command.name}: {field.name} has {given}; wanted {wanted}"
-
-
-def part_units(edition: Edition) -> Iterator[str]:
-    """Report parts of value types with another unit than their name tells."""
-    for type in edition.types:
-        for label, part in type.parts:
-            for name, unit in PARTS:
-                if re.fullmatch(name, label) and part.unit != unit:
-                    yield f"{type.name}: {label} has the unit {part.unit!r}; wanted {unit}"
 
 
 def case_units(edition: Edition) -> Iterator[str]:
@@ -144,13 +103,19 @@ def case_units(edition: Edition) -> Iterator[str]:
                     yield f"{command.name}: {field.name} for {member.name} has {type.unit!r}"
 
 
-def radians(edition: Edition) -> Iterator[str]:
-    """Report fields that are shown in radians without such a name, or the reverse."""
+def cases(edition: Edition) -> Iterator[str]:
+    """Report cases of a joint or rotation with a type that the others beside it do not have."""
     for command in edition.commands:
         for field in command.fields:
-            for part in _quantities(field):
-                if part.unit == "degree" and part.radians != ("radian" in command.name):
-                    yield f"{command.name}: {field.name} and its type {part.name} differ in radians"
+            rows: dict[str, set[str]] = {}
+            # A servo may have a range of its own, and a register a type.
+            for member, type in field.cases if field.selector in ("joint", "axis") else ():
+                row = re.sub(r"^\d+|(?<=^R)[XYZ]$", "#", member.name)
+                name = re.sub(rf"^j{member.name}(?=_)|^(arm|flange)(?=_)", "#", type.name)
+                rows.setdefault(row, set()).add(name)
+            for row, names_of_types in rows.items():
+                if "#" in row and len(names_of_types) > 1:
+                    yield f"{command.name}: {field.name} has the types {sorted(names_of_types)}"
 
 
 def flags(edition: Edition) -> Iterator[str]:
@@ -183,4 +148,4 @@ def uniform(edition: Edition) -> Iterator[str]:
                 yield f"{type.name} has the numbers {numbers}"
 
 
-RULES = (uniform, units, field_units, part_units, case_units, radians, flags)
+RULES = (uniform, field_units, case_units, cases, flags)

@@ -78,19 +78,20 @@ def _facts(command: Command) -> Iterator[str]:
 
 
 def _aspects(field: Field) -> Iterator[str]:
+    """Yield what is stated about a field; a survey reports the same (its ``facts.py``)."""
     types = [type for _, type in field.cases] or [field.type]
     numbers: list[Scalar] = [part for type in types for _, part in type.parts]
     if any(isinstance(type, Value | Bits) for type in types):
         yield "order"
     if any(number.wire.width > 1 for number in numbers):
         yield "byte-order"
-    if any(number.wire.minimum < 0 for number in numbers):
+    if any(isinstance(number, Quantity) and number.bounds[0] < 0 for number in numbers):
         yield "sign"
-    if any(number.scale != 1 for number in numbers):
+    if any(number.scale != 1 or number.unit for number in numbers):
         yield "scale"
     if any(number.unit for number in numbers):
         yield "unit"
-    if any(not isinstance(number, Quantity) or number.range is not None for number in numbers):
+    if any(not isinstance(n, Quantity) or n.range is not None or n.choices for n in numbers):
         yield "range"
 
 
@@ -160,8 +161,9 @@ def facts_of_pages(text: str) -> dict[str, set[str]]:
 
 
 def counts(found: Confirmed) -> dict[str, int]:
-    """Return how many facts each source confirms, and how many no arm has confirmed."""
+    """Return how many facts each source confirms, how many none, and how many no arm."""
     made = {source: sum(source in each for each in found.values()) for source in SOURCES}
+    made["none"] = sum(not each for each in found.values())
     return {"facts": len(found), **made, "unconfirmed": len(unconfirmed(found))}
 
 

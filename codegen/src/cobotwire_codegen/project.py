@@ -131,16 +131,17 @@ def second_sources(root: Path, found: Sequence[Edition]) -> dict[str, Sources]:
 
 
 def confirmed_table(root: Path, found: Sequence[Edition]) -> str:
-    """Return the share of each edition's facts that each source confirms, as a Markdown table."""
+    """Return the share of each edition's facts that each source confirms, or none, in Markdown."""
     sources = second_sources(root, found)
     rows = [
-        "| edition | facts | " + " | ".join(SOURCES) + " |",
-        "|---|--:|" + "---|" * len(SOURCES),
+        "| edition | facts | " + " | ".join(SOURCES) + " | no source |",
+        "|---|--:|" + "---|" * len(SOURCES) + "--:|",
     ]
     for edition in found:
         counted = counts(confirmed(edition, sources[edition.name]))
         bars = " | ".join(bar(counted[source], counted["facts"]) for source in SOURCES)
-        rows.append(f"| `{edition.name}` | {counted['facts']} | {bars} |")
+        shown = f"{counted['facts']} | {bars} | {counted['none']}"
+        rows.append(f"| `{edition.name}` | {shown} |")
     return "\n".join(rows)
 
 

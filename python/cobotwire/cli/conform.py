@@ -13,7 +13,7 @@ VERBS = {
     "codec": "Test a codec, which COMMAND runs, against an edition.",
     "compare": "Compare two reports on the same subject.",
     "matrix": "Show several implementations side by side.",
-    "verify": "Check the digest and the signature of a report.",
+    "verify": "Check the digest and the signature of a report or survey.",
     "cases": "List the test cases and the permissions.",
     "statement": "Write the template of a statement about a device.",
 }

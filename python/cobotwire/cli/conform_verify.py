@@ -1,9 +1,10 @@
-"""``cobotwire conform verify``: check the digest and the signature of a report."""
+"""``cobotwire conform verify``: check the digest and the signature of a report or survey."""
 
 from __future__ import annotations
 
 import json
 import sys
+from zipfile import is_zipfile
 
 import click
 
@@ -14,6 +15,7 @@ from cobotwire.cli.shared.conform_report import (
     text_of_file,
 )
 from cobotwire.conformance.reports import document_of
+from cobotwire.conformance.survey.file import unsealed
 from cobotwire.inspect.seal import Seal, check_seal, load_public_key
 from cobotwire.protocol.printable import printable
 
@@ -25,7 +27,7 @@ from cobotwire.protocol.printable import printable
 )
 @click.option("--json", "as_json", is_flag=True, help="Print a JSON object.")
 def verify(report: str, key: str | None, as_json: bool) -> None:
-    """Check that REPORT (JSON) is as it was written, and who signed it.
+    """Check that REPORT (JSON, or a survey) is as it was written, and who signed it.
 
     A right signature shows that the owner of the printed key signed the report. Whose key it is,
     only --key shows: with the public key that you got from the tester.
@@ -35,7 +37,9 @@ def verify(report: str, key: str | None, as_json: bool) -> None:
     """
     with exit_if_not_testable():
         wanted = None if key is None else load_public_key(key)
-        seal = check_seal(document_of(text_of_file("report", report)))
+        survey = is_zipfile(report)
+        document = unsealed(report)[0] if survey else document_of(text_of_file("report", report))
+        seal = check_seal(document)
     mistake = _mistake(seal, wanted)
     if as_json:
         found = {"right": not mistake, "mistake": mistake, **seal._asdict()}

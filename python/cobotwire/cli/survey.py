@@ -29,6 +29,7 @@ from cobotwire.conformance.device import DeviceConnection
 from cobotwire.conformance.sources import spec_lines
 from cobotwire.conformance.survey import Survey, read_survey, survey_file
 from cobotwire.conformance.survey.file import RECORDING, content_of, continued
+from cobotwire.inspect.seal import load_signer
 from cobotwire.protocol.errors import LinkError, UsageError
 from cobotwire.protocol.table import Table
 from cobotwire.transport.tapped import tapped
@@ -51,6 +52,9 @@ VERDICTS = ("confirmed", "contradicted", "not seen")
 @click.option("--yes-workspace-is-clear", is_flag=True, help="Do not ask before the motions.")
 @click.option("--continue", "resume", is_flag=True, help="Continue the interrupted survey of -o.")
 @click.option("--simulated", is_flag=True, help="Survey a simulated arm instead of URL.")
+@click.option(
+    "--sign", type=click.Path(), metavar="KEY", help="Sign the file with this key (Ed25519)."
+)
 @click.option("--json", "as_json", is_flag=True, help="Print what was found as JSON.")
 @baudrate_option
 @uses_edition
@@ -64,6 +68,7 @@ def survey(
     yes_workspace_is_clear: bool,
     resume: bool,
     simulated: bool,
+    sign: str | None,
     as_json: bool,
     baudrate: int | None,
 ) -> None:
@@ -84,6 +89,7 @@ def survey(
     table = editions.load(edition).TABLE
     subject = Subject(port, None, None, simulated, baudrate)
     subject.validate()
+    signer = None if sign is None else load_signer(sign)
     earlier = read_survey(output) if resume else None
     if earlier is not None and earlier[0].get("edition") != table.edition:
         message = f"{output} is the survey of edition {earlier[0].get('edition')!r}"
@@ -115,7 +121,7 @@ def survey(
         if found.other:
             # It says nothing about the edition.
             sys.exit(1)
-        file.file.write(survey_file(content, recorded))
+        file.file.write(survey_file(content, recorded, signer))
         file.publish()
     finally:
         file.discard()

@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import shutil
+from fractions import Fraction
 from pathlib import Path
+from typing import Any
 
 import in_process
 from cobotwire_codegen.build import build_edition
 from cobotwire_codegen.check import check
 from cobotwire_codegen.cli import main
 from cobotwire_codegen.errors import Problem, SpecError
+from cobotwire_codegen.load import Mapping, Node, Sequence
 from in_process import Ended
 
 FOLDER = Path(__file__).parent / "samples"
@@ -34,3 +37,13 @@ def run(folder: Path, *words: str, given: str | bytes = b"") -> Ended:
     """Call ``cobotwire-gen`` in a folder, without a terminal."""
     data = given.encode() if isinstance(given, str) else given
     return in_process.run(main, "cobotwire-gen", *words, given=data, folder=folder)
+
+
+def plain(node: Node) -> Any:
+    """Return a node as the data that an editor's validator sees."""
+    if isinstance(node, Mapping):
+        return {key: plain(value) for key, value in node.entries.items()}
+    if isinstance(node, Sequence):
+        return [plain(item) for item in node.items]
+    value = node.value
+    return float(value) if isinstance(value, Fraction) else value

@@ -15,11 +15,23 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
+import vectors
+from cobotwire.conformance.survey import ASPECTS as SURVEYED
+from cobotwire.conformance.survey.facts import Facts
+from cobotwire.editions import load
 from cobotwire_codegen.build import build_edition
 from cobotwire_codegen.evidence import submitted as reading
 from cobotwire_codegen.evidence.entry import checked, text_of
 from cobotwire_codegen.evidence.submitted import MEMBERS, NotEvidence, submitted
-from cobotwire_codegen.facts import Sources, bar, confirmed, counts, facts_of, unconfirmed
+from cobotwire_codegen.facts import (
+    ASPECTS,
+    Sources,
+    bar,
+    confirmed,
+    counts,
+    facts_of,
+    unconfirmed,
+)
 from codegen.author import samples
 
 BUS = build_edition(samples.FOLDER / "bus.yaml", samples.FOLDER)
@@ -211,6 +223,21 @@ def test_report_of_a_device_gives_facts_of_its_test_cases() -> None:
     }
 
 
+@pytest.mark.parametrize("edition", vectors.sampled())
+def test_survey_reports_the_facts_that_the_generator_counts(edition: str) -> None:
+    described, table = vectors.edition(edition), load(edition).TABLE
+    # A survey reports an alias as well.
+    others = {command.name for command in described.commands if not command.alias}
+    reported = {name for name in Facts(table) if name.split("/")[1] in others}
+    counted = {*facts_of(described)}
+    assert reported <= counted
+    left = {name.split("/", 2)[2] for name in counted - reported}
+    # The text after a frame is not read, and a range may be all that the bytes can hold.
+    beyond = {"command/present", "command/agreement", "request/length", "reply/length", "reply/id"}
+    assert {each for each in left - beyond if not each.endswith("/range")} == set()
+    assert {*ASPECTS} == {*SURVEYED}
+
+
 def test_facts_are_counted_by_source_and_listed_until_an_arm_confirms_them(tmp_path: Path) -> None:
     found = confirmed(BUS, Sources(frozenset({"reset"})))
     assert facts_of(BUS).keys() == found.keys()
@@ -218,6 +245,7 @@ def test_facts_are_counted_by_source_and_listed_until_an_arm_confirms_them(tmp_p
     assert found["bus/light/request.lit/range"] == frozenset()
     assert found["bus/reset/command/present"] == {"library"}
     assert counts(found)["unconfirmed"] == len(unconfirmed(found)) == len(found) - 3
+    assert counts(found)["none"] == list(found.values()).count(frozenset())
     folder = samples.copied(tmp_path)
     shown = samples.run(folder, "evidence", "list", "--edition-file", "bus.yaml")
     assert "  light (3): request.lit: range; reply.done: range; reply: id" in shown.stdout

@@ -10,7 +10,6 @@ from jsonschema import Draft7Validator
 
 from cobotwire_codegen.load import load
 from codegen.author import samples
-from codegen.author.schema_walk import plain
 
 
 def test_file_from_init_passes_check_and_build(tmp_path: Path) -> None:
@@ -27,7 +26,7 @@ def test_init_writes_a_schema_that_accepts_the_file(tmp_path: Path) -> None:
     first = (tmp_path / "oven.yaml").read_text().splitlines()[0]
     assert first == "# yaml-language-server: $schema=oven.schema.json"
     schema = json.loads((tmp_path / "oven.schema.json").read_text())
-    found = list(Draft7Validator(schema).iter_errors(plain(load(tmp_path / "oven.yaml"))))
+    found = list(Draft7Validator(schema).iter_errors(samples.plain(load(tmp_path / "oven.yaml"))))
     assert found == []
     fresh = samples.run(tmp_path, "schema", "oven.yaml", "--out", "oven.schema.json", "--check")
     assert fresh.stdout == "fresh\n"

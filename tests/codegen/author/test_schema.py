@@ -1,13 +1,14 @@
-"""The schema accepts the same keys and words in a file as the checker."""
+"""The schema is complete and closed, and is written for the project and for users.
+
+That it rejects what the reader rejects is a test of each record (``test_language.py``).
+"""
 
 from __future__ import annotations
 
 import json
-import shutil
-from collections.abc import Iterable
-from functools import cache
+from collections.abc import Iterator
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 import pytest
 from jsonschema import Draft7Validator
@@ -15,130 +16,56 @@ from jsonschema import Draft7Validator
 import vectors
 from cobotwire_codegen.build import build_edition
 from cobotwire_codegen.language.schema import editor_schema, schema_json
-from cobotwire_codegen.load import Node, load
-from cobotwire_codegen.model import Edition
-from cobotwire_codegen.project import SERVO_BUS, edition_files
+from cobotwire_codegen.load import load
+from cobotwire_codegen.project import SERVO_BUS
 from codegen.author import samples
-from codegen.author.schema_walk import Closed, Walk, Word, plain
 from codegen.test_generator import EDITIONS, copy_spec
 
-Found = Closed | Word
 # Files of the spec that the schema does not describe: one has types of its own, one is no edition.
 OTHERS = {vectors.ROOT / SERVO_BUS, vectors.ROOT / "spec" / "pymycobot.yaml"}
+FILES = sorted({*(vectors.ROOT / "spec").rglob("*.yaml")} - OTHERS)
+# The values of a vector: any fields.
+OPEN = {"example_vector/values", "named_vector/values"}
 
 
-class Corpus(NamedTuple):
-    """A folder with editions, and the schema generated from them."""
-
-    root: Path
-    editions: tuple[Path, ...]
-    walk: Walk
-
-    def files(self) -> list[Path]:
-        """Return every file of the editions."""
-        found = (path for path in self.root.rglob("*.yaml") if "tests" not in path.parts[-3:])
-        return sorted(path for path in found if path not in OTHERS)
-
-    def load(self, path: Path) -> Node:
-        """Return the root node of a file; messages name the file relative to the corpus."""
-        return load(path, path.relative_to(self.root).as_posix())
+def _schemas(value: Any, path: tuple[str, ...] = ()) -> Iterator[tuple[tuple[str, ...], Any]]:
+    if isinstance(value, dict):
+        yield path, value
+        for name, inner in value.items():
+            yield from _schemas(inner, (*path, name))
 
 
-def _corpus(root: Path, paths: list[Path], editions: Iterable[Edition]) -> Corpus:
-    return Corpus(root, tuple(paths), Walk(editor_schema([*editions])))
+@pytest.fixture(scope="module")
+def schema() -> dict[str, Any]:
+    return editor_schema([*vectors.editions().values()])
 
 
-@cache
-def corpora() -> tuple[Corpus, ...]:
-    """Return the project's spec, and the samples, which use the whole language."""
-    spec = vectors.ROOT / "spec"
-    of_samples = [samples.FOLDER / name for name in samples.EDITIONS]
-    return (
-        _corpus(spec, edition_files(vectors.ROOT), vectors.editions().values()),
-        _corpus(samples.FOLDER, of_samples, (build_edition(p, samples.FOLDER) for p in of_samples)),
-    )
+def test_schema_lists_the_keys_of_every_mapping(schema: dict[str, Any]) -> None:
+    Draft7Validator.check_schema(schema)
+    known = set()
+    for path, inner in _schemas(schema["definitions"]):
+        if inner.get("type") == "object" and "if" not in path:
+            assert "additionalProperties" in inner or f"{path[0]}/{path[-1]}" in OPEN, path
+        if path[-2:-1] == ("properties",):
+            assert inner.keys() & {"type", "enum", "$ref", "if", "anyOf"}, path
+        if isinstance(inner.get("properties"), dict) and len(path) == 1:
+            assert inner["additionalProperties"] is False, path
+            known.add(path[0])
+    assert len(known) > 60
 
 
-def _occurrences() -> dict[str, tuple[int, Path, Found]]:
-    """Return the first place where each list of keys and each list of words is used.
-
-    The samples come first: a test changes the place and builds its edition, and theirs are small.
-    """
-    found: dict[str, tuple[int, Path, Found]] = {}
-    for index, corpus in reversed([*enumerate(corpora())]):
-        for path in corpus.files():
-            root = corpus.load(path)
-            items: list[Found] = [*corpus.walk.closed(root), *corpus.walk.words(root)]
-            for item in items:
-                kind = item.definition if isinstance(item, Closed) else f"word {item.definition}"
-                found.setdefault(kind, (index, path, item))
-    return found
+def test_every_spec_file_is_valid(schema: dict[str, Any]) -> None:
+    validator = Draft7Validator(schema)
+    for path in FILES:
+        assert list(validator.iter_errors(samples.plain(load(path)))) == [], path
+    of_samples = [build_edition(samples.FOLDER / n, samples.FOLDER) for n in samples.EDITIONS]
+    validator = Draft7Validator(editor_schema(of_samples))
+    for path in samples.FOLDER.rglob("*.yaml"):
+        if "tests" not in path.parts[-3:]:
+            assert list(validator.iter_errors(samples.plain(load(path)))) == [], path
 
 
-OCCURRENCES = _occurrences()
-CLOSED = sorted(kind for kind in OCCURRENCES if not kind.startswith("word "))
-WORDS = sorted(kind for kind in OCCURRENCES if kind.startswith("word "))
-
-
-def test_schemas_are_valid_json_schemas() -> None:
-    for corpus in corpora():
-        Draft7Validator.check_schema(corpus.walk.schema)
-
-
-def test_every_spec_file_is_valid() -> None:
-    for corpus in corpora():
-        for path in corpus.files():
-            errors = list(corpus.walk.validator.iter_errors(plain(corpus.load(path))))
-            assert errors == [], path
-
-
-def test_every_mapping_of_the_schema_occurs_in_the_corpora() -> None:
-    definitions = corpora()[0].walk.schema["definitions"]
-    closed = {name for name, schema in definitions.items() if "properties" in schema}
-    assert closed <= set(CLOSED)
-
-
-def _mutated(tmp_path: Path, kind: str, change: str) -> tuple[list[str], list[str]]:
-    """Change one place; return the schema's errors and the checker's codes."""
-    index, path, item = OCCURRENCES[kind]
-    corpus = corpora()[index]
-    data = plain(corpus.load(path))
-    holder: Any = data
-    for step in item.path if isinstance(item, Closed) else item.path[:-1]:
-        holder = holder[step]
-    holder["zz_unknown" if isinstance(item, Closed) else item.path[-1]] = change
-    messages = [error.message for error in corpus.walk.validator.iter_errors(data)]
-    copy = Path(shutil.copytree(corpus.root, tmp_path / "changed"))
-    # JSON is YAML.
-    (copy / path.relative_to(corpus.root)).write_text(json.dumps(data, indent=1))
-    codes: set[str] = set()
-    # Build the file's own edition first: it reports the most problems, and building takes time.
-    for edition in sorted(
-        corpus.editions, key=lambda e: not path.is_relative_to(e.with_suffix(""))
-    ):
-        problems = samples.problems(copy / edition.relative_to(corpus.root))
-        codes.update(problem.code for problem in problems)
-        if codes:
-            break
-    return messages, sorted(codes)
-
-
-@pytest.mark.parametrize("kind", CLOSED)
-def test_unknown_key_is_rejected_by_schema_and_checker(tmp_path: Path, kind: str) -> None:
-    messages, codes = _mutated(tmp_path, kind, "zz")
-    assert any("zz_unknown" in message for message in messages), messages
-    assert "unknown-key" in codes
-
-
-@pytest.mark.parametrize("kind", WORDS)
-def test_unknown_word_is_rejected_by_schema_and_checker(tmp_path: Path, kind: str) -> None:
-    messages, codes = _mutated(tmp_path, kind, "zzz")
-    assert any("zzz" in message for message in messages), messages
-    assert codes != []
-
-
-def test_types_of_every_edition_can_be_named() -> None:
-    schema = corpora()[0].walk.schema
+def test_types_of_every_edition_can_be_named(schema: dict[str, Any]) -> None:
     names = schema["definitions"]["type_name"]["enum"]
     assert names == sorted({t.name for e in vectors.editions().values() for t in e.types})
 
@@ -162,7 +89,7 @@ def test_schema_of_a_users_protocol_lists_its_own_types(tmp_path: Path) -> None:
 
 
 def test_every_file_of_the_spec_names_the_schema() -> None:
-    for path in corpora()[0].files():
+    for path in FILES:
         first = path.read_text().splitlines()[0]
         _, _, name = first.partition("# yaml-language-server: $schema=")
         assert (path.parent / name).resolve() == vectors.ROOT / "spec/schema.json", path

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import json
+import zipfile
 from pathlib import Path
 
 import pytest
@@ -24,6 +25,7 @@ import in_process
 from cobotwire.cli.app import app
 from cobotwire.conformance import Report
 from cobotwire.conformance.reports import from_json, to_json
+from cobotwire.conformance.survey import read_survey, survey_file
 from cobotwire.inspect.seal import check_seal, digest_of, load_signer, sealed
 from cobotwire.protocol.errors import UsageError
 
@@ -111,6 +113,24 @@ def test_changed_report_is_not_read() -> None:
     text = to_json(Report("device", "mycobot", "arm"))
     with pytest.raises(UsageError, match="was changed after it was written"):
         from_json(text.replace('"arm"', '"another"'))
+
+
+def test_signed_survey_is_verified_and_a_change_of_facts_or_recording_noticed(
+    tmp_path: Path,
+) -> None:
+    key, file = key_file(tmp_path), tmp_path / "survey.zip"
+    content = {"format": "cobotwire-survey", "version": 1, "facts": [], "robot": "mine"}
+    file.write_bytes(survey_file(content, b"bytes", load_signer(str(key))))
+    assert verify(file, "--key", key.with_suffix(".pub"))[0] == 0
+    found, recording = read_survey(file)
+    assert (found["robot"], recording) == ("mine", b"bytes")
+    for changed, recorded in (({**found, "robot": "yours"}, recording), (found, b"others")):
+        with zipfile.ZipFile(file, "w") as archive:
+            archive.writestr("survey.json", json.dumps(changed))
+            archive.writestr("recording.pcapng", recorded)
+        assert "was changed" in verify(file)[1]
+        with pytest.raises(UsageError, match="was changed after it was written"):
+            read_survey(file)
 
 
 def test_key_that_cannot_sign_is_named_before_the_run(tmp_path: Path) -> None:

@@ -174,7 +174,7 @@ def _needs(edition: Edition) -> dict[str, tuple[str, Callable[[Command], bool]]]
         ),
         "motion ended": (
             "it must be an event, and its last field a status",
-            lambda command: command.event and not _parts(command.replies[0][-1]),
+            lambda c: c.event and any(c.replies[:1]) and not _parts(c.replies[0][-1]),
         ),
         "gripper": ("it must take first a state, OPEN or CLOSE, then a speed", _grips),
         "stop": ("it must need no arguments", lambda command: () in command.requests),

@@ -160,7 +160,7 @@ def _plain(found: Confirmed) -> dict[str, object]:
 def _counted(name: str, found: Confirmed) -> Iterator[str]:
     counted = counts(found)
     yield f"{name}: {counted['facts']} facts"
-    for source in SOURCES:
+    for source in (*SOURCES, "none"):
         yield f"  {source:8} {bar(counted[source], counted['facts']):16} {counted[source]:5}"
 
 

@@ -91,25 +91,34 @@ def _places(command: Command) -> Iterator[tuple[str, str, str]]:
     if command.event:
         return
     of_command = ["present", "deadline"] if command.requires_reply else []
-    of_command += ["effect"] if effect_of(command) is not None else []
+    effect = effect_of(command)
+    of_command += ["effect"] if effect is not None and not effect.assumed else []
     of_reply = ["id", "length"] if command.reply else []
     yield from ((command.name, "command", aspect) for aspect in of_command)
     yield from ((command.name, "reply", aspect) for aspect in of_reply)
-    for part, variants in (("request", command.request[:1]), ("reply", command.reply[:1])):
-        for field in (field for variant in variants for field in variant.fields):
+    for part, variants in (("request", command.request), ("reply", command.reply)):
+        # The first variant in which a field is decides, as in the generator.
+        longest = sorted(variants, key=lambda variant: -len(variant.fields))
+        fields = {field.name: field for variant in reversed(longest) for field in variant.fields}
+        for field in fields.values():
             if field.const is None and not field.echo:
                 yield from ((command.name, f"{part}.{field.name}", a) for a in _aspects(field))
 
 
 def _aspects(field: Field) -> Iterator[str]:
-    numbers = field.cases[0].numbers
-    if field.kind not in ("bytes", "text"):
+    """Yield what is stated about a field; the generator counts the same (its ``facts.py``)."""
+    if field.kind in ("bytes", "text"):
+        return
+    numbers = [number for case in field.cases for number in case.numbers]
+    if any(n.choices or (n.minimum, n.maximum) != n.raw_range for n in numbers):
         yield "range"
+    if any(number.scaled or number.unit for number in numbers):
+        yield "scale"
     if any(number.unit for number in numbers):
-        yield from ("scale", "unit")
+        yield "unit"
     if any(number.minimum < 0 for number in numbers):
         yield "sign"
-    if len(numbers) > 1 and field.kind not in ("bytes", "text"):
+    if any(len(case.numbers) > 1 for case in field.cases):
         yield "order"
     if any(number.width > 1 for number in numbers):
         yield "byte-order"

@@ -8,6 +8,7 @@ import platform
 import zipfile
 from collections.abc import Mapping
 from datetime import UTC, datetime
+from hashlib import sha256
 from pathlib import Path
 from typing import Any
 
@@ -15,6 +16,7 @@ import cobotwire
 from cobotwire.capture.file_errors import unusable_file
 from cobotwire.conformance.provenance import edition_digest
 from cobotwire.conformance.survey.survey import Survey
+from cobotwire.inspect.seal import Signer, check_seal, sealed
 from cobotwire.protocol.errors import UsageError
 from cobotwire.protocol.printable import printable
 
@@ -69,17 +71,40 @@ def continued(
     return {**content, "facts": merged, "hashed": hashed, "level": level}, recorded + recording
 
 
-def survey_file(content: Mapping[str, object], recording: bytes) -> bytes:
-    """Return the file of a survey; ``recording`` is a pcapng file."""
+def survey_file(
+    content: Mapping[str, object], recording: bytes, sign: Signer | None = None
+) -> bytes:
+    """Return the file of a survey, sealed; ``recording`` is a pcapng file."""
     file = io.BytesIO()
     with zipfile.ZipFile(file, "w", zipfile.ZIP_DEFLATED) as archive:
-        archive.writestr(JSON, json.dumps(content, indent=1))
+        document = sealed(_with_recording(content, recording), sign)
+        archive.writestr(JSON, json.dumps(document, indent=1))
         archive.writestr(RECORDING, recording)
     return file.getvalue()
 
 
+def _with_recording(content: Mapping[str, Any], recording: bytes) -> dict[str, Any]:
+    return {**content, "recording_digest": sha256(recording).hexdigest()}
+
+
 def read_survey(path: str | Path) -> tuple[dict[str, Any], bytes]:
     """Return the content and the recording of a survey's file.
+
+    Raises:
+        UsageError: the file cannot be read, is not the file of a survey, or was changed. A survey
+            without a digest is read as it is.
+    """
+    content, recording = unsealed(path)
+    if "digest" in content and not check_seal(content).intact:
+        message = f"{printable(str(path))} was changed after it was written (`conform verify`)"
+        raise UsageError("survey", str(path), message=message)
+    return content, recording
+
+
+def unsealed(path: str | Path) -> tuple[dict[str, Any], bytes]:
+    """Return the content and the recording of a survey's file; the seal is not checked.
+
+    The content states the digest of the recording that is in the file.
 
     Raises:
         UsageError: the file cannot be read, or is not the file of a survey.
@@ -99,7 +124,7 @@ def read_survey(path: str | Path) -> tuple[dict[str, Any], bytes]:
     except Exception as error:
         message = f"{printable(str(path))} is not the file of a survey: {printable(str(error))}"
         raise UsageError("survey", str(path), message=message) from None
-    return content, recording
+    return _with_recording(content, recording) if "digest" in content else content, recording
 
 
 def _members(data: bytes) -> list[bytes]:
