@@ -128,18 +128,14 @@ bench: .venv/.tools .venv/.native ## compare speeds with their limits; count los
 	$(BIN)/python bench/client.py
 	$(BIN)/python bench/asyncio_calls.py
 	$(BIN)/python bench/simulated_time.py
-	$(BIN)/python bench/kinematics.py
 	$(BIN)/python bench/resync.py
 	$(BIN)/python bench/captures_decode.py
 	$(BIN)/python bench/speed.py
-	$(BIN)/python bench/bulk_floor.py
 	$(BIN)/python bench/captures.py
 	$(BIN)/python bench/imports.py
-	$(BIN)/python bench/streaming.py
 	$(BIN)/python bench/jitter.py
 	$(BIN)/python bench/fleet.py
 	$(BIN)/python bench/pipelining.py
-	$(BIN)/python bench/pymycobot_session.py
 	$(BIN)/python bench/waiting.py
 	$(BIN)/python bench/tap.py
 
@@ -195,7 +191,8 @@ nightly: .venv/.tools .venv/.native ## run the long searches one after another, 
 
 every-edition: set-up ## test all editions where `make test` tests a sample
 	EVERY_EDITION=1 $(BIN)/python -m pytest tests/codec/test_message_tables.py tests/docs/test_site.py \
-		tests/docs/test_robot_pages.py tests/mutation/test_mutants.py tests/conformance/survey
+		tests/docs/test_robot_pages.py tests/mutation/test_mutants.py tests/conformance/survey \
+		tests/peers/test_layer.py tests/peers/test_migrated_calls.py
 
 urdf: .venv/.tools .venv/.native ## compare the poses of our URDF files with yourdfpy
 	$(BIN)/python -m pip install --quiet --no-compile --group urdf

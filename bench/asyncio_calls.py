@@ -21,7 +21,7 @@ REQUEST = bytes.fromhex("FE FE 02 20 FA")
 REPLY = bytes.fromhex("FE FE 0E 20 00 8C 00 3D FF E6 FF 3F 00 AF FF 51 FA")
 ARMS = f"""
 import selectors, socket
-server = socket.create_server(("127.0.0.1", 0), backlog=256)
+server = socket.create_server(("127.0.0.1", 0), backlog=4096)
 print(server.getsockname()[1], flush=True)
 selector = selectors.DefaultSelector()
 selector.register(server, selectors.EVENT_READ)

@@ -11,27 +11,32 @@ from __future__ import annotations
 
 import argparse
 import gzip
+import os
 import sys
 import tempfile
 import zlib
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from functools import partial
 from itertools import islice
 from mmap import ACCESS_READ, mmap
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
+import pyarrow.parquet as pq
 from rich.console import Console
 
-from captures_export import exports
 from cobotwire import codec as codecs
 from cobotwire.capture import block_encoding as blocks
 from cobotwire.capture import read
 from cobotwire.capture.columns import read_batches, read_columns
+from cobotwire.capture.export import ExportPlan, Inputs, write
+from cobotwire.capture.export.formats.parquet_file import settings
+from cobotwire.capture.export.output import BLOCK_ROWS
 from cobotwire.codec.interface import Codec
 from cobotwire.editions.mycobot280 import TABLE
 from cobotwire.inspect.captured import messages
+from cobotwire.inspect.exporting import InstalledEditions
 from speed_table import Ratio, Target, Timed, measure, ratios, show, untargeted, write_json
 
 REQUEST = bytes.fromhex("FE FE 02 20 FA")
@@ -162,7 +167,40 @@ def exported(codec: Codec, recording: Recording) -> Part:
     with raw.open("wb") as file:
         for _ in range(EXPORTED // len(recording.received)):
             file.write(recording.received)
-    return exports(recording.path.parent, {"raw bytes": raw, "recording": recording.path})
+    return _exports(recording.path.parent, {"raw bytes": raw, "recording": recording.path})
+
+
+def _exports(folder: Path, inputs: dict[str, Path]) -> tuple[dict[str, Timed], Sequence[Target]]:
+    """Time the export of captures to Parquet, and pyarrow on the same tables, on one core."""
+    timed: dict[str, Timed] = {}
+    targets = []
+    for number, (name, path) in enumerate(inputs.items()):
+        out = folder / f"out {number}"
+        plan = ExportPlan(str(out), InstalledEditions(), direction="reply", overwrite=True)
+        found = Inputs.find([str(path)])
+        write(plan, found)
+        ready = {path: pq.read_table(path) for path in sorted(out.iterdir())}
+        peer = f"pyarrow, ready tables of the {name}"
+        timed[name] = Timed(partial(_on_one_core, partial(write, plan, found)))
+        timed[peer] = Timed(partial(_on_one_core, partial(_write_ready, plan, ready)))
+        targets.append(Target(f"{name} to Parquet", name, peer, 2))
+    return timed, targets
+
+
+def _write_ready(plan: ExportPlan, tables: dict[Path, Any]) -> None:
+    for path, table in tables.items():
+        with pq.ParquetWriter(path, table.schema, **settings(plan, table.schema)) as writer:
+            writer.write_table(table, row_group_size=BLOCK_ROWS)
+
+
+def _on_one_core(work: Callable[[], object]) -> None:
+    """Run work on one core, so that neither program gains by threads."""
+    cores = os.sched_getaffinity(0)
+    os.sched_setaffinity(0, {min(cores)})
+    try:
+        work()
+    finally:
+        os.sched_setaffinity(0, cores)
 
 
 PARTS = {

@@ -7,15 +7,28 @@
 from __future__ import annotations
 
 import argparse
+import contextlib
+import io
 import time
+import warnings
 from typing import NamedTuple
 
 from cobotwire.conformance import Report
 from cobotwire.conformance.client import Referee, faulty_replies
 from cobotwire.editions.mycobot280 import TABLE
 from cobotwire.simulator import PtyServer, Server, TcpServer
-from referee.calls import script
-from referee.clients import CLIENTS
+from field_notes.play import AS_LIBRARY, OPENERS
+from referee.calls import SESSION, script
+
+# By name: the library, and whether it opens a pty or a TCP connection.
+CLIENTS = {
+    "pymycobot": ("pymycobot", PtyServer),
+    "pymycobot socket": ("pymycobot", TcpServer),
+    "cobotwire": ("blocking", PtyServer),
+    "cobotwire tcp": ("blocking", TcpServer),
+    "cobotwire asyncio": ("asyncio", PtyServer),
+    "cobotwire asyncio tcp": ("asyncio", TcpServer),
+}
 
 
 class Line(NamedTuple):
@@ -38,9 +51,31 @@ LINES: dict[str, Line] = {
 }
 
 
+def play(library: str, url: str) -> list[str]:
+    """Run the session with a library; return the calls that raised or returned an error."""
+    failures = []
+    with warnings.catch_warnings(), contextlib.redirect_stdout(io.StringIO()):
+        # The import of pymycobot uses deprecated features, and it prints while it decodes.
+        warnings.simplefilter("ignore")
+        arm = OPENERS[library](url)
+        for call in SESSION:
+            try:
+                result = getattr(arm, call.name)(*call.arguments)
+            except Exception as error:  # any exception is listed, and the session continues
+                failures.append(f"{call.name}: {type(error).__name__}: {error}")
+            else:
+                if library in AS_LIBRARY and result in (None, -1):
+                    failures.append(f"{call.name}: {result!r}")
+        if library in AS_LIBRARY:
+            arm.close()
+        else:
+            arm.__exit__(None, None, None)
+    return failures
+
+
 def checked(client: str, line: Line) -> tuple[Report, list[str]]:
     """Run the session; return the report, and the calls that raised or returned an error."""
-    kind, play = CLIENTS[client]
+    library, kind = CLIENTS[client]
     referee = Referee(
         TABLE,
         subject=client,
@@ -48,9 +83,9 @@ def checked(client: str, line: Line) -> tuple[Report, list[str]]:
         script=script(),
         acks=line.acks,
     )
-    server: Server = PtyServer(referee) if kind == "pty" else TcpServer(lambda: referee)
+    server: Server = PtyServer(referee) if kind is PtyServer else TcpServer(lambda: referee)
     with server:
-        failures = play(server.url)
+        failures = play(library, server.url)
         _settle(referee)
     return referee.finish(), failures
 

@@ -1,13 +1,10 @@
 """Poll 500 arms at 20 Hz in one process, then 1,000: lateness, CPU time and memory.
 
-The arms are TCP connections to another process (`fleet_responder.py`). A sample is late by the time
-from the begin of its period until the consumer has it. On Linux, one core is the client's and
-another the arms'. The CPU time is that of the client's process. Its memory is what the process
-grows by for each open arm with a stream, and what Python allocates for it (tracemalloc, measured
-with few arms).
-
-The floor sends and receives the same bytes with callbacks of the same event loop, and does nothing
-else. It shows what the machine and asyncio need by themselves.
+The arms are TCP connections to the process of `asyncio_calls.py`, which compares a call with bare
+asyncio. A sample is late by the time from the begin of its period until the consumer has it. On
+Linux, one core is the client's and another the arms'. The CPU time is that of the client's process.
+Its memory is what the process grows by for each open arm with a stream, and what Python allocates
+for it (tracemalloc, measured with few arms).
 """
 
 from __future__ import annotations
@@ -16,6 +13,7 @@ import argparse
 import asyncio
 import gc
 import os
+import resource
 import subprocess
 import sys
 import time
@@ -25,14 +23,11 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import NamedTuple
 
+from asyncio_calls import ARMS
 from cobotwire.client.aio_streaming import AsyncStream
 from cobotwire.editions.mycobot280 import AsyncMyCobot280, GetAngles
-from descriptor_limit import raise_limit
-from fleet_floor import Floor, run_floor
 from responder import within
 
-REQUEST = "FE FE 02 20 FA"
-REPLY = "FE FE 0E 20 00 8C 00 3D FF E6 FF 3F 00 AF FF 51 FA"
 # How many arms connect at the same time.
 TOGETHER = 50
 # Seconds before the first measured sample.
@@ -71,13 +66,13 @@ def main() -> None:
     )
     parser.add_argument("--strict", action="store_true", help="exit with 1 if a limit is missed")
     options = parser.parse_args()
-    raise_limit()
+    # Each arm needs a descriptor here, and one in the other process.
+    _, most = resource.getrlimit(resource.RLIMIT_NOFILE)
+    resource.setrlimit(resource.RLIMIT_NOFILE, (most, most))
     met = True
     with _arms() as url:
         for count in options.arms:
-            request, rate = bytes.fromhex(REQUEST), options.rate
-            _show_floor(asyncio.run(run_floor(url, request, count, rate)))
-            rarely = options.rare_collections
+            rate, rarely = options.rate, options.rare_collections
             result = asyncio.run(_run(url, count, rate, options.seconds, rarely))
             # More arms stay right, but may be late.
             met &= _show(result, count, rate) or count > LIMITED_ARMS
@@ -102,20 +97,11 @@ def _show(result: Result, count: int, rate: float) -> bool:
     return p99 <= LATE_SECONDS and cpu <= CPU_SECONDS and resident <= ARM_BYTES
 
 
-def _show_floor(floor: Floor) -> None:
-    late = sorted(floor.lateness)
-    print(
-        f"floor: {len(late)} replies; {floor.cpu / len(late) * 1e6:.0f} us of CPU each, late by "
-        f"{late[len(late) // 2] * 1e3:.1f} ms (median), {late[len(late) * 99 // 100] * 1e3:.1f} ms "
-        f"(99 %)"
-    )
-
-
 @contextmanager
 def _arms() -> Iterator[str]:
-    script = str(Path(__file__).with_name("fleet_responder.py"))
-    command = [sys.executable, script, REQUEST, REPLY]
-    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as process:
+    with subprocess.Popen(
+        [sys.executable, "-c", ARMS], stdout=subprocess.PIPE, text=True
+    ) as process:
         assert process.stdout is not None
         _keep_apart(process.pid)
         try:

@@ -145,7 +145,7 @@ def main() -> int:
     parser.add_argument("--json", type=Path, metavar="FILE", help="write the report to this file")
     options = parser.parse_args()
     started = time.monotonic()
-    print(resync_table.HEAD, resync_table.COLUMNS, sep="\n")
+    print(resync_table.HEAD)
     rows = []
     for number, scenario in enumerate(scenarios()):
         seed = 1000 * options.seed + 2 * number

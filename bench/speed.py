@@ -41,12 +41,16 @@ def main() -> None:
     parser.add_argument("--rounds", type=int, default=9)
     parser.add_argument("--rows", default="", help="only rows that match this expression")
     parser.add_argument("--json", type=Path, help="write the ratios to this file")
+    parser.add_argument(
+        "--streams", type=Path, help="keep the streams in this folder, and reuse them"
+    )
     parser.add_argument("--strict", action="store_true", help="exit with 1 if a target was missed")
     options = parser.parse_args()
     console = Console(width=118)
     console.print(_caches(options.megabytes))
-    with TemporaryDirectory() as folder:
-        large, small = Path(folder, "large"), Path(folder, "small")
+    with TemporaryDirectory() as temporary:
+        folder = options.streams or Path(temporary)
+        large, small = folder / "large", folder / "small"
         parts = {
             f"Bulk, {options.megabytes:g} MB": (bulk, large, options.megabytes),
             f"Bulk in two threads, {options.megabytes:g} MB": (bulk_in_two, large, 0),
@@ -58,7 +62,7 @@ def main() -> None:
         }
         found: list[Ratio] = []
         for title, (part, place, megabytes) in parts.items():
-            if megabytes:
+            if megabytes and not place.exists():
                 place.mkdir()
                 Streams.write(place, megabytes, options.frames)
             found += _measured(title, part(options.frames), Streams(place), options, console)
@@ -94,14 +98,13 @@ def _caches(megabytes: float) -> str:
 
 
 def _peers(frames: int) -> dict[str, Row]:
-    """Return pymycobot, on a pty and from a list; it reads few frames."""
+    """Return pymycobot on a pty; it reads few frames."""
     few = stream_a(TABLE, SLOWEST)
     scale = frames / SLOWEST
     return {
         "pymycobot": lambda *_: Timed(
             peers.pymycobot_reads(few.data, few.starts.tolist()), scale=scale
         ),
-        "pymycobot, no port": lambda *_: Timed(peers.pymycobot_reads_memory(few.data), scale=scale),
     }
 
 
@@ -153,7 +156,6 @@ def bulk_small(frames: int) -> Part:
         untargeted("float64 columns, fresh", "fresh", "memcpy", faster=False),
         Target("float64 columns, fresh", "fresh", "NumPy", 10, faster=True),
         Target("float64 columns, fresh", "fresh", "pymycobot", 3000, faster=True),
-        untargeted("float64 columns, fresh", "fresh", "pymycobot, no port"),
         untargeted("raw columns, out=", "raw", "memcpy", faster=False),
         untargeted(
             "raw columns, 10 % noise", "noisy raw", "memcpy of the noisy stream", faster=False
@@ -172,7 +174,6 @@ def objects(frames: int) -> Part:
         Target("lazy messages, a list", "list", "find", 35, faster=True),
         Target("lazy messages, each value read once", "iterated", "find", 12, faster=True),
         Target("lazy messages in 4 KiB chunks", "chunks", "pymycobot", 400, faster=True),
-        untargeted("lazy messages in 4 KiB chunks", "chunks", "pymycobot, no port"),
         Target("eager values, held in a list", "eager", "find", 7, faster=True),
         Target("eager values, held in a list", "eager", "pymycobot", 60, faster=True),
     ]

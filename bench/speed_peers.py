@@ -2,16 +2,12 @@
 
 from __future__ import annotations
 
-import itertools
 import os
 import struct
 import tty
 from collections.abc import Callable, Sequence
-from functools import partial
 from itertools import pairwise
-from types import SimpleNamespace
 from typing import Any, NamedTuple
-from unittest import mock
 
 import numpy as np
 import serial
@@ -120,27 +116,6 @@ def pymycobot_reads(data: bytes, starts: Sequence[int]) -> Callable[[], list[Any
             os.write(master, piece)
             for _ in starts[100 * place : 100 * place + 100]:
                 found.append(_pymycobot_values(peer, peer._read(0x20)))
-        return found
-
-    return read
-
-
-def pymycobot_reads_memory(data: bytes) -> Callable[[], list[Any]]:
-    """Return the same without pyserial: the fastest possible call takes each byte from a list."""
-    common, peer = pymycobot_peer()
-    clock = SimpleNamespace(time=lambda: 0.0)
-
-    def read() -> list[Any]:
-        line = iter([data[at : at + 1] for at in range(len(data))])
-        peer._serial_port = SimpleNamespace(read=partial(next, line))
-        found = []
-        with mock.patch.object(common, "time", clock):
-            for _ in itertools.count():
-                try:
-                    frame = peer._read(0x20)
-                except StopIteration:
-                    break  # end of the stream; waiting for more is not timed
-                found.append(_pymycobot_values(peer, frame))
         return found
 
     return read

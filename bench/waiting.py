@@ -1,15 +1,14 @@
 """Measure how soon a waited motion is noticed to have ended, and how many queries that takes.
 
 A simulated arm on a pty sends its replies at 115,200 baud, a few milliseconds after each request.
-Two ways to wait take turns: ten rounds a second that ask whether the arm is there and whether it
-moves, and the client's own. The delay counts from when the arm would first reply that it is there;
-for an arm that reports the end of its motions, from when it is at rest.
+The delay counts from when the arm would first reply that it is there; for an arm that reports the
+end of its motions, from when it is at rest.
 """
 
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from copy import deepcopy
 from importlib import import_module
 from random import Random
@@ -19,43 +18,30 @@ from typing import Any
 from cobotwire import codec as codecs
 from cobotwire.protocol.roles import ANGLES, kinds_of
 from cobotwire.session import Traffic
-from cobotwire.session.motion import TOLERANCES, goal_of
+from cobotwire.session.motion import TOLERANCES
 from cobotwire.simulator import PtyServer, SimulatedArm
 from cobotwire.simulator.faults import Late, Scenario, Slow
 from responder import within
 
-MOTIONS, PERIOD, BAUD, LIMIT = 30, 0.1, 115_200, 60
+MOTIONS, BAUD, LIMIT = 30, 115_200, 60
 FAULTS = (Late(seconds=0.004, jitter_seconds=0.006), Slow(bits_per_second=BAUD))
 LINE = Scenario(name="line", faults=FAULTS)
 
 
 def main() -> None:
-    """Measure each edition both ways; print delays and queries."""
+    """Measure each edition; print delays and queries."""
     for name in ("mycobot280", "myarm_m750", "mercury_a1"):
         package: Any = import_module(f"cobotwire.editions.{name}")
         arm = SimulatedArm(package.TABLE, powered=True)
-        own = package.CLIENT.wait_until_reached
         traffic: list[Traffic] = []
         with (
             PtyServer(LINE.wrap(arm, codecs.load(package.TABLE))) as server,
             package.CLIENT(server.url, trace=traffic.append) as client,
         ):
-            for way, wait in (("ten rounds a second", _rounds), ("the client's own", own)):
-                print(f"{name:12}{way:21}{_measured(arm, client, traffic, wait)}")
+            print(f"{name:12}{_measured(arm, client, traffic)}")
 
 
-def _rounds(client: Any, target: Sequence[float], kind: int) -> None:
-    """Wait as the client did before: ask both every 0.1 s."""
-    goal = goal_of(client.table, target, kind)
-    moving, begun = client.table.in_role("moving"), time.monotonic()
-    while not goal.is_met(client._call(goal.query)):
-        client._call(moving.request_type())
-        time.sleep(max(0.0, (begun := begun + PERIOD) - time.monotonic()))
-
-
-def _measured(
-    arm: SimulatedArm, client: Any, traffic: list[Traffic], wait: Callable[..., None]
-) -> str:
+def _measured(arm: SimulatedArm, client: Any, traffic: list[Traffic]) -> str:
     draws = Random(1)  # noqa: S311  (repeatable, no secret)
     delays, queries, seconds, busiest = [], 0, 0.0, 0
     home = [sum(ends) / 2 for ends in zip(arm.state.minimum, arm.state.maximum)]
@@ -65,7 +51,7 @@ def _measured(
         client.listen(0.02)
         ended = _end(arm, target)
         traffic.clear()
-        wait(client, target, kinds_of(client.table)[ANGLES])
+        client.wait_until_reached(target, kinds_of(client.table)[ANGLES])
         delays.append(time.monotonic() - ended)
         sent = [one.time for one in traffic if one.direction == "sent"]
         queries, seconds = queries + len(sent), seconds + time.monotonic() - sent[0]

@@ -2,18 +2,10 @@
 
 from __future__ import annotations
 
-import io
-from pathlib import Path
-
 import pytest
-from rich.console import Console
 
 import compare
-import compare_builds
 from compare import Compared
-from speed_rows import Streams
-
-ROUNDS = 2
 
 
 @pytest.mark.parametrize(
@@ -32,37 +24,21 @@ def test_row_differs_only_if_the_middle_half_of_its_rounds_agrees(
     assert Compared("row", [1.0] * 5, theirs).verdict == verdict
 
 
-def test_two_trees_run_the_same_rows_in_one_comparison(tmp_path: Path) -> None:
-    Streams.write(tmp_path, 0.1, 500)
-    trees = (compare_builds.ROOT, compare_builds.ROOT)
-    rows = ["memcpy", "noisy scan", "reused", "list", "encode", "blocking call", "asyncio call"]
-    found = list(compare.compare(trees, tmp_path, rows, ROUNDS))
-    assert [each.row for each in found] == rows
+def test_two_trees_run_the_same_rows_in_one_comparison() -> None:
+    words = ["--megabytes", "0.1", "--frames", "500", "--rows", "memcpy in two|encode"]
+    found = list(compare.compare((compare.ROOT, compare.ROOT), 2, words))
+    names = ["memcpy in two threads", "encode send_angles", "encode send_angles"]
+    assert [each.row[3:] for each in found] == names
     for each in found:
-        assert len(each.ours) == len(each.theirs) == ROUNDS
+        assert len(each.ours) == len(each.theirs) == 2
         assert all(spent > 0 for spent in (*each.ours, *each.theirs))
-    text = io.StringIO()
-    compare.show("a tree against itself", iter(found), Console(file=text, width=100))
-    assert all(row in text.getvalue() for row in rows)
+        assert each.verdict in str(each)
 
 
-def test_row_that_a_tree_lacks_is_reported_as_such(tmp_path: Path) -> None:
-    text = io.StringIO()
-    console = Console(file=text, width=100)
-    compare.show("against an older one", iter([Compared("scan", [], [])]), console)
-    assert "a tree cannot run it" in text.getvalue()
-
-
-def test_unknown_revision_is_an_error_that_names_it() -> None:
-    with pytest.raises(compare_builds.NoBuildError, match="no-such-revision"):
-        compare_builds.extracted("no-such-revision")
-
-
-def test_revision_is_extracted_once_with_its_files_and_links(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+def test_unknown_revision_is_an_error_that_names_it(
+    capfd: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(compare_builds, "PLACE", tmp_path)
-    tree = compare_builds.extracted("HEAD")
-    assert (tree / "rust" / "core" / "src" / "scan.rs").read_text()
-    assert (tree / "python" / "cobotwire" / "spec").is_symlink()
-    assert compare_builds.extracted("HEAD") == tree
+    monkeypatch.setattr("sys.argv", ["compare.py", "no-such-revision"])
+    with pytest.raises(SystemExit, match="no-such-revision"):
+        compare.main()
+    assert "Needed a single revision" in capfd.readouterr().err

@@ -1,4 +1,4 @@
-"""Stream for minutes of accelerated time; bench/streaming.py streams for a whole day."""
+"""Stream for minutes of accelerated time."""
 
 from __future__ import annotations
 

@@ -106,7 +106,6 @@ def test_straight_line_is_straight_and_even(rng: random.Random, steps: int) -> N
 def test_forward_kinematics_undo_inverse_kinematics(
     cut: Callable[[Any], tuple[float, ...]],
 ) -> None:
-    # A sample; bench/kinematics.py runs ten thousand.
     rng = random.Random(6)
     for _ in range(250):
         target = Pose.of(cut(coords_of(MYCOBOT_280, random_angles(rng))))

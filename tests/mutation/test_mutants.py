@@ -31,7 +31,6 @@ QUICK = ("header", "LEN", "no reply")
 FRAMING = {"LEN", "id", "footer", "check", "header", "address"}
 # Each suite with the fewest mutants that it has, and how many of each kind are run.
 SAMPLES = {
-    Key("device", "mycobot"): (800, 1),
     Key("device", "mycobot280"): (2000, 1),
     Key("client with a script", "mycobot280"): (5000, 3),
     Key("client without a script", "mycobot280"): (5000, 3),

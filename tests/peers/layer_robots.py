@@ -67,5 +67,7 @@ LAYER_ROBOTS: dict[str, Robot] = {**ROBOTS, **SAME_ROBOT}
 ALL_ROBOTS = {**LAYER_ROBOTS, **CLOSED_LOOP}
 # The classes that open a TCP connection.
 SOCKETS = [name for name in ALL_ROBOTS if name.endswith(("Socket", "Client"))]
+# Those of a robot that has a serial class, too, but one, which stands for all.
+TCP_TWINS = {name for name in SOCKETS if name not in ROBOTS} - {"MyCobot280Socket"}
 # It cannot be compared: each call of the maker's class fails.
 PALLETIZER = _another("MyPalletizer", "MyPalletizer260")

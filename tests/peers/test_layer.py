@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import inspect
+import os
 from typing import Any
 
 import pytest
@@ -26,7 +27,7 @@ from layer_comparison import (
 )
 from layer_main import COMPARISONS
 from layer_replies import compare_reply, drawn_reply
-from layer_robots import ALL_ROBOTS, PALLETIZER, SOCKETS
+from layer_robots import ALL_ROBOTS, PALLETIZER, SOCKETS, TCP_TWINS
 from pymycobot_classes import library, peer_on
 from pymycobot_ports import RecordingPort, RecordingTransport
 from robots.comparison import calls_of
@@ -36,6 +37,8 @@ from strategies import codec_of
 CLASSES = sorted(NAMES)
 # `make layer` compares all methods; here every n-th one.
 EVERY = {"calls": 24, "values": 90, "replies": 40}
+# A class that opens a TCP connection calls as the serial class of its robot does.
+SAMPLED = [name for name in ALL_ROBOTS if "EVERY_EDITION" in os.environ or name not in TCP_TWINS]
 FEW = settings(max_examples=max(1, (settings.default or settings()).max_examples // 10))
 FAILURES = (REJECTED, FAILED)
 # By class and method: where our parameters are others.
@@ -94,7 +97,7 @@ deprecated = pytest.mark.filterwarnings("ignore:.*getdefaultlocale:DeprecationWa
 
 @deprecated
 @pytest.mark.parametrize("part", COMPARISONS)
-@pytest.mark.parametrize("name", ALL_ROBOTS)
+@pytest.mark.parametrize("name", SAMPLED)
 def test_sample_differs_from_the_makers_class_exactly_as_ruled(name: str, part: str) -> None:
     compared = COMPARISONS[part](ALL_ROBOTS[name], EVERY[part])
     assert unruled(name, compared.found) == []
@@ -105,7 +108,7 @@ def test_sample_differs_from_the_makers_class_exactly_as_ruled(name: str, part: 
 
 @deprecated
 @FEW
-@pytest.mark.parametrize("name", ALL_ROBOTS)
+@pytest.mark.parametrize("name", SAMPLED)
 @given(data=st.data())
 def test_drawn_reply_is_read_alike_or_its_method_has_a_ruling(
     name: str, data: st.DataObject
@@ -207,7 +210,7 @@ def test_address_that_the_robot_lacks_is_rejected() -> None:
         buddy.get_angles(7)
 
 
-@pytest.mark.parametrize("name", ["MyBuddy", "MyBuddySocket"])
+@pytest.mark.parametrize("name", [name for name in SAMPLED if name.startswith("MyBuddy")])
 def test_none_as_the_address_is_rejected_before_anything_is_sent(name: str) -> None:
     robot, methods = ALL_ROBOTS[name], set()
     for call in calls_of(robot):
