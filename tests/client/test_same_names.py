@@ -21,9 +21,14 @@ def methods(client: type) -> dict[str, Any]:
 
 
 def shape(method: Any) -> inspect.Signature:
-    """Return a signature, without the `Async` of a stream's class."""
+    """Return a signature, without the `Async` of a stream's class, and asynchronous sources."""
     found = inspect.signature(method)
-    return found.replace(return_annotation=str(found.return_annotation).removeprefix("Async"))
+    parameters = [
+        each.replace(annotation=str(each.annotation).removesuffix(" | AsyncTargets"))
+        for each in found.parameters.values()
+    ]
+    result = str(found.return_annotation).removeprefix("Async")
+    return found.replace(parameters=parameters, return_annotation=result)
 
 
 def _called(package: Any) -> list[Any]:
