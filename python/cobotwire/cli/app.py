@@ -8,7 +8,7 @@ import click
 
 import cobotwire
 from cobotwire.cli.shared.edition_option import edition_option
-from cobotwire.cli.shared.exit_codes import EPILOG, exit_on_errors, sigterm_as_interrupt
+from cobotwire.cli.shared.exit_codes import EPILOG, exit_on_errors, signals_as_interrupt
 from cobotwire.cli.shared.lazy_group import LazyGroup
 from cobotwire.studio.extras import CURVES
 
@@ -49,7 +49,7 @@ class _App(LazyGroup):
         return [verb for verb in VERBS if verb != "studio" or CURVES.is_file()]
 
     def invoke(self, context: click.Context) -> Any:
-        with sigterm_as_interrupt(), exit_on_errors():
+        with signals_as_interrupt(), exit_on_errors():
             return super().invoke(context)
 
 

@@ -8,10 +8,12 @@ from typing import Literal
 
 import click
 
+from cobotwire import editions
 from cobotwire.cli.shared.arm_options import address_option, arm_options, parse_address
 from cobotwire.cli.shared.completers import complete_ports
 from cobotwire.cli.shared.edition_option import uses_edition
 from cobotwire.cli.shared.motion_options import MotionOptions, motion_options
+from cobotwire.protocol.addresses import check_one_moves
 from cobotwire.protocol.errors import UsageError
 
 
@@ -59,4 +61,6 @@ def mcp(
             "cobotwire: waiting for a client of MCP on standard input (docs/mcp.md)", err=True
         )
     to = None if address is None else parse_address(address)
+    if motion.allowed:
+        check_one_moves(editions.load(edition).TABLE, to)
     serve(Options(port, edition, baudrate, record, to, *motion, tools))

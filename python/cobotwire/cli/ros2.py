@@ -15,6 +15,7 @@ from cobotwire.cli.shared.completers import complete_ports
 from cobotwire.cli.shared.edition_option import uses_edition
 from cobotwire.cli.shared.motion_options import MotionOptions, motion_options
 from cobotwire.cli.shared.output import print_line, report_written
+from cobotwire.protocol.addresses import check_one_moves
 
 # The highest domain whose ports exist: 7400 + 250 * 232 + 3999 < 65536.
 _LAST_DOMAIN = 232
@@ -69,13 +70,16 @@ def ros2(
     from cobotwire.adapters.ros2.dds import Participant, network
 
     where = network(interface)
+    to = None if address is None else parse_address(address)
+    if motion.allowed:
+        check_one_moves(editions.load(edition).TABLE, to)
     speed = int(motion.limits.speed or 100)
     silence = motion.silence if motion.allowed else None
     client = editions.load(edition).ASYNC_CLIENT(
         port,
         baudrate,
         record=record,
-        address=None if address is None else parse_address(address),
+        address=to,
         on_error="stop" if motion.allowed else "leave",
         limits=motion.limits,
     )

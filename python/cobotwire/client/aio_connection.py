@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import threading
 import time
 from collections.abc import Callable
 from contextlib import suppress
@@ -56,6 +57,8 @@ class AsyncConnection:
         self.firmware = ReportedFirmware()
         self.listeners = TrafficListeners(trace, self.url)
         self._exchange = exchange
+        # Taken by the one follow() at a time.
+        self.follows = threading.Lock()
         self._deadline = deadline
         self._steps: AsyncSteps | None = None
         forks.watch(self)

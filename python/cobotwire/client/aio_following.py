@@ -5,14 +5,16 @@ from __future__ import annotations
 from collections.abc import AsyncIterable  # unasync: off
 from contextlib import suppress
 from math import inf
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from cobotwire.client.aio import AsyncClient
 from cobotwire.client.aio_target_sources import AsyncTargets, TaskMailbox  # unasync: off
 from cobotwire.client.opening import check_seconds
 from cobotwire.client.target_sources import Targets, is_path, source_of
-from cobotwire.protocol.errors import CobotwireError, ProtocolError, ReplyTimeout
+from cobotwire.protocol.addresses import addresses_of
+from cobotwire.protocol.errors import CobotwireError, ProtocolError, ReplyTimeout, UsageError
 from cobotwire.protocol.lazy import import_aside
+from cobotwire.session import Traffic
 from cobotwire.session.motion import Outcome, Query
 from cobotwire.session.paths import FollowReport, PathLimits, Pause, Send, Source
 
@@ -63,11 +65,13 @@ class AsyncFollowingClient(AsyncClient):
             How it went.
 
         Raises:
-            UsageError: an argument is not allowed, or the edition cannot follow; a path is checked
-                as a whole before the arm moves. A target of a live source stops the arm.
+            UsageError: an argument is not allowed, another ``follow`` is under way, or the edition
+                cannot follow; a path is checked as a whole before the arm moves. A bad target of a
+                live source stops the arm.
             LinkError: the transport is gone.
             ReplyTimeout: the arm does not report where it is.
-            FollowFailed: the source was silent, the program stalled, or the arm stopped short.
+            FollowFailed: the source was silent, the program stalled, the arm was stopped by
+                another part of the program, or it stopped short.
         """
         # Few programs follow paths, and kinematics take long to import.
         import_aside("cobotwire.session.following")
@@ -75,9 +79,13 @@ class AsyncFollowingClient(AsyncClient):
 
         check_seconds("silence", silence)
         check_seconds("timeout", timeout)
-        given = path if is_path(path) else self._source(path)
+        if not self._connection.follows.acquire(blocking=False):
+            message = "another follow() moves an arm of this connection; it has to end first"
+            raise UsageError("path", message=message)
+        given: Any = None
         job = None
         try:
+            given = path if is_path(path) else self._source(path)
             job = Follow(
                 self._settings.codec.table,
                 self._encoder.encode_request,
@@ -96,6 +104,7 @@ class AsyncFollowingClient(AsyncClient):
                 await self._stop_for(error)
             raise
         finally:
+            self._connection.follows.release()
             if isinstance(given, Source):
                 given.close()
             if job is not None and job.restore is not None:
@@ -111,14 +120,32 @@ class AsyncFollowingClient(AsyncClient):
         return source_of(path)
 
     async def _run_follow(self, job: Follow) -> None:
+        stops = self._stop_frames()
+
+        def watch(traffic: Traffic) -> None:
+            # A dead man's switch, or another part of the program.
+            if traffic.data in stops and traffic.direction == "sent":
+                job.stopped = True
+
+        remove = self._connection.listeners.add(watch)
         steps = job.steps(self._connection.now())
         step = next(steps, None)
-        while step is not None:
-            outcome = await self._take_step(step)
-            try:
+        try:
+            while step is not None:
+                outcome = await self._take_step(step)
                 step = steps.send(outcome)
-            except StopIteration:
-                return
+        except StopIteration:
+            return
+        finally:
+            remove()
+
+    def _stop_frames(self) -> set[bytes]:
+        """Return what stops the arm, for each address."""
+        stop = self.table.find_role("stop")
+        if stop is None:
+            return set()
+        encoders = map(self._settings.encoder, addresses_of(self.table) or (None,))
+        return {each.encode_request(stop.request_type()).frame for each in encoders}
 
     async def _take_step(self, step: Pause | Query | Send) -> Outcome:
         now, result = self._connection.now, None

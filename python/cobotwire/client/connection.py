@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import threading
 import time
 from collections.abc import Callable
 from math import inf
@@ -44,6 +45,8 @@ class Connection:
         self.firmware = ReportedFirmware()
         self.listeners = TrafficListeners(trace, self.url, self.now)
         self._exchange = exchange
+        # Taken by the one follow() at a time.
+        self.follows = threading.Lock()
         self._deadline = deadline
         self._steps = Steps(self._transport, exchange, self.listeners, self.now, deadline)
         self._memory = PortMemory(self._transport)

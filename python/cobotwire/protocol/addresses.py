@@ -33,6 +33,19 @@ def devices_of(table: Table) -> tuple[Address, ...]:
     return tuple(address for address in addresses_of(table) if address.replies == "own")
 
 
+def check_one_moves(table: Table, given: int | str | None) -> None:
+    """Check that motions would go to a single device, and not to all by default.
+
+    Raises:
+        UsageError: none is given, and the edition's first address is a broadcast.
+    """
+    address = find_address(table, given)
+    if given is None and address is not None and address.replies != "own":
+        names = ", ".join(each.name for each in devices_of(table))
+        message = f"address is not given, and all of the robot would move; allowed: {names}"
+        raise UsageError("address", given, message=f"{message}, or {address.name}")
+
+
 def lacks_joints(table: Table, address: Address | None, command: Command) -> str:
     """Return why a device with fewer joints than its edition cannot have a command; or nothing.
 

@@ -14,13 +14,17 @@ _FRAMES = frozenset({"tool", "world", "reference_frame", "end_type"})
 def refusals(table: Table, limits: Limits) -> dict[str, str]:
     """Return the commands that are not sent within ``limits``, each with the reason.
 
-    With a workspace these are the motions to a place that is not known before they are sent, and
+    These are writes that stay, to a servo or to the arm: they can change what limits mean. With a
+    workspace they are also the motions to a place that is not known before they are sent, and
     the settings that change what coordinates mean; with a speed, motions that take no percentage.
     """
     found = {}
     for command in table.commands:
         why = ""
-        if limits.workspace is not None:
+        limited = limits.workspace is not None or limits.speed is not None
+        if limited and command.safety == "persistent write":
+            why = "its effect stays, and limits.speed or limits.workspace is set"
+        elif limits.workspace is not None:
             why = _leaves_workspace(table, command)
         if limits.speed is not None and not why and moves_arm(table, command):
             capped = all(any(map(is_speed, variant.fields)) for variant in command.request)

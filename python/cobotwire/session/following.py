@@ -76,6 +76,7 @@ class Follow:
 
     Attributes:
         moving: whether a setpoint was sent, so that an error has to stop the arm.
+        stopped: whether another part of the program has sent stop.
         restore: the request that restores the arm's mode; None: nothing to restore.
     """
 
@@ -113,7 +114,7 @@ class Follow:
         self._percent = motion.speed if motion else UNSTATED_SPEED
         fastest = motion.fastest if motion else math.inf
         self._bounds = _bounds(
-            limits or PathLimits(),
+            PathLimits() if limits is None else limits,
             min(speed * self._percent, fastest),
             motion.acceleration * SHARE_OF_ACCELERATION if motion else UNSTATED_ACCELERATION,
             self._joints,
@@ -123,7 +124,7 @@ class Follow:
         self._ways: Ways = self._lines or evenly
         self._source = path if isinstance(path, Source) else None
         self._waypoints = [] if isinstance(path, Source) else self._checked_path(path)
-        self.moving = False
+        self.moving = self.stopped = False
         self.restore: EncodedRequest | None = None
         self._sent = self._dropped = self._superseded = 0
         self._deviation: float | None = None
@@ -237,6 +238,7 @@ class Follow:
             if plan.done and (self._source is None or self._source.over):
                 return
             self._now, _ = yield Pause(begun + (tick + 1) * self._period)
+            self._check_stopped()
             late = self._now - (begun + (tick + 1) * self._period)
             if late > STALL_SECONDS:
                 self._fail("stall", f"the program stalled for {late:.1f} s")
@@ -280,11 +282,16 @@ class Follow:
             away = max(abs(a - b) for a, b in zip(found, self._setpoint))
             self._deviation = max(away, self._deviation or 0.0)
 
+    def _check_stopped(self) -> None:
+        if self.stopped:
+            self._fail("stopped", "the arm was stopped meanwhile")
+
     def _arrive(self, end: Point) -> Steps:
         """Wait until the joints are at the end of the path."""
         near = TOLERANCES["degree"]
         begun, still, before = self._now, self._now, None
         while True:
+            self._check_stopped()
             found = yield from self._ask(self._where, max(self._timeout, LOOK_SECONDS))
             if found is not None:
                 away = max(abs(a - b) for a, b in zip(found, end))
@@ -348,8 +355,8 @@ def _checked_rate(rate: float | None) -> float:
     if rate is None:
         return USUAL_RATE
     right = isinstance(rate, int | float) and not isinstance(rate, bool)
-    if not right or not 0 < rate <= HIGHEST_RATE:
-        raise UsageError("rate", rate, f"targets a second, above 0 and up to {HIGHEST_RATE:g}")
+    if not right or not LEAST_RATE <= rate <= HIGHEST_RATE:
+        raise UsageError("rate", rate, f"{LEAST_RATE:g} to {HIGHEST_RATE:g} targets a second")
     return float(rate)
 
 
@@ -369,6 +376,8 @@ def _on_lines(table: Table) -> OnLines:
 
 def _bounds(given: PathLimits, speed: float, acceleration: float, joints: int) -> Bounds:
     """Return the bounds of each joint: the user's, or else what the arm can do."""
+    if not isinstance(given, PathLimits):
+        raise UsageError("limits", given, "PathLimits")
     accelerations = _each("limits.acceleration", given.acceleration, acceleration, joints)
     usual_jerk = tuple(each / JERK_SECONDS for each in accelerations)
     velocities = _each("limits.velocity", given.velocity, speed, joints)

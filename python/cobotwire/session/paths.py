@@ -8,7 +8,7 @@ from typing import Literal, NamedTuple
 from cobotwire.session.request import EncodedRequest
 
 Target = Sequence[float]
-Ended = Literal["end", "silence", "stall", "short"]
+Ended = Literal["end", "silence", "stall", "short", "stopped"]
 
 
 class Waypoint(NamedTuple):
@@ -43,7 +43,8 @@ class FollowReport(NamedTuple):
 
     Attributes:
         ended: why it ended: at the end of the path or source; because the source was silent, the
-            program stalled, or the arm stopped short of the end.
+            program stalled, another part of the program sent stop, or the arm stopped short of the
+            end.
         rate: setpoints a second that were sent.
         sent: how many setpoints were sent.
         dropped: how many were late, and not sent.

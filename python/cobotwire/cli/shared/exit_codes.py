@@ -26,8 +26,10 @@ from cobotwire.protocol.errors import (
 )
 
 USAGE, LINK_FAILED, NO_REPLY, NOT_READY, NOT_WRITTEN, INTERRUPTED = 2, 3, 4, 7, 8, 130
-# What a shell reports for a process that SIGPIPE or SIGTERM ended.
-OUTPUT_CLOSED, TERMINATED = 141, 143
+# What a shell reports for a process that SIGPIPE ended.
+OUTPUT_CLOSED = 141
+# The signals that end a program in order, as Ctrl-C does; SIGHUP: its terminal is gone.
+ENDING = [number for name in ("SIGTERM", "SIGHUP") if (number := getattr(signal, name, None))]
 
 CODES: tuple[tuple[type[CobotwireError], int], ...] = (
     (UsageError, USAGE),
@@ -45,7 +47,7 @@ EPILOG = (
     "Exit codes: 0 success; 1 the result is negative (a wrong reply, an illegal frame); 2 wrong "
     "usage; 3 the port failed; 4 no reply; 5 an illegal reply; 6 a damaged recording; "
     "7 the arm does not obey a motion, or does not arrive; 8 a file cannot be written; "
-    "130 interrupted; 143 terminated."
+    "129 the terminal is gone; 130 interrupted; 143 terminated."
 )
 
 
@@ -61,14 +63,15 @@ def exit_on_errors() -> Iterator[None]:
         sys.exit(INTERRUPTED)
 
 
-_terminated = threading.Event()
+# The signal that ended the program.
+_ended_by: list[int] = []
 
 
 def note_signal(number: int) -> None:
-    """Remember a SIGTERM for the exit code; ignore further ones, since ``timeout`` sends two."""
-    if number == signal.SIGTERM:
+    """Remember what ends the program; ignore further ones, since ``timeout`` sends two."""
+    if number in ENDING:
         signal.signal(number, signal.SIG_IGN)
-        _terminated.set()
+        _ended_by.append(number)
 
 
 def _interrupt(number: int, frame: FrameType | None) -> None:
@@ -77,16 +80,21 @@ def _interrupt(number: int, frame: FrameType | None) -> None:
 
 
 @contextmanager
-def sigterm_as_interrupt() -> Iterator[None]:
-    """Handle SIGTERM in the block as Ctrl-C, but exit with its own code; in the main thread."""
+def signals_as_interrupt() -> Iterator[None]:
+    """Handle SIGTERM and SIGHUP in the block as Ctrl-C, but exit with their own codes.
+
+    That is so in the main thread. SIGHUP stays ignored where ``nohup`` started the program.
+    """
     if threading.current_thread() is not threading.main_thread():
         yield
         return
-    _terminated.clear()
-    before = signal.signal(signal.SIGTERM, _interrupt)
+    _ended_by.clear()
+    taken = [number for number in ENDING if signal.getsignal(number) != signal.SIG_IGN]
+    before = {number: signal.signal(number, _interrupt) for number in taken}
     try:
         yield
     finally:
-        signal.signal(signal.SIGTERM, before)
-        if _terminated.is_set():
-            sys.exit(TERMINATED)
+        for number, handler in before.items():
+            signal.signal(number, handler)
+        if _ended_by:
+            sys.exit(128 + _ended_by[0])
