@@ -53,8 +53,18 @@ def test_wrong_argument_of_a_motion_is_reported_before_a_byte_is_sent(words: str
         assert peer.received == b""
 
 
-def test_sigterm_stops_a_motion_and_finishes_its_recording(
-    server: PtyServer, simulated: SimulatedArm, tmp_path: Path
+HANGUP = pytest.param(
+    signal.SIGHUP,
+    129,
+    marks=pytest.mark.skipif(
+        signal.getsignal(signal.SIGHUP) == signal.SIG_IGN, reason="nohup started the tests"
+    ),
+)
+
+
+@pytest.mark.parametrize(("number", "code"), [(signal.SIGTERM, 143), HANGUP])
+def test_signal_stops_a_motion_and_finishes_its_recording(
+    server: PtyServer, simulated: SimulatedArm, tmp_path: Path, number: signal.Signals, code: int
 ) -> None:
     path = tmp_path / "arm.pcapng"
     with started("call", server.url, "move_angles", "90,0,0,0,0,0", "1", "--record", path) as call:
@@ -62,9 +72,9 @@ def test_sigterm_stops_a_motion_and_finishes_its_recording(
             assert call.poll() is None
             time.sleep(0.01)
         # timeout(1) sends it twice.
-        call.send_signal(signal.SIGTERM)
-        call.send_signal(signal.SIGTERM)
-        assert call.wait(timeout=20) == 143
+        call.send_signal(number)
+        call.send_signal(number)
+        assert call.wait(timeout=20) == code
     with read(path) as capture:
         assert STOP in [packet.data for packet in capture if packet.direction == "sent"]
         assert capture.finished

@@ -8,6 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from cobotwire import Limits, UsageError
+from cobotwire.cli.app import app
 from cobotwire.cli.shared.motion_options import MotionOptions, motion_options
 from in_process import Ended, run
 
@@ -51,3 +52,11 @@ def test_any_text_is_a_workspace_or_a_usage_error(text: str) -> None:
         workspace = FOUND[0].limits.workspace
         assert workspace is not None
         assert all(pair is None or pair[0] <= pair[1] for pair in workspace)
+
+
+@pytest.mark.parametrize("name", ["mcp", "ros2"])
+def test_motions_of_a_whole_robot_have_to_be_asked_for(name: str) -> None:
+    pytest.importorskip({"mcp": "mcp", "ros2": "cyclonedds"}[name])
+    ended = run(app, "cobotwire", "--edition", "mybuddy", name, "/dev/null", "--allow-motion")
+    assert ended.returncode == 2
+    assert "all of the robot would move; allowed: LEFT, RIGHT, WAIST, or ALL" in ended.stderr

@@ -236,13 +236,39 @@ def test_asyncio_client_follows_paths_and_asynchronous_iterators_and_stops_once_
                 await arm.follow(targets()),
             ]
             assert STOP not in frames(traffic)
-            with pytest.raises(TimeoutError):
-                async with asyncio.timeout(0.3):
-                    await arm.follow([[90, 0, 0, 0, 0, 0]])
+            sent, moving = len(traffic), asyncio.create_task(arm.follow([[90, 0, 0, 0, 0, 0]]))
+            # It reads the joints and chooses the mode before it moves them.
+            while not any(frame[3] == 0x22 for frame in frames(traffic[sent:])):
+                await asyncio.sleep(0.01)
+            with pytest.raises(UsageError, match="another follow"):
+                await arm.follow([[0, 0, 0, 0, 0, 0]])
+            moving.cancel()
+            with pytest.raises(asyncio.CancelledError):
+                await moving
+            assert frames(traffic)[-2:] == [STOP, QUEUE]
+            assert frames(traffic).count(STOP) == 1
         return reports
 
     for report in asyncio.run(drive()):
         assert report.ended == "end"
         assert report.sent > 10
-    assert frames(traffic)[-2:] == [STOP, QUEUE]
-    assert frames(traffic).count(STOP) == 1
+
+
+def test_stop_of_another_part_of_the_program_ends_follow() -> None:
+    arm = MyCobot280(Watched().transport)
+
+    def targets() -> Sequence[float]:
+        if arm.get_angles().j1 > 5:
+            arm.stop()
+        return [60, 0, 0, 0, 0, 0]
+
+    with arm, pytest.raises(FollowFailed, match="the arm was stopped meanwhile") as caught:
+        arm.follow(targets)
+    assert caught.value.report.ended == "stopped"
+
+
+@pytest.mark.parametrize(("argument", "value"), [("limits", Limits(speed=3)), ("rate", 4.9)])
+def test_argument_of_another_kind_is_named(argument: str, value: Any) -> None:
+    with MyCobot280(Watched().transport) as arm, pytest.raises(UsageError) as caught:
+        arm.follow([[1, 0, 0, 0, 0, 0]], **{argument: value})
+    assert caught.value.argument == argument

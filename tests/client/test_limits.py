@@ -99,6 +99,15 @@ def test_wrong_limit_is_named(ranges: Any, argument: str) -> None:
     assert caught.value.argument == argument
 
 
+def test_lasting_writes_are_refused_within_a_speed_and_allowed_without() -> None:
+    within, without = RecordingTransport(), RecordingTransport()
+    with pytest.raises(UsageError, match="its effect stays"):
+        MyCobot280(within, limits=Limits(speed=30)).set_joint_max(1, 90)
+    MyCobot280(without).set_joint_max(1, 90)
+    assert within.written == b""
+    assert without.written != b""
+
+
 def test_limits_of_another_type_are_rejected() -> None:
     with pytest.raises(UsageError, match="limits is 5"):
         MyCobot280(RecordingTransport(), limits=5)  # type: ignore[arg-type]

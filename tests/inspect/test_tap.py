@@ -94,7 +94,7 @@ def opened(url: str) -> Iterator[int]:
 
 
 def received(port: int, size: int) -> bytes:
-    """Return so many bytes, and what comes right after them."""
+    """Return ``size`` bytes, and what comes right after them."""
     data, end = b"", time.monotonic() + SECONDS
     while time.monotonic() < end:
         wait = 0.02 if len(data) >= size else SECONDS

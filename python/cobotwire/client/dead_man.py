@@ -20,7 +20,7 @@ END_SECONDS = 2.0
 
 
 class Silence:
-    """Says when nothing was heard for ``seconds``. It does no I/O and knows no clock."""
+    """Tells how long until ``seconds`` have passed without a sign of life. It has no clock."""
 
     def __init__(self, seconds: float) -> None:
         check_seconds("seconds", seconds)

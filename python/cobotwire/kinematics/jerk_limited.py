@@ -22,7 +22,7 @@ from cobotwire.protocol.lazy import import_aside
 STRAIGHT = 1e-9
 # How often bends are slowed down further, and what counts as slow enough.
 ROUNDS, ENOUGH = 30, 1.02
-# A motion is checked at times that are no further apart, and at least at so many.
+# The longest time between two checks of a motion, and the least number of checks.
 SAMPLE_SECONDS, LEAST_SAMPLES = 0.005, 200
 
 

@@ -46,7 +46,7 @@ def with_urdf(table: Table, path: str | None, tip: str | None = None) -> Table:
 
 
 def read_urdf(data: bytes, joints: int, tip: str | None = None) -> tuple[Link, ...]:
-    """Return the links of an arm with so many joints, which count from the base on.
+    """Return the links of an arm, from the base on; the arm must have ``joints`` joints.
 
     ``tip`` is the link of the flange; None: the only link without another one after it.
 

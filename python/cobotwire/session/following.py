@@ -56,7 +56,7 @@ STALL_SECONDS = 0.5
 # An arm that stands still for this long at the end of the path does not continue by itself.
 STILL_SECONDS = 1.0
 LOOK_SECONDS = 0.1
-# For so long the arm may need the highest speed of the recent setpoints: it lags behind them.
+# The arm lags behind its setpoints, so it gets the highest speed of those of this time.
 LAG_SECONDS = 1.0
 # What an arm may do if its edition does not state it: degrees a second for each percent of speed,
 # and degrees per second squared. A joint is at its full acceleration after JERK_SECONDS.

@@ -25,8 +25,8 @@ SAME_DEGREES = 1e-6
 SPREAD_SECONDS = 0.25
 
 
-# Returns the angles on the way from angles to a target, the last ones at the target, in so many
-# steps; 0: as many as the way needs. Raises UsageError if the joints cannot go there.
+# Takes start, target and the number of steps (0: as many as the way needs). Returns the angles
+# after each step; the last ones are the target. Raises UsageError if the joints cannot go there.
 Ways = Callable[[Point, Point, int], list[Point]]
 
 

@@ -19,7 +19,7 @@ from cobotwire.protocol.table import Command, Number, Role, Table
 
 DIAGNOSTICS_SECONDS = 1.0
 FASTEST = 1000.0
-# ROS 2 keeps so many transforms for slow readers.
+# How many transforms ROS 2 keeps for a slow reader.
 TRANSFORMS = 100
 
 

@@ -44,7 +44,7 @@ class Diagnostics:
         self._publish({"header": header(time.time_ns()), "status": [*self._parts.values()]})
 
     async def ask(self, command: Command) -> Any:
-        """Return the result of a query; None if there is none.
+        """Return the result of a query; None if it is not due, or the arm does not reply.
 
         Raises:
             LinkError: the port is gone.

@@ -17,7 +17,7 @@ except ModuleNotFoundError:  # Windows
 Kind = Literal["sent", "received", "held", "note", "dropped"]
 KINDS: tuple[Kind, ...] = ("sent", "received", "held", "note", "dropped")
 HEAD = Struct("<BdH")
-# A write of at most so many bytes is taken as a whole or not at all.
+# The system takes a write of up to this size as a whole, or not at all.
 PIECE = getattr(select, "PIPE_BUF", 512) - HEAD.size
 # Where the system permits it: more than half a minute of a full line at 115,200 baud both ways.
 PIPE_SIZE = 1 << 20

@@ -20,8 +20,8 @@ class Axes:
     def __init__(self, position: Sequence[float], acceleration: float, lag: float = 0.0) -> None:
         """``acceleration`` is the largest one, in units per square second.
 
-        With a ``lag`` the axes are where they were to be that many seconds ago, as servos are that
-        run after their target.
+        With a ``lag``, in seconds, the axes reach each planned position that much later, as servos
+        do.
         """
         self._lag = lag
         # The axes as they were planned until some command came; the last one until then.
