@@ -12,6 +12,7 @@ mod crc;
 mod decode;
 mod direction;
 mod encode;
+pub mod exchange;
 mod field;
 mod frame;
 mod framer;

@@ -1,0 +1,1 @@
+//! Drive robot arms of Elephant Robotics.
