@@ -1,1 +1,0 @@
-//! Drive robot arms of Elephant Robotics.
