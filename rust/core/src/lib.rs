@@ -5,6 +5,8 @@
 //! reads no clock and writes no error texts: an error is a kind and a place. The Python reference in
 //! `python/cobotwire/codec/reference` is the specification; this crate returns the same results.
 
+extern crate alloc;
+
 mod bulk;
 mod capture;
 mod check;
