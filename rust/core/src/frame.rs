@@ -1,5 +1,7 @@
 //! How frames are built, and a borrowed view of one valid frame.
 
+use alloc::vec::Vec;
+
 use crate::check::Check;
 use crate::direction::Direction;
 use crate::number::Order;
