@@ -93,7 +93,7 @@ def committed(root: Path, found: list[Edition]) -> list[Target]:
         folder = root / "python" / "cobotwire" / "pymycobot"
         made.append(Target(folder, render_library(library), alone=False))
     made += _servo_bus(root)
-    units = {PurePosixPath("units.py"): render_units()}
+    units = {PurePosixPath("units.json"): render_units()}
     made.append(Target(root / "python" / "cobotwire" / "protocol", units, alone=False))
     return made
 
