@@ -65,7 +65,11 @@ impl RetryPolicy {
     pub(crate) fn checked(&self) -> Result<Policy, Error> {
         const HOUR: Duration = Duration::from_secs(3600);
         let wrong = |name: &str, value: Shown, allowed: &str| {
-            Err(Error::usage(bad_argument(&format!("retry.{name}"), &value, allowed)))
+            Err(Error::usage(bad_argument(
+                &format!("retry.{name}"),
+                &value,
+                allowed,
+            )))
         };
         if !(1..=100).contains(&self.attempts) {
             let given = Shown::Integer(i64::from(self.attempts));
@@ -160,5 +164,7 @@ impl Settings {
 
 pub(crate) fn nanos(time: Duration) -> Nanos {
     // Three hundred years are no limit.
-    Nanos::try_from(time.as_nanos()).unwrap_or(Nanos::MAX / 2).min(Nanos::MAX / 2)
+    Nanos::try_from(time.as_nanos())
+        .unwrap_or(Nanos::MAX / 2)
+        .min(Nanos::MAX / 2)
 }

@@ -72,7 +72,8 @@ pub(crate) fn socket_of(url: &str) -> Option<&str> {
 
 /// Open a serial port, or connect to `socket://host:port`.
 pub(crate) fn open(url: &str, baudrate: u32) -> Result<Box<dyn Port>, Error> {
-    let failed = |error: std::io::Error| Error::link(url, &format!("cannot be opened: {error}"), Some(0));
+    let failed =
+        |error: std::io::Error| Error::link(url, &format!("cannot be opened: {error}"), Some(0));
     let Some(address) = socket_of(url) else {
         return open_serial(url, baudrate);
     };
@@ -92,7 +93,8 @@ pub(crate) fn open(url: &str, baudrate: u32) -> Result<Box<dyn Port>, Error> {
 #[cfg(feature = "serial")]
 fn open_serial(url: &str, baudrate: u32) -> Result<Box<dyn Port>, Error> {
     let opened = serialport::new(url, baudrate).open();
-    let port = opened.map_err(|error| Error::link(url, &format!("cannot be opened: {error}"), Some(0)))?;
+    let port =
+        opened.map_err(|error| Error::link(url, &format!("cannot be opened: {error}"), Some(0)))?;
     Ok(Box::new(port))
 }
 

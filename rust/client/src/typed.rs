@@ -5,8 +5,8 @@ use std::sync::{Arc, OnceLock};
 
 use cobotwire_table::Edition;
 
-pub use crate::value::{FromValue, IntoValue, Value};
 use crate::Error;
+pub use crate::value::{FromValue, IntoValue, Value};
 
 /// The table of an edition.
 pub type Table = Arc<Edition>;
@@ -18,7 +18,8 @@ pub type Once = OnceLock<Result<Table, Error>>;
 /// # Errors
 /// The table is wrong.
 pub fn read(once: &Once, text: &str) -> Result<Table, Error> {
-    once.get_or_init(|| crate::read_table(text.as_bytes())).clone()
+    once.get_or_init(|| crate::read_table(text.as_bytes()))
+        .clone()
 }
 
 /// A request of a command, as a type.
@@ -264,8 +265,12 @@ macro_rules! methods {
 #[doc(hidden)]
 #[macro_export]
 macro_rules! either {
-    () => { () };
-    ($type:ty) => { $type };
+    () => {
+        ()
+    };
+    ($type:ty) => {
+        $type
+    };
 }
 
 /// Makes an enum of the choices of a number.

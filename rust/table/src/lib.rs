@@ -13,6 +13,8 @@ mod frame;
 mod json;
 mod messages;
 mod robot;
+mod shown;
+mod texts;
 mod types;
 
 use alloc::collections::BTreeSet;
@@ -29,6 +31,8 @@ use crate::messages::Messages;
 
 pub use crate::json::BadEdition;
 pub use crate::robot::Link;
+pub use crate::shown::{Quote, Shown, general};
+pub use crate::texts::{bad_argument, error_text, link_error};
 
 /// The version of the format.
 const VERSION: i64 = 3;
