@@ -1,5 +1,8 @@
 //! What the exchange must know of a protocol besides its frames.
 
+use alloc::boxed::Box;
+use alloc::vec::Vec;
+
 use super::request::Replier;
 use crate::table::Table;
 
