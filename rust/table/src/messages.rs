@@ -131,7 +131,7 @@ impl<'a> Messages<'a> {
         let (mut fields, mut texts) = (Vec::new(), Vec::new());
         for record in records {
             let name = record.name()?;
-            let (field, text) = self.field(*record, records, lists).within("field", name)?;
+            let (field, mut text) = self.field(*record, records, lists).within("field", name)?;
             text.echo = record.get("echo").is_some();
             let taken = memory(&field, &text);
             self.left = self.left.checked_sub(taken).ok_or_else(|| {
