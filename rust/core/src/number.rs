@@ -207,7 +207,8 @@ impl Number {
     /// Return the physical value of a raw value. Only the division rounds: both casts are exact,
     /// which [`Number::check`] ensures.
     #[inline]
-    pub(crate) fn physical(&self, raw: i64) -> Value {
+    #[must_use]
+    pub fn physical(&self, raw: i64) -> Value {
         if self.float {
             Value::Real(float_of_raw(raw, self.width))
         } else if self.scaled() {

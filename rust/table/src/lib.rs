@@ -4,7 +4,16 @@
 //! The file may come from a stranger: [`Edition::read`] checks every property on which this crate
 //! and the core rely.
 
+extern crate alloc;
+
+mod rejection;
+mod shown;
+mod texts;
+
 use cobotwire_core::exchange::{Protocol, Safety};
+
+pub use shown::{Quote, Shown, general};
+pub use texts::{as_call, bad_argument, error_text, link_error};
 
 /// A protocol as data.
 #[derive(Clone, Debug)]
@@ -57,6 +66,8 @@ pub struct Field {
     pub sizes: Option<(usize, usize)>,
     /// The field whose elements it counts.
     pub counts: Option<String>,
+    /// What raw values from the first to the second stand for; `{number}` is the value.
+    pub meanings: Vec<(i64, i64, String)>,
     /// The raw value of a constant.
     pub constant: Option<i64>,
     /// The value of an argument that is left out, in physical units.
