@@ -61,7 +61,7 @@ impl Part {
     }
 
     #[inline]
-    fn write(self, frame: &mut [u8], number: u16) {
+    pub(crate) fn write(self, frame: &mut [u8], number: u16) {
         let [low, high] = number.to_le_bytes();
         match (self.wide, self.order, frame.get_mut(self.at..)) {
             (false, _, Some([first, ..])) => *first = low,

@@ -5,7 +5,7 @@ use alloc::vec::Vec;
 
 use super::events::Event;
 use super::facts::{Facts, Nanos, Protocol, Safety, TextForm};
-use super::outcome::{Failure, WaitedFor};
+use super::outcome::{Answer, Failure, WaitedFor};
 use super::received::{Received, ReceivedMeanwhile};
 use super::request::Request;
 use super::text::TextCollector;
@@ -210,5 +210,17 @@ pub(super) fn not_drained(waited: Nanos) -> Failure {
         attempts: 0,
         waited_for: None,
         received: [Received::unread()].into(),
+    }
+}
+
+impl PendingAck {
+    /// Return what a wait that has succeeded has got.
+    pub(super) fn acknowledged(&self, now: Nanos) -> Answer {
+        Answer {
+            decoded: None,
+            texts: Vec::new(),
+            requested_at: self.sent_at,
+            replied_at: now,
+        }
     }
 }

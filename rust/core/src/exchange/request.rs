@@ -154,6 +154,12 @@ impl Protocol {
         self.table.commands().get(index).zip(self.facts.get(index))
     }
 
+    /// Return whether a command with this id requires a reply.
+    pub(super) fn has_query(&self, id: u16) -> bool {
+        let mut commands = self.table.commands().iter().zip(&self.facts);
+        commands.any(|(command, facts)| command.id == id && facts.requires_reply())
+    }
+
     /// Return who replies to a request to an address.
     fn replier(&self, address: Option<u8>) -> Replier {
         let Some(address) = address else {

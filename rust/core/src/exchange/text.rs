@@ -127,11 +127,7 @@ impl TextCollector {
         self.data.extend_from_slice(data);
         if self.last.is_none() {
             let prefix = form.first_prefix().as_bytes();
-            let found = (0..=self.data.len()).find(|at| {
-                let rest = self.data.get(*at..);
-                rest.is_some_and(|rest| rest.starts_with(prefix))
-            });
-            let Some(start) = found else {
+            let Some(start) = find(&self.data, prefix) else {
                 // The prefix may have begun in the last bytes.
                 let kept = self.data.len().saturating_sub(prefix.len());
                 self.data.drain(..kept);
@@ -152,4 +148,12 @@ impl TextCollector {
         form.decode(&self.data)
             .map_err(|error| (error, self.data.clone()))
     }
+}
+
+/// Return where some bytes first stand in others.
+pub(super) fn find(data: &[u8], bytes: &[u8]) -> Option<usize> {
+    (0..=data.len()).find(|at| {
+        let rest = data.get(*at..).unwrap_or_default();
+        rest.starts_with(bytes)
+    })
 }
