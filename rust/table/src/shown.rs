@@ -12,16 +12,12 @@ const MOST: usize = 80;
 
 /// A value as a text shows it.
 #[derive(Clone, Debug, PartialEq)]
+#[allow(missing_docs)] // the names are those of JSON and Rust
 pub enum Shown {
-    /// A truth value.
     Flag(bool),
-    /// An integer.
     Integer(i64),
-    /// A real number.
     Real(f64),
-    /// A text.
     Text(String),
-    /// Bytes.
     Bytes(Vec<u8>),
     /// Values in square brackets.
     List(Vec<Shown>),
@@ -37,42 +33,17 @@ pub trait Quote {
     fn quote(&self) -> Shown;
 }
 
-impl Shown {
-    /// Return the first of these values, which may be a row of others, and how many it takes.
-    pub(crate) fn decoded(values: &[Value]) -> Option<(Self, usize)> {
-        let byte = |value: &Value| match value {
-            Value::Integer(byte) => u8::try_from(*byte).unwrap_or_default(),
-            _ => 0,
-        };
-        let (first, rest) = values.split_first()?;
-        let many = |count: usize| rest.get(..count).unwrap_or(rest);
-        let (mut all, mut taken) = (Vec::new(), 1);
-        match *first {
-            Value::Integer(raw) => return Some((Self::Integer(raw), 1)),
-            Value::Real(real) => return Some((Self::Real(real), 1)),
-            Value::Bytes(count) => {
-                let bytes = many(count).iter().map(byte).collect();
-                return Some((Self::Bytes(bytes), 1 + count));
-            }
-            Value::Text(count, encoding) => {
-                let bytes: Vec<u8> = many(count).iter().map(byte).collect();
-                let text = match encoding {
-                    Encoding::Utf8 => String::from_utf8_lossy(&bytes).into_owned(),
-                    _ => bytes.into_iter().map(char::from).collect(),
-                };
-                return Some((Self::Text(text), 1 + count));
-            }
-            Value::Row(count) | Value::Rows(count) => {
-                for _ in 0..count {
-                    let (value, size) = Self::decoded(values.get(taken..)?)?;
-                    all.push(value);
-                    taken += size;
-                }
-            }
+impl From<Value> for Shown {
+    fn from(value: Value) -> Self {
+        match value {
+            Value::Real(real) => Self::Real(real),
+            Value::Integer(raw) => Self::Integer(raw),
+            _ => Self::Tuple(Vec::new()),
         }
-        Some((Self::Tuple(all), taken))
     }
+}
 
+impl Shown {
     /// Return its length: of a text, in bytes of an encoding.
     pub(crate) fn count(&self, encoding: Option<Encoding>) -> usize {
         match self {
@@ -81,14 +52,6 @@ impl Shown {
             Self::Text(text) if encoding == Some(Encoding::Utf8) => text.len(),
             Self::Text(text) => text.chars().count(),
             _ => 0,
-        }
-    }
-
-    /// Return it as Python's `str` writes it: a text without quotes.
-    pub(crate) fn plain(&self) -> String {
-        match self {
-            Self::Text(text) => text.clone(),
-            other => other.to_string(),
         }
     }
 
@@ -104,15 +67,19 @@ impl Shown {
 
 impl Display for Shown {
     fn fmt(&self, out: &mut Formatter<'_>) -> Result {
+        let joined = |all: &[Self]| join(all.iter().map(Self::to_string), ", ");
         match self {
             Self::Flag(flag) => out.write_str(if *flag { "True" } else { "False" }),
             Self::Integer(integer) => integer.fmt(out),
             Self::Real(real) => out.write_str(&shortest(*real)),
-            Self::Text(text) => out.write_str(&quoted(text)),
+            Self::Text(text) => out.write_str(&quoted(text, is_printable)),
             Self::Bytes(bytes) => {
-                // Python escapes in bytes what it escapes in a text, and all above 7E.
                 let text: String = bytes.iter().copied().map(char::from).collect();
-                write!(out, "b{}", quoted_if(&text, |char| matches!(char, ' '..='~')))
+                write!(
+                    out,
+                    "b{}",
+                    quoted(&text, |char| (' '..='~').contains(&char))
+                )
             }
             Self::List(all) => write!(out, "[{}]", joined(all)),
             Self::Tuple(all) if all.len() == 1 => write!(out, "({},)", joined(all)),
@@ -122,12 +89,11 @@ impl Display for Shown {
     }
 }
 
-fn joined(all: &[Shown]) -> String {
-    let all: Vec<String> = all.iter().map(Shown::to_string).collect();
-    all.join(", ")
+pub(crate) fn join(all: impl Iterator<Item = String>, between: &str) -> String {
+    all.collect::<Vec<_>>().join(between)
 }
 
-/// Return a real number: the shortest decimal that reads back as the same double.
+/// Return the shortest decimal that reads back as the same double.
 pub(crate) fn shortest(real: f64) -> String {
     let text = format!("{real:?}");
     match text.split_once('e') {
@@ -140,76 +106,57 @@ pub(crate) fn shortest(real: f64) -> String {
 /// Return a real number with that many digits, without trailing zeros: `{:g}` in Python.
 #[must_use]
 pub fn general(real: f64, digits: usize) -> String {
-    if !real.is_finite() {
+    let text = format!("{real:.*e}", digits.saturating_sub(1));
+    let Some((mantissa, exponent)) = text.split_once('e') else {
         return shortest(real);
-    }
-    let text = format!("{real:.*e}", digits - 1);
-    let (mantissa, exponent) = text.split_once('e').unwrap_or((&text, "0"));
-    let trimmed = |text: &str| match text.contains('.') {
-        true => text.trim_end_matches('0').trim_end_matches('.').to_string(),
-        false => text.to_string(),
     };
-    match exponent.parse::<i64>().map(|size| digits as i64 - 1 - size) {
-        Ok(places @ 0..) if places <= digits as i64 + 3 => {
-            trimmed(&format!("{real:.*}", places as usize))
-        }
+    let trimmed = |text: &str| match text.contains('.') {
+        true => text.trim_end_matches('0').trim_end_matches('.').into(),
+        false => String::from(text),
+    };
+    let size: i64 = exponent.parse().unwrap_or_default();
+    match usize::try_from(digits as i64 - 1 - size) {
+        Ok(places) if size >= -4 => trimmed(&format!("{real:.places$}")),
         _ => with_exponent(&trimmed(mantissa), exponent),
     }
 }
 
 /// Return an exponent with its sign and at least two digits.
 fn with_exponent(mantissa: &str, exponent: &str) -> String {
-    let (sign, digits) = match exponent.strip_prefix('-') {
-        Some(digits) => ('-', digits),
-        None => ('+', exponent),
-    };
+    let digits = exponent.trim_start_matches('-');
+    let sign = if digits == exponent { '+' } else { '-' };
     format!("{mantissa}e{sign}{digits:0>2}")
 }
 
-/// Return a text in quotes.
-pub(crate) fn quoted(text: &str) -> String {
-    quoted_if(text, is_printable)
-}
-
-fn quoted_if(text: &str, kept: impl Fn(char) -> bool) -> String {
+/// Return a text in quotes, with an escape for each character that is not `kept`.
+pub(crate) fn quoted(text: &str, kept: impl Fn(char) -> bool) -> String {
     let double = text.contains('\'') && !text.contains('"');
     let quote = if double { '"' } else { '\'' };
     let inner = text.chars().map(|char| match char {
         '\\' => "\\\\".into(),
         _ if char == quote => format!("\\{char}"),
-        _ if kept(char) => char.to_string(),
-        _ => escaped(char),
+        _ => escaped(char, kept(char)),
     });
     format!("{quote}{}{quote}", inner.collect::<String>())
 }
 
 /// Return a text with an escape for each character that is not printable.
 pub(crate) fn printable(text: &str) -> String {
-    text.chars()
-        .map(|char| {
-            if is_printable(char) {
-                char.to_string()
-            } else {
-                escaped(char)
-            }
-        })
-        .collect()
+    let all = text.chars();
+    all.map(|char| escaped(char, is_printable(char))).collect()
 }
 
 /// Return whether a character is printable. The standard library escapes the others where it shows
 /// a text; of the first character it escapes more.
-fn is_printable(char: char) -> bool {
-    matches!(char, ' '..='~') || !char.is_ascii() && {
-        let text = ['a', char].iter().collect::<String>();
-        text.escape_debug().nth(1) == Some(char)
-    }
+pub(crate) fn is_printable(char: char) -> bool {
+    let text: String = ['a', char].iter().collect();
+    matches!(char, '\'' | '"' | '\\') || text.escape_debug().nth(1) == Some(char)
 }
 
-fn escaped(char: char) -> String {
+fn escaped(char: char, kept: bool) -> String {
     match (char, u32::from(char)) {
-        ('\n', _) => "\\n".into(),
-        ('\r', _) => "\\r".into(),
-        ('\t', _) => "\\t".into(),
+        _ if kept => char.into(),
+        ('\n' | '\r' | '\t', _) => char.escape_default().collect(),
         (_, code @ ..0x100) => format!("\\x{code:02x}"),
         (_, code @ ..0x1_0000) => format!("\\u{code:04x}"),
         (_, code) => format!("\\U{code:08x}"),
