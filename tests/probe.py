@@ -1,0 +1,24 @@
+"""The probe: a program that answers tests with the crates in Rust (``rust/probe``)."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+from functools import lru_cache
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parent.parent
+needed = pytest.mark.skipif(shutil.which("cargo") is None, reason="needs cargo: not installed")
+
+
+@lru_cache
+def path() -> str:
+    """Return the path of the program; it is compiled once for each test run."""
+    command = ["cargo", "build", "--quiet", "--package", "cobotwire-probe"]
+    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    target = Path(os.environ.get("CARGO_TARGET_DIR", "target"))
+    return str(ROOT / target / "debug" / "cobotwire-probe")
