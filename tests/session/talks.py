@@ -73,6 +73,8 @@ class Talk:
         self._write(data)
 
     def _encoded(self, command: Command) -> EncodedRequest | None:
+        if not command.request:  # the device sends it by itself
+            return None
         dice, variant = self._dice, self._dice.randrange(len(command.request))
         rows = self._rows(command.request[variant])
         data = command.request[variant].pack(rows)
@@ -103,13 +105,13 @@ class Talk:
             return
         alignment, how = self.exchange.alignment, self._dice.random()
         align = alignment.align
-        if how < 0.7:
+        if how < 0.86:
             if align:
                 alignment.end()
-        elif how < 0.85:
+        elif how < 0.92:
             alignment.cut(align, request, self._dice.randrange(len(align + request)))
             self.exchange.fail_waiting(LINK_ERROR)
-        elif how < 0.9:
+        elif how < 0.94:
             alignment.cut(align, request, None)
         else:
             self._wait()
@@ -163,7 +165,10 @@ class Talk:
 
     def _bytes(self) -> bytes:
         dice = self._dice
+        last = self.exchange.sent_last
         request = dice.choice(self._sent[-4:]) if self._sent else None
+        if last is not None and not last.done and dice.random() < 0.7:
+            request = last.request
         if request is None or dice.random() < 0.1:
             return self._reply(dice.choice(self._commands), None)
         if dice.random() < 0.2:
