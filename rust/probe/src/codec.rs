@@ -7,7 +7,7 @@ use cobotwire_core::{
 use cobotwire_table::{Edition, Field};
 use serde_json::{Map, Value, json};
 
-use crate::values::Json;
+use crate::values::Sample;
 
 const ABILITIES: [&str; 9] = [
     "encode request",
@@ -60,8 +60,8 @@ fn encoded(edition: &Edition, question: &Value) -> Option<Value> {
         let values = variant
             .iter()
             .map(|field| value_of(field, &fields[&field.name]));
-        let row = Json(Value::Array(values.collect()));
-        if let Ok(frame) = encode::<Json>(table.frame(), command, direction, &row, choice) {
+        let row = Sample(Value::Array(values.collect()));
+        if let Ok(frame) = encode::<Sample>(table.frame(), command, direction, &row, choice) {
             return Some(json!({"bytes": hex(&frame)}));
         }
         if sized {

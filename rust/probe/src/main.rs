@@ -1,3 +1,39 @@
-//! Answers the tests in Python, one JSON object a line: `codec`, `exchange` or `client`.
+//! Answers the tests in Python, one JSON value a line: `codec`, `exchange` or `client`.
 
-fn main() {}
+mod codec;
+mod exchange;
+mod values;
+
+use std::io::{BufRead, Error, Write, stdin, stdout};
+
+use cobotwire_table::Edition;
+
+/// Answer each line until there is no more.
+fn main() -> std::io::Result<()> {
+    let (mode, path) = (std::env::args().nth(1), std::env::args().nth(2));
+    match mode.as_deref().unwrap_or_default() {
+        "codec" => {
+            let data = std::fs::read(path.unwrap_or_default())?;
+            let edition = Edition::read(&data);
+            let edition = edition.map_err(|error| Error::other(format!("{error:?}")))?;
+            answer(|line| {
+                let question = serde_json::from_str(line).unwrap_or_default();
+                codec::answer(&edition, &question).to_string()
+            })
+        }
+        "exchange" => {
+            let mut exchanges = exchange::Exchanges::default();
+            answer(|line| exchanges.answer(line))
+        }
+        _ => Err(Error::other("codec, exchange or client?")),
+    }
+}
+
+fn answer(mut reply: impl FnMut(&str) -> String) -> std::io::Result<()> {
+    let mut output = stdout().lock();
+    for line in stdin().lock().lines() {
+        writeln!(output, "{}", reply(&line?))?;
+        output.flush()?;
+    }
+    Ok(())
+}
