@@ -1,0 +1,128 @@
+"""Errors have the same texts in Rust as in Python, for every edition, type and frame format."""
+
+from __future__ import annotations
+
+import json
+import shutil
+import subprocess
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+import random_tables
+from cobotwire import codec as codecs
+from cobotwire import editions
+from cobotwire.protocol.errors import CobotwireError
+from cobotwire.protocol.loading import table_of
+from cobotwire.protocol.table import Direction, Table
+from cobotwire_codegen.publish import edition_json
+from random_editions import sensors
+
+ROOT = Path(__file__).parents[2]
+WAYS: tuple[Direction, ...] = ("request", "reply")
+Answer = Callable[[dict[str, Any]], str | None]
+
+
+@pytest.fixture(scope="module")
+def answer() -> Iterator[Answer]:
+    """Yield a function that asks the probe one question."""
+    if shutil.which("cargo") is None:
+        pytest.skip("the probe is built with cargo")
+    subprocess.run(["cargo", "build", "-q", "-p", "cobotwire-probe"], cwd=ROOT, check=True)
+    program = [ROOT / "target/debug/cobotwire-probe", "texts"]
+    with subprocess.Popen(program, stdin=-1, stdout=-1, text=True, encoding="utf-8") as probe:
+        stdin, stdout = probe.stdin, probe.stdout
+        assert stdin is not None
+        assert stdout is not None
+
+        def ask(question: dict[str, Any]) -> str | None:
+            stdin.write(json.dumps(question) + "\n")
+            stdin.flush()
+            text: str | None = json.loads(stdout.readline())
+            return text
+
+        yield ask
+        stdin.close()
+
+
+def text_of(act: Callable[[], object]) -> str | None:
+    try:
+        act()
+    except CobotwireError as error:
+        return str(error)
+    return None
+
+
+def as_json(value: Any) -> Any:
+    """Return a value as the probe reads it."""
+    if value is ...:
+        return None
+    if isinstance(value, float):
+        return {"real": repr(value)}
+    if isinstance(value, bytes):
+        return {"bytes": value.hex()}
+    return [as_json(each) for each in value] if isinstance(value, list) else value
+
+
+def plain(value: Any) -> Any:
+    """Return a value of JSON for one of Python."""
+    if isinstance(value, tuple | list):
+        return [plain(each) for each in value]
+    if isinstance(value, bytearray | memoryview):
+        return bytes(value)
+    if isinstance(value, int) and abs(value) >= 1 << 63:
+        return 1 << 40
+    shown = isinstance(value, bool | int | float | str | bytes) or value is ...
+    return value if shown else [str(value)]
+
+
+def check_one(data: st.DataObject, answer: Answer, table: Table) -> None:
+    """Compare the errors of one request or reply, and of one frame."""
+    command = data.draw(st.sampled_from(table.commands))
+    direction = data.draw(st.sampled_from(WAYS))
+    codec = codecs.load(table, "reference")
+    variants = command.variants(direction)
+    values = plain(data.draw(random_tables.values(data.draw(st.sampled_from(variants))))) if variants else []
+    if not data.draw(st.integers(0, 9)):
+        values.append(0)
+    question = {"command": command.name, "direction": direction, "values": as_json(values)}
+    expected = text_of(lambda: codec.encode(command.name, direction, values))
+    assert answer(question) == expected
+    frame = data.draw(random_tables.frames(table))
+    frame = frame[: data.draw(st.integers(0, len(frame) + 3))] if not data.draw(st.integers(0, 3)) else frame
+    at = data.draw(st.integers(0, 99))
+    frame = frame[:at] + bytes(frame[at : at + 1] and [frame[at] ^ 1]) + frame[at + 1 :] + bytes(at == 60)
+    expected = text_of(lambda: codec.decode(direction, frame))
+    assert answer({"bytes": frame.hex(), "direction": direction}) == expected
+
+
+def _read(answer: Answer, path: Path) -> Table:
+    assert answer({"read": str(path)}) is None
+    return table_of(json.loads(path.read_text(encoding="utf-8")))
+
+
+@pytest.mark.parametrize("name", sorted(editions.names()))
+@settings(max_examples=25, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(data=st.data())
+def test_texts_of_an_edition_are_those_of_python(
+    answer: Answer, name: str, data: st.DataObject
+) -> None:
+    table = _read(answer, Path(editions.__file__).parent / name / "edition.json")
+    for _ in range(5):
+        check_one(data, answer, table)
+
+
+@settings(max_examples=25, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(data=st.data())
+def test_texts_of_every_type_in_any_frame_format_are_those_of_python(
+    answer: Answer, tmp_path: Path, data: st.DataObject
+) -> None:
+    path = tmp_path / "edition.json"
+    path.write_text(edition_json(data.draw(sensors("sensor"))), encoding="utf-8")
+    table = _read(answer, path)
+    for _ in range(20):
+        check_one(data, answer, table)
