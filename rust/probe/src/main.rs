@@ -1,5 +1,6 @@
-//! Answers the tests in Python, one JSON value a line: `codec`, `exchange` or `client`.
+//! Answers the tests in Python, one JSON value a line: `codec`, `exchange`, `client` or `texts`.
 
+mod exchange;
 mod texts;
 mod values;
 
@@ -9,11 +10,15 @@ use std::io::{BufRead, Write, stdin, stdout};
 fn main() -> std::io::Result<()> {
     let mode = std::env::args().nth(1).unwrap_or_default();
     match mode.as_str() {
+        "exchange" => {
+            let mut exchanges = exchange::Exchanges::default();
+            answer(|line| exchanges.answer(line))
+        }
         "texts" => {
             let mut texts = texts::Texts::default();
             answer(|line| texts.answer(line))
         }
-        _ => Err(std::io::Error::other("codec, exchange or client?")),
+        _ => Err(std::io::Error::other("codec, exchange, client or texts?")),
     }
 }
 
