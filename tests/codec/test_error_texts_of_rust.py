@@ -18,7 +18,7 @@ from cobotwire import codec as codecs
 from cobotwire import editions
 from cobotwire.protocol.errors import CobotwireError
 from cobotwire.protocol.loading import table_of
-from cobotwire.protocol.table import Direction, Table
+from cobotwire.protocol.table import Direction, Table, Variant
 from cobotwire_codegen.publish import edition_json
 from random_editions import sensors
 
@@ -80,22 +80,33 @@ def plain(value: Any) -> Any:
     return value if shown else [str(value)]
 
 
+@st.composite
+def near_frames(draw: st.DrawFn, table: Table) -> bytes:
+    """Draw a frame, a part of one, or one with more bytes or another byte."""
+    frame = draw(random_tables.frames(table))
+    at = draw(st.integers(0, len(frame) - 1))
+    damaged = (frame[:at], frame + b"\0", frame[:at] + bytes([frame[at] ^ 1]) + frame[at + 1 :])
+    return draw(st.sampled_from([frame, *damaged]))
+
+
+@st.composite
+def given_values(draw: st.DrawFn, variants: tuple[Variant, ...]) -> list[Any]:
+    """Draw values for a variant, some of them illegal, and at times one too many."""
+    drawn = draw(random_tables.values(draw(st.sampled_from(variants)))) if variants else ()
+    values: list[Any] = plain(drawn)
+    return values if draw(st.integers(0, 9)) else [*values, 0]
+
+
 def check_one(data: st.DataObject, answer: Answer, table: Table) -> None:
-    """Compare the errors of one request or reply, and of one frame."""
+    """Compare the errors of one message and of one frame."""
     command = data.draw(st.sampled_from(table.commands))
     direction = data.draw(st.sampled_from(WAYS))
     codec = codecs.load(table, "reference")
-    variants = command.variants(direction)
-    values = plain(data.draw(random_tables.values(data.draw(st.sampled_from(variants))))) if variants else []
-    if not data.draw(st.integers(0, 9)):
-        values.append(0)
+    values = data.draw(given_values(command.variants(direction)))
     question = {"command": command.name, "direction": direction, "values": as_json(values)}
     expected = text_of(lambda: codec.encode(command.name, direction, values))
     assert answer(question) == expected
-    frame = data.draw(random_tables.frames(table))
-    frame = frame[: data.draw(st.integers(0, len(frame) + 3))] if not data.draw(st.integers(0, 3)) else frame
-    at = data.draw(st.integers(0, 99))
-    frame = frame[:at] + bytes(frame[at : at + 1] and [frame[at] ^ 1]) + frame[at + 1 :] + bytes(at == 60)
+    frame = data.draw(near_frames(table))
     expected = text_of(lambda: codec.decode(direction, frame))
     assert answer({"bytes": frame.hex(), "direction": direction}) == expected
 
