@@ -1,7 +1,8 @@
-//! Answers the tests in Python, one JSON value a line: `codec`, `exchange` or `client`.
+//! Answers the tests in Python, one JSON value a line: `codec`, `exchange`, `client` or `texts`.
 
 mod codec;
 mod exchange;
+mod texts;
 mod values;
 
 use std::io::{BufRead, Error, Write, stdin, stdout};
@@ -25,7 +26,11 @@ fn main() -> std::io::Result<()> {
             let mut exchanges = exchange::Exchanges::default();
             answer(|line| exchanges.answer(line))
         }
-        _ => Err(Error::other("codec, exchange or client?")),
+        "texts" => {
+            let mut texts = texts::Texts::default();
+            answer(|line| texts.answer(line))
+        }
+        _ => Err(Error::other("codec, exchange, client or texts?")),
     }
 }
 
