@@ -17,12 +17,14 @@ const LONGEST_WRITE: Nanos = 2_000_000_000;
 /// A write that takes longer than this was held up by a full line.
 const SLOW_WRITE: Nanos = 5_000_000;
 
+/// How many events wait for their consumer; if more come, the oldest is dropped.
+const CAPACITY: usize = 1000;
+
 /// Events of one command that wait for their consumer.
 #[derive(Debug)]
 pub(crate) struct Queue {
     pub command: usize,
     pub events: VecDeque<Named>,
-    pub capacity: usize,
     pub lost: u64,
 }
 
@@ -60,10 +62,11 @@ pub(crate) struct Session {
     written: Option<Ticket>,
     /// The devices that were set in motion, and not stopped since.
     moved: Vec<Option<u8>>,
+    on_drop: OnDrop,
 }
 
 impl Session {
-    pub fn new(encoder: Arc<Encoder>, url: &str) -> Self {
+    pub fn new(encoder: Arc<Encoder>, url: &str, on_drop: OnDrop) -> Self {
         Self {
             exchange: Exchange::new(Arc::new(encoder.edition.protocol.clone())),
             encoder,
@@ -74,6 +77,7 @@ impl Session {
             ends: HashMap::new(),
             written: None,
             moved: Vec::new(),
+            on_drop,
         }
     }
 
@@ -117,7 +121,7 @@ impl Session {
                 if queue.command != command {
                     continue;
                 }
-                if queue.events.len() >= queue.capacity {
+                if queue.events.len() >= CAPACITY {
                     queue.events.pop_front();
                     queue.lost += 1;
                 }
@@ -137,6 +141,13 @@ impl Session {
             .enqueue(request, settings.timeout, settings.retry, now, ends_by);
         self.ends.extend(ends_by.map(|ends_by| (ticket, ends_by)));
         ticket
+    }
+
+    /// Return whether a call may still wait for the line to take its request.
+    pub fn has_time(&self, settings: &Settings, called_at: Nanos) -> bool {
+        settings
+            .deadline
+            .is_some_and(|longest| self.now() - called_at < longest)
     }
 
     /// Return the bytes of a one-way request, and its ticket if its caller waits for the
@@ -280,7 +291,7 @@ impl Session {
 
     /// Return the bytes that stop every device in motion, as the policy says; there are none if
     /// nothing moves.
-    pub fn stops(&mut self, policy: OnDrop) -> Vec<u8> {
+    pub fn stops(&mut self) -> Vec<u8> {
         let moved = std::mem::take(&mut self.moved);
         let edition = &self.encoder.edition;
         let Some(stop) = edition
@@ -290,7 +301,7 @@ impl Session {
         else {
             return Vec::new();
         };
-        if policy == OnDrop::Leave || moved.is_empty() {
+        if self.on_drop == OnDrop::Leave || moved.is_empty() {
             return Vec::new();
         }
         let mut bytes = self.exchange.align().to_vec();
@@ -304,12 +315,11 @@ impl Session {
 }
 
 impl Queue {
-    pub fn new(command: usize) -> Self {
-        Self {
+    pub fn new(command: usize) -> Arc<Mutex<Self>> {
+        Arc::new(Mutex::new(Self {
             command,
             events: VecDeque::new(),
-            capacity: 1000,
             lost: 0,
-        }
+        }))
     }
 }
