@@ -1,12 +1,8 @@
-//! Read the joints of an arm, and move it home: `first socket://127.0.0.1:9000`.
-use cobotwire::editions::mycobot280::MyCobot280;
-
-fn main() -> Result<(), Box<dyn std::error::Error>> {
-    let arm = MyCobot280::open(&std::env::args().nth(1).unwrap_or_default())?;
+fn main() -> Result<(), cobotwire::Error> {
+    let port = std::env::args().nth(1).unwrap_or("/dev/ttyACM0".to_owned());
+    let arm = cobotwire::editions::mycobot280::MyCobot280::open(&port)?;
     arm.power_on()?;
-    println!("the joints are at {:?}", arm.get_angles()?);
-    arm.acknowledged(std::time::Duration::from_secs(1))
-        .send_angles([10.0; 6], 50)?;
-    arm.close();
-    Ok(())
+    arm.send_angles([0.0, -20.0, 30.0, 0.0, 10.0, 0.0], 80)?; // degrees, percent
+    println!("{:?}", arm.get_angles()?);
+    Ok(arm.close())
 }
