@@ -1,3 +1,5 @@
+//! Move an arm: `first socket://127.0.0.1:9000`.
+
 fn main() -> Result<(), cobotwire::Error> {
     let port = std::env::args().nth(1).unwrap_or("/dev/ttyACM0".to_owned());
     let arm = cobotwire::editions::mycobot280::MyCobot280::open(&port)?;

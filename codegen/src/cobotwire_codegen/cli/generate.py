@@ -40,7 +40,8 @@ def generate(check_only: bool, with_products: bool, rust_data: bool, root: str) 
         found = editions(path)
         wanted = [] if rust_data else committed(path, found)
     changed = 0 if check_only else write_all(wanted)
-    folders: Iterable[str] = [RUST_DATA, RUST_EDITIONS] if rust_data else PRODUCTS if with_products else ()
+    all_or_none: Iterable[str] = PRODUCTS if with_products else ()
+    folders = [RUST_DATA, RUST_EDITIONS] if rust_data else all_or_none
     try:
         # After the editions, because the pages of the test suite list their commands.
         others = products(path, found, folders)

@@ -33,19 +33,20 @@ from cobotwire_codegen.render.escape_markdown import escaped
 from cobotwire_codegen.render.parameters import Parameter, parameters, reply_parameters, results
 
 # Keywords that the check of names allows, because they are none in Python.
-_KEYWORDS = frozenset(
-    """abstract become box const do dyn enum extern final fn gen impl let loop macro match mod move
-    mut override priv pub ref static struct trait type typeof unsafe unsized use virtual
-    where""".split()
-)
+_WORDS = """
+    abstract become box const do dyn enum extern final fn gen impl let loop macro match mod move mut
+    override priv pub ref static struct trait type typeof unsafe unsized use virtual where
+"""
+_KEYWORDS = frozenset(_WORDS.split())
 _NOT_EVEN_RAW = frozenset({"Self", "crate", "self", "super"})
 # What generated modules name without a path, and what every typed client has.
 _TYPES = frozenset({"Async", "Option", "Self", "String", "Value", "Vec"})
 _METHODS = frozenset({"acknowledged", "clone", "over", "with", "opened"})
 # What only people read; the editions in the docs site have it.
-_FOR_PEOPLE = frozenset(
-    "doc place lines notes disputed changes firmware document generated samples agrees_with".split()
-)
+_TEXTS = """
+    doc place lines notes disputed changes firmware document generated samples agrees_with
+"""
+_FOR_PEOPLE = frozenset(_TEXTS.split())
 
 
 def render_rust(edition: Edition, templates: Path | None = None) -> Files:
