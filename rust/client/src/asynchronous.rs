@@ -269,7 +269,7 @@ impl<E: DeviceEvent> AsyncEvents<E> {
             let arrived = self.client.shared.arrived.notified();
             let event = lock(&self.queue).events.pop_front();
             if let Some(fields) = event {
-                return result(fields, E::FIELDS, &[]);
+                return result(fields, (E::FIELDS, false), &[]);
             }
             if self.client.shared.orders.is_closed() {
                 return Err(self.client.shared.closed.clone());

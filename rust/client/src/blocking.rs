@@ -296,7 +296,7 @@ impl<E: DeviceEvent> Iterator for Events<E> {
                 .listen(longest, || !lock(&self.queue).events.is_empty());
             let event = lock(&self.queue).events.pop_front();
             match (event, listened) {
-                (Some(fields), _) => return Some(result(fields, E::FIELDS, &[])),
+                (Some(fields), _) => return Some(result(fields, (E::FIELDS, false), &[])),
                 (None, Err(error)) => return Some(Err(error)),
                 (None, Ok(())) if self.timeout.is_some() => return None,
                 (None, Ok(())) => {}

@@ -186,10 +186,10 @@ impl Encoder {
     }
 }
 
-/// Return the result of a call: one field, or a row of them.
+/// Return the fields of these names as a value: a row, unless there is one field and `single`.
 pub(crate) fn result<T: Typed>(
     mut fields: Named,
-    results: &[&str],
+    (names, single): (&[&str], bool),
     radians: &[&str],
 ) -> Result<T, Error> {
     let mut take = |name: &&str| {
@@ -203,12 +203,12 @@ pub(crate) fn result<T: Typed>(
             value
         }
     };
-    let value = match results {
-        [one] => take(one),
+    let value = match names {
+        [one] if single => take(one),
         several => Value::Row(several.iter().map(take).collect()),
     };
-    T::from_value(value)
-        .ok_or_else(|| Error::usage("the generated module is not that of its table"))
+    let mismatch = || Error::usage("the generated module is not that of its table");
+    T::from_value(value).ok_or_else(mismatch)
 }
 
 /// A handle of a client: how it encodes requests, and with what it sends them.
@@ -256,7 +256,7 @@ impl Handle {
     ) -> Result<R::Reply, Error> {
         result(
             self.encoder.fields(prepared, answer),
-            R::RESULTS,
+            (R::RESULTS, true),
             R::RADIANS,
         )
     }

@@ -48,6 +48,59 @@ impl Port for TcpStream {
     }
 }
 
+/// A TCP stream that changes its limit without a call of the system: a client does that with each
+/// request.
+#[cfg(unix)]
+struct Tcp {
+    stream: TcpStream,
+    at_once: bool,
+    longest: Duration,
+}
+
+#[cfg(unix)]
+impl Read for Tcp {
+    fn read(&mut self, buffer: &mut [u8]) -> std::io::Result<usize> {
+        use rustix::net::{RecvFlags, recv};
+        if self.at_once {
+            return Ok(recv(&self.stream, buffer, RecvFlags::DONTWAIT)?.0);
+        }
+        self.stream.read(buffer)
+    }
+}
+
+#[cfg(unix)]
+impl Write for Tcp {
+    fn write(&mut self, data: &[u8]) -> std::io::Result<usize> {
+        use rustix::net::{SendFlags, send};
+        let flags = if self.at_once {
+            SendFlags::DONTWAIT
+        } else {
+            SendFlags::empty()
+        };
+        Ok(send(&self.stream, data, flags | SendFlags::NOSIGNAL)?)
+    }
+
+    fn flush(&mut self) -> std::io::Result<()> {
+        Ok(())
+    }
+}
+
+#[cfg(unix)]
+impl Port for Tcp {
+    fn wait_at_most(&mut self, longest: Duration) -> std::io::Result<()> {
+        self.at_once = longest.is_zero();
+        if !self.at_once && self.longest != longest {
+            self.stream.wait_at_most(longest)?;
+            self.longest = longest;
+        }
+        Ok(())
+    }
+
+    fn has_room(&mut self) -> bool {
+        self.stream.has_room()
+    }
+}
+
 #[cfg(feature = "serial")]
 impl Port for Box<dyn serialport::SerialPort> {
     fn wait_at_most(&mut self, longest: Duration) -> std::io::Result<()> {
@@ -82,6 +135,12 @@ pub(crate) fn open(url: &str, baudrate: u32) -> Result<Box<dyn Port>, Error> {
         match TcpStream::connect_timeout(&socket, CONNECT) {
             Ok(stream) => {
                 stream.set_nodelay(true).map_err(failed)?;
+                #[cfg(unix)]
+                let stream = Tcp {
+                    stream,
+                    at_once: false,
+                    longest: Duration::ZERO,
+                };
                 return Ok(Box::new(stream));
             }
             Err(error) => last = error,
