@@ -19,7 +19,8 @@ from pathlib import Path
 ROOT = Path(__file__).parent.parent
 CRATES = {"simd": "cobotwire-simd", "core": "cobotwire-core", "table": "cobotwire-table"}
 FEATURES = ("", "serial", "tokio", "mycobot280", "mycobot280,serial", "serial,tokio")
-SAMPLE = 'sends stop(), or it is \\`ended\\` <b>*/ \\"#} {{'
+# Texts that try to leave a comment, an attribute, a link or a block of code.
+HOSTILE = r"*/ `ended` <b>[link] \"#]} {{ ``` \u{0} https://x.y"
 
 
 def patches(folder: Path) -> list[str]:
@@ -83,7 +84,9 @@ def first_program(folder: Path, crates: Path, target: str) -> None:
 def own_protocol(folder: Path, crates: Path, target: str) -> None:
     """Compile the module of an own protocol whose texts try to leave their comments."""
     lamp = (ROOT / "tests/codegen/lamp.yaml").read_text()
-    (folder / "lamp.yaml").write_text(re.sub(r"^(\s+doc: ).*", rf'\1"{SAMPLE}"', lamp, flags=re.M))
+    (folder / "lamp.yaml").write_text(
+        re.sub(r"^(\s+doc: ).*", lambda found: f"{found[1]}'{HOSTILE}'", lamp, flags=re.M)
+    )
     text = 'mod lamp;\nfn main() {\n    println!("{:?}", lamp::edition().is_ok());\n}\n'
     program = new_program(folder, crates, "own", text)
     words = ("--out", "lamp", "--rust", "own/src/lamp")

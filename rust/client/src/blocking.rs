@@ -322,7 +322,7 @@ impl Connection {
         let size = self.read(longest.min(idle))?;
         let data = self.buffer.get(..size).unwrap_or_default();
         if self.session.advance(data) {
-            let full = !self.has_room();
+            let full = self.session.has_deadline() && !self.has_room();
             self.session.exchange.note_full(full);
             if full {
                 std::thread::sleep(TURN);

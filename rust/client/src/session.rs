@@ -143,6 +143,11 @@ impl Session {
         ticket
     }
 
+    /// Return whether a request may be late if the line takes no bytes.
+    pub fn has_deadline(&self) -> bool {
+        !self.ends.is_empty()
+    }
+
     /// Return whether a call may still wait for the line to take its request.
     pub fn has_time(&self, settings: &Settings, called_at: Nanos) -> bool {
         settings
