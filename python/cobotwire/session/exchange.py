@@ -30,6 +30,7 @@ from typing import Any
 
 from cobotwire.codec.interface import Codec, Event, Frame, Noise
 from cobotwire.protocol.addresses import ANYBODY, NOBODY
+from cobotwire.protocol.error_texts import error_text
 from cobotwire.protocol.errors import LinkError, ProtocolError, ReplyTimeout, WaitedFor
 from cobotwire.protocol.shared import once_per_table
 from cobotwire.protocol.table import Table
@@ -59,7 +60,6 @@ from cobotwire.session.request import EncodedRequest, as_call, request_of
 
 # For how long received bytes are read before a request is sent, if they do not end.
 DRAIN_SECONDS = 0.05
-NOT_SENT = "more than can be read; a late reply may be among it"
 
 
 @once_per_table
@@ -330,7 +330,7 @@ class Exchange:
         """End a request: the late reply that holds it may be among the bytes not read yet."""
         request, waited = pending.request, now - pending.queued_at
         call = as_call(request, self._codec)
-        pending.fail(ReplyTimeout(request.command.name, waited, (NOT_SENT,), 0, call))
+        pending.fail(ReplyTimeout(request.command.name, waited, (error_text("too-much"),), 0, call))
         self._drop_done()
 
     def _end_overdue_queued(self, now: float) -> None:

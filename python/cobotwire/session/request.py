@@ -13,6 +13,7 @@ from cobotwire.protocol.addresses import (
     lacks_joints,
     replier_of,
 )
+from cobotwire.protocol.error_texts import error_text
 from cobotwire.protocol.errors import ProtocolError, UsageError
 from cobotwire.protocol.messages import Request, Result
 from cobotwire.protocol.rejection import reject_radians
@@ -142,13 +143,13 @@ def check_acknowledged(request: EncodedRequest) -> None:
         UsageError: no device acknowledges a request to its address.
     """
     if request.replier == NOBODY:
-        message = f"{request.command.name}() cannot be waited for: nobody replies to its address"
+        message = error_text("unacknowledged", command=request.command.name)
         raise UsageError("ack_within", message=message)
 
 
 def _unanswered(name: str, address: Address | None) -> UsageError:
     assert address is not None, "only an address can have no replies"
-    message = f"{name}() has a reply, and nobody replies to the address {address.name}"
+    message = error_text("unanswered", command=name, name=address.name)
     return UsageError("address", address.name, message=message)
 
 

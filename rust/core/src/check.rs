@@ -1,5 +1,8 @@
 //! The bytes that end a frame.
 
+use alloc::boxed::Box;
+use alloc::vec::Vec;
+
 use crate::crc::Crc;
 use crate::number::Order;
 

@@ -1,5 +1,7 @@
 //! CRCs by their parameters, as in Greg Cook's catalogue (the Rocksoft model).
 
+use alloc::boxed::Box;
+
 /// The parameters of a CRC.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct CrcParameters {

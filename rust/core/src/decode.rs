@@ -1,6 +1,8 @@
 //! Decodes bytes to values. An illegal frame, or a number that the table does not allow, is an
 //! error.
 
+use alloc::vec::Vec;
+
 use crate::direction::{Direction, Listening};
 use crate::frame::{Frame, FrameFormat, Layout};
 use crate::message::VariantId;

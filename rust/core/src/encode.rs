@@ -1,5 +1,7 @@
 //! Encodes values: chooses the variant that allows the values, and builds the frame around them.
 
+use alloc::vec::Vec;
+
 use crate::direction::Direction;
 use crate::frame::FrameFormat;
 use crate::given::{Given, Row, ValueFault};

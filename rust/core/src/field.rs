@@ -1,5 +1,7 @@
 //! Fields: the numbers of a part of a message, and the raw values that they may hold.
 
+use alloc::vec::Vec;
+
 use crate::number::{Encoding, Misfit, Number};
 
 /// The numbers of a field whose selector holds one of `when`.
@@ -108,7 +110,7 @@ impl Field {
             .chunks(each.max(1))
             .enumerate()
             .find_map(|(index, text)| {
-                let error = std::str::from_utf8(text).err()?;
+                let error = core::str::from_utf8(text).err()?;
                 Some(index * each + error.valid_up_to())
             })
     }

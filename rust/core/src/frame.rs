@@ -1,5 +1,7 @@
 //! How frames are built, and a borrowed view of one valid frame.
 
+use alloc::vec::Vec;
+
 use crate::check::Check;
 use crate::direction::Direction;
 use crate::number::Order;
@@ -59,7 +61,7 @@ impl Part {
     }
 
     #[inline]
-    fn write(self, frame: &mut [u8], number: u16) {
+    pub(crate) fn write(self, frame: &mut [u8], number: u16) {
         let [low, high] = number.to_le_bytes();
         match (self.wide, self.order, frame.get_mut(self.at..)) {
             (false, _, Some([first, ..])) => *first = low,

@@ -6,7 +6,7 @@
 //! most the bytes of the longest frame, once (for a CRC or sum, when all its bytes have come), and
 //! no position is rejected twice. So the work is linear in the size of any input.
 
-use std::mem;
+use core::mem;
 
 use crate::frame::Frame;
 use crate::reason::Reason;

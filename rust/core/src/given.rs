@@ -1,5 +1,7 @@
 //! The values that a caller wants to encode, as the encoder sees them.
 
+use alloc::vec::Vec;
+
 use crate::number::Encoding;
 
 /// What is wrong with a value that was to be encoded.

@@ -1,7 +1,11 @@
 //! Finds the legal variants of messages by id and LEN.
 
-use std::collections::HashMap;
-use std::sync::Arc;
+#[cfg(not(feature = "std"))]
+use alloc::collections::BTreeMap as Map;
+use alloc::sync::Arc;
+use alloc::vec::Vec;
+#[cfg(feature = "std")]
+use std::collections::HashMap as Map;
 
 use crate::direction::Direction;
 use crate::frame::FrameFormat;
@@ -36,9 +40,9 @@ pub(crate) struct Legal {
     /// Indexed by the bytes of a header. A stream uses few of its cache lines.
     headings: Arc<Headings>,
     /// The groups of frames with a LEN or an id above 255, by LEN and id.
-    wide: Arc<HashMap<(u16, u16), u16>>,
+    wide: Arc<Map<(u16, u16), u16>>,
     /// The groups of frames without an id, by LEN; they have no entry elsewhere.
-    without_id: Arc<HashMap<u16, u16>>,
+    without_id: Arc<Map<u16, u16>>,
     /// The variants that share an id and a LEN; the first one that allows a frame's values counts.
     groups: Arc<[Vec<VariantId>]>,
     known: Arc<Set>,
@@ -62,7 +66,7 @@ impl Legal {
             groups.add(length, id, variant);
         }
         let mut headings = [BAD_LENGTH; 0x1_0000];
-        let mut wide = HashMap::new();
+        let mut wide = Map::new();
         for ((length, id), group) in groups.named {
             match (u8::try_from(length), u8::try_from(id)) {
                 (Ok(length), Ok(id)) => {
@@ -223,8 +227,8 @@ impl Set {
 /// The groups while they are being collected.
 #[derive(Default)]
 struct Groups {
-    named: HashMap<(u16, u16), u16>,
-    without_id: HashMap<u16, u16>,
+    named: Map<(u16, u16), u16>,
+    without_id: Map<u16, u16>,
     variants: Vec<Vec<VariantId>>,
 }
 

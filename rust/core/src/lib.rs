@@ -4,8 +4,19 @@
 //! a [`Framer`] cuts frames out of a stream. This crate knows no command by name, does no I/O,
 //! reads no clock and writes no error texts: an error is a kind and a place. The Python reference in
 //! `python/cobotwire/codec/reference` is the specification; this crate returns the same results.
+//!
+//! Without the feature `std`, which is on by default, it needs only `alloc`. Then it has one thread,
+//! in which a [`Table`] stays, and does not read in bulk, read captures or summarize.
 
+// What needs `std` uses more of the other modules.
+#![cfg_attr(not(feature = "std"), no_std, allow(dead_code))]
+
+#[macro_use]
+extern crate alloc;
+
+#[cfg(feature = "std")]
 mod bulk;
+#[cfg(feature = "std")]
 mod capture;
 mod check;
 mod crc;
@@ -19,6 +30,7 @@ mod framer;
 mod given;
 mod legal;
 mod message;
+#[cfg(feature = "std")]
 mod noise;
 mod number;
 mod owned;
@@ -29,16 +41,19 @@ mod rules;
 mod scan;
 mod seam;
 mod step;
+#[cfg(feature = "std")]
 mod summary;
 mod table;
 mod tally;
 mod template;
 mod write;
 
+#[cfg(feature = "std")]
 pub use bulk::{
     Advise, Cells, ColumnReader, Columns, Counted, Numbers, OffsetReader, Offsets, Plans, Rows,
     Spans, Workers,
 };
+#[cfg(feature = "std")]
 pub use capture::{
     CaptureReader, Damage, Decoder, Decoders, Fault, Interface, PacketDirection, StreamBatch, Times,
 };
@@ -52,6 +67,7 @@ pub use frame::{Frame, FrameFormat, Layout, Part};
 pub use framer::{Event, Framer};
 pub use given::{Given, Row, Unread, ValueFault};
 pub use message::{Command, Variant, VariantId};
+#[cfg(feature = "std")]
 pub use noise::{Expected, Instruction, Kind, Operand, ServoBus};
 pub use number::{Bits, Encoding, Misfit, Number, Order, Value};
 pub use owned::OwnedFrame;
@@ -59,6 +75,7 @@ pub use plain::{PlainMessage, encode_plain, read_plain};
 pub use read::BadRaw;
 pub use reason::Reason;
 pub use rules::{Rules, Verdict};
+#[cfg(feature = "std")]
 pub use summary::{Described, Extent, Names, Sink, Summary, Texts};
 pub use table::{Table, TableError};
 pub use tally::Tally;

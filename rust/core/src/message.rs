@@ -1,5 +1,7 @@
 //! Messages: their directions, their variants, and the commands that they belong to.
 
+use alloc::vec::Vec;
+
 use crate::direction::Direction;
 use crate::field::Field;
 use crate::frame::FrameFormat;

@@ -1,5 +1,7 @@
 //! Numbers on the wire: their bytes, raw values and physical values.
 
+use alloc::vec::Vec;
+
 /// Up to this number a double holds every integer.
 const EXACT: u64 = 1 << 53;
 
@@ -205,7 +207,8 @@ impl Number {
     /// Return the physical value of a raw value. Only the division rounds: both casts are exact,
     /// which [`Number::check`] ensures.
     #[inline]
-    pub(crate) fn physical(&self, raw: i64) -> Value {
+    #[must_use]
+    pub fn physical(&self, raw: i64) -> Value {
         if self.float {
             Value::Real(float_of_raw(raw, self.width))
         } else if self.scaled() {
@@ -337,17 +340,17 @@ fn join(unsigned: i64, byte: &u8) -> i64 {
     unsigned << 8 | i64::from(*byte)
 }
 
-/// Return the nearest integer, ties to even, for a magnitude below 2^51, as all bounds are.
+/// Return the nearest integer, ties to even.
 ///
-/// The sum of such a double and 2^52 has no bits for fractions, so the addition rounds. The
-/// standard library's function calls the C library, unless the compiler knows that the processor
-/// has an instruction for it.
+/// The sum of a double below 2^52 and 2^52 has no bits for fractions, so the addition rounds; a
+/// larger double is an integer. The standard library's function calls the C library, unless the
+/// compiler knows that the processor has an instruction for it.
 fn nearest(real: f64) -> f64 {
     const NO_HALVES: f64 = (1_u64 << 52) as f64;
     let shift = NO_HALVES.copysign(real);
-    if real.abs() < NO_HALVES / 2.0 {
+    if real.abs() < NO_HALVES {
         real + shift - shift
     } else {
-        real.round_ties_even()
+        real
     }
 }

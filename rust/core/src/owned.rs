@@ -1,5 +1,7 @@
 //! A frame that owns its bytes.
 
+use alloc::boxed::Box;
+
 use crate::frame::{Frame, FrameFormat};
 
 /// A frame that owns its bytes. A short frame stores them in place, without an allocation.

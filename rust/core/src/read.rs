@@ -1,5 +1,7 @@
 //! Reads the values of a frame as one variant.
 
+use alloc::vec::Vec;
+
 use crate::field::{Field, Shape};
 use crate::message::{Variant, VariantId};
 use crate::number::{Number, Value};

@@ -1,6 +1,7 @@
 //! Keeps the start of an incomplete frame between two calls.
 
-use std::mem;
+use alloc::vec::Vec;
+use core::mem;
 
 /// The bytes that wait, and their position. They are fewer than the longest frame has.
 #[derive(Clone, Debug, Default)]

@@ -3,6 +3,10 @@
 //! Names, texts and units stay in Python. [`Table::new`] checks every property on which the codecs
 //! rely.
 
+use alloc::vec::Vec;
+#[cfg(not(feature = "std"))]
+use core::cell::OnceCell as OnceLock;
+#[cfg(feature = "std")]
 use std::sync::OnceLock;
 
 use crate::direction::{Direction, Listening};

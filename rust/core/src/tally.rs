@@ -1,6 +1,6 @@
 //! Counts of what a framer has received.
 
-use std::collections::BTreeMap;
+use alloc::collections::BTreeMap;
 
 use crate::reason::Reason;
 

@@ -4,6 +4,8 @@
 //! template handles only values that are allowed. For everything else it returns `None`; then the
 //! general encoder and decoder do the work, and report what is wrong.
 
+use alloc::vec::Vec;
+
 use crate::direction::Direction;
 use crate::field::{Field, Shape};
 use crate::frame::FrameFormat;

@@ -1,5 +1,7 @@
 //! Encodes values as the data bytes of one variant.
 
+use alloc::vec::Vec;
+
 use crate::field::{Field, Shape};
 use crate::given::{Given, Row, Unread, ValueFault};
 use crate::message::Variant;

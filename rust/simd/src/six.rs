@@ -1,6 +1,7 @@
 //! Reads rows of six big-endian numbers of two bytes, as joint angles and coordinates are.
 
 /// The numbers in a row.
+#[cfg(target_arch = "x86_64")]
 const NUMBERS: usize = 6;
 
 /// The rules of the numbers of a row. The last two of each array belong to no number.
@@ -60,6 +61,7 @@ impl Six {
     /// Return the bounds in 16 bits: a raw value that fits the type has the same bits as the number
     /// on the wire. Distances from the least raw value are unique modulo 2^16 if both bounds are
     /// raw values.
+    #[cfg(target_arch = "x86_64")]
     fn narrow(&self) -> Option<Narrow> {
         let mut bounds = Narrow {
             least: [0; 8],
@@ -83,6 +85,7 @@ impl Six {
 }
 
 /// The least raw value of each number, modulo 2^16, and how far the largest one is from it.
+#[cfg(target_arch = "x86_64")]
 struct Narrow {
     least: [u16; 8],
     span: [u16; 8],

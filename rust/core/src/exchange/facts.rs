@@ -1,5 +1,9 @@
 //! What the exchange must know of a protocol besides its frames.
 
+use alloc::boxed::Box;
+use alloc::vec::Vec;
+
+use super::request::Replier;
 use crate::table::Table;
 
 /// Nanoseconds of a monotonic clock, or between two of its moments.
@@ -69,6 +73,17 @@ pub struct Facts {
     pub statuses: Vec<Vec<usize>>,
 }
 
+/// An address of the frame format.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Addressee {
+    /// The byte.
+    pub value: u8,
+    /// Who replies to a request to it.
+    pub replier: Replier,
+    /// How many joints the device has; 0: those of the protocol.
+    pub joints: usize,
+}
+
 /// A table, and what the exchange must know of each of its commands, in the same order.
 #[derive(Clone, Debug)]
 pub struct Protocol {
@@ -79,4 +94,9 @@ pub struct Protocol {
     /// Whether a message of the device reports the end of a motion, so that acknowledgements of
     /// motions come at once.
     pub reports_ends: bool,
+    /// The addresses that the protocol describes. Any other address of the frame format is that of
+    /// one device with all joints.
+    pub addresses: Vec<Addressee>,
+    /// How many joints the arm has.
+    pub joints: usize,
 }

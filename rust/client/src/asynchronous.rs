@@ -1,0 +1,478 @@
+//! The asynchronous client: a task serves the stream, and calls send it their requests.
+
+use std::marker::PhantomData;
+use std::pin::Pin;
+use std::sync::{Arc, Mutex};
+use std::task::{Context, Waker};
+use std::time::{Duration, Instant};
+
+use cobotwire_core::exchange::{Answer, Ticket};
+use tokio::io::{AsyncRead, AsyncReadExt, AsyncWrite, AsyncWriteExt};
+use tokio::net::TcpStream;
+use tokio::sync::mpsc::{UnboundedReceiver, UnboundedSender, unbounded_channel};
+use tokio::sync::{Notify, oneshot};
+
+use crate::encoder::{Encoder, Prepared, in_degrees, result};
+use crate::options::{Settings, nanos};
+use crate::port::socket_of;
+use crate::session::{Outgoing, Queue, Session};
+use crate::typed::{DeviceEvent, Request, Table};
+use crate::{Address, Error, OnDrop, Options, Sample, lock};
+
+/// A stream of bytes to a device.
+pub trait ByteStream: AsyncRead + AsyncWrite + Send + Unpin + 'static {}
+
+impl<T: AsyncRead + AsyncWrite + Send + Unpin + 'static> ByteStream for T {}
+
+type Outcome = Result<Option<Answer>, Error>;
+
+/// What callers want of the task.
+enum Order {
+    Call(Prepared, Settings, u64, oneshot::Sender<Outcome>),
+    /// A caller waits no longer.
+    GivenUp,
+    Subscribe(Arc<Mutex<Queue>>),
+    Close(oneshot::Sender<()>),
+}
+
+/// An arm at the other end of a stream; clients of editions add a method for each command.
+///
+/// A clone is a second handle of the same connection. If the future of a call is dropped, its
+/// request is given up: it is not sent if it was not yet, and never twice.
+#[derive(Clone)]
+pub struct AsyncClient {
+    encoder: Arc<Encoder>,
+    orders: UnboundedSender<Order>,
+    arrived: Arc<Notify>,
+    url: Arc<str>,
+    settings: Settings,
+    begun: Instant,
+}
+
+impl std::fmt::Debug for AsyncClient {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(
+            f,
+            "AsyncClient({} on {})",
+            self.encoder.edition.name, self.url
+        )
+    }
+}
+
+impl AsyncClient {
+    /// Connect to `socket://host:port`.
+    ///
+    /// # Errors
+    /// The address or an option is not allowed, or nobody listens there.
+    pub async fn open(edition: Table, port: &str, options: Options) -> Result<Self, Error> {
+        let Some(address) = socket_of(port) else {
+            let text = format!("{port} is not socket://host:port; pass other streams to over()");
+            return Err(Error::usage(text));
+        };
+        let connected =
+            tokio::time::timeout(Duration::from_secs(5), TcpStream::connect(address)).await;
+        let stream = connected.unwrap_or_else(|late| Err(late.into()));
+        let ready = stream.and_then(|stream| stream.set_nodelay(true).map(|()| stream));
+        let stream = ready
+            .map_err(|error| Error::link(port, &format!("cannot be opened: {error}"), Some(0)))?;
+        Self::with(edition, stream, port, options)
+    }
+
+    /// Drive an arm over an open stream of bytes; a task of the present runtime serves it.
+    ///
+    /// # Errors
+    /// An option is not allowed, or no runtime is entered.
+    pub fn over(edition: Table, stream: impl ByteStream, options: Options) -> Result<Self, Error> {
+        Self::with(edition, stream, "stream", options)
+    }
+
+    fn with(
+        edition: Table,
+        stream: impl ByteStream,
+        url: &str,
+        options: Options,
+    ) -> Result<Self, Error> {
+        let settings = Settings::new(&edition, &options)?;
+        let encoder = Arc::new(Encoder::new(edition, &options.limits)?);
+        let runtime = tokio::runtime::Handle::try_current();
+        let runtime =
+            runtime.map_err(|_| Error::usage("an asynchronous client needs a runtime of tokio"))?;
+        let (sender, orders) = unbounded_channel();
+        let arrived = Arc::new(Notify::new());
+        let server = Server {
+            session: Session::new(encoder.clone(), url),
+            stream,
+            arrived: arrived.clone(),
+            callers: Vec::new(),
+            buffer: vec![0; 4096],
+            on_drop: options.on_drop,
+            open: true,
+        };
+        let begun = server.session.begun;
+        runtime.spawn(server.run(orders));
+        Ok(Self {
+            encoder,
+            orders: sender,
+            arrived,
+            url: url.into(),
+            settings,
+            begun,
+        })
+    }
+
+    /// Return the table of the edition, within the limits of this client.
+    #[must_use]
+    pub fn edition(&self) -> &Table {
+        &self.encoder.edition
+    }
+
+    /// Close the stream. Nothing is sent to the arm; other calls end with a `LinkError`.
+    pub async fn close(&self) {
+        let (done, closed) = oneshot::channel();
+        let _ = self.orders.send(Order::Close(done));
+        let _ = closed.await;
+    }
+
+    /// Return this client for another address, by its name or number.
+    ///
+    /// # Errors
+    /// The edition has no such address.
+    pub fn at(&self, address: impl Into<Address>) -> Result<Self, Error> {
+        let mut other = self.clone();
+        other.settings.address = Some(address.into().find(self.edition())?);
+        Ok(other)
+    }
+
+    /// Return this client so that requests without a reply wait for their acknowledgement.
+    #[must_use]
+    pub fn acknowledged(&self, within: Duration) -> Self {
+        let mut other = self.clone();
+        other.settings.ack_within = Some(nanos(within));
+        other
+    }
+
+    /// Send a request; return the result of its reply, if it has one.
+    ///
+    /// # Errors
+    /// An argument is not allowed, the stream is lost, or the reply is illegal or missing.
+    pub async fn call<R: Request>(&self, request: R) -> Result<R::Reply, Error> {
+        let prepared = self.prepare(request)?;
+        self.result::<R>(&prepared, self.perform(&prepared).await?)
+    }
+
+    /// Return a source of samples of a query, `rate` times a second; see `Client::poll`.
+    ///
+    /// # Errors
+    /// The request is no query, an argument is not allowed, or the rate is not above 0 and up to
+    /// 1000.
+    pub fn poll<R: Request>(&self, request: R, rate: f64) -> Result<AsyncPolls<R>, Error> {
+        let prepared = self.prepare(request)?;
+        let mut client = self.clone();
+        client.settings.retry.attempts = 1;
+        let period = crate::query_period(self.edition(), &prepared, rate)?;
+        Ok(AsyncPolls {
+            client,
+            prepared,
+            period,
+            next: None,
+            missed: 0,
+            reply: PhantomData,
+        })
+    }
+
+    /// Return a source of the events of a type that come from now on.
+    ///
+    /// # Errors
+    /// The edition has no such event.
+    pub fn events<E: DeviceEvent>(&self) -> Result<AsyncEvents<E>, Error> {
+        let queue = Arc::new(Mutex::new(Queue::new(self.encoder.command(E::COMMAND)?)));
+        let _ = self.orders.send(Order::Subscribe(queue.clone()));
+        Ok(AsyncEvents {
+            client: self.clone(),
+            queue,
+            event: PhantomData,
+        })
+    }
+
+    fn prepare<R: Request>(&self, request: R) -> Result<Prepared, Error> {
+        let arguments = in_degrees(request.arguments(), R::RADIANS);
+        let prepared = self
+            .encoder
+            .prepare(R::COMMAND, &arguments, self.settings.address)?;
+        crate::check_acknowledged(&prepared, &self.settings)?;
+        Ok(prepared)
+    }
+
+    fn result<R: Request>(
+        &self,
+        prepared: &Prepared,
+        answer: Option<Answer>,
+    ) -> Result<R::Reply, Error> {
+        let fields = answer.map(|answer| self.encoder.fields(&prepared.request, answer));
+        result(fields.unwrap_or_default(), R::RESULTS, R::RADIANS)
+    }
+
+    async fn perform(&self, prepared: &Prepared) -> Outcome {
+        let (sender, receiver) = oneshot::channel();
+        let called_at = nanos(self.begun.elapsed());
+        let order = Order::Call(prepared.clone(), self.settings.clone(), called_at, sender);
+        let _ = self.orders.send(order);
+        let call = Call {
+            orders: &self.orders,
+            receiver,
+        };
+        call.outcome()
+            .await
+            .unwrap_or_else(|| Err(Error::link(&self.url, "is closed", Some(0))))
+    }
+}
+
+/// A call that tells the task when it is dropped.
+struct Call<'a> {
+    orders: &'a UnboundedSender<Order>,
+    receiver: oneshot::Receiver<Outcome>,
+}
+
+impl Call<'_> {
+    async fn outcome(mut self) -> Option<Outcome> {
+        (&mut self.receiver).await.ok()
+    }
+}
+
+impl Drop for Call<'_> {
+    fn drop(&mut self) {
+        self.receiver.close();
+        if self.receiver.is_terminated() {
+            return;
+        }
+        let _ = self.orders.send(Order::GivenUp);
+    }
+}
+
+/// The samples of a query; see [`AsyncClient::poll`].
+pub struct AsyncPolls<R> {
+    client: AsyncClient,
+    prepared: Prepared,
+    period: Duration,
+    next: Option<Instant>,
+    missed: u64,
+    reply: PhantomData<fn() -> R>,
+}
+
+impl<R: Request> AsyncPolls<R> {
+    /// Return how many periods have had no sample.
+    #[must_use]
+    pub fn missed(&self) -> u64 {
+        self.missed
+    }
+
+    /// Wait for the next sample.
+    ///
+    /// # Errors
+    /// The stream is lost.
+    pub async fn next(&mut self) -> Result<Sample<R::Reply>, Error> {
+        loop {
+            let at = crate::tick(&mut self.next, self.period, &mut self.missed);
+            tokio::time::sleep_until(at.into()).await;
+            let requested_at = Instant::now();
+            match self.client.perform(&self.prepared).await {
+                Ok(answer) => {
+                    let value = self.client.result::<R>(&self.prepared, answer)?;
+                    return Ok(Sample {
+                        value,
+                        requested_at,
+                        replied_at: Instant::now(),
+                    });
+                }
+                Err(error @ Error::LinkError { .. }) => return Err(error),
+                Err(_) => self.missed += 1,
+            }
+        }
+    }
+}
+
+/// Events of one type; see [`AsyncClient::events`].
+pub struct AsyncEvents<E> {
+    client: AsyncClient,
+    queue: Arc<Mutex<Queue>>,
+    event: PhantomData<fn() -> E>,
+}
+
+impl<E: DeviceEvent> AsyncEvents<E> {
+    /// Return how many events were dropped because too many waited: always the oldest.
+    #[must_use]
+    pub fn lost(&self) -> u64 {
+        lock(&self.queue).lost
+    }
+
+    /// Wait for the next event.
+    ///
+    /// # Errors
+    /// The stream is lost, and no event waits.
+    pub async fn next(&mut self) -> Result<E, Error> {
+        loop {
+            // Before the queue is read, so that no event is overlooked.
+            let arrived = self.client.arrived.notified();
+            let event = lock(&self.queue).events.pop_front();
+            if let Some(fields) = event {
+                return result(fields, E::FIELDS, &[]);
+            }
+            if self.client.orders.is_closed() {
+                return Err(Error::link(&self.client.url, "is closed", None));
+            }
+            arrived.await;
+        }
+    }
+}
+
+/// The task that serves a stream.
+struct Server<S: ByteStream> {
+    session: Session,
+    stream: S,
+    arrived: Arc<Notify>,
+    callers: Vec<(Ticket, Prepared, oneshot::Sender<Outcome>)>,
+    buffer: Vec<u8>,
+    on_drop: OnDrop,
+    open: bool,
+}
+
+impl<S: ByteStream> Server<S> {
+    async fn run(mut self, mut orders: UnboundedReceiver<Order>) {
+        while self.open {
+            let idle = self.session.idle().unwrap_or(Duration::from_secs(3600));
+            tokio::select! {
+                order = orders.recv() => match order {
+                    Some(order) => self.obey(order).await,
+                    None => break,
+                },
+                size = self.stream.read(&mut self.buffer) => self.take(size),
+                () = tokio::time::sleep(idle) => {}
+            }
+            self.step().await;
+            self.finish();
+        }
+        // Events wake their consumers, which find the channel closed.
+        orders.close();
+        self.finish();
+        self.arrived.notify_waiters();
+    }
+
+    async fn obey(&mut self, order: Order) {
+        match order {
+            Order::Subscribe(queue) => self.session.subscribe(&queue),
+            Order::GivenUp => {}
+            Order::Close(done) => {
+                self.session.forget_motion();
+                self.lose("is closed");
+                let _ = done.send(());
+            }
+            // Its caller has given it up before it was sent.
+            Order::Call(_, _, _, caller) if caller.is_closed() => {}
+            Order::Call(prepared, settings, _, caller) if prepared.awaits_reply => {
+                let ticket = self.session.enqueue(&prepared, &settings);
+                self.callers.push((ticket, prepared, caller));
+            }
+            Order::Call(prepared, settings, called_at, caller) => {
+                match self.session.one_way(&prepared, &settings, called_at) {
+                    Err(error) => drop(caller.send(Err(error))),
+                    Ok((outgoing, ticket)) => match (self.write(&outgoing).await, ticket) {
+                        (Err(error), ticket) => {
+                            ticket
+                                .into_iter()
+                                .for_each(|ticket| self.session.give_up(ticket));
+                            drop(caller.send(Err(error)));
+                        }
+                        (Ok(()), Some(ticket)) => self.callers.push((ticket, prepared, caller)),
+                        (Ok(()), None) => drop(caller.send(Ok(None))),
+                    },
+                }
+            }
+        }
+    }
+
+    /// Take what was read.
+    fn take(&mut self, size: std::io::Result<usize>) {
+        match size {
+            Ok(0) => self.lose("the peer has closed the connection"),
+            Ok(size) => {
+                let data = self.buffer.get(..size).unwrap_or_default();
+                self.session.advance(data);
+                self.arrived.notify_waiters();
+            }
+            Err(error) => self.lose(&format!("cannot be read: {error}")),
+        }
+    }
+
+    /// Read what has come, let time pass, and send the request that is next.
+    async fn step(&mut self) {
+        while self.open {
+            let size = tokio::select! {
+                biased;
+                size = self.stream.read(&mut self.buffer) => Some(size),
+                () = std::future::ready(()) => None,
+            };
+            let drained = size.is_none();
+            size.into_iter().for_each(|size| self.take(size));
+            if !self.open || !self.session.advance(&[]) {
+                return;
+            }
+            self.session.exchange.note_full(false);
+            match self.session.next(drained) {
+                Some(outgoing) => drop(self.write(&outgoing).await),
+                None if drained => return,
+                None => {}
+            }
+        }
+    }
+
+    /// Write a request whole, within its time.
+    async fn write(&mut self, outgoing: &Outgoing) -> Result<(), Error> {
+        let bytes = outgoing.bytes();
+        let (mut taken, mut fault) = (0, None);
+        while let Some(rest) = bytes.get(taken..).filter(|rest| !rest.is_empty()) {
+            match tokio::time::timeout_at(outgoing.until.into(), self.stream.write(rest)).await {
+                Ok(Ok(size)) if size > 0 => taken += size,
+                Ok(Ok(_)) | Err(_) => break,
+                Ok(Err(error)) => {
+                    fault = Some(error);
+                    break;
+                }
+            }
+        }
+        self.session.wrote(outgoing, taken, fault.as_ref())
+    }
+
+    fn lose(&mut self, detail: &str) {
+        self.session.lose(detail);
+        self.open = false;
+    }
+
+    /// Report the requests that have ended, and give up those without a caller.
+    fn finish(&mut self) {
+        let (session, open) = (&mut self.session, self.open);
+        let waiting = std::mem::take(&mut self.callers).into_iter();
+        let left = waiting.filter_map(|(ticket, prepared, caller)| {
+            if let Some(outcome) = session.take(ticket, &prepared) {
+                drop(caller.send(outcome.map(Some)));
+                return None;
+            }
+            if caller.is_closed() || !open {
+                session.give_up(ticket);
+                return None;
+            }
+            Some((ticket, prepared, caller))
+        });
+        self.callers = left.collect();
+    }
+}
+
+impl<S: ByteStream> Drop for Server<S> {
+    fn drop(&mut self) {
+        let bytes = self.session.stops(self.on_drop);
+        if self.open && !bytes.is_empty() {
+            // The runtime may be at its end, so nothing can be waited for.
+            let mut context = Context::from_waker(Waker::noop());
+            let _ = Pin::new(&mut self.stream).poll_write(&mut context, &bytes);
+        }
+    }
+}

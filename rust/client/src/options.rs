@@ -1,0 +1,170 @@
+//! The options of a client.
+
+use std::time::Duration;
+
+use cobotwire_core::exchange::{Nanos, RetryPolicy as Policy};
+use cobotwire_table::{Edition, Shown, bad_argument};
+
+use crate::{Error, Limits};
+
+/// How a client sends requests, and what it does with the arm at its end.
+#[derive(Clone, Debug, Default)]
+pub struct Options {
+    /// How long the arm has to reply once a request is sent; default: as the edition says.
+    pub timeout: Option<Duration>,
+    /// How long a call may take from its beginning, waiting for its turn included; default: any
+    /// time.
+    pub deadline: Option<Duration>,
+    /// How often queries are sent within their timeout.
+    pub retry: RetryPolicy,
+    /// The device that requests go to; default: the edition's first address, if it has any.
+    pub address: Option<Address>,
+    /// The rate of a serial port in bits a second; default: that of the edition.
+    pub baudrate: Option<u32>,
+    /// How fast the arm may be sent, and where.
+    pub limits: Limits,
+    /// What happens to an arm in motion when the client is dropped without `close()`.
+    pub on_drop: OnDrop,
+}
+
+/// What happens to an arm when its client is dropped without `close()`: by `?`, a panic, or the end
+/// of the program.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum OnDrop {
+    /// `stop` is sent once to each device that this client has set in motion.
+    #[default]
+    Stop,
+    /// Nothing is sent.
+    Leave,
+}
+
+/// Splits the timeout of a query into attempts. Only queries are ever sent again.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct RetryPolicy {
+    /// How often a query is sent at most, 1..100.
+    pub attempts: u8,
+    /// What each attempt gets at least; a short timeout has fewer attempts.
+    pub shortest_attempt: Duration,
+    /// For how long after an attempt its late reply is still expected. A later request with a reply
+    /// that would look the same is held until then.
+    pub grace: Duration,
+}
+
+impl Default for RetryPolicy {
+    fn default() -> Self {
+        let usual = Policy::default();
+        Self {
+            attempts: usual.attempts,
+            shortest_attempt: Duration::from_nanos(usual.shortest_attempt),
+            grace: Duration::from_nanos(usual.grace),
+        }
+    }
+}
+
+impl RetryPolicy {
+    pub(crate) fn checked(&self) -> Result<Policy, Error> {
+        const HOUR: Duration = Duration::from_secs(3600);
+        let wrong = |name: &str, value: Shown, allowed: &str| {
+            Err(Error::usage(bad_argument(
+                &format!("retry.{name}"),
+                &value,
+                allowed,
+            )))
+        };
+        if !(1..=100).contains(&self.attempts) {
+            let given = Shown::Integer(i64::from(self.attempts));
+            return wrong("attempts", given, "a whole number 1..100");
+        }
+        if self.shortest_attempt.is_zero() || self.shortest_attempt >= HOUR {
+            let given = Shown::Real(self.shortest_attempt.as_secs_f64());
+            return wrong("shortest_attempt", given, "seconds above 0 and below 3600");
+        }
+        if self.grace >= HOUR {
+            let given = Shown::Real(self.grace.as_secs_f64());
+            return wrong("grace", given, "seconds from 0 to below 3600");
+        }
+        Ok(Policy {
+            attempts: self.attempts,
+            shortest_attempt: nanos(self.shortest_attempt),
+            grace: nanos(self.grace),
+        })
+    }
+}
+
+/// The address of a device, by its number or its name in the edition.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Address {
+    /// The byte.
+    Number(u8),
+    /// The name.
+    Name(String),
+}
+
+impl From<u8> for Address {
+    fn from(number: u8) -> Self {
+        Self::Number(number)
+    }
+}
+
+impl From<&str> for Address {
+    fn from(name: &str) -> Self {
+        Self::Name(name.to_owned())
+    }
+}
+
+impl Address {
+    pub(crate) fn find(&self, edition: &Edition) -> Result<u8, Error> {
+        let mut known = edition.addresses.iter();
+        let found = match self {
+            Self::Number(number) => {
+                let all = &edition.protocol.table.frame().addresses;
+                all.contains(number).then_some(*number)
+            }
+            Self::Name(name) => known
+                .find(|address| address.name.eq_ignore_ascii_case(name))
+                .map(|address| address.value),
+        };
+        let number = match self {
+            Self::Number(number) => Some(*number),
+            Self::Name(_) => None,
+        };
+        found.ok_or_else(|| match self {
+            Self::Name(name) if !edition.addresses.is_empty() => {
+                let names = edition.addresses.iter().map(|address| &*address.name);
+                let names = names.collect::<Vec<_>>().join(", ");
+                Error::usage(bad_argument("address", &Shown::Text(name.clone()), &names))
+            }
+            _ => Error::usage(edition.no_address(number)),
+        })
+    }
+}
+
+/// What a handle of a client sends each request with.
+#[derive(Clone, Debug)]
+pub(crate) struct Settings {
+    pub address: Option<u8>,
+    pub timeout: Option<Nanos>,
+    pub deadline: Option<Nanos>,
+    pub ack_within: Option<Nanos>,
+    pub retry: Policy,
+}
+
+impl Settings {
+    pub fn new(edition: &Edition, options: &Options) -> Result<Self, Error> {
+        let address = options.address.as_ref();
+        Ok(Self {
+            address: address.map(|address| address.find(edition)).transpose()?,
+            timeout: options.timeout.map(nanos),
+            deadline: options.deadline.map(nanos),
+            ack_within: None,
+            retry: options.retry.checked()?,
+        })
+    }
+}
+
+pub(crate) fn nanos(time: Duration) -> Nanos {
+    // Three hundred years are no limit.
+    Nanos::try_from(time.as_nanos())
+        .unwrap_or(Nanos::MAX / 2)
+        .min(Nanos::MAX / 2)
+}

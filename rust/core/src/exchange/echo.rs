@@ -1,0 +1,101 @@
+//! Whether the line echoes: a loop, some adapters and a transponder send our own bytes back.
+//!
+//! A few requests are legal replies too. So the first copy of a request is only a candidate. If
+//! another reply follows, that one counts. If none does by the deadline, the candidate counts,
+//! unless the line was ever seen to echo: to send back a request that cannot be a reply.
+
+use alloc::vec::Vec;
+
+use super::events::SeenFrame;
+use super::text::find;
+
+/// A request that was sent; `copies` of it may begin at `offset` of the stream or later.
+#[derive(Clone, Debug)]
+struct Sent {
+    frame: Vec<u8>,
+    offset: u64,
+    copies: usize,
+}
+
+impl Sent {
+    fn new(frame: &[u8], offset: u64) -> Option<Self> {
+        let (frame, copies) = (frame.into(), 1);
+        Some(Self {
+            frame,
+            offset,
+            copies,
+        })
+    }
+
+    /// Take a frame if it is one of the copies; return whether it is.
+    fn take(&mut self, frame: &SeenFrame) -> bool {
+        let own = self.copies > 0 && frame.bytes() == self.frame && frame.offset >= self.offset;
+        self.copies -= usize::from(own);
+        own
+    }
+}
+
+/// Looks for copies of the last request and of the last one-way request, which may go out while
+/// another request waits for its reply.
+#[derive(Clone, Debug, Default)]
+pub(super) struct EchoDetector {
+    /// Whether the line was seen to echo.
+    pub(super) proven: bool,
+    request: Option<Sent>,
+    one_way: Option<Sent>,
+    noise: Vec<u8>,
+}
+
+impl EchoDetector {
+    /// Note a request that goes out; its copy can begin at `offset` of the stream.
+    pub(super) fn sent(&mut self, frame: &[u8], offset: u64) {
+        self.request = Sent::new(frame, offset);
+        self.noise.clear();
+    }
+
+    /// Note a one-way request that goes out, likewise.
+    pub(super) fn sent_one_way(&mut self, frame: &[u8], offset: u64) {
+        self.one_way = Sent::new(frame, offset);
+        self.noise.clear();
+    }
+
+    /// Note that the last request that waits for a reply goes out once more.
+    pub(super) fn sent_again(&mut self) {
+        if let Some(sent) = &mut self.request {
+            sent.copies += 1;
+        }
+        self.noise.clear();
+    }
+
+    /// Look for copies in noise: most requests are not legal replies, so they come as noise.
+    pub(super) fn add_noise(&mut self, offset: u64, data: &[u8]) {
+        let watched = || [&self.request, &self.one_way].into_iter().flatten();
+        let Some(first) = watched().map(|sent| sent.offset).min() else {
+            return;
+        };
+        if self.proven {
+            return;
+        }
+        let mut noise = self.noise.clone();
+        noise.extend_from_slice(since(first, offset, data));
+        self.proven = watched().any(|sent| find(&noise, &sent.frame).is_some());
+        let longest = watched().map(|sent| sent.frame.len()).max();
+        let old = noise.len().saturating_sub(longest.unwrap_or_default());
+        noise.drain(..old);
+        self.noise = noise;
+    }
+
+    /// Return whether a frame is a copy of a request. Each sending has one copy; one that comes
+    /// beyond that is the arm's own frame.
+    pub(super) fn take_copy(&mut self, frame: &SeenFrame) -> bool {
+        self.noise.clear();
+        let take = |sent: &mut Option<Sent>| sent.as_mut().is_some_and(|sent| sent.take(frame));
+        take(&mut self.request) || take(&mut self.one_way)
+    }
+}
+
+/// Return the part of some bytes, which begin at `offset` of the stream, from `first` on.
+pub(super) fn since(first: u64, offset: u64, data: &[u8]) -> &[u8] {
+    let skipped = usize::try_from(first.saturating_sub(offset)).unwrap_or(usize::MAX);
+    data.get(skipped..).unwrap_or_default()
+}

@@ -1,0 +1,186 @@
+//! Requests that are validated and encoded, not yet sent.
+
+use alloc::vec::Vec;
+
+use super::facts::{Facts, Protocol};
+use super::text::TextFault;
+use super::values::{Arguments, fields};
+use crate::decode::{Decoded, decode};
+use crate::direction::Direction;
+use crate::encode::{Choice, encode};
+use crate::given::Given;
+use crate::message::Command;
+use crate::write::EncodeError;
+
+/// Who replies to a request.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Replier {
+    /// The arm: frames have no address.
+    Unaddressed,
+    /// The device with this address.
+    Address(u8),
+    /// Any device: each that received the request may reply.
+    Anybody,
+    /// One device for all.
+    Somebody,
+    /// Nobody.
+    Nobody,
+}
+
+/// A request as it goes over the line.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Request {
+    /// The index of the command.
+    pub command: usize,
+    /// The frame.
+    pub frame: Vec<u8>,
+    /// The text that follows some frames.
+    pub text: Vec<u8>,
+    /// Who replies.
+    pub replier: Replier,
+    /// The arguments that a reply may repeat, as it would repeat them; empty where none does.
+    pub(super) arguments: Arguments,
+}
+
+/// Why a request was not encoded; `E` is the [`EncodeError`] of a value.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum RequestError<E> {
+    /// There is no command with that index.
+    Command,
+    /// There is no such address.
+    Address,
+    /// The command has a reply, and nobody replies to the address.
+    Unanswered,
+    /// The command has rows of a value for each joint, and the device has fewer joints.
+    LacksJoints,
+    /// A value is not allowed.
+    Values(E),
+    /// A text cannot be sent.
+    Text(TextFault),
+}
+
+impl Request {
+    /// Validate and encode a request; `address` left out: to the first one of the frame format, if
+    /// it has addresses. Without `variant`, it is the first one that allows the values. `texts` are
+    /// the fields of a text after the frame.
+    ///
+    /// # Errors
+    /// There is no such command or address, or an argument is not allowed.
+    pub fn encode<V: Given>(
+        protocol: &Protocol,
+        command: usize,
+        values: &V::Row,
+        texts: &[&str],
+        address: Option<u8>,
+        variant: Option<usize>,
+    ) -> Result<Self, RequestError<EncodeError<V>>> {
+        let format = protocol.table.frame();
+        let address = address.or(format.addresses.first().copied());
+        if address.is_some_and(|address| !format.addresses.contains(&address)) {
+            return Err(RequestError::Address);
+        }
+        let found = protocol.command(command).ok_or(RequestError::Command)?;
+        let replier = protocol.replier(address);
+        if replier == Replier::Nobody && found.1.requires_reply() {
+            return Err(RequestError::Unanswered);
+        }
+        if protocol.lacks_joints(address, found.0) {
+            return Err(RequestError::LacksJoints);
+        }
+        let (record, facts) = found;
+        let choice = Choice { variant, address };
+        let frame = encode(format, record, Direction::Request, values, choice);
+        let frame = frame.map_err(RequestError::Values)?;
+        let mut request = Self {
+            command,
+            frame,
+            text: Vec::new(),
+            replier,
+            arguments: Vec::new(),
+        };
+        if let Some(form) = &facts.request_text {
+            request.text = form.encode(texts).map_err(RequestError::Text)?;
+        } else if facts.can_repeat() {
+            // Decoding our own frame gives the arguments as a reply would repeat them.
+            let frame = &request.frame;
+            if let Ok(decoded) = decode(&protocol.table, Direction::Request, frame, Some(command)) {
+                request.arguments = arguments(facts, &decoded);
+            }
+        }
+        Ok(request)
+    }
+
+    /// Return the request that a frame is; `None`: the protocol has no such request.
+    #[must_use]
+    pub fn from_frame(protocol: &Protocol, frame: &[u8]) -> Option<Self> {
+        let decoded = decode(&protocol.table, Direction::Request, frame, None).ok()?;
+        let command = decoded.variant.command;
+        let (_, facts) = protocol.command(command)?;
+        Some(Self {
+            command,
+            frame: frame.into(),
+            text: Vec::new(),
+            replier: protocol.replier(decoded.address),
+            arguments: arguments(facts, &decoded),
+        })
+    }
+}
+
+/// Return the arguments of a request that a reply may repeat.
+fn arguments(facts: &Facts, decoded: &Decoded) -> Arguments {
+    let names = facts.request.get(decoded.variant.variant);
+    let names = names.filter(|_| facts.can_repeat());
+    let found = fields(names.map_or(&[], Vec::as_slice), decoded);
+    let owned = found.map(|(named, value)| (named.name.clone(), value.to_vec()));
+    owned.collect()
+}
+
+impl Facts {
+    /// Return whether the protocol requires a reply.
+    #[must_use]
+    pub fn requires_reply(&self) -> bool {
+        (!self.reply.is_empty() && !self.ack && !self.event) || self.text.is_some()
+    }
+
+    /// Return whether a reply can repeat arguments of its request.
+    fn can_repeat(&self) -> bool {
+        self.reply.iter().flatten().any(|named| named.echo)
+    }
+}
+
+impl Protocol {
+    /// Return a command and its facts.
+    pub(super) fn command(&self, index: usize) -> Option<(&Command, &Facts)> {
+        self.table.commands().get(index).zip(self.facts.get(index))
+    }
+
+    /// Return whether a command with this id requires a reply.
+    pub(super) fn has_query(&self, id: u16) -> bool {
+        let mut commands = self.table.commands().iter().zip(&self.facts);
+        commands.any(|(command, facts)| command.id == id && facts.requires_reply())
+    }
+
+    /// Return who replies to a request to an address.
+    fn replier(&self, address: Option<u8>) -> Replier {
+        let Some(address) = address else {
+            return Replier::Unaddressed;
+        };
+        let known = self.addresses.iter().find(|known| known.value == address);
+        known.map_or(Replier::Address(address), |known| known.replier)
+    }
+
+    /// Return whether the device of an address has too few joints for a command: rows with a value
+    /// for each joint belong to the devices with all joints.
+    fn lacks_joints(&self, address: Option<u8>, command: &Command) -> bool {
+        let known = self
+            .addresses
+            .iter()
+            .find(|known| Some(known.value) == address);
+        let joints = known.map_or(0, |known| known.joints);
+        let variants = command.request.iter().chain(&command.reply);
+        let mut rows = variants
+            .flat_map(|variant| variant.fields())
+            .filter(|field| field.many);
+        joints != 0 && joints != self.joints && rows.any(|row| row.numbers(0).len() == self.joints)
+    }
+}

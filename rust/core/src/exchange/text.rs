@@ -1,0 +1,159 @@
+//! Text outside any frame: `prefix field prefix field suffix`, in ASCII.
+
+use alloc::string::String;
+use alloc::vec::Vec;
+
+use super::facts::{Nanos, TextForm};
+
+/// Names and passwords of a network have at most 32 and 63 characters.
+const LIMIT: usize = 4096;
+/// This many bytes of a text that is longer are part of its error.
+const SHOWN: usize = 64;
+
+/// What is wrong with a text that was received.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum TextError {
+    /// The byte at `offset` is not ASCII.
+    NotAscii {
+        /// Its index.
+        offset: usize,
+    },
+    /// It does not start with the first prefix.
+    Start,
+    /// It does not end with the suffix.
+    End,
+    /// A prefix stands in the rest of the text some times, not once.
+    Prefix {
+        /// The index of the prefix.
+        index: usize,
+        /// How often it stands there.
+        times: usize,
+        /// Where the rest begins.
+        offset: usize,
+    },
+    /// It is longer than 4096 bytes.
+    TooLong,
+}
+
+/// Why texts of a caller cannot be sent.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum TextFault {
+    /// The one with this index is not printable ASCII.
+    NotPrintable(usize),
+    /// They contain what separates them, and would be read differently.
+    Ambiguous,
+}
+
+impl TextForm {
+    /// Return the bytes of a text; a missing value is empty.
+    pub(super) fn encode(&self, values: &[&str]) -> Result<Vec<u8>, TextFault> {
+        let value = |index: usize| values.get(index).copied().unwrap_or_default();
+        let printable = |text: &str| text.bytes().all(|byte| matches!(byte, b' '..=b'~'));
+        let count = self.fields.len();
+        if let Some(index) = (0..count).find(|index| !printable(value(*index))) {
+            return Err(TextFault::NotPrintable(index));
+        }
+        let mut data = Vec::new();
+        for (index, prefix) in self.prefixes.iter().enumerate().take(count) {
+            data.extend_from_slice(prefix.as_bytes());
+            data.extend_from_slice(value(index).as_bytes());
+        }
+        data.extend_from_slice(self.suffix.as_bytes());
+        let meant = (0..count).map(value);
+        match self.decode(&data) {
+            Ok(read) if meant.eq(read.iter().map(String::as_str)) => Ok(data),
+            _ => Err(TextFault::Ambiguous),
+        }
+    }
+
+    /// Return the fields of a text. They may contain spaces; a final line end is dropped.
+    pub(super) fn decode(&self, data: &[u8]) -> Result<Vec<String>, TextError> {
+        if let Some(offset) = data.iter().position(|byte| !byte.is_ascii()) {
+            return Err(TextError::NotAscii { offset });
+        }
+        let text = core::str::from_utf8(data).unwrap_or_default();
+        let text = text.trim_end_matches(['\r', '\n']);
+        let (first, suffix) = (self.first_prefix(), &*self.suffix);
+        let after = text.strip_prefix(first).ok_or(TextError::Start)?;
+        let mut rest = after.strip_suffix(suffix).ok_or(TextError::End)?;
+        let mut values = Vec::new();
+        for (index, prefix) in self.prefixes.iter().enumerate().skip(1) {
+            let (times, offset) = (rest.matches(&**prefix).count(), text.len() - rest.len());
+            match rest.split_once(&**prefix) {
+                Some((value, after)) if times == 1 => {
+                    values.push(value.into());
+                    rest = after;
+                }
+                _ => {
+                    return Err(TextError::Prefix {
+                        index,
+                        times,
+                        offset,
+                    });
+                }
+            }
+        }
+        values.push(rest.into());
+        values.truncate(self.fields.len());
+        Ok(values)
+    }
+
+    fn first_prefix(&self) -> &str {
+        self.prefixes.first().map_or("", |prefix| prefix)
+    }
+}
+
+/// Collects a text reply from noise; only silence shows its end.
+///
+/// Bytes that come before its first prefix do not belong to it.
+#[derive(Clone, Debug, Default)]
+pub(super) struct TextCollector {
+    data: Vec<u8>,
+    /// When the last bytes of a text that has begun came.
+    last: Option<Nanos>,
+}
+
+impl TextCollector {
+    /// Return when the text ends unless more of it comes; `None`: it has not begun.
+    pub(super) fn ends_at(&self, form: &TextForm) -> Option<Nanos> {
+        Some(self.last?.saturating_add(form.silence))
+    }
+
+    /// Take bytes that belong to no frame.
+    pub(super) fn add(&mut self, data: &[u8], form: &TextForm, now: Nanos) {
+        if data.is_empty() {
+            return;
+        }
+        self.data.extend_from_slice(data);
+        if self.last.is_none() {
+            let prefix = form.first_prefix().as_bytes();
+            let Some(start) = find(&self.data, prefix) else {
+                // The prefix may have begun in the last bytes.
+                let kept = self.data.len().saturating_sub(prefix.len());
+                self.data.drain(..kept);
+                return;
+            };
+            self.data.drain(..start);
+        }
+        self.last = Some(now);
+        self.data.truncate(LIMIT + 1);
+    }
+
+    /// Return the fields of the text; with an error, the bytes that show it.
+    pub(super) fn decode(&self, form: &TextForm) -> Result<Vec<String>, (TextError, Vec<u8>)> {
+        if self.data.len() > LIMIT {
+            let shown = self.data.get(..SHOWN).unwrap_or_default();
+            return Err((TextError::TooLong, shown.into()));
+        }
+        form.decode(&self.data)
+            .map_err(|error| (error, self.data.clone()))
+    }
+}
+
+/// Return where some bytes first stand in others.
+pub(super) fn find(data: &[u8], bytes: &[u8]) -> Option<usize> {
+    (0..=data.len()).find(|at| {
+        let rest = data.get(*at..).unwrap_or_default();
+        rest.starts_with(bytes)
+    })
+}
