@@ -1,5 +1,7 @@
 //! Answers the tests in Python, one JSON value a line: `codec`, `exchange` or `client`.
 
+#[cfg(unix)]
+mod client;
 mod exchange;
 mod values;
 
@@ -13,6 +15,8 @@ fn main() -> std::io::Result<()> {
             let mut exchanges = exchange::Exchanges::default();
             answer(|line| exchanges.answer(line))
         }
+        #[cfg(unix)]
+        "client" => client::serve(std::env::args().skip(2)),
         _ => Err(std::io::Error::other("codec, exchange or client?")),
     }
 }
