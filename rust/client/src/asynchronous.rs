@@ -12,11 +12,12 @@ use tokio::net::TcpStream;
 use tokio::sync::mpsc::{UnboundedReceiver, UnboundedSender, unbounded_channel};
 use tokio::sync::{Notify, oneshot};
 
-use crate::encoder::{Encoder, Prepared, in_degrees, result};
+use crate::encoder::{Encoder, Named, Prepared, in_degrees, result};
 use crate::options::{Settings, nanos};
 use crate::port::socket_of;
 use crate::session::{Outgoing, Queue, Session};
 use crate::typed::{DeviceEvent, Request, Table};
+use crate::value::Value;
 use crate::{Address, Error, OnDrop, Options, Sample, lock};
 
 /// A stream of bytes to a device.
@@ -158,6 +159,25 @@ impl AsyncClient {
     pub async fn call<R: Request>(&self, request: R) -> Result<R::Reply, Error> {
         let prepared = self.prepare(request)?;
         self.result::<R>(&prepared, self.perform(&prepared).await?)
+    }
+
+    /// Send a request by the name of its command; return the fields of its reply.
+    ///
+    /// # Errors
+    /// As [`Self::call`].
+    pub async fn call_named(
+        &self,
+        command: &str,
+        arguments: &[(&str, Value)],
+    ) -> Result<Named, Error> {
+        let prepared = self
+            .encoder
+            .prepare(command, arguments, self.settings.address)?;
+        crate::check_acknowledged(&prepared, &self.settings)?;
+        let answer = self.perform(&prepared).await?;
+        Ok(answer.map_or(Vec::new(), |answer| {
+            self.encoder.fields(&prepared.request, answer)
+        }))
     }
 
     /// Return a source of samples of a query, `rate` times a second; see `Client::poll`.
