@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 
 use cobotwire_core::exchange::{Answer, Ticket};
 
-use crate::encoder::{Encoder, Named, Prepared, in_degrees, period, result};
+use crate::encoder::{Encoder, Named, Prepared, in_degrees, result};
 use crate::options::{Settings, nanos};
 use crate::port::{self, Port};
 use crate::session::{Outgoing, Queue, Session};

@@ -2,9 +2,9 @@
 
 use std::collections::HashMap;
 
-use cobotwire_core::Direction;
 use cobotwire_core::exchange::{Answer, Failure, Request};
-use cobotwire_table::{Edition, Field};
+use cobotwire_core::{Direction, decode};
+use cobotwire_table::{Field, Quote, Shown, as_call};
 
 use crate::Error;
 use crate::limits::{Limits, Workspace, refusals};
@@ -227,9 +227,34 @@ impl Encoder {
             .collect()
     }
 
+    /// Return a request as a person writes it.
+    fn call(&self, request: &Request) -> String {
+        let table = &self.edition.protocol.table;
+        let own = decode(
+            table,
+            Direction::Request,
+            &request.frame,
+            Some(request.command),
+        );
+        let address = own.as_ref().ok().and_then(|own| own.address);
+        let address = address.map(|address| self.edition.address_name(address));
+        let fields = own.map(|own| self.named(own)).unwrap_or_default();
+        let shown = fields.iter().map(|(name, value)| match value.quote() {
+            Shown::List(row) => (&**name, Shown::Tuple(row)),
+            other => (&**name, other),
+        });
+        let command = self.edition.commands.get(request.command);
+        as_call(
+            command.map_or("", |command| &command.name),
+            shown,
+            address.as_deref(),
+        )
+    }
+
     /// Return why a request has no answer; `fault` is what the transport reported.
     pub fn failure(&self, request: &Request, failure: &Failure, fault: &Error) -> Error {
-        let Some(message) = self.edition.failure(request, failure) else {
+        let call = self.call(request);
+        let Some(message) = self.edition.failure(&call, request, failure) else {
             return fault.clone();
         };
         match failure {

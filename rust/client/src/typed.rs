@@ -59,7 +59,7 @@ macro_rules! client {
     (
         $(#[$doc:meta])* $client:ident $asynchronous:ident = $name:literal $table:expr;
         $($(#[$about:meta])* $message:ident $command:literal $method:ident($($argument:ident: $type:ty),*)
-            $(-> $reply:ty = $($result:ident)+)? $(in radians $($radians:ident)+)?;)*
+            $(-> $reply:ty = $($result:ident)+)? $(, in radians $($radians:ident)+)?;)*
     ) => {
         /// Return the edition's table; it is read on first use.
         ///
@@ -113,7 +113,7 @@ macro_rules! client {
 macro_rules! blocking_client {
     ([$(#[$doc:meta])*] $client:ident; $($command:tt)*) => {
         $crate::client_type! { [$(#[$doc])*] $client $crate::Client; }
-        $crate::methods! { [] $client; $($command)* }
+        $crate::methods! { blocking $client; $($command)* }
 
         impl $client {
             /// Open an arm at a serial port, or at `socket://host:port`.
@@ -156,7 +156,7 @@ macro_rules! blocking_client {
 macro_rules! asynchronous_client {
     ([$(#[$doc:meta])*] $client:ident; $($command:tt)*) => {
         $crate::client_type! { [$(#[$doc])*] $client $crate::AsyncClient; }
-        $crate::methods! { [async await] $client; $($command)* }
+        $crate::methods! { asynchronous $client; $($command)* }
 
         impl $client {
             /// Connect to an arm at `socket://host:port`.
@@ -244,20 +244,42 @@ macro_rules! client_type {
 #[doc(hidden)]
 #[macro_export]
 macro_rules! methods {
-    ([$($async:ident $await:ident)?] $client:ident; $([$(#[$about:meta])*] $message:ident $method:ident
-        ($($argument:ident: $type:ty),*) [$($reply:ty)?];)*) => {
-        impl $client {$(
-            $(#[$about])*
-            ///
-            /// # Errors
-            /// An argument is not allowed, the port is lost, or the reply is illegal or missing.
-            pub $($async)? fn $method(
-                &self,
-                $($argument: impl ::std::convert::Into<$type>),*
-            ) -> ::std::result::Result<$crate::either!($($reply)?), $crate::Error> {
-                self.0.call(messages::$message { $($argument: $argument.into()),* }) $(.$await)?
-            }
-        )*}
+    ($kind:ident $client:ident; $($command:tt $message:ident $method:ident $rest:tt $reply:tt;)*) => {
+        impl $client {
+            $($crate::method! { $kind $command $message $method $rest $reply })*
+        }
+    };
+}
+
+/// Makes a method.
+#[doc(hidden)]
+#[macro_export]
+macro_rules! method {
+    (blocking [$(#[$about:meta])*] $message:ident $method:ident
+        ($($argument:ident: $type:ty),*) [$($reply:ty)?]) => {
+        $(#[$about])*
+        ///
+        /// # Errors
+        /// An argument is not allowed, the port is lost, or the reply is illegal or missing.
+        pub fn $method(
+            &self,
+            $($argument: impl ::std::convert::Into<$type>),*
+        ) -> ::std::result::Result<$crate::either!($($reply)?), $crate::Error> {
+            self.0.call(messages::$message { $($argument: $argument.into()),* })
+        }
+    };
+    (asynchronous [$(#[$about:meta])*] $message:ident $method:ident
+        ($($argument:ident: $type:ty),*) [$($reply:ty)?]) => {
+        $(#[$about])*
+        ///
+        /// # Errors
+        /// An argument is not allowed, the stream is lost, or the reply is illegal or missing.
+        pub async fn $method(
+            &self,
+            $($argument: impl ::std::convert::Into<$type>),*
+        ) -> ::std::result::Result<$crate::either!($($reply)?), $crate::Error> {
+            self.0.call(messages::$message { $($argument: $argument.into()),* }).await
+        }
     };
 }
 

@@ -3,7 +3,6 @@
 use alloc::format;
 use alloc::string::{String, ToString};
 use alloc::vec::Vec;
-use core::fmt::Display;
 
 use cobotwire_core::{
     Algorithm, BadRaw, BadValue, Check, DecodeError, Direction, EncodeError, Encoding,
@@ -27,7 +26,7 @@ pub(crate) struct Part<'a> {
 
 impl Edition {
     /// Return the text of the error of values that were not encoded. `count` is their number.
-    pub fn encode_error<V: Given<Error: Display> + Quote>(
+    pub fn encode_error<V: Given + Quote>(
         &self,
         (command, direction): (usize, Direction),
         error: &EncodeError<V>,
@@ -46,7 +45,8 @@ impl Edition {
                 let part = self.part(variant, bad.field, bad.case);
                 part.map_or(String::new(), |part| part.bad_value(bad))
             }
-            EncodeError::Foreign(error) => printable(&error.to_string()),
+            // It has a text of its own.
+            EncodeError::Foreign(_) => String::new(),
         }
     }
 

@@ -91,7 +91,7 @@ pub(crate) fn protocol_error(detail: &str, offset: usize, data: &[u8]) -> String
 impl Edition {
     /// Return the text of the error of a request that was not encoded. `count`, `texts` and
     /// `address` are what the caller gave.
-    pub fn request_error<V: Given<Error: Display> + Quote>(
+    pub fn request_error<V: Given + Quote>(
         &self,
         command: usize,
         error: &RequestError<EncodeError<V>>,

@@ -147,7 +147,9 @@ class _Shape:
 
     def result(self, parameter: Parameter, *, optional: bool | None = None) -> str:
         """Return the type of a field of a reply."""
-        found = _one(map(self.reported, parameter.types))
+        types = parameter.types
+        same = len(types) == 1 or not all(isinstance(type, Value) for type in types)
+        found = _one(map(self.reported if same else self._given, types))
         absent = parameter.optional if optional is None else optional
         return f"Option<{found}>" if absent else found
 
