@@ -53,7 +53,7 @@ impl Client {
     /// The port or an option is not allowed, or the port cannot be opened.
     pub fn open(edition: Table, port: &str, options: Options) -> Result<Self, Error> {
         let opened = port::open(port, options.baudrate.unwrap_or(edition.baudrate))?;
-        Self::with(edition, opened, port, options)
+        Self::with(edition, opened, Some(port), options)
     }
 
     /// Drive an arm over an open port.
@@ -65,13 +65,14 @@ impl Client {
         port: impl Port + 'static,
         options: Options,
     ) -> Result<Self, Error> {
-        Self::with(edition, Box::new(port), "port", options)
+        let name = options.port_name.clone();
+        Self::with(edition, Box::new(port), name.as_deref(), options)
     }
 
     fn with(
         edition: Table,
         port: Box<dyn Port>,
-        url: &str,
+        url: Option<&str>,
         options: Options,
     ) -> Result<Self, Error> {
         let settings = Settings::new(&edition, &options)?;
@@ -103,9 +104,8 @@ impl Client {
     /// Close the port. Nothing is sent to the arm; calls of other threads end with a `LinkError`.
     pub fn close(&self) {
         let mut connection = self.connection();
-        connection.session.forget_motion();
         connection.port = None;
-        connection.session.lose("is closed");
+        connection.session.close();
     }
 
     /// Return this client for another address, by its name or number.
@@ -212,14 +212,18 @@ impl Client {
     }
 
     fn perform(&self, prepared: &Prepared) -> Result<Option<Answer>, Error> {
+        // Another thread may have the connection for as long as a full line takes no bytes.
+        let called = Instant::now();
         let mut connection = self.connection();
+        let called_at = nanos(called.saturating_duration_since(connection.session.begun));
         if prepared.awaits_reply {
-            let ticket = connection.session.enqueue(prepared, &self.settings);
+            let ticket = connection
+                .session
+                .enqueue(prepared, &self.settings, called_at);
             let sent = connection.turn(Duration::ZERO);
             return self.wait(connection, ticket, prepared, sent).map(Some);
         }
         crate::check_acknowledged(prepared, &self.settings)?;
-        let called_at = connection.session.now();
         while self
             .settings
             .deadline

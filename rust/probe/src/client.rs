@@ -138,6 +138,7 @@ impl Probe {
                 shortest_attempt: seconds("shortest_attempt").unwrap_or(usual.shortest_attempt),
                 grace: seconds("grace").unwrap_or(usual.grace),
             },
+            port_name: Some(self.url.clone()),
             ..Options::default()
         }
     }
