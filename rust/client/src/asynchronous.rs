@@ -6,19 +6,18 @@ use std::sync::{Arc, Mutex};
 use std::task::{Context, Waker};
 use std::time::{Duration, Instant};
 
-use cobotwire_core::exchange::{Answer, Ticket};
+use cobotwire_core::exchange::Ticket;
 use tokio::io::{AsyncRead, AsyncReadExt, AsyncWrite, AsyncWriteExt, ReadHalf, WriteHalf};
 use tokio::net::TcpStream;
 use tokio::sync::mpsc::{UnboundedReceiver, UnboundedSender, unbounded_channel};
 use tokio::sync::{Notify, oneshot};
 
-use crate::encoder::{Encoder, Named, Prepared, in_degrees, result};
+use crate::encoder::{Handle, Named, Outcome, Polling, Prepared, handle_methods, result};
 use crate::options::{Settings, nanos};
-use crate::port::socket_of;
+use crate::port::{CONNECT, socket_of};
 use crate::session::{Outgoing, Queue, Session};
 use crate::typed::{DeviceEvent, Request, Table};
-use crate::value::Value;
-use crate::{Address, Error, OnDrop, Options, Sample, lock};
+use crate::{Address, Error, Options, Sample, Value, lock};
 
 /// A stream of bytes to a device.
 pub trait ByteStream: AsyncRead + AsyncWrite + Send + Unpin + 'static {}
@@ -27,8 +26,6 @@ impl<T: AsyncRead + AsyncWrite + Send + Unpin + 'static> ByteStream for T {}
 
 /// How long the task sleeps if nothing is to be done.
 const LONGEST: Duration = Duration::from_secs(3600);
-
-type Outcome = Result<Option<Answer>, Error>;
 
 /// What callers want of the task.
 enum Order {
@@ -45,23 +42,19 @@ enum Order {
 /// request is given up: it is not sent if it was not yet, and never twice.
 #[derive(Clone)]
 pub struct AsyncClient {
-    encoder: Arc<Encoder>,
+    handle: Handle,
+    shared: Arc<Shared>,
+}
+
+struct Shared {
     orders: UnboundedSender<Order>,
+    /// Tells consumers of events that something has come.
     arrived: Arc<Notify>,
-    url: Arc<str>,
-    settings: Settings,
+    closed: Error,
     begun: Instant,
 }
 
-impl std::fmt::Debug for AsyncClient {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(
-            f,
-            "AsyncClient({} on {})",
-            self.encoder.edition.name, self.url
-        )
-    }
-}
+handle_methods!(AsyncClient);
 
 impl AsyncClient {
     /// Connect to `socket://host:port`.
@@ -73,8 +66,7 @@ impl AsyncClient {
             let text = format!("{port} is not socket://host:port; pass other streams to over()");
             return Err(Error::usage(text));
         };
-        let connected =
-            tokio::time::timeout(Duration::from_secs(5), TcpStream::connect(address)).await;
+        let connected = tokio::time::timeout(CONNECT, TcpStream::connect(address)).await;
         let stream = connected.unwrap_or_else(|late| Err(late.into()));
         let ready = stream.and_then(|stream| stream.set_nodelay(true).map(|()| stream));
         let stream = ready
@@ -97,65 +89,43 @@ impl AsyncClient {
         url: Option<&str>,
         options: Options,
     ) -> Result<Self, Error> {
-        let settings = Settings::new(&edition, &options)?;
-        let encoder = Arc::new(Encoder::new(edition, &options.limits)?);
+        let handle = Handle::new(edition, &options)?;
         let runtime = tokio::runtime::Handle::try_current();
         let runtime =
-            runtime.map_err(|_| Error::usage("an asynchronous client needs a runtime of tokio"))?;
-        let (sender, orders) = unbounded_channel();
+            runtime.map_err(|_| Error::usage("an AsyncClient needs a runtime of tokio"))?;
+        let (orders, received) = unbounded_channel();
         let arrived = Arc::new(Notify::new());
         let (reader, writer) = tokio::io::split(stream);
         let server = Server {
-            session: Session::new(encoder.clone(), url),
+            session: Session::new(handle.encoder.clone(), url, options.on_drop),
             reader,
             writer,
             arrived: arrived.clone(),
             callers: Vec::new(),
             buffer: vec![0; 4096],
-            on_drop: options.on_drop,
             open: true,
         };
-        let begun = server.session.begun;
-        runtime.spawn(server.run(orders));
+        let (closed, begun) = (
+            Error::link(url.unwrap_or("port"), "is closed", Some(0)),
+            server.session.begun,
+        );
+        runtime.spawn(server.run(received));
         Ok(Self {
-            encoder,
-            orders: sender,
-            arrived,
-            url: url.unwrap_or("port").into(),
-            settings,
-            begun,
+            handle,
+            shared: Arc::new(Shared {
+                orders,
+                arrived,
+                closed,
+                begun,
+            }),
         })
-    }
-
-    /// Return the table of the edition, within the limits of this client.
-    #[must_use]
-    pub fn edition(&self) -> &Table {
-        &self.encoder.edition
     }
 
     /// Close the stream. Nothing is sent to the arm; other calls end with a `LinkError`.
     pub async fn close(&self) {
         let (done, closed) = oneshot::channel();
-        let _ = self.orders.send(Order::Close(done));
+        let _ = self.shared.orders.send(Order::Close(done));
         let _ = closed.await;
-    }
-
-    /// Return this client for another address, by its name or number.
-    ///
-    /// # Errors
-    /// The edition has no such address.
-    pub fn at(&self, address: impl Into<Address>) -> Result<Self, Error> {
-        let mut other = self.clone();
-        other.settings.address = Some(address.into().find(self.edition())?);
-        Ok(other)
-    }
-
-    /// Return this client so that requests without a reply wait for their acknowledgement.
-    #[must_use]
-    pub fn acknowledged(&self, within: Duration) -> Self {
-        let mut other = self.clone();
-        other.settings.ack_within = Some(nanos(within));
-        other
     }
 
     /// Send a request; return the result of its reply, if it has one.
@@ -163,8 +133,9 @@ impl AsyncClient {
     /// # Errors
     /// An argument is not allowed, the stream is lost, or the reply is illegal or missing.
     pub async fn call<R: Request>(&self, request: R) -> Result<R::Reply, Error> {
-        let prepared = self.prepare(request)?;
-        self.result::<R>(&prepared, self.perform(&prepared).await?)
+        let prepared = self.handle.prepare(request)?;
+        self.handle
+            .result::<R>(&prepared, self.perform(&prepared).await?)
     }
 
     /// Send a request by the name of its command; return the fields of its reply.
@@ -176,14 +147,11 @@ impl AsyncClient {
         command: &str,
         arguments: &[(&str, Value)],
     ) -> Result<Named, Error> {
-        let prepared = self
+        let prepared = self.handle.prepare_named(command, arguments)?;
+        Ok(self
+            .handle
             .encoder
-            .prepare(command, arguments, self.settings.address)?;
-        crate::check_acknowledged(&prepared, &self.settings)?;
-        let answer = self.perform(&prepared).await?;
-        Ok(answer.map_or(Vec::new(), |answer| {
-            self.encoder.fields(&prepared.request, answer)
-        }))
+            .fields(&prepared, self.perform(&prepared).await?))
     }
 
     /// Return a source of samples of a query, `rate` times a second; see `Client::poll`.
@@ -192,16 +160,12 @@ impl AsyncClient {
     /// The request is no query, an argument is not allowed, or the rate is not above 0 and up to
     /// 1000.
     pub fn poll<R: Request>(&self, request: R, rate: f64) -> Result<AsyncPolls<R>, Error> {
-        let prepared = self.prepare(request)?;
+        let polling = self.handle.polling(request, rate)?;
         let mut client = self.clone();
-        client.settings.retry.attempts = 1;
-        let period = crate::query_period(self.edition(), &prepared, rate)?;
+        client.handle.settings.retry.attempts = 1;
         Ok(AsyncPolls {
             client,
-            prepared,
-            period,
-            next: None,
-            missed: 0,
+            polling,
             reply: PhantomData,
         })
     }
@@ -211,8 +175,8 @@ impl AsyncClient {
     /// # Errors
     /// The edition has no such event.
     pub fn events<E: DeviceEvent>(&self) -> Result<AsyncEvents<E>, Error> {
-        let queue = Arc::new(Mutex::new(Queue::new(self.encoder.command(E::COMMAND)?)));
-        let _ = self.orders.send(Order::Subscribe(queue.clone()));
+        let queue = Queue::new(self.handle.encoder.command(E::COMMAND)?);
+        let _ = self.shared.orders.send(Order::Subscribe(queue.clone()));
         Ok(AsyncEvents {
             client: self.clone(),
             queue,
@@ -220,36 +184,18 @@ impl AsyncClient {
         })
     }
 
-    fn prepare<R: Request>(&self, request: R) -> Result<Prepared, Error> {
-        let arguments = in_degrees(request.arguments(), R::RADIANS);
-        let prepared = self
-            .encoder
-            .prepare(R::COMMAND, &arguments, self.settings.address)?;
-        crate::check_acknowledged(&prepared, &self.settings)?;
-        Ok(prepared)
-    }
-
-    fn result<R: Request>(
-        &self,
-        prepared: &Prepared,
-        answer: Option<Answer>,
-    ) -> Result<R::Reply, Error> {
-        let fields = answer.map(|answer| self.encoder.fields(&prepared.request, answer));
-        result(fields.unwrap_or_default(), R::RESULTS, R::RADIANS)
-    }
-
     async fn perform(&self, prepared: &Prepared) -> Outcome {
         let (sender, receiver) = oneshot::channel();
-        let called_at = nanos(self.begun.elapsed());
-        let order = Order::Call(prepared.clone(), self.settings.clone(), called_at, sender);
-        let _ = self.orders.send(order);
-        let call = Call {
-            orders: &self.orders,
+        let called_at = nanos(self.shared.begun.elapsed());
+        let settings = self.handle.settings.clone();
+        let order = Order::Call(prepared.clone(), settings, called_at, sender);
+        let _ = self.shared.orders.send(order);
+        let mut call = Call {
+            orders: &self.shared.orders,
             receiver,
         };
-        call.outcome()
-            .await
-            .unwrap_or_else(|| Err(Error::link(&self.url, "is closed", Some(0))))
+        let outcome = (&mut call.receiver).await;
+        outcome.unwrap_or_else(|_| Err(self.shared.closed.clone()))
     }
 }
 
@@ -259,29 +205,19 @@ struct Call<'a> {
     receiver: oneshot::Receiver<Outcome>,
 }
 
-impl Call<'_> {
-    async fn outcome(mut self) -> Option<Outcome> {
-        (&mut self.receiver).await.ok()
-    }
-}
-
 impl Drop for Call<'_> {
     fn drop(&mut self) {
-        self.receiver.close();
-        if self.receiver.is_terminated() {
-            return;
+        if !self.receiver.is_terminated() {
+            self.receiver.close();
+            let _ = self.orders.send(Order::GivenUp);
         }
-        let _ = self.orders.send(Order::GivenUp);
     }
 }
 
 /// The samples of a query; see [`AsyncClient::poll`].
 pub struct AsyncPolls<R> {
     client: AsyncClient,
-    prepared: Prepared,
-    period: Duration,
-    next: Option<Instant>,
-    missed: u64,
+    polling: Polling,
     reply: PhantomData<fn() -> R>,
 }
 
@@ -289,7 +225,7 @@ impl<R: Request> AsyncPolls<R> {
     /// Return how many periods have had no sample.
     #[must_use]
     pub fn missed(&self) -> u64 {
-        self.missed
+        self.polling.missed
     }
 
     /// Wait for the next sample.
@@ -298,12 +234,13 @@ impl<R: Request> AsyncPolls<R> {
     /// The stream is lost.
     pub async fn next(&mut self) -> Result<Sample<R::Reply>, Error> {
         loop {
-            let at = crate::tick(&mut self.next, self.period, &mut self.missed);
+            let at = self.polling.tick();
             tokio::time::sleep_until(at.into()).await;
             let requested_at = Instant::now();
-            match self.client.perform(&self.prepared).await {
-                Ok(answer) => {
-                    let value = self.client.result::<R>(&self.prepared, answer)?;
+            let prepared = &self.polling.prepared;
+            let answer = self.client.perform(prepared).await;
+            match answer.and_then(|each| self.client.handle.result::<R>(prepared, each)) {
+                Ok(value) => {
                     return Ok(Sample {
                         value,
                         requested_at,
@@ -311,7 +248,7 @@ impl<R: Request> AsyncPolls<R> {
                     });
                 }
                 Err(error @ Error::LinkError { .. }) => return Err(error),
-                Err(_) => self.missed += 1,
+                Err(_) => self.polling.missed += 1,
             }
         }
     }
@@ -338,13 +275,13 @@ impl<E: DeviceEvent> AsyncEvents<E> {
     pub async fn next(&mut self) -> Result<E, Error> {
         loop {
             // Before the queue is read, so that no event is overlooked.
-            let arrived = self.client.arrived.notified();
+            let arrived = self.client.shared.arrived.notified();
             let event = lock(&self.queue).events.pop_front();
             if let Some(fields) = event {
                 return result(fields, E::FIELDS, &[]);
             }
-            if self.client.orders.is_closed() {
-                return Err(Error::link(&self.client.url, "is closed", None));
+            if self.client.shared.orders.is_closed() {
+                return Err(self.client.shared.closed.clone());
             }
             arrived.await;
         }
@@ -359,7 +296,6 @@ struct Server<S: ByteStream> {
     arrived: Arc<Notify>,
     callers: Vec<(Ticket, Prepared, oneshot::Sender<Outcome>)>,
     buffer: Vec<u8>,
-    on_drop: OnDrop,
     open: bool,
 }
 
@@ -510,7 +446,7 @@ impl<S: ByteStream> Server<S> {
 
 impl<S: ByteStream> Drop for Server<S> {
     fn drop(&mut self) {
-        let bytes = self.session.stops(self.on_drop);
+        let bytes = self.session.stops();
         if self.open && !bytes.is_empty() {
             // The runtime may be at its end, so nothing can be waited for.
             let mut context = Context::from_waker(Waker::noop());

@@ -8,13 +8,11 @@ use std::time::{Duration, Instant};
 
 use cobotwire_core::exchange::{Answer, Ticket};
 
-use crate::encoder::{Encoder, Named, Prepared, in_degrees, result};
-use crate::options::{Settings, nanos};
+use crate::encoder::{Handle, Named, Outcome, Polling, Prepared, handle_methods, result};
 use crate::port::{self, Port};
 use crate::session::{Outgoing, Queue, Session};
 use crate::typed::{DeviceEvent, Request, Table};
-use crate::value::Value;
-use crate::{Address, Error, OnDrop, Options, Sample, lock};
+use crate::{Address, Error, Options, Sample, Value, lock};
 
 /// The longest that a thread reads before it checks whether others have something to do.
 const SLICE: Duration = Duration::from_millis(20);
@@ -29,22 +27,17 @@ const DRAIN: Duration = Duration::from_millis(50);
 /// Requests without a reply are sent once and at once. Requests with a reply take turns.
 #[derive(Clone)]
 pub struct Client {
+    handle: Handle,
     shared: Arc<Shared>,
-    settings: Settings,
 }
 
 struct Shared {
-    encoder: Arc<Encoder>,
     connection: Mutex<Connection>,
     /// How many threads want the connection.
     waiting: AtomicUsize,
 }
 
-impl std::fmt::Debug for Client {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "Client({})", self.shared.encoder.edition.name)
-    }
-}
+handle_methods!(Client);
 
 impl Client {
     /// Open a port: that of a serial line, or `socket://host:port`.
@@ -75,30 +68,21 @@ impl Client {
         url: Option<&str>,
         options: Options,
     ) -> Result<Self, Error> {
-        let settings = Settings::new(&edition, &options)?;
-        let encoder = Arc::new(Encoder::new(edition, &options.limits)?);
-        let connection = Connection {
-            session: Session::new(encoder.clone(), url),
+        let handle = Handle::new(edition, &options)?;
+        let connection = Mutex::new(Connection {
+            session: Session::new(handle.encoder.clone(), url, options.on_drop),
             port: Some(port),
             limit: None,
             buffer: vec![0; 4096],
-            on_drop: options.on_drop,
-        };
-        let shared = Shared {
-            encoder,
-            connection: Mutex::new(connection),
-            waiting: AtomicUsize::new(0),
-        };
+        });
+        let waiting = AtomicUsize::new(0);
         Ok(Self {
-            shared: Arc::new(shared),
-            settings,
+            handle,
+            shared: Arc::new(Shared {
+                connection,
+                waiting,
+            }),
         })
-    }
-
-    /// Return the table of the edition, within the limits of this client.
-    #[must_use]
-    pub fn edition(&self) -> &Table {
-        &self.shared.encoder.edition
     }
 
     /// Close the port. Nothing is sent to the arm; calls of other threads end with a `LinkError`.
@@ -108,35 +92,13 @@ impl Client {
         connection.session.close();
     }
 
-    /// Return this client for another address, by its name or number.
-    ///
-    /// # Errors
-    /// The edition has no such address.
-    pub fn at(&self, address: impl Into<Address>) -> Result<Self, Error> {
-        let mut other = self.clone();
-        other.settings.address = Some(address.into().find(self.edition())?);
-        Ok(other)
-    }
-
-    /// Return this client so that requests without a reply wait for their acknowledgement.
-    #[must_use]
-    pub fn acknowledged(&self, within: Duration) -> Self {
-        let mut other = self.clone();
-        other.settings.ack_within = Some(nanos(within));
-        other
-    }
-
     /// Send a request; return the result of its reply, if it has one.
     ///
     /// # Errors
     /// An argument is not allowed, the port is lost, or the reply is illegal or missing.
     pub fn call<R: Request>(&self, request: R) -> Result<R::Reply, Error> {
-        let prepared = self.prepare(request)?;
-        let answer = self.perform(&prepared)?;
-        let fields = answer.map_or(Vec::new(), |answer| {
-            self.shared.encoder.fields(&prepared.request, answer)
-        });
-        result(fields, R::RESULTS, R::RADIANS)
+        let prepared = self.handle.prepare(request)?;
+        self.handle.result::<R>(&prepared, self.perform(&prepared)?)
     }
 
     /// Send a request by the name of its command; return the fields of its reply.
@@ -144,36 +106,29 @@ impl Client {
     /// # Errors
     /// As [`Self::call`].
     pub fn call_named(&self, command: &str, arguments: &[(&str, Value)]) -> Result<Named, Error> {
-        let prepared = self
-            .shared
+        let prepared = self.handle.prepare_named(command, arguments)?;
+        Ok(self
+            .handle
             .encoder
-            .prepare(command, arguments, self.settings.address)?;
-        let answer = self.perform(&prepared)?;
-        Ok(answer.map_or(Vec::new(), |answer| {
-            self.shared.encoder.fields(&prepared.request, answer)
-        }))
+            .fields(&prepared, self.perform(&prepared)?))
     }
 
     /// Return an iterator that samples a query `rate` times a second.
     ///
-    /// A request is sent only when the loop wants a sample. A period without a reply has no sample;
-    /// [`Polls::missed`] counts such periods, and those for which the loop came too late.
+    /// A request is sent only when the loop wants a sample, and not again within its period. A
+    /// period without a reply has no sample; [`Polls::missed`] counts such periods, and those for
+    /// which the loop came too late.
     ///
     /// # Errors
     /// The request is no query, an argument is not allowed, or the rate is not above 0 and up to
     /// 1000.
     pub fn poll<R: Request>(&self, request: R, rate: f64) -> Result<Polls<R>, Error> {
-        let prepared = self.prepare(request)?;
+        let polling = self.handle.polling(request, rate)?;
         let mut client = self.clone();
-        // The next period sends it again.
-        client.settings.retry.attempts = 1;
-        let period = crate::query_period(self.edition(), &prepared, rate)?;
+        client.handle.settings.retry.attempts = 1;
         Ok(Polls {
             client,
-            prepared,
-            period,
-            next: None,
-            missed: 0,
+            polling,
             ended: false,
             reply: PhantomData,
         })
@@ -185,8 +140,7 @@ impl Client {
     /// # Errors
     /// The edition has no such event.
     pub fn events<E: DeviceEvent>(&self, timeout: Option<Duration>) -> Result<Events<E>, Error> {
-        let command = self.shared.encoder.command(E::COMMAND)?;
-        let queue = Arc::new(Mutex::new(Queue::new(command)));
+        let queue = Queue::new(self.handle.encoder.command(E::COMMAND)?);
         self.connection().session.subscribe(&queue);
         Ok(Events {
             client: self.clone(),
@@ -194,13 +148,6 @@ impl Client {
             timeout,
             event: PhantomData,
         })
-    }
-
-    fn prepare<R: Request>(&self, request: R) -> Result<Prepared, Error> {
-        let arguments = in_degrees(request.arguments(), R::RADIANS);
-        self.shared
-            .encoder
-            .prepare(R::COMMAND, &arguments, self.settings.address)
     }
 
     /// Return the connection as soon as no other thread has it.
@@ -211,43 +158,30 @@ impl Client {
         connection
     }
 
-    fn perform(&self, prepared: &Prepared) -> Result<Option<Answer>, Error> {
+    fn perform(&self, prepared: &Prepared) -> Outcome {
         // Another thread may have the connection for as long as a full line takes no bytes.
         let called = Instant::now();
-        let mut connection = self.connection();
-        let called_at = nanos(called.saturating_duration_since(connection.session.begun));
+        let (settings, mut connection) = (&self.handle.settings, self.connection());
+        let called_at =
+            crate::options::nanos(called.saturating_duration_since(connection.session.begun));
         if prepared.awaits_reply {
-            let ticket = connection
-                .session
-                .enqueue(prepared, &self.settings, called_at);
+            let ticket = connection.session.enqueue(prepared, settings, called_at);
             let sent = connection.turn(Duration::ZERO);
             return self.wait(connection, ticket, prepared, sent).map(Some);
         }
-        crate::check_acknowledged(prepared, &self.settings)?;
-        while self
-            .settings
-            .deadline
-            .is_some_and(|longest| connection.session.now() - called_at < longest)
-            && !connection.has_room()
-        {
+        while connection.session.has_time(settings, called_at) && !connection.has_room() {
             drop(connection);
             std::thread::sleep(TURN);
             connection = self.connection();
         }
-        let (outgoing, ticket) = connection
-            .session
-            .one_way(prepared, &self.settings, called_at)?;
+        let (outgoing, ticket) = connection.session.one_way(prepared, settings, called_at)?;
         let written = connection.write(&outgoing);
-        let Some(ticket) = ticket else {
-            written?;
-            connection.drain()?;
-            return Ok(None);
-        };
-        if let Err(error) = written {
-            connection.session.give_up(ticket);
-            return Err(error);
+        if let Some(ticket) = ticket {
+            return self.wait(connection, ticket, prepared, written).map(Some);
         }
-        self.wait(connection, ticket, prepared, Ok(())).map(Some)
+        written?;
+        connection.drain()?;
+        Ok(None)
     }
 
     /// Read for all until a request has ended.
@@ -256,9 +190,8 @@ impl Client {
         mut connection: MutexGuard<'a, Connection>,
         ticket: Ticket,
         prepared: &Prepared,
-        sent: Result<(), Error>,
+        mut last: Result<(), Error>,
     ) -> Result<Answer, Error> {
-        let mut last = sent;
         loop {
             if let Some(outcome) = connection.session.take(ticket, prepared) {
                 return outcome;
@@ -296,10 +229,7 @@ impl Client {
 /// The samples of a query; see [`Client::poll`].
 pub struct Polls<R> {
     client: Client,
-    prepared: Prepared,
-    period: Duration,
-    next: Option<Instant>,
-    missed: u64,
+    polling: Polling,
     ended: bool,
     reply: PhantomData<fn() -> R>,
 }
@@ -308,7 +238,7 @@ impl<R> Polls<R> {
     /// Return how many periods have had no sample.
     #[must_use]
     pub fn missed(&self) -> u64 {
-        self.missed
+        self.polling.missed
     }
 }
 
@@ -317,29 +247,25 @@ impl<R: Request> Iterator for Polls<R> {
 
     fn next(&mut self) -> Option<Self::Item> {
         while !self.ended {
-            let at = crate::tick(&mut self.next, self.period, &mut self.missed);
+            let at = self.polling.tick();
             std::thread::sleep(at.saturating_duration_since(Instant::now()));
             let requested_at = Instant::now();
-            match self.client.perform(&self.prepared) {
-                Ok(answer) => {
-                    let fields = answer.map(|answer| {
-                        self.client
-                            .shared
-                            .encoder
-                            .fields(&self.prepared.request, answer)
-                    });
-                    let value = result(fields.unwrap_or_default(), R::RESULTS, R::RADIANS);
-                    return Some(value.map(|value| Sample {
+            let prepared = &self.polling.prepared;
+            let answer = self.client.perform(prepared);
+            let value = answer.and_then(|each| self.client.handle.result::<R>(prepared, each));
+            match value {
+                Ok(value) => {
+                    return Some(Ok(Sample {
                         value,
                         requested_at,
                         replied_at: Instant::now(),
                     }));
                 }
-                Err(Error::LinkError { message, written }) => {
+                Err(error @ Error::LinkError { .. }) => {
                     self.ended = true;
-                    return Some(Err(Error::LinkError { message, written }));
+                    return Some(Err(error));
                 }
-                Err(_) => self.missed += 1,
+                Err(_) => self.polling.missed += 1,
             }
         }
         None
@@ -390,7 +316,6 @@ struct Connection {
     /// The limit that the port has.
     limit: Option<Duration>,
     buffer: Vec<u8>,
-    on_drop: OnDrop,
 }
 
 impl Connection {
@@ -483,7 +408,7 @@ fn is_wait(error: &std::io::Error) -> bool {
 
 impl Drop for Connection {
     fn drop(&mut self) {
-        let bytes = self.session.stops(self.on_drop);
+        let bytes = self.session.stops();
         if let Some(port) = self.port.as_mut().filter(|_| !bytes.is_empty()) {
             // Nobody is left who could handle an error.
             let _ = port.wait_at_most(Duration::from_secs(1));

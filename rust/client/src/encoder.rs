@@ -1,24 +1,27 @@
 //! Requests by the names of their commands and arguments, and replies by the names of their fields.
 
 use std::collections::HashMap;
+use std::sync::Arc;
+use std::time::{Duration, Instant};
 
-use cobotwire_core::exchange::{Answer, Failure, Request};
-use cobotwire_core::{Direction, decode};
-use cobotwire_table::{Field, Quote, Shown, as_call};
+use cobotwire_core::exchange::{Answer, Failure, Replier, Request as Encoded, Safety};
+use cobotwire_core::{Decoded, Direction, decode};
+use cobotwire_table::{Quote, Shown, as_call, bad_argument};
 
-use crate::Error;
 use crate::limits::{Limits, Workspace, refusals};
-use crate::options::nanos;
-use crate::typed::{FromValue, Table, plain};
-use crate::value::{Value, nested};
+use crate::options::Settings;
+use crate::typed::{Request, Table, Typed, plain};
+use crate::{Address, Error, Options, Value};
 
 /// The values of a message with their names.
 pub(crate) type Named = Vec<(String, Value)>;
+/// The reply that a call has waited for; `None`: it did not.
+pub(crate) type Outcome = Result<Option<Answer>, Error>;
 
 /// A request that is validated and encoded, not yet sent.
 #[derive(Clone, Debug)]
 pub(crate) struct Prepared {
-    pub request: Request,
+    pub request: Encoded,
     /// Whether a call waits for its reply.
     pub awaits_reply: bool,
     pub address: Option<u8>,
@@ -35,11 +38,11 @@ pub(crate) struct Encoder {
 }
 
 impl Encoder {
-    pub fn new(edition: Table, limits: &Limits) -> Result<Self, Error> {
+    fn new(edition: Table, limits: &Limits) -> Result<Self, Error> {
         let edition = limits.applied(edition)?;
-        let names = edition.commands.iter().enumerate();
+        let commands = edition.commands.iter().enumerate();
         Ok(Self {
-            commands: names
+            commands: commands
                 .map(|(index, each)| (each.name.clone(), index))
                 .collect(),
             refused: refusals(&edition, limits),
@@ -50,13 +53,13 @@ impl Encoder {
 
     /// Return the index of a command.
     pub fn command(&self, name: &str) -> Result<usize, Error> {
-        let unknown = || {
+        let found = self.commands.get(name).copied();
+        found.ok_or_else(|| {
             Error::usage(format!(
                 "edition {} has no command {name}",
                 self.edition.name
             ))
-        };
-        self.commands.get(name).copied().ok_or_else(unknown)
+        })
     }
 
     /// Validate and encode a request.
@@ -73,41 +76,28 @@ impl Encoder {
         let protocol = &self.edition.protocol;
         let facts = protocol.facts.get(command);
         let form = facts.and_then(|facts| facts.request_text.as_ref());
-        let text = |name: &str| given.iter().find(|(each, _)| plain(each) == name);
-        let texts: Vec<&str> = form
-            .iter()
-            .flat_map(|form| &form.fields)
-            .map(|field| match text(field) {
-                Some((_, Value::Text(text))) => &**text,
-                _ => "",
-            })
-            .collect();
-        let others = given.iter().filter(|(name, value)| {
-            let is_text =
-                form.is_some_and(|form| form.fields.iter().any(|each| **each == *plain(name)));
-            !is_text && *value != Value::Absent
-        });
-        let (row, variant) = self.arrange(command, &others.collect::<Vec<_>>())?;
-        let count = row.len();
-        let encoded = Request::encode::<Value>(
-            protocol,
-            command,
-            &Value::Row(row),
-            &texts,
-            address,
-            variant,
-        );
-        let request = encoded.map_err(|error| {
-            Error::usage(
-                self.edition
-                    .request_error(command, &error, (count, &texts, address)),
-            )
+        let mut texts = vec![""; form.map_or(0, |form| form.fields.len())];
+        let mut others = Vec::with_capacity(given.len());
+        for (name, value) in given.iter().filter(|(_, value)| *value != Value::Absent) {
+            let at =
+                form.and_then(|form| form.fields.iter().position(|each| **each == *plain(name)));
+            match (at.and_then(|at| texts.get_mut(at)), value) {
+                (Some(place), Value::Text(text)) => *place = text,
+                _ => others.push((plain(name), value.clone())),
+            }
+        }
+        let arranged = self.edition.arrange(command, &others, Value::from);
+        let (row, variant) = arranged.map_err(Error::usage)?;
+        let (count, row) = (row.len(), Value::Row(row));
+        let request = Encoded::encode::<Value>(protocol, command, &row, &texts, address, variant)
+            .map_err(|error| {
+            let given = (count, &*texts, address);
+            Error::usage(self.edition.request_error(command, &error, given))
         })?;
         if let Some(workspace) = &self.workspace {
             workspace.check(self, &request)?;
         }
-        let awaits_reply =
-            facts.is_some_and(|facts| facts.requires_reply() || facts.text.is_some());
+        let awaits_reply = facts.is_some_and(|each| each.requires_reply() || each.text.is_some());
         Ok(Prepared {
             request,
             awaits_reply,
@@ -115,120 +105,41 @@ impl Encoder {
         })
     }
 
-    /// Return the values of the variant that takes exactly the given arguments, in its order; and
-    /// its index, unless the values must decide.
-    fn arrange(
-        &self,
-        command: usize,
-        given: &[&(&str, Value)],
-    ) -> Result<(Vec<Value>, Option<usize>), Error> {
-        let Some(record) = self.edition.commands.get(command) else {
-            return Ok((Vec::new(), None));
-        };
-        let (mut fitting, mut missing) = (Vec::new(), None);
-        for (index, variant) in record.request.iter().enumerate() {
-            let named = |name: &str| variant.iter().any(|field| field.name == name);
-            match given.iter().find(|(name, _)| !named(plain(name))) {
-                Some((name, _)) => {
-                    let what = format!(
-                        "{}() does not take its argument {} together with the others",
-                        record.name,
-                        plain(name)
-                    );
-                    missing = missing.or(Some(what));
-                }
-                None => match self.row(command, index, variant, given) {
-                    Ok(row) => fitting.push((index, row)),
-                    Err(name) => {
-                        let what = format!("{}() is missing its argument {name}", record.name);
-                        missing = missing.or(Some(what));
-                    }
-                },
-            }
-        }
-        let sure = fitting.len() == 1;
-        match fitting.into_iter().next() {
-            Some((index, row)) => Ok((row, sure.then_some(index))),
-            None => Err(Error::usage(missing.unwrap_or_default())),
-        }
-    }
-
-    /// Return the values of one variant; the error is the name of an argument that is missing.
-    fn row<'a>(
-        &self,
-        command: usize,
-        index: usize,
-        variant: &'a [Field],
-        given: &[&(&str, Value)],
-    ) -> Result<Vec<Value>, &'a str> {
-        let value = |(at, field): (usize, &'a Field)| {
-            if field.counts.is_some() {
-                return Ok(Value::Counted);
-            }
-            if let Some(raw) = field.constant {
-                return Ok(self.constant(command, index, at, raw));
-            }
-            if let Some((_, value)) = given.iter().find(|(name, _)| plain(name) == field.name) {
-                return Ok(value.clone());
-            }
-            let default = field.default.as_ref().ok_or(&*field.name)?;
-            let mut reals = default.iter().copied().map(Value::Real);
-            match (reals.len(), reals.next()) {
-                (1, Some(real)) => Ok(real),
-                (_, first) => Ok(Value::Row(first.into_iter().chain(reals).collect())),
-            }
-        };
-        variant.iter().enumerate().map(value).collect()
-    }
-
-    /// Return a constant in its unit.
-    fn constant(&self, command: usize, variant: usize, field: usize, raw: i64) -> Value {
-        let commands = self.edition.protocol.table.commands();
-        let variant = commands
-            .get(command)
-            .and_then(|each| each.request.get(variant));
-        let field = variant.and_then(|variant| variant.fields().get(field));
-        let number = field.and_then(|field| field.cases.first()?.numbers.first());
-        match number {
-            Some(number) if number.scaled() => {
-                Value::Real(raw as f64 * number.multiply as f64 / number.divide as f64)
-            }
-            _ => Value::Integer(raw),
-        }
-    }
-
     /// Return the fields of a reply by name.
-    pub fn fields(&self, request: &Request, answer: Answer) -> Named {
-        let facts = self.edition.protocol.facts.get(request.command);
-        let Some(decoded) = answer.decoded else {
-            let names = facts
-                .and_then(|facts| facts.text.as_ref())
-                .map(|text| &text.fields);
-            let names = names.into_iter().flatten().map(|name| name.to_string());
-            return names
-                .zip(answer.texts.into_iter().map(Value::Text))
-                .collect();
+    pub fn fields(&self, prepared: &Prepared, answer: Option<Answer>) -> Named {
+        let Some(answer) = answer else {
+            return Vec::new();
         };
-        self.named(decoded)
+        if let Some(decoded) = answer.decoded {
+            return self.named(decoded);
+        }
+        let facts = self.edition.protocol.facts.get(prepared.request.command);
+        let form = facts.and_then(|facts| facts.text.as_ref());
+        let names = form.into_iter().flat_map(|form| &form.fields);
+        let texts = answer.texts.into_iter().map(Value::Text);
+        names.map(|name| name.to_string()).zip(texts).collect()
     }
 
     /// Return the fields of a message by name.
-    pub fn named(&self, decoded: cobotwire_core::Decoded) -> Named {
-        let facts = self.edition.protocol.facts.get(decoded.variant.command);
-        let variants = facts.map(|facts| match decoded.variant.direction {
+    pub fn named(&self, decoded: Decoded) -> Named {
+        let id = decoded.variant;
+        let facts = self.edition.protocol.facts.get(id.command);
+        let variants = facts.map(|facts| match id.direction {
             Direction::Request => &facts.request,
             Direction::Reply => &facts.reply,
         });
-        let variant = variants.and_then(|variants| variants.get(decoded.variant.variant));
+        let fields = variants
+            .and_then(|variants| variants.get(id.variant))
+            .into_iter()
+            .flatten();
         let mut values = decoded.values.into_iter();
-        let fields = variant.into_iter().flatten();
-        fields
-            .map_while(|field| Some((field.name.to_string(), nested(&mut values)?)))
-            .collect()
+        let named =
+            fields.map_while(|field| Some((field.name.to_string(), Value::nested(&mut values)?)));
+        named.collect()
     }
 
-    /// Return a request as a person writes it.
-    fn call(&self, request: &Request) -> String {
+    /// Return the values of a request by name, as a reply would show them; and its address.
+    pub fn arguments(&self, request: &Encoded) -> (Named, Option<u8>) {
         let table = &self.edition.protocol.table;
         let own = decode(
             table,
@@ -236,24 +147,20 @@ impl Encoder {
             &request.frame,
             Some(request.command),
         );
-        let address = own.as_ref().ok().and_then(|own| own.address);
-        let address = address.map(|address| self.edition.address_name(address));
-        let fields = own.map(|own| self.named(own)).unwrap_or_default();
-        let shown = fields.iter().map(|(name, value)| match value.quote() {
-            Shown::List(row) => (&**name, Shown::Tuple(row)),
-            other => (&**name, other),
-        });
-        let command = self.edition.commands.get(request.command);
-        as_call(
-            command.map_or("", |command| &command.name),
-            shown,
-            address.as_deref(),
-        )
+        own.map_or((Vec::new(), None), |own| {
+            let address = own.address;
+            (self.named(own), address)
+        })
     }
 
     /// Return why a request has no answer; `fault` is what the transport reported.
-    pub fn failure(&self, request: &Request, failure: &Failure, fault: &Error) -> Error {
-        let call = self.call(request);
+    pub fn failure(&self, request: &Encoded, failure: &Failure, fault: &Error) -> Error {
+        let (fields, address) = self.arguments(request);
+        let address = address.map(|address| self.edition.address_name(address));
+        let shown = fields.iter().map(|(name, value)| (&**name, value.quote()));
+        let command = self.edition.commands.get(request.command);
+        let name = command.map_or("", |command| &command.name);
+        let call = as_call(name, shown, address.as_deref());
         let Some(message) = self.edition.failure(&call, request, failure) else {
             return fault.clone();
         };
@@ -271,7 +178,7 @@ impl Encoder {
                 ..
             } => Error::ReplyTimeout {
                 message,
-                waited: std::time::Duration::from_nanos(*waited),
+                waited: Duration::from_nanos(*waited),
                 attempts: *attempts,
                 waited_for: *waited_for,
             },
@@ -280,16 +187,16 @@ impl Encoder {
 }
 
 /// Return the result of a call: one field, or a row of them.
-pub(crate) fn result<T: FromValue>(
+pub(crate) fn result<T: Typed>(
     mut fields: Named,
     results: &[&str],
     radians: &[&str],
 ) -> Result<T, Error> {
     let mut take = |name: &&str| {
         let found = fields.iter_mut().find(|(each, _)| each == plain(name));
-        let value = found.map_or(Value::Absent, |(_, value)| {
-            std::mem::replace(value, Value::Absent)
-        });
+        let value = found
+            .map(|(_, value)| std::mem::take(value))
+            .unwrap_or_default();
         if radians.contains(name) {
             value.map(f64::to_radians)
         } else {
@@ -304,28 +211,139 @@ pub(crate) fn result<T: FromValue>(
         .ok_or_else(|| Error::usage("the generated module is not that of its table"))
 }
 
-/// Return the arguments as the wire carries them: angles in degrees.
-pub(crate) fn in_degrees(
-    arguments: Vec<(&'static str, Value)>,
-    radians: &[&str],
-) -> Vec<(&'static str, Value)> {
-    let convert = |(name, value): (&'static str, Value)| {
-        let value = if radians.contains(&name) {
-            value.map(f64::to_degrees)
-        } else {
-            value
-        };
-        (name, value)
-    };
-    arguments.into_iter().map(convert).collect()
+/// A handle of a client: how it encodes requests, and with what it sends them.
+#[derive(Clone, Debug)]
+pub(crate) struct Handle {
+    pub encoder: Arc<Encoder>,
+    pub settings: Settings,
 }
 
-/// Return seconds as a time; `None`: they are not above 0, or more than a day.
-pub(crate) fn period(rate: f64) -> Option<u64> {
-    let legal = rate > 0.0 && rate <= 1000.0;
-    legal.then(|| {
-        nanos(std::time::Duration::from_secs_f64(
-            (1.0 / rate).min(86_400.0),
-        ))
-    })
+impl Handle {
+    pub fn new(edition: Table, options: &Options) -> Result<Self, Error> {
+        let settings = Settings::new(&edition, options)?;
+        let encoder = Arc::new(Encoder::new(edition, &options.limits)?);
+        Ok(Self { encoder, settings })
+    }
+
+    pub fn at(mut self, address: Address) -> Result<Self, Error> {
+        self.settings.address = Some(address.find(&self.encoder.edition)?);
+        Ok(self)
+    }
+
+    pub fn prepare<R: Request>(&self, request: R) -> Result<Prepared, Error> {
+        let mut arguments = request.arguments();
+        for (name, value) in &mut arguments {
+            if R::RADIANS.contains(name) {
+                *value = std::mem::take(value).map(f64::to_degrees);
+            }
+        }
+        self.prepare_named(R::COMMAND, &arguments)
+    }
+
+    pub fn prepare_named(&self, name: &str, given: &[(&str, Value)]) -> Result<Prepared, Error> {
+        let prepared = self.encoder.prepare(name, given, self.settings.address)?;
+        if self.settings.ack_within.is_some() && prepared.request.replier == Replier::Nobody {
+            let why = "cannot be waited for: nobody replies to its address";
+            return Err(Error::usage(format!("{name}() {why}")));
+        }
+        Ok(prepared)
+    }
+
+    pub fn result<R: Request>(
+        &self,
+        prepared: &Prepared,
+        answer: Option<Answer>,
+    ) -> Result<R::Reply, Error> {
+        result(
+            self.encoder.fields(prepared, answer),
+            R::RESULTS,
+            R::RADIANS,
+        )
+    }
+
+    /// Return what samples a query.
+    pub fn polling<R: Request>(&self, request: R, rate: f64) -> Result<Polling, Error> {
+        let prepared = self.prepare(request)?;
+        let command = self.encoder.edition.commands.get(prepared.request.command);
+        if !prepared.awaits_reply || command.is_none_or(|each| each.safety != Safety::Query) {
+            let why = "is not a query; a stream can send only queries";
+            return Err(Error::usage(format!("{} {why}", R::COMMAND)));
+        }
+        if !(0.0 < rate && rate <= 1000.0) {
+            let allowed = "a number above 0 and up to 1000";
+            return Err(Error::usage(bad_argument(
+                "rate",
+                &Shown::Real(rate),
+                allowed,
+            )));
+        }
+        let period = Duration::from_secs_f64((1.0 / rate).min(86_400.0));
+        Ok(Polling {
+            prepared,
+            period,
+            next: None,
+            missed: 0,
+        })
+    }
 }
+
+/// Says when a query is to be sampled, and counts the periods without a sample.
+pub(crate) struct Polling {
+    pub prepared: Prepared,
+    period: Duration,
+    next: Option<Instant>,
+    pub missed: u64,
+}
+
+impl Polling {
+    /// Return when the next period begins; those that have passed are missed.
+    pub fn tick(&mut self) -> Instant {
+        let now = Instant::now();
+        let at = self.next.unwrap_or(now);
+        let late = now.saturating_duration_since(at).as_nanos() / self.period.as_nanos().max(1);
+        let late = u32::try_from(late).unwrap_or(u32::MAX);
+        self.missed += u64::from(late);
+        self.next = Some(at + self.period * late + self.period);
+        at + self.period * late
+    }
+}
+
+/// Makes the methods that do not wait, of a client with the fields `handle` and `shared`.
+macro_rules! handle_methods {
+    ($client:ident) => {
+        impl std::fmt::Debug for $client {
+            fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+                write!(f, "{}({})", stringify!($client), self.edition().name)
+            }
+        }
+
+        impl $client {
+            /// Return the table of the edition, within the limits of this client.
+            #[must_use]
+            pub fn edition(&self) -> &Table {
+                &self.handle.encoder.edition
+            }
+
+            /// Return this client for another address, by its name or number.
+            ///
+            /// # Errors
+            /// The edition has no such address.
+            pub fn at(&self, address: impl Into<Address>) -> Result<Self, Error> {
+                let handle = self.handle.clone().at(address.into())?;
+                Ok(Self {
+                    handle,
+                    shared: self.shared.clone(),
+                })
+            }
+
+            /// Return this client so that requests without a reply wait for their acknowledgement.
+            #[must_use]
+            pub fn acknowledged(&self, within: Duration) -> Self {
+                let mut other = self.clone();
+                other.handle.settings.ack_within = Some(crate::options::nanos(within));
+                other
+            }
+        }
+    };
+}
+pub(crate) use handle_methods;

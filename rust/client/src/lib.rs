@@ -50,9 +50,8 @@ mod value;
 pub mod editions;
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
-use cobotwire_core::exchange::{Replier, Safety};
 use cobotwire_table::Edition;
 
 #[cfg(feature = "tokio")]
@@ -64,9 +63,6 @@ pub use limits::{Limits, Range};
 pub use options::{Address, OnDrop, Options, RetryPolicy};
 pub use port::Port;
 pub use value::Value;
-
-use encoder::Prepared;
-use options::Settings;
 
 /// The result of a query at a time.
 #[derive(Clone, Debug, PartialEq)]
@@ -91,52 +87,4 @@ pub fn read_table(json: &[u8]) -> Result<typed::Table, Error> {
 /// Lock, also after a thread has panicked: each step leaves the state consistent.
 pub(crate) fn lock<T: ?Sized>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
-}
-
-/// Return the time between samples of a query.
-pub(crate) fn query_period(
-    edition: &Edition,
-    prepared: &Prepared,
-    rate: f64,
-) -> Result<Duration, Error> {
-    let command = edition.commands.get(prepared.request.command);
-    if let Some(command) =
-        command.filter(|command| command.safety != Safety::Query || !prepared.awaits_reply)
-    {
-        return Err(Error::usage(format!(
-            "{} is not a query; a stream can send only queries",
-            command.name
-        )));
-    }
-    let period = encoder::period(rate).ok_or_else(|| {
-        let allowed = "above 0 and up to 1000 a second";
-        Error::usage(cobotwire_table::bad_argument(
-            "rate",
-            &cobotwire_table::Shown::Real(rate),
-            allowed,
-        ))
-    })?;
-    Ok(Duration::from_nanos(period))
-}
-
-/// Return when the next period begins; those that have passed are missed.
-pub(crate) fn tick(next: &mut Option<Instant>, period: Duration, missed: &mut u64) -> Instant {
-    let now = Instant::now();
-    let mut at = next.unwrap_or(now);
-    let late = now.saturating_duration_since(at).as_nanos() / period.as_nanos().max(1);
-    let late = u32::try_from(late).unwrap_or(u32::MAX);
-    *missed += u64::from(late);
-    at += period * late;
-    *next = Some(at + period);
-    at
-}
-
-/// Check that the acknowledgement of a request can be waited for.
-pub(crate) fn check_acknowledged(prepared: &Prepared, settings: &Settings) -> Result<(), Error> {
-    if settings.ack_within.is_some() && prepared.request.replier == Replier::Nobody {
-        return Err(Error::usage(
-            "the call cannot be waited for: nobody replies to its address",
-        ));
-    }
-    Ok(())
 }

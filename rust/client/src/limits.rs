@@ -4,12 +4,12 @@ use std::collections::HashMap;
 use std::sync::Arc;
 
 use cobotwire_core::exchange::{Request, Safety};
-use cobotwire_core::{Direction, Table, Variant, decode};
+use cobotwire_core::{Table, Variant};
 use cobotwire_table::{Command, Edition, Link, Shown, bad_argument, general};
 
 use crate::Error;
 use crate::encoder::Encoder;
-use crate::typed;
+use crate::typed::{self, Typed};
 
 /// The lowest and the highest value that is allowed.
 pub type Range = (f64, f64);
@@ -235,19 +235,11 @@ impl Workspace {
         else {
             return Ok(());
         };
-        let decoded = decode(
-            &edition.protocol.table,
-            Direction::Request,
-            &request.frame,
-            Some(request.command),
-        );
-        let fields = decoded
-            .map(|decoded| encoder.named(decoded))
-            .unwrap_or_default();
-        let row = fields
+        let (fields, _) = encoder.arguments(request);
+        let mut rows = fields
             .into_iter()
-            .find_map(|(_, value)| <Vec<f64> as typed::FromValue>::from_value(value));
-        let angles = row.unwrap_or_default();
+            .filter_map(|(_, value)| Typed::from_value(value));
+        let angles: Vec<f64> = rows.next().unwrap_or_default();
         for ((axis, at), range) in AXES
             .iter()
             .zip(end_of(&self.links, &angles))

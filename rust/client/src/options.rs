@@ -65,30 +65,15 @@ impl Default for RetryPolicy {
 }
 
 impl RetryPolicy {
-    pub(crate) fn checked(&self) -> Result<Policy, Error> {
-        const HOUR: Duration = Duration::from_secs(3600);
-        let wrong = |name: &str, value: Shown, allowed: &str| {
-            Err(Error::usage(bad_argument(
-                &format!("retry.{name}"),
-                &value,
-                allowed,
-            )))
-        };
+    fn checked(&self) -> Result<Policy, Error> {
         if !(1..=100).contains(&self.attempts) {
             let given = Shown::Integer(i64::from(self.attempts));
-            return wrong("attempts", given, "a whole number 1..100");
-        }
-        if self.shortest_attempt.is_zero() || self.shortest_attempt >= HOUR {
-            let given = Shown::Real(self.shortest_attempt.as_secs_f64());
-            return wrong("shortest_attempt", given, "seconds above 0 and below 3600");
-        }
-        if self.grace >= HOUR {
-            let given = Shown::Real(self.grace.as_secs_f64());
-            return wrong("grace", given, "seconds from 0 to below 3600");
+            let text = bad_argument("retry.attempts", &given, "a whole number 1..100");
+            return Err(Error::usage(text));
         }
         Ok(Policy {
             attempts: self.attempts,
-            shortest_attempt: nanos(self.shortest_attempt),
+            shortest_attempt: nanos(self.shortest_attempt).max(1),
             grace: nanos(self.grace),
         })
     }
@@ -117,27 +102,29 @@ impl From<&str> for Address {
 
 impl Address {
     pub(crate) fn find(&self, edition: &Edition) -> Result<u8, Error> {
-        let mut known = edition.addresses.iter();
-        let found = match self {
+        let (found, given) = match self {
             Self::Number(number) => {
-                let all = &edition.protocol.table.frame().addresses;
-                all.contains(number).then_some(*number)
+                let known = &edition.protocol.table.frame().addresses;
+                (
+                    known.contains(number).then_some(*number),
+                    Shown::Integer((*number).into()),
+                )
             }
-            Self::Name(name) => known
-                .find(|address| address.name.eq_ignore_ascii_case(name))
-                .map(|address| address.value),
-        };
-        let number = match self {
-            Self::Number(number) => Some(*number),
-            Self::Name(_) => None,
-        };
-        found.ok_or_else(|| match self {
-            Self::Name(name) if !edition.addresses.is_empty() => {
-                let names = edition.addresses.iter().map(|address| &*address.name);
-                let names = names.collect::<Vec<_>>().join(", ");
-                Error::usage(bad_argument("address", &Shown::Text(name.clone()), &names))
+            Self::Name(name) => {
+                let mut known = edition.addresses.iter();
+                let found = known.find(|known| known.name.eq_ignore_ascii_case(name));
+                (found.map(|known| known.value), Shown::Text(name.clone()))
             }
-            _ => Error::usage(edition.no_address(number)),
+        };
+        found.ok_or_else(|| {
+            let known = edition.addresses.iter();
+            let names = known.map(|known| format!("{} ({})", known.name, known.value));
+            let names = names.collect::<Vec<_>>().join(", ");
+            match (self, names.is_empty()) {
+                (Self::Number(number), _) => Error::usage(edition.no_address(Some(*number))),
+                (_, true) => Error::usage(edition.no_address(None)),
+                _ => Error::usage(bad_argument("address", &given, &names)),
+            }
         })
     }
 }

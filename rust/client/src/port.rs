@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use crate::Error;
 
-const CONNECT: Duration = Duration::from_secs(5);
+pub(crate) const CONNECT: Duration = Duration::from_secs(5);
 
 /// A stream of bytes to a device, of which reading and writing can be limited in time.
 ///

@@ -18,12 +18,14 @@ const LONGEST_WRITE: Nanos = 1_000_000_000;
 /// A write that takes longer than this was held up by a full line.
 const SLOW_WRITE: Nanos = 5_000_000;
 
+/// How many events wait for their consumer; if more come, the oldest is dropped.
+const CAPACITY: usize = 1000;
+
 /// Events of one command that wait for their consumer.
 #[derive(Debug)]
 pub(crate) struct Queue {
     pub command: usize,
     pub events: VecDeque<Named>,
-    pub capacity: usize,
     pub lost: u64,
 }
 
@@ -61,12 +63,13 @@ pub(crate) struct Session {
     written: Option<Ticket>,
     /// The devices that were set in motion, and not stopped since.
     moved: Vec<Option<u8>>,
+    on_drop: OnDrop,
     names: PortNames,
 }
 
 impl Session {
     /// Begin with what an earlier session left; `None`: nothing says which port it is.
-    pub fn new(encoder: Arc<Encoder>, url: Option<&str>) -> Self {
+    pub fn new(encoder: Arc<Encoder>, url: Option<&str>, on_drop: OnDrop) -> Self {
         let (names, begun) = (url.map(PortNames::of).unwrap_or_default(), Instant::now());
         let mut exchange = Exchange::new(Arc::new(encoder.edition.protocol.clone()));
         exchange.restore(&names.recall(begun));
@@ -82,6 +85,7 @@ impl Session {
             ends: HashMap::new(),
             written: None,
             moved: Vec::new(),
+            on_drop,
         }
     }
 
@@ -125,7 +129,7 @@ impl Session {
                 if queue.command != command {
                     continue;
                 }
-                if queue.events.len() >= queue.capacity {
+                if queue.events.len() >= CAPACITY {
                     queue.events.pop_front();
                     queue.lost += 1;
                 }
@@ -152,6 +156,13 @@ impl Session {
             .enqueue(request, settings.timeout, settings.retry, now, ends_by);
         self.ends.extend(ends_by.map(|ends_by| (ticket, ends_by)));
         ticket
+    }
+
+    /// Return whether a call may still wait for the line to take its request.
+    pub fn has_time(&self, settings: &Settings, called_at: Nanos) -> bool {
+        settings
+            .deadline
+            .is_some_and(|longest| self.now() - called_at < longest)
     }
 
     /// Return the bytes of a one-way request, and its ticket if its caller waits for the
@@ -303,7 +314,7 @@ impl Session {
 
     /// Return the bytes that stop every device in motion, as the policy says; there are none if
     /// nothing moves.
-    pub fn stops(&mut self, policy: OnDrop) -> Vec<u8> {
+    pub fn stops(&mut self) -> Vec<u8> {
         let moved = std::mem::take(&mut self.moved);
         let edition = &self.encoder.edition;
         let Some(stop) = edition
@@ -313,7 +324,7 @@ impl Session {
         else {
             return Vec::new();
         };
-        if policy == OnDrop::Leave || moved.is_empty() {
+        if self.on_drop == OnDrop::Leave || moved.is_empty() {
             return Vec::new();
         }
         let mut bytes = self.exchange.align().to_vec();
@@ -333,12 +344,11 @@ impl Drop for Session {
 }
 
 impl Queue {
-    pub fn new(command: usize) -> Self {
-        Self {
+    pub fn new(command: usize) -> Arc<Mutex<Self>> {
+        Arc::new(Mutex::new(Self {
             command,
             events: VecDeque::new(),
-            capacity: 1000,
             lost: 0,
-        }
+        }))
     }
 }

@@ -1,12 +1,12 @@
-//! What generated modules are made of: the macros state each command once, and make its request,
-//! its blocking method and its asynchronous method.
+//! What generated modules are made of: macros state each command once, and make its request, its
+//! blocking method and its asynchronous method.
 
 use std::sync::{Arc, OnceLock};
 
 use cobotwire_table::Edition;
 
 use crate::Error;
-pub use crate::value::{FromValue, IntoValue, Value};
+pub use crate::value::{Typed, Value};
 
 /// The table of an edition.
 pub type Table = Arc<Edition>;
@@ -25,7 +25,7 @@ pub fn read(once: &Once, text: &str) -> Result<Table, Error> {
 /// A request of a command, as a type.
 pub trait Request: Clone + Send + 'static {
     /// What a call returns.
-    type Reply: FromValue + Send + 'static;
+    type Reply: Typed + Send + 'static;
     /// The name of the command.
     const COMMAND: &'static str;
     /// The fields of the reply that the result is made of.
@@ -38,7 +38,7 @@ pub trait Request: Clone + Send + 'static {
 }
 
 /// A message that the device sends without a request, as a type.
-pub trait DeviceEvent: FromValue + Send + 'static {
+pub trait DeviceEvent: Typed + Send + 'static {
     /// The name of the command.
     const COMMAND: &'static str;
     /// Its fields.
@@ -57,8 +57,9 @@ pub(crate) fn plain(name: &str) -> &str {
 #[macro_export]
 macro_rules! client {
     (
-        $(#[$doc:meta])* $client:ident $asynchronous:ident = $name:literal $table:expr;
-        $($(#[$about:meta])* $message:ident $command:literal $method:ident($($argument:ident: $type:ty),*)
+        $(#[$doc:meta])* $client:ident $asynchronous:ident = $table:expr;
+        $($(#[$about:meta])* $message:ident $command:literal $method:ident
+            ($($argument:ident: $type:ty),*)
             $(-> $reply:ty = $($result:ident)+)? $(, in radians $($radians:ident)+)?;)*
     ) => {
         /// Return the edition's table; it is read on first use.
@@ -89,7 +90,7 @@ macro_rules! client {
                     fn arguments(self) -> ::std::vec::Vec<(&'static str, $crate::Value)> {
                         vec![$((
                             stringify!($argument),
-                            $crate::typed::IntoValue::into_value(self.$argument),
+                            $crate::typed::Typed::into_value(self.$argument),
                         )),*]
                     }
                 }
@@ -111,41 +112,9 @@ macro_rules! client {
 #[doc(hidden)]
 #[macro_export]
 macro_rules! blocking_client {
-    ([$(#[$doc:meta])*] $client:ident; $($command:tt)*) => {
-        $crate::client_type! { [$(#[$doc])*] $client $crate::Client; }
-        $crate::methods! { blocking $client; $($command)* }
-
-        impl $client {
-            /// Open an arm at a serial port, or at `socket://host:port`.
-            ///
-            /// # Errors
-            /// The port or an option is not allowed, or the port cannot be opened.
-            pub fn open(port: &str) -> ::std::result::Result<Self, $crate::Error> {
-                Self::open_with(port, $crate::Options::default())
-            }
-
-            /// Open an arm with other options.
-            ///
-            /// # Errors
-            /// As [`Self::open`].
-            pub fn open_with(
-                port: &str,
-                options: $crate::Options,
-            ) -> ::std::result::Result<Self, $crate::Error> {
-                $crate::Client::open(edition()?, port, options).map(Self)
-            }
-
-            /// Drive an arm over an open port.
-            ///
-            /// # Errors
-            /// An option is not allowed.
-            pub fn over(
-                port: impl $crate::Port + 'static,
-                options: $crate::Options,
-            ) -> ::std::result::Result<Self, $crate::Error> {
-                $crate::Client::over(edition()?, port, options).map(Self)
-            }
-        }
+    ($doc:tt $client:ident; $($commands:tt)*) => {
+        $crate::client_type! { $doc $client $crate::Client; $crate::Port; blocking }
+        $crate::methods! { blocking $client; $($commands)* }
     };
 }
 
@@ -154,41 +123,9 @@ macro_rules! blocking_client {
 #[doc(hidden)]
 #[macro_export]
 macro_rules! asynchronous_client {
-    ([$(#[$doc:meta])*] $client:ident; $($command:tt)*) => {
-        $crate::client_type! { [$(#[$doc])*] $client $crate::AsyncClient; }
-        $crate::methods! { asynchronous $client; $($command)* }
-
-        impl $client {
-            /// Connect to an arm at `socket://host:port`.
-            ///
-            /// # Errors
-            /// The address or an option is not allowed, or nobody listens there.
-            pub async fn open(port: &str) -> ::std::result::Result<Self, $crate::Error> {
-                Self::open_with(port, $crate::Options::default()).await
-            }
-
-            /// Connect to an arm with other options.
-            ///
-            /// # Errors
-            /// As [`Self::open`].
-            pub async fn open_with(
-                port: &str,
-                options: $crate::Options,
-            ) -> ::std::result::Result<Self, $crate::Error> {
-                $crate::AsyncClient::open(edition()?, port, options).await.map(Self)
-            }
-
-            /// Drive an arm over an open stream of bytes; a task of the present runtime serves it.
-            ///
-            /// # Errors
-            /// An option is not allowed.
-            pub fn over(
-                stream: impl $crate::ByteStream,
-                options: $crate::Options,
-            ) -> ::std::result::Result<Self, $crate::Error> {
-                $crate::AsyncClient::over(edition()?, stream, options).map(Self)
-            }
-        }
+    ($doc:tt $client:ident; $($commands:tt)*) => {
+        $crate::client_type! { $doc $client $crate::AsyncClient; $crate::ByteStream; async await }
+        $crate::methods! { asynchronous $client; $($commands)* }
     };
 }
 
@@ -204,7 +141,7 @@ macro_rules! asynchronous_client {
 #[doc(hidden)]
 #[macro_export]
 macro_rules! client_type {
-    ([$(#[$doc:meta])*] $client:ident $inner:ty;) => {
+    ([$(#[$doc:meta])*] $client:ident $inner:ty; $port:path; $($kind:ident)+) => {
         $(#[$doc])*
         ///
         /// A clone is a second handle of the same connection.
@@ -220,6 +157,19 @@ macro_rules! client_type {
         }
 
         impl $client {
+            $crate::openers! { $inner; $($kind)+ }
+
+            /// Drive an arm over an open port; an asynchronous one is served by the present runtime.
+            ///
+            /// # Errors
+            /// An option is not allowed.
+            pub fn over(
+                port: impl $port + 'static,
+                options: $crate::Options,
+            ) -> ::std::result::Result<Self, $crate::Error> {
+                <$inner>::over(edition()?, port, options).map(Self)
+            }
+
             /// Return this client for another address, by its name or number.
             ///
             /// # Errors
@@ -240,13 +190,46 @@ macro_rules! client_type {
     };
 }
 
+/// Makes the functions that open a port.
+#[doc(hidden)]
+#[macro_export]
+macro_rules! openers {
+    ($inner:ty; blocking) => { $crate::openers! { $inner; [] [] } };
+    ($inner:ty; async await) => { $crate::openers! { $inner; [async] [.await] } };
+    ($inner:ty; [$($async:tt)*] [$($await:tt)*]) => {
+        /// Open an arm at `socket://host:port`; a blocking client also at a serial port.
+        ///
+        /// # Errors
+        /// The port is not allowed, or cannot be opened.
+        pub $($async)* fn open(port: &str) -> ::std::result::Result<Self, $crate::Error> {
+            Self::open_with(port, $crate::Options::default()) $($await)*
+        }
+
+        /// Open an arm with other options.
+        ///
+        /// # Errors
+        /// As [`Self::open`]; or an option is not allowed.
+        pub $($async)* fn open_with(
+            port: &str,
+            options: $crate::Options,
+        ) -> ::std::result::Result<Self, $crate::Error> {
+            <$inner>::open(edition()?, port, options) $($await)* .map(Self)
+        }
+    };
+}
+
 /// Makes a method for each command.
 #[doc(hidden)]
 #[macro_export]
 macro_rules! methods {
-    ($kind:ident $client:ident; $($command:tt $message:ident $method:ident $rest:tt $reply:tt;)*) => {
+    (blocking $client:ident; $($command:tt $message:ident $method:ident $rest:tt $reply:tt;)*) => {
         impl $client {
-            $($crate::method! { $kind $command $message $method $rest $reply })*
+            $($crate::method! { [] [] $command $message $method $rest $reply })*
+        }
+    };
+    (asynchronous $client:ident; $($command:tt $message:ident $method:ident $rest:tt $reply:tt;)*) => {
+        impl $client {
+            $($crate::method! { [async] [.await] $command $message $method $rest $reply })*
         }
     };
 }
@@ -255,30 +238,17 @@ macro_rules! methods {
 #[doc(hidden)]
 #[macro_export]
 macro_rules! method {
-    (blocking [$(#[$about:meta])*] $message:ident $method:ident
+    ([$($async:tt)*] [$($await:tt)*] [$(#[$about:meta])*] $message:ident $method:ident
         ($($argument:ident: $type:ty),*) [$($reply:ty)?]) => {
         $(#[$about])*
         ///
         /// # Errors
         /// An argument is not allowed, the port is lost, or the reply is illegal or missing.
-        pub fn $method(
+        pub $($async)* fn $method(
             &self,
             $($argument: impl ::std::convert::Into<$type>),*
         ) -> ::std::result::Result<$crate::either!($($reply)?), $crate::Error> {
-            self.0.call(messages::$message { $($argument: $argument.into()),* })
-        }
-    };
-    (asynchronous [$(#[$about:meta])*] $message:ident $method:ident
-        ($($argument:ident: $type:ty),*) [$($reply:ty)?]) => {
-        $(#[$about])*
-        ///
-        /// # Errors
-        /// An argument is not allowed, the stream is lost, or the reply is illegal or missing.
-        pub async fn $method(
-            &self,
-            $($argument: impl ::std::convert::Into<$type>),*
-        ) -> ::std::result::Result<$crate::either!($($reply)?), $crate::Error> {
-            self.0.call(messages::$message { $($argument: $argument.into()),* }).await
+            self.0.call(messages::$message { $($argument: $argument.into()),* }) $($await)*
         }
     };
 }
@@ -306,13 +276,11 @@ macro_rules! choices {
             $($(#[$about])* $choice = $raw,)*
         }
 
-        impl $crate::typed::IntoValue for $name {
+        impl $crate::typed::Typed for $name {
             fn into_value(self) -> $crate::Value {
                 $crate::Value::Integer(self as i64)
             }
-        }
 
-        impl $crate::typed::FromValue for $name {
             fn from_value(value: $crate::Value) -> ::std::option::Option<Self> {
                 match value {
                     $($crate::Value::Integer($raw) => ::std::option::Option::Some(Self::$choice),)*
@@ -326,9 +294,15 @@ macro_rules! choices {
 /// Makes a struct of a row of values; with `as`, it can be passed where a call takes an array.
 #[macro_export]
 macro_rules! row {
-    ($(#[$doc:meta])* $name:ident as [$item:ty; $count:literal] { $($fields:tt)* }) => {
-        $crate::row! { $(#[$doc])* $name { $($fields)* } }
-        $crate::array_of_row! { $name [$item; $count] { $($fields)* } }
+    ($(#[$doc:meta])* $name:ident as [$item:ty; $count:literal]
+        { $($(#[$about:meta])* $field:ident: $type:ty,)* }) => {
+        $crate::row! { $(#[$doc])* $name { $($(#[$about])* $field: $type,)* } }
+
+        impl ::std::convert::From<$name> for [$item; $count] {
+            fn from(row: $name) -> Self {
+                [$(row.$field as $item),*]
+            }
+        }
     };
     ($(#[$doc:meta])* $name:ident { $($(#[$about:meta])* $field:ident: $type:ty,)* }) => {
         $(#[$doc])*
@@ -337,28 +311,17 @@ macro_rules! row {
             $($(#[$about])* pub $field: $type,)*
         }
 
-        impl $crate::typed::FromValue for $name {
-            fn from_value(value: $crate::Value) -> ::std::option::Option<Self> {
-                let $crate::Value::Row(row) = value else {
-                    return ::std::option::Option::None;
-                };
-                let mut row = row.into_iter();
-                ::std::option::Option::Some(Self {
-                    $($field: $crate::typed::FromValue::from_value(row.next()?)?,)*
-                })
+        impl $crate::typed::Typed for $name {
+            fn into_value(self) -> $crate::Value {
+                $crate::Value::Row(vec![$($crate::typed::Typed::into_value(self.$field)),*])
             }
-        }
-    };
-}
 
-/// Makes the conversion of a row to an array.
-#[doc(hidden)]
-#[macro_export]
-macro_rules! array_of_row {
-    ($name:ident [$item:ty; $count:literal] { $($(#[$about:meta])* $field:ident: $type:ty,)* }) => {
-        impl ::std::convert::From<$name> for [$item; $count] {
-            fn from(row: $name) -> Self {
-                [$(row.$field as $item),*]
+            fn from_value(value: $crate::Value) -> ::std::option::Option<Self> {
+                let row = <::std::vec::Vec<$crate::Value> as $crate::typed::Typed>::from_value(value);
+                let mut row = row?.into_iter();
+                ::std::option::Option::Some(Self {
+                    $($field: $crate::typed::Typed::from_value(row.next()?)?,)*
+                })
             }
         }
     };

@@ -3,10 +3,10 @@
 use std::convert::Infallible;
 
 use cobotwire_core::{Encoding, Given, Row, Unread, Value as Flat, ValueFault};
-use cobotwire_table::{Quote, Shown};
+use cobotwire_table::{Filled, Quote, Shown};
 
 /// The value of an argument or of a field of a reply.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub enum Value {
     /// An integer, or a member of an enum.
     Integer(i64),
@@ -23,6 +23,7 @@ pub enum Value {
     /// The number of elements of a list, which the encoder counts.
     Counted,
     /// An argument that is left out, or a field that a reply does not have.
+    #[default]
     Absent,
 }
 
@@ -31,7 +32,7 @@ const WRONG_TYPE: Unread<Infallible> = Unread::Fault(ValueFault::Type);
 
 impl Given for Value {
     type Error = Infallible;
-    type Row = Value;
+    type Row = Self;
 
     fn integer(&self, flag: bool) -> Read<i64> {
         match self {
@@ -52,54 +53,53 @@ impl Given for Value {
     }
 
     fn row(&self) -> Read<Self> {
-        match self {
-            Self::Row(_) => Ok(self.clone()),
-            _ => Err(WRONG_TYPE),
-        }
+        let row = Some(self).filter(|value| matches!(value, Self::Row(_)));
+        row.cloned().ok_or(WRONG_TYPE)
     }
 
     fn counted(&self) -> bool {
-        matches!(self, Self::Counted)
+        *self == Self::Counted
     }
 
     fn bytes(&self) -> Read<Option<Vec<u8>>> {
-        match self {
-            Self::Bytes(bytes) => Ok(Some(bytes.clone())),
-            _ => Ok(None),
-        }
+        Ok(Vec::from_value(self.clone()))
     }
 
     fn text(&self, encoding: Encoding) -> Read<Vec<u8>> {
         let Self::Text(text) = self else {
             return Err(WRONG_TYPE);
         };
-        let encoded = match encoding {
-            Encoding::Utf8 => Some(text.clone().into_bytes()),
-            Encoding::Ascii => text.is_ascii().then(|| text.clone().into_bytes()),
-            Encoding::Latin1 => text.chars().map(|c| u8::try_from(c).ok()).collect(),
+        let latin1 = || text.chars().map(|c| u8::try_from(c).ok()).collect();
+        let utf8 = (encoding == Encoding::Utf8 || text.is_ascii()).then(|| text.as_bytes().into());
+        let encoded = if encoding == Encoding::Latin1 {
+            latin1()
+        } else {
+            utf8
         };
         encoded.ok_or(Unread::Fault(ValueFault::Text))
     }
 }
 
 impl Row for Value {
-    type Item = Value;
+    type Item = Self;
 
     fn count(&self) -> usize {
-        match self {
-            Self::Row(row) => row.len(),
-            _ => 0,
+        if let Self::Row(row) = self {
+            row.len()
+        } else {
+            0
         }
     }
 
-    fn at(&self, index: usize) -> Option<Value> {
-        match self {
-            Self::Row(row) => row.get(index).cloned(),
-            _ => None,
+    fn at(&self, index: usize) -> Option<Self> {
+        if let Self::Row(row) = self {
+            row.get(index).cloned()
+        } else {
+            None
         }
     }
 
-    fn into_value(self) -> Value {
+    fn into_value(self) -> Self {
         self
     }
 }
@@ -112,40 +112,42 @@ impl Quote for Value {
             Self::Flag(set) => Shown::Flag(*set),
             Self::Text(text) => Shown::Text(text.clone()),
             Self::Bytes(bytes) => Shown::Bytes(bytes.clone()),
-            Self::Row(row) => Shown::List(row.iter().map(Quote::quote).collect()),
+            Self::Row(row) => Shown::Tuple(row.iter().map(Quote::quote).collect()),
             Self::Counted | Self::Absent => Shown::Other("None".to_owned()),
         }
     }
 }
 
-/// Return the next value of a decoded message; a row takes those that follow it.
-pub(crate) fn nested(flat: &mut impl Iterator<Item = Flat>) -> Option<Value> {
-    Some(match flat.next()? {
-        Flat::Integer(raw) => Value::Integer(raw),
-        Flat::Real(real) => Value::Real(real),
-        Flat::Row(size) | Flat::Rows(size) => {
-            Value::Row((0..size).map(|_| nested(flat)).collect::<Option<_>>()?)
+impl From<Filled> for Value {
+    fn from(filled: Filled) -> Self {
+        match filled {
+            Filled::Counted => Self::Counted,
+            Filled::Integer(raw) => Self::Integer(raw),
+            Filled::Real(real) => Self::Real(real),
+            Filled::Row(row) => row.into_value(),
         }
-        Flat::Bytes(size) => Value::Bytes(bytes(flat, size)?),
-        Flat::Text(size, encoding) => {
-            let bytes = bytes(flat, size)?;
-            Value::Text(match encoding {
-                Encoding::Latin1 => bytes.into_iter().map(char::from).collect(),
-                _ => String::from_utf8(bytes).ok()?,
-            })
-        }
-    })
-}
-
-fn bytes(flat: &mut impl Iterator<Item = Flat>, size: usize) -> Option<Vec<u8>> {
-    let one = |value| match value {
-        Flat::Integer(raw) => u8::try_from(raw).ok(),
-        _ => None,
-    };
-    (0..size).map(|_| flat.next().and_then(one)).collect()
+    }
 }
 
 impl Value {
+    /// Return the next value of a decoded message; a row takes those that follow it.
+    pub(crate) fn nested(flat: &mut impl Iterator<Item = Flat>) -> Option<Self> {
+        Some(match flat.next()? {
+            Flat::Integer(raw) => Self::Integer(raw),
+            Flat::Real(real) => Self::Real(real),
+            Flat::Row(size) | Flat::Rows(size) => Self::Row(
+                (0..size)
+                    .map(|_| Self::nested(flat))
+                    .collect::<Option<_>>()?,
+            ),
+            Flat::Bytes(size) => Self::Bytes(bytes(flat, size)?),
+            Flat::Text(size, Encoding::Latin1) => {
+                Self::Text(bytes(flat, size)?.into_iter().map(char::from).collect())
+            }
+            Flat::Text(size, _) => Self::Text(String::from_utf8(bytes(flat, size)?).ok()?),
+        })
+    }
+
     /// Return the value with each number changed, in rows too.
     pub(crate) fn map(self, change: fn(f64) -> f64) -> Self {
         match self {
@@ -157,29 +159,34 @@ impl Value {
     }
 }
 
-/// A type that arguments have.
-pub trait IntoValue {
-    /// Convert it.
-    fn into_value(self) -> Value;
+fn bytes(flat: &mut impl Iterator<Item = Flat>, size: usize) -> Option<Vec<u8>> {
+    let one = |value| match value {
+        Flat::Integer(raw) => u8::try_from(raw).ok(),
+        _ => None,
+    };
+    (0..size).map(|_| flat.next().and_then(one)).collect()
 }
 
-/// A type that fields of replies have.
-pub trait FromValue: Sized {
+/// A type that arguments and fields of replies have.
+pub trait Typed: Sized {
+    /// Convert it.
+    fn into_value(self) -> Value;
+
     /// Convert a value; `None`: it is of another type.
     fn from_value(value: Value) -> Option<Self>;
 }
 
-macro_rules! scalars {
-    ($($type:ty: $made:ident, $($pattern:pat => $result:expr),+;)*) => {$(
-        impl IntoValue for $type {
-            fn into_value(self) -> Value {
-                Value::$made(self)
+macro_rules! typed {
+    ($($type:ty, $self:ident => $into:expr, $($pattern:pat => $result:expr),+;)*) => {$(
+        impl Typed for $type {
+            fn into_value($self) -> Value {
+                $into
             }
-        }
-        impl FromValue for $type {
+
             fn from_value(value: Value) -> Option<Self> {
                 match value {
                     $($pattern => Some($result),)+
+                    #[allow(unreachable_patterns)] // a value takes all
                     _ => None,
                 }
             }
@@ -187,69 +194,46 @@ macro_rules! scalars {
     )*};
 }
 
-scalars! {
-    i64: Integer, Value::Integer(raw) => raw;
-    f64: Real, Value::Real(real) => real, Value::Integer(raw) => raw as f64;
-    bool: Flag, Value::Flag(set) => set, Value::Integer(raw) => raw != 0;
-    String: Text, Value::Text(text) => text;
-    Vec<u8>: Bytes, Value::Bytes(bytes) => bytes;
+typed! {
+    i64, self => Value::Integer(self), Value::Integer(raw) => raw;
+    f64, self => Value::Real(self), Value::Real(real) => real, Value::Integer(raw) => raw as f64;
+    bool, self => Value::Flag(self), Value::Flag(set) => set, Value::Integer(raw) => raw != 0;
+    String, self => Value::Text(self), Value::Text(text) => text;
+    Vec<u8>, self => Value::Bytes(self), Value::Bytes(bytes) => bytes;
+    Value, self => self, value => value;
+    (), self => Value::Absent, _ => ();
 }
 
-impl IntoValue for Value {
+impl<T: Typed> Typed for Option<T> {
     fn into_value(self) -> Value {
-        self
+        self.map_or(Value::Absent, Typed::into_value)
     }
-}
 
-impl FromValue for Value {
     fn from_value(value: Value) -> Option<Self> {
-        Some(value)
-    }
-}
-
-impl FromValue for () {
-    fn from_value(_: Value) -> Option<Self> {
-        Some(())
-    }
-}
-
-impl<T: IntoValue> IntoValue for Option<T> {
-    fn into_value(self) -> Value {
-        self.map_or(Value::Absent, IntoValue::into_value)
-    }
-}
-
-impl<T: FromValue> FromValue for Option<T> {
-    fn from_value(value: Value) -> Option<Self> {
-        match value {
-            Value::Absent => Some(None),
-            value => T::from_value(value).map(Some),
+        if value == Value::Absent {
+            Some(None)
+        } else {
+            T::from_value(value).map(Some)
         }
     }
 }
 
-impl<T: IntoValue> IntoValue for Vec<T> {
+impl<T: Typed> Typed for Vec<T> {
     fn into_value(self) -> Value {
-        Value::Row(self.into_iter().map(IntoValue::into_value).collect())
+        Value::Row(self.into_iter().map(Typed::into_value).collect())
     }
-}
 
-impl<T: FromValue> FromValue for Vec<T> {
     fn from_value(value: Value) -> Option<Self> {
-        match value {
-            Value::Row(row) => row.into_iter().map(T::from_value).collect(),
-            _ => None,
-        }
+        let Value::Row(row) = value else { return None };
+        row.into_iter().map(T::from_value).collect()
     }
 }
 
-impl<T: IntoValue, const N: usize> IntoValue for [T; N] {
+impl<T: Typed, const N: usize> Typed for [T; N] {
     fn into_value(self) -> Value {
-        Value::Row(self.into_iter().map(IntoValue::into_value).collect())
+        Vec::from(self).into_value()
     }
-}
 
-impl<T: FromValue, const N: usize> FromValue for [T; N] {
     fn from_value(value: Value) -> Option<Self> {
         Vec::from_value(value)?.try_into().ok()
     }

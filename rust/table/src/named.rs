@@ -51,9 +51,15 @@ impl Edition {
         let (kind, name) = misfit.unwrap_or_default();
         let fields = record.request.first().into_iter().flatten();
         let fields = fields.filter(|field| field.constant.is_none() && field.counts.is_none());
-        let allowed = fields.map(|field| &*field.name).collect::<Vec<_>>().join(", ");
-        let places: [(&str, &dyn Display); 3] =
-            [("call", &record.name), ("name", &name), ("allowed", &allowed)];
+        let allowed = fields
+            .map(|field| &*field.name)
+            .collect::<Vec<_>>()
+            .join(", ");
+        let places: [(&str, &dyn Display); 3] = [
+            ("call", &record.name),
+            ("name", &name),
+            ("allowed", &allowed),
+        ];
         Err(error_text(kind, &places))
     }
 
@@ -70,26 +76,30 @@ impl Edition {
             }
         }
         let commands = self.protocol.table.commands();
-        let variant = commands.get(command).and_then(|each| each.request.get(variant));
+        let variant = commands
+            .get(command)
+            .and_then(|each| each.request.get(variant));
         let mut row = Vec::with_capacity(fields.len());
         for (index, field) in fields.iter().enumerate() {
             let number = || variant?.fields().get(index)?.cases.first()?.numbers.first();
             let given = given.iter().find(|(name, _)| field.name == *name);
-            row.push(match (given, &field.counts, field.constant, &field.default) {
-                (_, Some(_), ..) => filled(Filled::Counted),
-                (_, _, Some(raw), _) => filled(match number() {
-                    Some(number) if number.scaled() => {
-                        Filled::Real(raw as f64 * number.multiply as f64 / number.divide as f64)
-                    }
-                    _ => Filled::Integer(raw),
-                }),
-                (Some((_, value)), ..) => value.clone(),
-                (.., Some(default)) => filled(match &**default {
-                    [one] => Filled::Real(*one),
-                    several => Filled::Row(several.to_vec()),
-                }),
-                _ => return Err(("missing-argument", field.name.clone())),
-            });
+            row.push(
+                match (given, &field.counts, field.constant, &field.default) {
+                    (_, Some(_), ..) => filled(Filled::Counted),
+                    (_, _, Some(raw), _) => filled(match number() {
+                        Some(number) if number.scaled() => {
+                            Filled::Real(raw as f64 * number.multiply as f64 / number.divide as f64)
+                        }
+                        _ => Filled::Integer(raw),
+                    }),
+                    (Some((_, value)), ..) => value.clone(),
+                    (.., Some(default)) => filled(match &**default {
+                        [one] => Filled::Real(*one),
+                        several => Filled::Row(several.to_vec()),
+                    }),
+                    _ => return Err(("missing-argument", field.name.clone())),
+                },
+            );
         }
         Ok(row)
     }
