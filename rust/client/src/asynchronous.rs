@@ -7,7 +7,7 @@ use std::task::{Context, Waker};
 use std::time::{Duration, Instant};
 
 use cobotwire_core::exchange::Ticket;
-use tokio::io::{AsyncRead, AsyncReadExt, AsyncWrite, AsyncWriteExt};
+use tokio::io::{AsyncRead, AsyncReadExt, AsyncWrite, AsyncWriteExt, ReadHalf, WriteHalf};
 use tokio::net::TcpStream;
 use tokio::sync::mpsc::{UnboundedReceiver, UnboundedSender, unbounded_channel};
 use tokio::sync::{Notify, oneshot};
@@ -23,6 +23,9 @@ use crate::{Address, Error, Options, Sample, Value, lock};
 pub trait ByteStream: AsyncRead + AsyncWrite + Send + Unpin + 'static {}
 
 impl<T: AsyncRead + AsyncWrite + Send + Unpin + 'static> ByteStream for T {}
+
+/// How long the task sleeps if nothing is to be done.
+const LONGEST: Duration = Duration::from_secs(3600);
 
 /// What callers want of the task.
 enum Order {
@@ -68,7 +71,7 @@ impl AsyncClient {
         let ready = stream.and_then(|stream| stream.set_nodelay(true).map(|()| stream));
         let stream = ready
             .map_err(|error| Error::link(port, &format!("cannot be opened: {error}"), Some(0)))?;
-        Self::with(edition, stream, port, options)
+        Self::with(edition, stream, Some(port), options)
     }
 
     /// Drive an arm over an open stream of bytes; a task of the present runtime serves it.
@@ -76,13 +79,14 @@ impl AsyncClient {
     /// # Errors
     /// An option is not allowed, or no runtime is entered.
     pub fn over(edition: Table, stream: impl ByteStream, options: Options) -> Result<Self, Error> {
-        Self::with(edition, stream, "stream", options)
+        let name = options.port_name.clone();
+        Self::with(edition, stream, name.as_deref(), options)
     }
 
     fn with(
         edition: Table,
         stream: impl ByteStream,
-        url: &str,
+        url: Option<&str>,
         options: Options,
     ) -> Result<Self, Error> {
         let handle = Handle::new(edition, &options)?;
@@ -91,15 +95,20 @@ impl AsyncClient {
             runtime.map_err(|_| Error::usage("an AsyncClient needs a runtime of tokio"))?;
         let (orders, received) = unbounded_channel();
         let arrived = Arc::new(Notify::new());
+        let (reader, writer) = tokio::io::split(stream);
         let server = Server {
             session: Session::new(handle.encoder.clone(), url, options.on_drop),
-            stream,
+            reader,
+            writer,
             arrived: arrived.clone(),
             callers: Vec::new(),
             buffer: vec![0; 4096],
             open: true,
         };
-        let (closed, begun) = (Error::link(url, "is closed", Some(0)), server.session.begun);
+        let (closed, begun) = (
+            Error::link(url.unwrap_or("port"), "is closed", Some(0)),
+            server.session.begun,
+        );
         runtime.spawn(server.run(received));
         Ok(Self {
             handle,
@@ -282,7 +291,8 @@ impl<E: DeviceEvent> AsyncEvents<E> {
 /// The task that serves a stream.
 struct Server<S: ByteStream> {
     session: Session,
-    stream: S,
+    reader: ReadHalf<S>,
+    writer: WriteHalf<S>,
     arrived: Arc<Notify>,
     callers: Vec<(Ticket, Prepared, oneshot::Sender<Outcome>)>,
     buffer: Vec<u8>,
@@ -292,13 +302,13 @@ struct Server<S: ByteStream> {
 impl<S: ByteStream> Server<S> {
     async fn run(mut self, mut orders: UnboundedReceiver<Order>) {
         while self.open {
-            let idle = self.session.idle().unwrap_or(Duration::from_secs(3600));
+            let idle = self.session.idle().unwrap_or(LONGEST);
             tokio::select! {
                 order = orders.recv() => match order {
                     Some(order) => self.obey(order).await,
                     None => break,
                 },
-                size = self.stream.read(&mut self.buffer) => self.take(size),
+                size = self.reader.read(&mut self.buffer) => self.take(size),
                 () = tokio::time::sleep(idle) => {}
             }
             self.step().await;
@@ -315,14 +325,14 @@ impl<S: ByteStream> Server<S> {
             Order::Subscribe(queue) => self.session.subscribe(&queue),
             Order::GivenUp => {}
             Order::Close(done) => {
-                self.session.forget_motion();
-                self.lose("is closed");
+                self.session.close();
+                self.open = false;
                 let _ = done.send(());
             }
             // Its caller has given it up before it was sent.
             Order::Call(_, _, _, caller) if caller.is_closed() => {}
-            Order::Call(prepared, settings, _, caller) if prepared.awaits_reply => {
-                let ticket = self.session.enqueue(&prepared, &settings);
+            Order::Call(prepared, settings, called_at, caller) if prepared.awaits_reply => {
+                let ticket = self.session.enqueue(&prepared, &settings, called_at);
                 self.callers.push((ticket, prepared, caller));
             }
             Order::Call(prepared, settings, called_at, caller) => {
@@ -361,7 +371,7 @@ impl<S: ByteStream> Server<S> {
         while self.open {
             let size = tokio::select! {
                 biased;
-                size = self.stream.read(&mut self.buffer) => Some(size),
+                size = self.reader.read(&mut self.buffer) => Some(size),
                 () = std::future::ready(()) => None,
             };
             let drained = size.is_none();
@@ -382,14 +392,29 @@ impl<S: ByteStream> Server<S> {
     async fn write(&mut self, outgoing: &Outgoing) -> Result<(), Error> {
         let bytes = outgoing.bytes();
         let (mut taken, mut fault) = (0, None);
-        while let Some(rest) = bytes.get(taken..).filter(|rest| !rest.is_empty()) {
-            match tokio::time::timeout_at(outgoing.until.into(), self.stream.write(rest)).await {
-                Ok(Ok(size)) if size > 0 => taken += size,
-                Ok(Ok(_)) | Err(_) => break,
-                Ok(Err(error)) => {
-                    fault = Some(error);
-                    break;
-                }
+        while let Some(rest) = bytes
+            .get(taken..)
+            .filter(|rest| !rest.is_empty() && self.open)
+        {
+            let idle = self.session.idle().unwrap_or(LONGEST);
+            tokio::select! {
+                biased;
+                size = self.writer.write(rest) => match size {
+                    Ok(size) if size > 0 => taken += size,
+                    Ok(_) => break,
+                    Err(error) => {
+                        fault = Some(error);
+                        break;
+                    }
+                },
+                () = tokio::time::sleep_until(outgoing.until.into()) => break,
+                // A full line must not delay the calls that wait for something else.
+                size = self.reader.read(&mut self.buffer) => self.take(size),
+                () = tokio::time::sleep(idle) => {}
+            }
+            if taken < bytes.len() {
+                self.session.advance(&[]);
+                self.finish();
             }
         }
         self.session.wrote(outgoing, taken, fault.as_ref())
@@ -425,7 +450,7 @@ impl<S: ByteStream> Drop for Server<S> {
         if self.open && !bytes.is_empty() {
             // The runtime may be at its end, so nothing can be waited for.
             let mut context = Context::from_waker(Waker::noop());
-            let _ = Pin::new(&mut self.stream).poll_write(&mut context, &bytes);
+            let _ = Pin::new(&mut self.writer).poll_write(&mut context, &bytes);
         }
     }
 }

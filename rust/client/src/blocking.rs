@@ -46,7 +46,7 @@ impl Client {
     /// The port or an option is not allowed, or the port cannot be opened.
     pub fn open(edition: Table, port: &str, options: Options) -> Result<Self, Error> {
         let opened = port::open(port, options.baudrate.unwrap_or(edition.baudrate))?;
-        Self::with(edition, opened, port, options)
+        Self::with(edition, opened, Some(port), options)
     }
 
     /// Drive an arm over an open port.
@@ -58,13 +58,14 @@ impl Client {
         port: impl Port + 'static,
         options: Options,
     ) -> Result<Self, Error> {
-        Self::with(edition, Box::new(port), "port", options)
+        let name = options.port_name.clone();
+        Self::with(edition, Box::new(port), name.as_deref(), options)
     }
 
     fn with(
         edition: Table,
         port: Box<dyn Port>,
-        url: &str,
+        url: Option<&str>,
         options: Options,
     ) -> Result<Self, Error> {
         let handle = Handle::new(edition, &options)?;
@@ -87,9 +88,8 @@ impl Client {
     /// Close the port. Nothing is sent to the arm; calls of other threads end with a `LinkError`.
     pub fn close(&self) {
         let mut connection = self.connection();
-        connection.session.forget_motion();
         connection.port = None;
-        connection.session.lose("is closed");
+        connection.session.close();
     }
 
     /// Send a request; return the result of its reply, if it has one.
@@ -159,13 +159,16 @@ impl Client {
     }
 
     fn perform(&self, prepared: &Prepared) -> Outcome {
+        // Another thread may have the connection for as long as a full line takes no bytes.
+        let called = Instant::now();
         let (settings, mut connection) = (&self.handle.settings, self.connection());
+        let called_at =
+            crate::options::nanos(called.saturating_duration_since(connection.session.begun));
         if prepared.awaits_reply {
-            let ticket = connection.session.enqueue(prepared, settings);
+            let ticket = connection.session.enqueue(prepared, settings, called_at);
             let sent = connection.turn(Duration::ZERO);
             return self.wait(connection, ticket, prepared, sent).map(Some);
         }
-        let called_at = connection.session.now();
         while connection.session.has_time(settings, called_at) && !connection.has_room() {
             drop(connection);
             std::thread::sleep(TURN);

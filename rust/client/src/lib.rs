@@ -32,6 +32,7 @@ mod blocking;
 mod encoder;
 mod error;
 mod limits;
+mod notes;
 mod options;
 mod port;
 mod session;

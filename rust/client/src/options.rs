@@ -19,6 +19,9 @@ pub struct Options {
     pub retry: RetryPolicy,
     /// The device that requests go to; default: the edition's first address, if it has any.
     pub address: Option<Address>,
+    /// The name of the port that is passed to `over()`. A client knows which late replies to an
+    /// earlier client of this process may still come, if both were opened at a port of this name.
+    pub port_name: Option<String>,
     /// The rate of a serial port in bits a second; default: that of the edition.
     pub baudrate: Option<u32>,
     /// How fast the arm may be sent, and where.

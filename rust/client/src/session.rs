@@ -7,13 +7,14 @@ use std::time::{Duration, Instant};
 use cobotwire_core::exchange::{Answer, Event, Exchange, Failure, Nanos, Safety, Ticket};
 
 use crate::encoder::{Encoder, Named, Prepared};
+use crate::notes::PortNames;
 use crate::options::Settings;
 use crate::{Error, OnDrop};
 
 /// The least time that a write has, if a deadline limits it.
 const SHORTEST_WRITE: Nanos = 20_000_000;
 /// What a write has without a deadline: the line takes nothing for so long only if it is stuck.
-const LONGEST_WRITE: Nanos = 2_000_000_000;
+const LONGEST_WRITE: Nanos = 1_000_000_000;
 /// A write that takes longer than this was held up by a full line.
 const SLOW_WRITE: Nanos = 5_000_000;
 
@@ -63,16 +64,23 @@ pub(crate) struct Session {
     /// The devices that were set in motion, and not stopped since.
     moved: Vec<Option<u8>>,
     on_drop: OnDrop,
+    names: PortNames,
 }
 
 impl Session {
-    pub fn new(encoder: Arc<Encoder>, url: &str, on_drop: OnDrop) -> Self {
+    /// Begin with what an earlier session left; `None`: nothing says which port it is.
+    pub fn new(encoder: Arc<Encoder>, url: Option<&str>, on_drop: OnDrop) -> Self {
+        let (names, begun) = (url.map(PortNames::of).unwrap_or_default(), Instant::now());
+        let mut exchange = Exchange::new(Arc::new(encoder.edition.protocol.clone()));
+        exchange.restore(&names.recall(begun));
+        let url = url.unwrap_or("port");
         Self {
-            exchange: Exchange::new(Arc::new(encoder.edition.protocol.clone())),
+            exchange,
             encoder,
             url: url.to_owned(),
             fault: Error::link(url, "is lost", None),
-            begun: Instant::now(),
+            begun,
+            names,
             queues: Vec::new(),
             ends: HashMap::new(),
             written: None,
@@ -130,11 +138,18 @@ impl Session {
         }
     }
 
-    /// Queue a request whose caller waits for its reply.
-    pub fn enqueue(&mut self, prepared: &Prepared, settings: &Settings) -> Ticket {
+    /// Queue a request whose caller waits for its reply. The call began at `called_at`.
+    pub fn enqueue(
+        &mut self,
+        prepared: &Prepared,
+        settings: &Settings,
+        called_at: Nanos,
+    ) -> Ticket {
         let now = self.now();
         self.note_motion(prepared);
-        let ends_by = settings.deadline.map(|longest| now.saturating_add(longest));
+        let ends_by = settings
+            .deadline
+            .map(|longest| called_at.saturating_add(longest));
         let request = prepared.request.clone();
         let ticket = self
             .exchange
@@ -289,9 +304,17 @@ impl Session {
         }
     }
 
-    /// Note that the client was closed: nothing is sent to the arm any more.
-    pub fn forget_motion(&mut self) {
+    /// End every request: the client was closed, and sends nothing to the arm any more.
+    pub fn close(&mut self) {
         self.moved.clear();
+        self.lose("is closed");
+        self.leave();
+    }
+
+    /// Leave what the next session on this port must know.
+    fn leave(&mut self) {
+        let names = std::mem::take(&mut self.names);
+        names.leave(self.exchange.persist(self.now()), self.begun);
     }
 
     /// Return the bytes that stop every device in motion, as the policy says; there are none if
@@ -316,6 +339,12 @@ impl Session {
             }
         }
         bytes
+    }
+}
+
+impl Drop for Session {
+    fn drop(&mut self) {
+        self.leave();
     }
 }
 
