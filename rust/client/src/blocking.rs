@@ -73,6 +73,7 @@ impl Client {
             session: Session::new(handle.encoder.clone(), url, options.on_drop),
             port: Some(port),
             limit: None,
+            writing: false,
             buffer: vec![0; 4096],
         });
         let waiting = AtomicUsize::new(0);
@@ -89,6 +90,9 @@ impl Client {
     pub fn close(&self) {
         let mut connection = self.connection();
         connection.port = None;
+        while connection.writing {
+            connection = self.leave(connection);
+        }
         connection.session.close();
     }
 
@@ -166,16 +170,19 @@ impl Client {
             crate::options::nanos(called.saturating_duration_since(connection.session.begun));
         if prepared.awaits_reply {
             let ticket = connection.session.enqueue(prepared, settings, called_at);
-            let sent = connection.turn(Duration::ZERO);
+            let (connection, sent) = self.turn(connection, Duration::ZERO);
             return self.wait(connection, ticket, prepared, sent).map(Some);
         }
-        while connection.session.has_time(settings, called_at) && !connection.has_room() {
-            drop(connection);
-            std::thread::sleep(TURN);
-            connection = self.connection();
+        loop {
+            let has_time = connection.session.has_time(settings, called_at);
+            let waits_for_writer = connection.writing && (has_time || settings.deadline.is_none());
+            if !waits_for_writer && (!has_time || connection.has_room()) {
+                break;
+            }
+            connection = self.leave(connection);
         }
         let (outgoing, ticket) = connection.session.one_way(prepared, settings, called_at)?;
-        let written = connection.write(&outgoing);
+        let (mut connection, written) = self.write(connection, &outgoing);
         if let Some(ticket) = ticket {
             return self.wait(connection, ticket, prepared, written).map(Some);
         }
@@ -201,14 +208,58 @@ impl Client {
                 return Err(error);
             }
             if self.shared.waiting.load(Ordering::SeqCst) > 0 {
-                drop(connection);
-                std::thread::sleep(TURN);
-                connection = self.connection();
+                connection = self.leave(connection);
                 last = Ok(());
                 continue;
             }
-            last = connection.turn(SLICE);
+            (connection, last) = self.turn(connection, SLICE);
         }
+    }
+
+    /// Leave the connection to other threads for a moment.
+    fn leave<'a>(&'a self, connection: MutexGuard<'a, Connection>) -> MutexGuard<'a, Connection> {
+        drop(connection);
+        std::thread::sleep(TURN);
+        self.connection()
+    }
+
+    /// Read once, let time pass, and send the request that is next.
+    fn turn<'a>(
+        &'a self,
+        mut connection: MutexGuard<'a, Connection>,
+        longest: Duration,
+    ) -> (MutexGuard<'a, Connection>, Result<(), Error>) {
+        match connection.turn(longest) {
+            Ok(Some(outgoing)) => self.write(connection, &outgoing),
+            Ok(None) => (connection, Ok(())),
+            Err(error) => (connection, Err(error)),
+        }
+    }
+
+    /// Write a request whole, within its time. Other threads read while the line takes no bytes.
+    fn write<'a>(
+        &'a self,
+        mut connection: MutexGuard<'a, Connection>,
+        outgoing: &Outgoing,
+    ) -> (MutexGuard<'a, Connection>, Result<(), Error>) {
+        let bytes = outgoing.bytes();
+        let (mut taken, mut fault) = (0, None);
+        connection.writing = true;
+        while let Some(rest) = bytes.get(taken..).filter(|rest| !rest.is_empty()) {
+            let port = connection.port(Duration::ZERO);
+            match port.and_then(|port| port.write(rest)) {
+                Ok(size) if size > 0 => taken += size,
+                Err(error) if !is_wait(&error) => {
+                    fault = Some(error);
+                    break;
+                }
+                _ if Instant::now() >= outgoing.until => break,
+                _ => connection = self.leave(connection),
+            }
+        }
+        connection.writing = false;
+        let written = connection.session.wrote(outgoing, taken, fault.as_ref());
+        (connection, written)
     }
 
     /// Read what comes without a request for some time, or until `done`.
@@ -216,8 +267,7 @@ impl Client {
         let until = Instant::now() + longest;
         while !done() && Instant::now() < until {
             let left = until.saturating_duration_since(Instant::now());
-            let outcome = self.connection().turn(left.min(SLICE));
-            outcome?;
+            self.turn(self.connection(), left.min(SLICE)).1?;
             if self.shared.waiting.load(Ordering::SeqCst) > 0 {
                 std::thread::sleep(TURN);
             }
@@ -315,25 +365,26 @@ struct Connection {
     port: Option<Box<dyn Port>>,
     /// The limit that the port has.
     limit: Option<Duration>,
+    /// Whether a thread is writing; it leaves the connection to others while the line is full.
+    writing: bool,
     buffer: Vec<u8>,
 }
 
 impl Connection {
-    /// Read once, let time pass, and send the request that is next.
-    fn turn(&mut self, longest: Duration) -> Result<(), Error> {
+    /// Read once, and let time pass; return the request that is to be sent.
+    fn turn(&mut self, longest: Duration) -> Result<Option<Outgoing>, Error> {
         let idle = self.session.idle().unwrap_or(longest);
         let size = self.read(longest.min(idle))?;
         let data = self.buffer.get(..size).unwrap_or_default();
         if self.session.advance(data) {
-            let full = self.session.has_deadline() && !self.has_room();
+            let full = self.writing || self.session.has_deadline() && !self.has_room();
             self.session.exchange.note_full(full);
-            if full {
-                std::thread::sleep(TURN);
-            } else if let Some(outgoing) = self.session.next(size == 0) {
-                self.write(&outgoing)?;
+            if !full {
+                return Ok(self.session.next(size == 0));
             }
+            std::thread::sleep(TURN);
         }
-        Ok(())
+        Ok(None)
     }
 
     /// Read received bytes, so that no buffer overflows while only one-way requests are sent.
@@ -378,24 +429,6 @@ impl Connection {
             Err(error) if is_wait(&error) => Ok(0),
             Err(error) => Err(self.session.lose(&format!("cannot be read: {error}"))),
         }
-    }
-
-    /// Write a request whole, within its time.
-    fn write(&mut self, outgoing: &Outgoing) -> Result<(), Error> {
-        let bytes = outgoing.bytes();
-        let (mut taken, mut fault) = (0, None);
-        while let Some(rest) = bytes.get(taken..).filter(|rest| !rest.is_empty()) {
-            match self.port(Duration::ZERO).and_then(|port| port.write(rest)) {
-                Ok(size) if size > 0 => taken += size,
-                Err(error) if !is_wait(&error) => {
-                    fault = Some(error);
-                    break;
-                }
-                _ if Instant::now() >= outgoing.until => break,
-                _ => std::thread::sleep(TURN),
-            }
-        }
-        self.session.wrote(outgoing, taken, fault.as_ref())
     }
 }
 
