@@ -292,9 +292,8 @@ fn event(event: &Event) -> Json {
             error,
             frame: own,
         } => {
-            let own = own.as_ref();
-            let size = own.map_or(0, |own| own.bytes().len());
-            json!(["rejected", command, wrong(error, size), own.map(frame)])
+            let error = own.as_ref().map(|own| wrong(error, own.bytes().len()));
+            json!(["rejected", command, error, own.as_ref().map(frame)])
         }
         Event::Late {
             command,

@@ -1,15 +1,27 @@
 //! Answers the tests in Python, one JSON value a line: `codec`, `exchange`, `client` or `texts`.
 
+mod codec;
 mod exchange;
 mod texts;
 mod values;
 
-use std::io::{BufRead, Write, stdin, stdout};
+use std::io::{BufRead, Error, Write, stdin, stdout};
+
+use cobotwire_table::Edition;
 
 /// Answer each line until there is no more.
 fn main() -> std::io::Result<()> {
-    let mode = std::env::args().nth(1).unwrap_or_default();
-    match mode.as_str() {
+    let (mode, path) = (std::env::args().nth(1), std::env::args().nth(2));
+    match mode.as_deref().unwrap_or_default() {
+        "codec" => {
+            let data = std::fs::read(path.unwrap_or_default())?;
+            let edition = Edition::read(&data);
+            let edition = edition.map_err(|error| Error::other(format!("{error:?}")))?;
+            answer(|line| {
+                let question = serde_json::from_str(line).unwrap_or_default();
+                codec::answer(&edition, &question).to_string()
+            })
+        }
         "exchange" => {
             let mut exchanges = exchange::Exchanges::default();
             answer(|line| exchanges.answer(line))
@@ -18,7 +30,7 @@ fn main() -> std::io::Result<()> {
             let mut texts = texts::Texts::default();
             answer(|line| texts.answer(line))
         }
-        _ => Err(std::io::Error::other("codec, exchange, client or texts?")),
+        _ => Err(Error::other("codec, exchange, client or texts?")),
     }
 }
 

@@ -1,0 +1,46 @@
+"""The probe: a program that answers tests with the crates in Rust (``rust/probe``)."""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import subprocess
+from functools import lru_cache
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+ROOT = Path(__file__).parent.parent
+needed = pytest.mark.skipif(shutil.which("cargo") is None, reason="needs cargo: not installed")
+
+
+@lru_cache
+def path() -> str:
+    """Return the path of the program; it is compiled once for each test run."""
+    command = ["cargo", "build", "--quiet", "--package", "cobotwire-probe"]
+    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    target = Path(os.environ.get("CARGO_TARGET_DIR", "target"))
+    return str(ROOT / target / "debug" / "cobotwire-probe")
+
+
+class Probe:
+    """The probe in one of its modes that answer each line, which is JSON."""
+
+    def __init__(self, *mode: str) -> None:
+        self._process = subprocess.Popen(
+            [path(), *mode], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
+        )
+
+    def ask(self, question: Any) -> Any:
+        """Return the answer to a line."""
+        target, source = self._process.stdin, self._process.stdout
+        assert target is not None and source is not None
+        print(json.dumps(question), file=target, flush=True)
+        return json.loads(source.readline())
+
+    def close(self) -> None:
+        """End the process."""
+        self._process.communicate()
