@@ -1,24 +1,43 @@
-"""The probe: a program that answers tests with the crates in Rust (``rust/probe``)."""
+"""The probe, built from the Rust sources that it tests."""
 
 from __future__ import annotations
 
-import os
+import json
 import shutil
 import subprocess
 from functools import lru_cache
-from pathlib import Path
+from typing import Any
 
 import pytest
 
-ROOT = Path(__file__).parent.parent
-needed = pytest.mark.skipif(shutil.which("cargo") is None, reason="needs cargo: not installed")
+from vectors import ROOT
+
+needed = pytest.mark.skipif(shutil.which("cargo") is None, reason="cargo is not installed")
 
 
 @lru_cache
 def path() -> str:
-    """Return the path of the program; it is compiled once for each test run."""
-    command = ["cargo", "build", "--quiet", "--package", "cobotwire-probe"]
-    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
-    assert done.returncode == 0, done.stderr
-    target = Path(os.environ.get("CARGO_TARGET_DIR", "target"))
-    return str(ROOT / target / "debug" / "cobotwire-probe")
+    """Build the probe once; return the path of the program."""
+    subprocess.run(["cargo", "build", "--quiet", "-p", "cobotwire-probe"], cwd=ROOT, check=True)
+    return str(ROOT / "target/debug/cobotwire-probe")
+
+
+class Probe:
+    """The probe in one of its modes, which has the given arguments."""
+
+    def __init__(self, mode: str, *arguments: str) -> None:
+        self._process = subprocess.Popen(
+            [path(), mode, *arguments], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
+        )
+
+    def ask(self, question: Any) -> Any:
+        """Return the answer to a line."""
+        source, target = self._process.stdout, self._process.stdin
+        assert source is not None and target is not None
+        target.write(json.dumps(question) + "\n")
+        target.flush()
+        return json.loads(source.readline())
+
+    def close(self) -> None:
+        """End the process."""
+        self._process.communicate()

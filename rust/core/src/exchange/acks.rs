@@ -12,12 +12,12 @@ use alloc::sync::Arc;
 use alloc::vec::Vec;
 
 use super::events::{Event, SeenFrame};
-use super::facts::{Nanos, Protocol, Safety};
+use super::facts::{Nanos, Protocol, Replier, Safety};
 use super::matching::{address_of, id_of, read_reply, replies_differ};
 use super::outcome::{Answer, Failure, WaitedFor};
 use super::pending::{GRACE, NEVER, Pending, PendingAck, Ticket};
 use super::refusal::refusal;
-use super::request::{Replier, Request};
+use super::request::Request;
 use crate::decode::Decoded;
 
 /// Some firmware acknowledges a motion only when it ends.

@@ -4,8 +4,8 @@ use alloc::string::String;
 use alloc::vec::Vec;
 
 use super::facts::Nanos;
-use super::outcome::ReplyError;
-use crate::decode::Decoded;
+use super::text::TextError;
+use crate::decode::{DecodeError, Decoded};
 use crate::frame::{Frame, FrameFormat};
 use crate::owned::OwnedFrame;
 use crate::reason::Reason;
@@ -29,6 +29,15 @@ impl SeenFrame {
     pub(super) fn get(&self, format: &FrameFormat) -> Frame<'_> {
         self.frame.get(format)
     }
+}
+
+/// What is wrong with a reply.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ReplyError {
+    /// Its frame.
+    Frame(DecodeError),
+    /// Its text.
+    Text(TextError),
 }
 
 /// What received bytes are, or what time has ended. `command` is an index in the table.

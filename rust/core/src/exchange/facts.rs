@@ -3,7 +3,6 @@
 use alloc::boxed::Box;
 use alloc::vec::Vec;
 
-use super::request::Replier;
 use crate::table::Table;
 
 /// Nanoseconds of a monotonic clock, or between two of its moments.
@@ -71,6 +70,21 @@ pub struct Facts {
     /// For each variant of its reply, the indices of the fields that are statuses: those that are
     /// not constants, or have labels.
     pub statuses: Vec<Vec<usize>>,
+}
+
+/// Who replies to a request.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Replier {
+    /// The arm: frames have no address.
+    Unaddressed,
+    /// The device with this address.
+    Address(u8),
+    /// Any device: each that received the request may reply.
+    Anybody,
+    /// One device for all.
+    Somebody,
+    /// Nobody.
+    Nobody,
 }
 
 /// An address of the frame format.

@@ -4,14 +4,14 @@ use alloc::collections::BTreeMap;
 use alloc::vec::Vec;
 
 use super::events::{Event, SeenFrame};
-use super::facts::Protocol;
-use super::request::{Replier, Request};
+use super::facts::{Named, Protocol, Replier};
+use super::request::Request;
 use super::values::{fields, same};
 use crate::decode::{DecodeError, Decoded, read};
 use crate::direction::{Direction, Listening};
 use crate::field::Field;
 use crate::message::Variant;
-use crate::number::Number;
+use crate::number::{Number, Value};
 
 /// Return a frame as a reply of one command.
 pub(super) fn read_reply(
@@ -70,7 +70,7 @@ impl Request {
         })
     }
 
-    fn argument(&self, name: &str) -> Option<&[crate::number::Value]> {
+    fn argument(&self, name: &str) -> Option<&[Value]> {
         let mut arguments = self.arguments.iter();
         let (_, value) = arguments.find(|(own, _)| **own == *name)?;
         Some(value)
@@ -235,7 +235,7 @@ pub(super) fn replies_differ(protocol: &Protocol, one: &Request, other: &Request
         values.is_some_and(|(one, other)| !same(one, other))
     };
     // Older firmware leaves the repeated argument out, so every variant must tell them apart.
-    let tells = |variant: &Vec<super::facts::Named>| {
+    let tells = |variant: &Vec<Named>| {
         let mut fields = variant.iter();
         fields.any(|named| named.echo && differs(&named.name))
     };

@@ -39,13 +39,13 @@ use alloc::vec::Vec;
 use core::fmt;
 
 pub use self::alignment::Part;
-pub use self::events::{Event, SeenFrame};
-pub use self::facts::{Addressee, Facts, Named, Nanos, Protocol, Safety, TextForm};
-pub use self::outcome::{Answer, Failure, ReplyError, WaitedFor};
+pub use self::events::{Event, ReplyError, SeenFrame};
+pub use self::facts::{Addressee, Facts, Named, Nanos, Protocol, Replier, Safety, TextForm};
+pub use self::outcome::{Answer, Failure, WaitedFor};
 pub use self::outstanding::{LateFrame, PersistedState};
 pub use self::pending::{RetryPolicy, Ticket};
 pub use self::received::{Kind, Received};
-pub use self::request::{Replier, Request, RequestError};
+pub use self::request::{Request, RequestError};
 pub use self::text::{TextError, TextFault};
 
 use self::acks::Acks;

@@ -3,10 +3,10 @@
 use alloc::string::String;
 use alloc::vec::Vec;
 
+use super::events::ReplyError;
 use super::facts::Nanos;
 use super::received::Received;
-use super::text::TextError;
-use crate::decode::{DecodeError, Decoded};
+use crate::decode::Decoded;
 use crate::message::VariantId;
 use crate::number::Value;
 
@@ -34,15 +34,6 @@ pub enum WaitedFor {
     Line,
     /// Its reply.
     Reply,
-}
-
-/// What is wrong with a reply.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum ReplyError {
-    /// Its frame.
-    Frame(DecodeError),
-    /// Its text.
-    Text(TextError),
 }
 
 /// Why a request has no answer.

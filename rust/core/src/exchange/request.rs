@@ -2,7 +2,7 @@
 
 use alloc::vec::Vec;
 
-use super::facts::{Facts, Protocol};
+use super::facts::{Facts, Protocol, Replier};
 use super::text::TextFault;
 use super::values::{Arguments, fields};
 use crate::decode::{Decoded, decode};
@@ -11,21 +11,6 @@ use crate::encode::{Choice, encode};
 use crate::given::Given;
 use crate::message::Command;
 use crate::write::EncodeError;
-
-/// Who replies to a request.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Replier {
-    /// The arm: frames have no address.
-    Unaddressed,
-    /// The device with this address.
-    Address(u8),
-    /// Any device: each that received the request may reply.
-    Anybody,
-    /// One device for all.
-    Somebody,
-    /// Nobody.
-    Nobody,
-}
 
 /// A request as it goes over the line.
 #[derive(Clone, Debug, PartialEq)]

@@ -35,6 +35,19 @@ pub enum TextError {
     TooLong,
 }
 
+impl TextError {
+    /// Return the index of the wrong byte in a text of `size` bytes.
+    #[must_use]
+    pub fn offset(self, size: usize) -> usize {
+        match self {
+            Self::NotAscii { offset } | Self::Prefix { offset, .. } => offset,
+            Self::Start => 0,
+            Self::End => size,
+            Self::TooLong => LIMIT,
+        }
+    }
+}
+
 /// Why texts of a caller cannot be sent.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TextFault {
