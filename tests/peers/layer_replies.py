@@ -72,7 +72,7 @@ def _tool_replies(request: bytes) -> list[bytes]:
     return [request[: at + 4] + word.to_bytes(2, "big") + b"\0\0" for word in (1, 0, 300)]
 
 
-# Replies in other protocols, by the command that relays them.
+# Replies in other protocols, by the command that forwards them.
 SENSOR, HEAD = b"\x01\x04", b"\xfe\xfe"
 DATA: dict[str, Any] = {
     "tool_serial_write_data": _tool_replies,
@@ -227,7 +227,7 @@ def _all_replies(robot: Robot, codec: Codec, call: Call) -> Iterator[Reply]:
     # What our class does with data of any size depends on the robot only.
     further = _distinguished() if not command.ack and robot.peer in ROBOTS else SMALLEST
     if command.name in DATA:
-        # The command relays data of any size.
+        # The command forwards data of any size.
         return
     for size in sorted(near | further):
         fillings = FILLINGS if size in sizes else FILLINGS[-1:]

@@ -78,8 +78,8 @@ def part_names(field: Field) -> tuple[str, ...]:
     """Return the names of a field's numbers or texts, which become columns of a wide table.
 
     Numbers without a name, or with different names in different cases, are counted from 1. In a
-    list of groups, the number of the group comes first: ``1_x``. The result is empty for a field that is one value:
-    a number, bytes, a text, or a list of a size that varies.
+    list of groups, the number of the group comes first: ``1_x``. The result is empty for a field
+    that is one value: a number, bytes, a text, or a list of a size that varies.
     """
     if field.sizes is not None or not field.dimensions or field.kind == "bytes":
         return ()

@@ -48,7 +48,7 @@ class Probes:
         self.transport = tapped(transport, self._note)
 
     def separate(self, format: FrameFormat) -> None:
-        """End whatever a parser of a format believes to be a frame of its own so far.
+        """End every incomplete frame that a parser of a format may have found so far.
 
         Raises:
             LinkError: the transport is gone.

@@ -66,12 +66,13 @@ class Source(NamedTuple):
 
 
 class Relation(NamedTuple):
-    """What holds between readings if the edition is right.
+    """A relation that readings have if the edition is right.
 
-    ``holds`` takes the rows of the ``keys``, then those of ``conditions``, which are not judged by
-    it. ``independent`` is whether the readings differ in kind, so that a mistake which all of one
-    kind share shows, too. ``aspect`` is what is wrong if no mistake explains that it does not hold.
-    One that is not ``exact`` gives only a range: that shows no sign and no order.
+    ``holds`` takes the rows of the ``keys``, then those of ``conditions``, whose readings it does
+    not test. ``independent`` is whether the readings differ in kind; then it also finds a mistake
+    that all readings of one kind share. ``aspect`` is what is wrong if the relation does not hold
+    and no known mistake explains why. A relation that is not ``exact`` gives only a range, which
+    finds no wrong sign and no wrong order.
     """
 
     keys: tuple[Key, ...]

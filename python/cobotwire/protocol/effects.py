@@ -5,7 +5,7 @@ The effect of a command is one of the records below. What an arm keeps is declar
 (``language/words.py`` of the generator lists the built-in state).
 
 Every record has ``assumed``: why no source states the effect; empty if one does. A simulated arm
-has an assumed effect too, but no tester judges a device by it.
+has an assumed effect too, but testers do not test it.
 """
 
 from __future__ import annotations

@@ -211,7 +211,7 @@ class PendingRequest(Pending):
         """When the wait ends unless more is received."""
         if self.text is None or self.text.ends_at is None:
             return self._deadline
-        # A text that has begun may end after the deadline, but noise without end must not extend it.
+        # A text that has begun may end after the deadline, but endless noise must not extend it.
         return min(self.text.ends_at, self._deadline + self.text.silence)
 
     @property

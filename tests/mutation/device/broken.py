@@ -136,7 +136,7 @@ class BrokenArm(ArmConnection):
         return late + super().flush()
 
     def _handle_all(self, events: list[DeviceEvent]) -> bytes:
-        # Noise is judged as a whole, because a broken request is refuted byte by byte.
+        # Noise is examined as a whole, because a broken request is rejected byte by byte.
         sent = noise = b""
         for event in events:
             if isinstance(event, Noise):

@@ -36,8 +36,8 @@ class State(Record):
 class _Effect(Record):
     assumed = optional(
         Text(),
-        "Why no source states this effect. A simulated arm has it and the reference tells it, but "
-        "no tester judges a device by it.",
+        "Why no source states this effect. A simulated arm has it and the reference describes it, "
+        "but testers do not test it.",
     )
 
 

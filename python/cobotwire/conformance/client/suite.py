@@ -10,7 +10,7 @@ from cobotwire.conformance.client.script import SCRIPT
 from cobotwire.conformance.suite import Group, Suite
 from cobotwire.conformance.tally import Observation
 
-# Judges something that was received by what was received before.
+# Checks a received message against those that were received before it.
 Check = Callable[[History, Received], Iterator[Observation]]
 
 # What needs no script: these bodies check everything that is received.

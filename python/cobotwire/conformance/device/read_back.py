@@ -14,7 +14,7 @@ from cobotwire.conformance.device.requests import (
     limits_of,
     requests,
 )
-from cobotwire.conformance.device.selection import judged, reporter, reporters
+from cobotwire.conformance.device.selection import reporter, reporters, stated_effect
 from cobotwire.conformance.mistakes import Pair, likely_mistake
 from cobotwire.conformance.places import numbers_of
 from cobotwire.conformance.samples.physical import setting_values, takes_whole
@@ -171,7 +171,7 @@ class Spot:
     @property
     def index(self) -> tuple[Any, ...]:
         """What tells it from its neighbours: others with it set the same in another encoding."""
-        effect = judged(self.setting.command)
+        effect = stated_effect(self.setting.command)
         at = effect.at if isinstance(effect, Stores) else ()
         return tuple(self.old.fields[name] for name in at) or (self.query, self.setting.part)
 
@@ -235,7 +235,7 @@ def _parts(table: Table, command: Command) -> Iterator[Setting]:
 
     An argument names one number of a row, or is the selector of what is stored.
     """
-    effect, variant = judged(command), command.request[0]
+    effect, variant = stated_effect(command), command.request[0]
     if isinstance(effect, Cases):
         for raw, case in effect.cases.items():
             if not isinstance(case, Stores):

@@ -25,7 +25,7 @@ from cobotwire.conformance.device.requests import as_row, request_of
 from cobotwire.conformance.report import Cause, Result
 from cobotwire.conformance.suite import Group
 from cobotwire.conformance.survey.facts import Facts, Frames
-from cobotwire.conformance.survey.judging import Judge
+from cobotwire.conformance.survey.interpreting import Interpreter
 from cobotwire.inspect.cross_checks import CrossChecks, Mistake
 from cobotwire.inspect.identification import other_edition
 from cobotwire.inspect.readings import Key, Row, Source, sources, target_of
@@ -96,7 +96,7 @@ class Survey:
         self._settings, self._on_private = settings, on_private
         allowed = Permissions(frozenset({"setting"} if settings else ()))
         self._tester = Tester(connection, table, permissions=allowed, sources=sources)
-        self._judge = Judge(table, self._tester.device, self.facts)
+        self._interpreter = Interpreter(table, self._tester.device, self.facts)
         self._snapshots: list[dict[Key, Row]] = []
         self._evidence: dict[Key, list[Frames]] = {}
         self._results: list[Result] = []
@@ -127,7 +127,7 @@ class Survey:
     @property
     def questions(self) -> list[str]:
         """What is neither right nor wrong about a fact, but the owner can explain."""
-        return self._judge.questions
+        return self._interpreter.questions
 
     def run(self, progress: Progress = lambda name, done, count: None) -> None:
         """Run the whole survey; what was changed is restored, however it ends.
@@ -305,11 +305,13 @@ class Survey:
         self._read_firmware()
         version = self.table.find_role("version")
         firmware = self.firmware.get(version.name, "") if version else ""
-        self.mistakes = self._judge.judge_readings(self._checks, self._snapshots, self._evidence)
+        self.mistakes = self._interpreter.add_readings(
+            self._checks, self._snapshots, self._evidence
+        )
         place_known = not any(_is_place(self.table, mistake) for mistake in self.mistakes)
-        self._judge.judge_results(self._results, place_known=place_known)
-        self._judge.judge_silence(f" {firmware}" if firmware else "")
-        self._judge.judge_acknowledgements()
+        self._interpreter.add_results(self._results, place_known=place_known)
+        self._interpreter.add_silence(f" {firmware}" if firmware else "")
+        self._interpreter.add_acknowledgements()
 
     def _read_firmware(self) -> None:
         rows = dict(entry for snapshot in self._snapshots for entry in snapshot.items())

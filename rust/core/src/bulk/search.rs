@@ -4,7 +4,7 @@ use super::block::{BLOCK, Block, Found, LANES, MARGIN, Quick};
 use super::lanes::Lanes;
 use super::spans::{Noise, Runs};
 use crate::frame::Frame;
-use crate::legal::{BELIEVED, Heading};
+use crate::legal::{ACCEPTED, Heading};
 use crate::reason::Reason;
 use crate::rules::Rules;
 use crate::scan::{Sink, scan};
@@ -200,7 +200,7 @@ impl<'a> Sink<'a> for Finds<'_> {
     fn frame(&mut self, at: usize, frame: Frame<'a>) {
         let group = match self.rules.legal().wide_heading(frame.length(), frame.id()) {
             Heading::Group(group) => group,
-            _ => BELIEVED,
+            _ => ACCEPTED,
         };
         self.found.push(Found::new(at, group));
         self.tally.add_frames(frame.id(), 1);

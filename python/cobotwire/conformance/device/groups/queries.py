@@ -63,9 +63,9 @@ def _query(probe: Probe) -> None:
     command, every = probe.command, _every(probe)
     for query in every:
         first = probe.device.request(query)
-        _judge(probe, first)
+        _check(probe, first)
     again = probe.device.request(every[-1])
-    _judge(probe, again)
+    _check(probe, again)
     if _has_nuls(first) and _has_nuls(again):
         noisy = all(_has_nuls(probe.device.request(every[-1])) for _ in range(NOISY))
         reason = f"{command.name}: expected the reply alone; each time came {again.summary}"
@@ -151,7 +151,7 @@ def _has_part(probe: Probe, query: Request[Any]) -> bool:
     return not fewer or query.fields.get("joint", 1) <= device.joints
 
 
-def _judge(probe: Probe, response: Response) -> None:
+def _check(probe: Probe, response: Response) -> None:
     command = response.request.command
     call = probe.device.requester.describe(response.request)
     for damaged in response.damaged:

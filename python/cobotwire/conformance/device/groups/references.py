@@ -59,7 +59,7 @@ def _shifts(probe: Probe, reference: _Reference) -> None:
     device.request(request_of(chooser.command, choices[0]))
     if all(math.hypot(*shift) <= NEAR for shift in shifts):
         raise NotSupported("no setting makes the coordinates show the reference")
-    _judge(probe, shifts, "tool" in stored(probe.command))
+    _check(probe, shifts, "tool" in stored(probe.command))
 
 
 def _shift(probe: Probe, chooser: Command, choices: Sequence[int], axis: int) -> Vector:
@@ -75,7 +75,7 @@ def _shift(probe: Probe, chooser: Command, choices: Sequence[int], axis: int) ->
     return x, y, z
 
 
-def _judge(probe: Probe, shifts: list[Vector], tool: bool) -> None:
+def _check(probe: Probe, shifts: list[Vector], tool: bool) -> None:
     """Compare lengths and directions: those of a tool are turned with the end."""
     name = probe.command.name
     for axis, shift in zip(AXES, shifts):

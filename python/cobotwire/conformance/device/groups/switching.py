@@ -32,7 +32,7 @@ from cobotwire.conformance.device.requests import (
     harmless,
     requests,
 )
-from cobotwire.conformance.device.selection import judged, reporters
+from cobotwire.conformance.device.selection import reporters, stated_effect
 from cobotwire.conformance.suite import Group, TestCase
 from cobotwire.protocol.effects import Cases, Sets
 from cobotwire.protocol.messages import Request
@@ -127,7 +127,7 @@ def _read(device: Device, fixed: Fixed, query: Request[Any]) -> int | None:
 
 def _part_of(table: Table, command: Command) -> Fixed | None:
     """Return the query that reports what a command gives one part, and the value."""
-    effect = judged(command)
+    effect = stated_effect(command)
     if isinstance(effect, Sets) and effect.at and command.safety == "power":
         for state, value in effect.values.items():
             # Also an assumed query: otherwise nothing would show which part a command switches.
@@ -209,7 +209,7 @@ def _set_off(probe: Probe, mover: Mover, query: Command) -> None:
 
 def choices(table: Table, command: Command) -> list[tuple[Request[Any], Fixed]]:
     """Return what an argument can choose that queries report, such as OPEN: a request of each."""
-    effect = judged(command)
+    effect = stated_effect(command)
     if not isinstance(effect, Cases) or command.safety not in ("setting", "persistent write"):
         return []
     given = gentle_values(command.request[0])
