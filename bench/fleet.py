@@ -121,7 +121,7 @@ def _keep_apart(arms: int) -> None:
 
 
 async def _run(url: str, count: int, rate: float, seconds: float, rarely: bool) -> Result:
-    # What all arms share is there before the first measured one.
+    # What all arms share is loaded before the first measured arm.
     await _closed(await _opened(url, 1))
     gc.collect()
     before = _resident()

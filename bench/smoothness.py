@@ -31,7 +31,7 @@ SET_NEWEST, SEND_ANGLES = 0x16, 0x22
 
 
 class Watched(SteppedClock):
-    """A clock with an arm, of which it looks at the joints every five milliseconds."""
+    """A clock that reads the joints of an arm every five milliseconds."""
 
     def __init__(self, table: Table = TABLE, lag: float = 0.0) -> None:
         super().__init__()

@@ -33,7 +33,7 @@ from session.one_caller import submit
 from transport.ends import PtyEnd
 
 TIMEOUT, DEADLINE = 0.4, 0.5
-# What a call may take besides: until its thread or task has its turn.
+# The extra time that a call may take until its thread or task is scheduled.
 MORE = 0.05
 THREADS, TASKS, SECONDS = 8, 50, 0.7
 ONCE = RetryPolicy(attempts=1)

@@ -26,7 +26,7 @@ TIMEOUT = 0.4
 # The interrupt may lose bytes that were just read. Then the request that they replied to is sent
 # again, and the next one like it is held.
 RETRY = RetryPolicy(grace=0.05)
-# What the others may take besides: time to notice that the leader is gone, and to take over.
+# The extra time that the others may take to notice that the leader is gone, and to take over.
 LATE = TIMEOUT + RETRY.grace + 0.1
 
 
@@ -167,8 +167,8 @@ class Lines:
 def always_longer(limit: float, measure: Callable[[], float]) -> bool:
     """Return whether a time is beyond its limit three times in a row.
 
-    A machine that is busy may delay one run, and a stall that was measured counts for nothing. What
-    an interrupt does at one line, it does every time; and what it breaks for good shows every time.
+    A machine that is busy may delay one run, and a stall that was measured counts for nothing. An
+    interrupt at one line has the same effect every time, and lasting damage shows every time.
     """
     for _ in range(3):
         with StallMeter() as meter:

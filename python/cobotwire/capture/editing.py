@@ -342,7 +342,8 @@ class Repair:
             self.packets += 1
             self._last[index] = max(stamp, self._last[index] or 0)
         elif block.kind == blocks.INTERFACE:
-            # What is lost may have been an interface: then this one would get its number.
+            # The lost blocks may have described an interface: then this interface would get its
+            # number.
             if self.lost_bytes > self._lost_before:
                 raise damaged(name, block.offset, "interface-lost")
             self._parser.take(block.parsed)

@@ -51,8 +51,8 @@ class LoopTimers:
 
     def __init__(self, loop: asyncio.AbstractEventLoop) -> None:
         self._loop = loop
-        # Each with the time at which it is due, and a number that decides between equal times. What
-        # was cancelled, or set to another time, stays until then.
+        # Each with the time at which it is due, and a number that decides between equal times.
+        # Entries that were cancelled or set to another time stay until then.
         self._waiting: list[tuple[float, int, Timed]] = []
         self._numbers = count()
         self._wakes_at = inf

@@ -78,7 +78,7 @@ def with_known(expectations: Sequence[Expectation], results: Sequence[Result]) -
 
 def _excused(expectations: Sequence[Expectation], result: Result) -> Result:
     name = f"{result.case}/{result.command}" if result.command else result.case
-    # What was not run may still fail, so a line about it is not wrong.
+    # A test case that was not run may still fail, so a line about it is not wrong.
     reason = excuse(expectations, name, failed=result.verdict is not Verdict.PASS)
     if not reason or result.verdict is not Verdict.FAIL:
         return result

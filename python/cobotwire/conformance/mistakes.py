@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 from cobotwire.protocol.table import Number
 
-# A wrong scale multiplies by the same of these factors, within a tenth.
+# A wrong scale multiplies all numbers by one of these factors, within a tenth.
 FACTORS = {
     **{factor: f"{factor:g} times the right number" for factor in (10.0, 100.0, 1000.0)},
     **{1 / factor: f"{1 / factor:g} times the right number" for factor in (10.0, 100.0, 1000.0)},

@@ -34,7 +34,7 @@ class Hypothesis(NamedTuple):
 
 
 class Mistake(NamedTuple):
-    """What is wrong with readings: the aspect, which readings, in which relations it shows."""
+    """A mistake in readings: the aspect, the readings, and the relations that show it."""
 
     aspect: str
     keys: tuple[Key, ...]

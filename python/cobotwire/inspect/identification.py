@@ -155,7 +155,7 @@ def identify_on(
 def _first_queries(names: list[str]) -> Iterator[tuple[str, Command]]:
     """Yield an edition, and a query for which every arm that knows it has a reply.
 
-    It is that of the power; for arms without motors, which have none, that of the version.
+    It is the query of the power; for arms without motors, the query of the version.
     """
     tables = {name: editions.load(name).TABLE for name in names}
     for role in ("powered", "version"):

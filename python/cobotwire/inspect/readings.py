@@ -33,7 +33,7 @@ APART = {"": 0.0, "degree": 0.2, "millimetre": 1.0, "tick": 2.0}
 LINKS_APART, LINKS_TURNED = 15.0, 5.0
 # How far an angle may be beyond a limit, and a reported limit from a stated one, in degrees.
 BEYOND, LIMIT_APART = 5.0, 1.0
-# What a robot on a desk can report, by unit; zeros come from what is not connected.
+# The plausible readings of a robot on a desk, by unit; a part that is not connected reads 0.
 PLAUSIBLE = {"volt": (3.0, 60.0), "degree_celsius": (1.0, 110.0), "percent": (0.0, 110.0)}
 # With another choice than the first of these states, coordinates are not those of the flange.
 FRAMES = ("reference_frame", "end_type")

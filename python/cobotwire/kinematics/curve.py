@@ -79,7 +79,8 @@ def _quintic(
     step: float, value: float, rise: float, v: float, w: float, a: float, b: float
 ) -> list[float]:
     """Return the polynomial with a value, speeds v and w, and second derivatives a and b."""
-    # What is left to do by the powers 3, 4 and 5 until the end: way, speed, second derivative.
+    # The distance, speed and second derivative that the terms of power 3, 4 and 5 must add by the
+    # end.
     way = (rise - v - a * step / 2) * step
     speed = (w - v - a * step) * step
     bend = (b - a) * step * step

@@ -78,7 +78,7 @@ class Along:
 
 
 class InTime:
-    """A motion along a curve of which the knots are times."""
+    """A motion along a curve whose parameter is time."""
 
     def __init__(self, curve: Curve) -> None:
         self._curve, self.seconds = curve, curve.length

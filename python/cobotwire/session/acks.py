@@ -119,7 +119,7 @@ class _CommandAcks:
     Attributes:
         expected: those whose acknowledgement may still come, if each one belongs to the oldest.
         uncertain: those that a caller waits for, while it is not certain that they came.
-        copied: the request of which a copy came.
+        copied: the request that the received frame is a copy of.
         began_at: since when acknowledgements have been expected without a break.
     """
 

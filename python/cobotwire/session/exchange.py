@@ -19,8 +19,8 @@ deadline runs from the call: a request that was not sent by then is never sent. 
 request waits.
 
 Ctrl-C can interrupt any step in a client's thread. So each step commits with a single assignment:
-``done`` ends a request, ``_last`` makes it the one that waits. What an interrupt leaves in the
-lists besides is skipped.
+``done`` ends a request, ``_last`` makes it the one that waits. Other entries that an interrupt
+leaves in the lists are skipped.
 """
 
 from __future__ import annotations
@@ -82,7 +82,8 @@ class Exchange:
         self._outstanding = OutstandingReplies()
         self._acks = Acks(codec)
         self._echo = EchoDetector()
-        # What waits for its turn, oldest first; an interrupt may leave in it what is done, or sent.
+        # Requests that wait for their turn, oldest first. An interrupt may leave requests in it
+        # that are done or sent.
         self._queue: list[PendingRequest] = []
         # The request that was sent last; it waits for its reply unless it is done.
         self._last: PendingRequest | None = None
@@ -427,7 +428,7 @@ class Exchange:
         """End the wait by silence after a text, by a copy that counts as reply, or by timeout."""
         request = waiting.request
         if waiting.text is not None and waiting.text.is_over(now):
-            # What waits in the framer came after the text, and does not belong to it.
+            # Bytes that wait in the framer came after the text, and do not belong to it.
             try:
                 fields = waiting.text.decode()
             except ProtocolError as error:

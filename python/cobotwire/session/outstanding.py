@@ -88,7 +88,7 @@ class PersistedState(NamedTuple):
     """Replies that may still come, and what the peer may hold of a request that was cut.
 
     Attributes:
-        late: the requests of which replies are outstanding; times are those of the port's clock.
+        late: the requests with outstanding replies; times are those of the port's clock.
         parts: every part of a request that the peer may hold.
     """
 

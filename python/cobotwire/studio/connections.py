@@ -14,7 +14,7 @@ from operator import attrgetter
 
 # Connections that have not shown the token: in all, and from one address.
 MOST_UNKNOWN, MOST_OF_ONE_HOST = 64, 32
-# What remains of that in a process that may open only few files.
+# The same limit in a process that may open only few files.
 LEAST_UNKNOWN = 8
 # Connections with the token that are never closed for others.
 MOST_KNOWN = 64

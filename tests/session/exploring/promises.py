@@ -42,7 +42,7 @@ class Promises:
         self.doubtful: dict[str, str] = {}
         # Whether an echo was read that cannot be a reply.
         self.echo_shown = False
-        # Where the requests begin of which nobody knows how much the arm has.
+        # The offsets of requests that the arm may have received only in part.
         self.torn: set[int] = set()
         self._copy_at = 0
 

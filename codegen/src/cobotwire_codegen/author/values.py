@@ -109,7 +109,7 @@ def _width(type: Quantity | Enum | Flag) -> Fraction:
 
 
 def pairs(groups: Sequence[Sequence[Seen]]) -> Iterator[tuple[int, int, int]]:
-    """Yield the ids and the size of two messages of which the second repeats the first one."""
+    """Yield the ids and the size of two messages; the second one repeats the first."""
     for stored in groups:
         for reported in groups:
             if stored[0].id == reported[0].id or len(stored[0].data) != len(reported[0].data):

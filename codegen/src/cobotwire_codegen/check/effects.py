@@ -14,7 +14,7 @@ from cobotwire_codegen.model import Command, Edition, Effect, Field, State
 ARGUMENTS = ("by", "about", "direction", "append", "from", "near")
 
 
-# What decides a motion, by the part that moves; `speed` and `keeps` may be added.
+# The keys that a motion needs, by the part that moves; `speed` and `keeps` may be added.
 _MOTIONS = {
     "joints": (("to",),),
     "joint": (("at", "to"), ("at", "by"), ("at", "until", "direction")),
@@ -22,7 +22,7 @@ _MOTIONS = {
     "gripper": (("to",),),
 }
 _LIST = ("append", "take", "clear", "report")
-# The kinds of types of one number, and the keys whose argument has such a type.
+# The kinds of types that have one number, and the keys whose argument has such a type.
 _NUMBERS = ("quantity", "enum", "flag")
 _SINGLE = ("by", "about", "direction")
 

@@ -111,7 +111,7 @@ class Does(_AtIndex):
 
 
 class Lists(_Effect):
-    """A command works on a list of values, of which each has the state's type."""
+    """A command works on a list of values; each value has the state's type."""
 
     list = required(Name(LOWER), "The state that is the list.")
     append = optional(Name(LOWER), "The argument that is added at the end.")

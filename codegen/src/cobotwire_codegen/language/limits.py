@@ -1,4 +1,4 @@
-"""What protocols have and the language cannot say: one registry for the messages and the page.
+"""Features of protocols that the language lacks: one registry for error messages and for the page.
 
 Sources: Robotis, e-Manual, "DYNAMIXEL Protocol 2.0" (byte stuffing); RFC 1055 (SLIP); Cheshire and
 Baker, "Consistent Overhead Byte Stuffing"; Modbus over serial line V1.02 (silence ends a frame);

@@ -64,7 +64,7 @@ class Record:
 
     HEADING: ClassVar[str] = ""
     EXAMPLE: ClassVar[str] = ""
-    # Pairs of keys of which only one may be given.
+    # Pairs of keys that exclude each other.
     EXCLUSIVE: ClassVar[tuple[tuple[str, str], ...]] = ()
     # What the language cannot express, by the key (known or unknown) with which a spec may try to.
     LIMITS: ClassVar[ReadOnly[str, str]] = MappingProxyType({})

@@ -25,7 +25,7 @@ _PARAMETER = re.compile(
 
 
 class _Stated(NamedTuple):
-    """What the file states: the shared methods, the classes, both by name; and the editions."""
+    """The contents of the file: shared methods and classes by name, and editions."""
 
     methods: Mapping[str, Entry]
     classes: Mapping[str, Entry]

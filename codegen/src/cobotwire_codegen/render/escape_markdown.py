@@ -14,7 +14,7 @@ from cobotwire_codegen.errors import Place
 from cobotwire_codegen.model import Text, Vector
 
 T = TypeVar("T")
-# What a template shows as code, where an escape would be seen; and what it does not show.
+# Expressions that a template shows as code, where an escape would be visible, or does not show.
 _AS_CODE: dict[type, tuple[str, ...]] = {Text: ("prefixes", "suffix"), Vector: ("text",)}
 # Signs that start a block at the start of a line: list, heading, quotation, fence, comment, label.
 _BLOCK = re.compile(r"\A([-+*=#>~:%]|\((?=[^)]*\)=)|\d+(?=[.)](\s|\Z)))")

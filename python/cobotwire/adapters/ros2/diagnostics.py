@@ -18,7 +18,7 @@ OK, WARN, ERROR = 0, 1, 2
 # A query without a reply this often, while others have one, is sent again after a pause: firmware
 # may lack it, and waiting for it delays the joints.
 UNANSWERED, PAUSE_SECONDS = 2, 60.0
-# What servos report of themselves, found by the unit of the reply.
+# Readings of the servos themselves, found by the unit of the reply.
 _HEALTH = {"degree_celsius", "volt"}
 
 

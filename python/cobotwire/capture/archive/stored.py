@@ -18,7 +18,7 @@ class Stored:
     """
 
     def __init__(self, input: Input) -> None:
-        """Open an input, the size of which is known.
+        """Open an input of known size.
 
         Raises:
             UsageError: it cannot be opened, or a package is missing.

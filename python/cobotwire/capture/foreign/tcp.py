@@ -111,7 +111,7 @@ class Connections:
         if segment.flags & SYN:
             yield from self._opened(way, segment.number + 1 & _MASK)
             return
-        # What the other end acknowledges was not lost on its way, but by the capture.
+        # Bytes that the other end acknowledges were not lost on the network, but by the capture.
         while back.waiting and back.ahead(segment.acknowledged) > _first(back):
             yield from self._skip(back)
         if not segment.payload:

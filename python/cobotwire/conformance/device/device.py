@@ -42,7 +42,7 @@ class NotSupported(Exception):
 
 
 class Restores(dict[str, Callable[[], object]]):
-    """What restores the changes of a body, or of the run, by the name of what was changed."""
+    """The functions that undo changes of a body, or of the run, by the name of what was changed."""
 
     def run(self) -> None:
         """Restore everything, the last change first.
@@ -59,7 +59,7 @@ class Restores(dict[str, Callable[[], object]]):
 
 @dataclass(slots=True)
 class Noticed:
-    """What a run has noticed of its device, which alone writes it.
+    """What a run has observed of its device; only :class:`Device` writes it.
 
     Attributes:
         reply_seconds: the times of the valid replies, by command.

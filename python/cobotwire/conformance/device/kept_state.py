@@ -196,7 +196,8 @@ class KeptState:
 def _queries(table: Table) -> list[list[tuple[Setting | None, Request[Any]]]]:
     """Return what to read: the first joint, pin or register of each query, then the second ones.
 
-    What a motion changes is left out, and the error register: a malformed request may set it.
+    State that a motion changes is left out. So is the error register, which a malformed request may
+    set.
     """
     found: dict[Request[Any], Setting | None] = {}
     rows: dict[str, list[tuple[Setting | None, Request[Any]]]] = {}

@@ -153,7 +153,7 @@ class Setting:
 
 @dataclass(frozen=True, slots=True)
 class Spot:
-    """What a query read, and the request that sets that again.
+    """The value that a query read, and the request that sets it again.
 
     ``obstacle`` says why that request cannot be sent; empty: it can.
     """
@@ -170,7 +170,7 @@ class Spot:
 
     @property
     def index(self) -> tuple[Any, ...]:
-        """What tells it from its neighbours: others with it set the same in another encoding."""
+        """The key of a setting: settings with equal keys differ only in their encoding."""
         effect = stated_effect(self.setting.command)
         at = effect.at if isinstance(effect, Stores) else ()
         return tuple(self.old.fields[name] for name in at) or (self.query, self.setting.part)

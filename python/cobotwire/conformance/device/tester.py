@@ -30,8 +30,8 @@ from cobotwire.protocol.table import Command, Table
 
 # From this angle on, a joint shows a wrong scale, order or direction; in degrees.
 AWAY = 5.0
-# What reasons say if nothing came, or nothing but the noise of a healthy line. The evidence may go
-# on with a query that was replied to.
+# The words of a reason if nothing was received, or only the noise of a healthy line. The evidence
+# may go on with a query that was replied to.
 SILENCE = ("came nothing", "came no valid reply", "came noise ")
 
 Progress = Callable[[Step, int, int], None]
@@ -72,7 +72,8 @@ class Tester:
             address: the device's address, by number or name; left out: the edition's first one.
             statement: what the maker declares of the device; it selects test cases, and is tested.
             lacking: what the device itself states that it does not support: by command, the
-                reason. It may grow during the run. Silence of such a command is no failure.
+                reason. It may grow during the run. It is not a failure if such a command has no
+                reply.
 
         Raises:
             UsageError: the edition has no such address, or a request to it has no reply.
@@ -242,7 +243,7 @@ class Tester:
         finally:
             self.device.restore_after_body.run()
         found = [self._excused(result) for result in probe.results(unsupported)]
-        # What passed until the device fell silent may not have been observed to its end.
+        # A test case that had passed when the device fell silent may be incomplete.
         return [self._cut_short(result) for result in found] if self._ended else found
 
     def _excused(self, result: Result) -> Result:

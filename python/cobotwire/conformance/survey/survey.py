@@ -45,9 +45,9 @@ AROUND, FIRST, TOO_FAR = 5.0, 1.0, 3.0
 SPEED = 10
 # How long a survey lasts at most, in seconds.
 LONGEST = 600.0
-# What a query reports that is nobody else's business: it is not requested.
+# Private readings, such as passwords: they are not requested.
 PRIVATE = frozenset({"ssid", "password"})
-# What names a single device: its bytes are replaced by their hash.
+# Readings that identify a single device: their bytes are replaced by a hash.
 SERIAL = frozenset({"serial", "serial_number", "mac", "uid", "uuid"})
 
 Progress = Callable[[str, int, int], None]
@@ -118,7 +118,7 @@ class Survey:
 
     @property
     def contradicted(self) -> list[str]:
-        """What is contradicted, each reason once, after the names of the facts."""
+        """The contradicted facts: each reason once, after the names of its facts."""
         names: dict[str, list[str]] = {}
         for fact in self.facts.with_verdict("contradicted"):
             names.setdefault(fact.why, []).append(fact.fact.partition("/")[2])
@@ -126,7 +126,7 @@ class Survey:
 
     @property
     def questions(self) -> list[str]:
-        """What is neither right nor wrong about a fact, but the owner can explain."""
+        """Observations that decide no fact, but that the owner may be able to explain."""
         return self._interpreter.questions
 
     def run(self, progress: Progress = lambda name, done, count: None) -> None:

@@ -27,7 +27,7 @@ class Copy(NamedTuple):
     """What the forwarder did.
 
     ``sent`` was written to the arm and ``received`` read from it; ``held`` was not forwarded;
-    ``note`` is a text; ``dropped`` is the number of bytes of which there is no copy.
+    ``note`` is a text; ``dropped`` is the number of bytes that were not copied.
     """
 
     kind: Kind

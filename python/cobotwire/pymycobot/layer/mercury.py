@@ -1,4 +1,4 @@
-"""What the classes of the Mercury have beyond those of other robots."""
+"""Methods of the Mercury classes that classes of other robots lack."""
 
 from __future__ import annotations
 

@@ -133,7 +133,7 @@ def _waited(kind: str, parameters: dict[str, str], *names: str, address: str = "
 def _waits(timeout: str = "15", address: str = "", mode: str = "0") -> dict[str, Call]:
     """Return the methods that wait for the end of a motion.
 
-    The default of the mode is empty if the class has none, and None if its robot has none.
+    The default of the mode is empty if the class has no default, and None if its robot has no mode.
     """
     before = {address: ""} if address else {}
     angles = {**before, "degrees": "", "speed": "", "timeout": timeout}

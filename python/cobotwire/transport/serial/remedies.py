@@ -69,7 +69,7 @@ def remedies(computer: Computer, busy: Sequence[tuple[str, str]] = ()) -> list[R
     return [*found, Remedy("device name", text), *drivers]
 
 
-# What --fix says first where no port is likely to lead to an arm.
+# The first words of --fix if no port is likely to lead to an arm.
 CABLE = Remedy(
     "cable",
     "no arm is found: check that it has power, and that its USB cable carries data, since some "

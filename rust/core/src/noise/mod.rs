@@ -116,7 +116,8 @@ pub(crate) struct Diagnosis {
     any: Rules,
     lengths: Lengths,
     bus: Arc<ServoBus>,
-    /// What can start with each byte, but plain noise: a sum of `FRAME`, `PACKET`, `NUL`, `TEXT`.
+    /// What can start with each byte, plain noise excepted: a sum of `FRAME`, `PACKET`, `NUL`,
+    /// `TEXT`.
     starts: Box<[u8; 256]>,
 }
 

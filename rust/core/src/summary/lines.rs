@@ -40,7 +40,7 @@ pub(super) struct Noise<'a> {
     pub(super) continued: bool,
 }
 
-/// What a description depends on; what does not matter is 0.
+/// The values that a description depends on; the others are 0.
 #[derive(PartialEq, Eq, Hash)]
 struct Look {
     kind: Kind,

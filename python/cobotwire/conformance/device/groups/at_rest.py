@@ -28,7 +28,7 @@ NEAR = {"millimetre": LINKS_APART, "degree": LINKS_TURNED}
 # Far from the present value, in the units of angles and of coordinates.
 FAR = {"degree": 25.0, "millimetre": 60.0}
 LIMIT_STATES = {"lowest", "highest"}
-# A wrong scale multiplies all limits by the same of these factors, within a tenth.
+# A wrong scale multiplies all limits by one of these factors, within a tenth.
 FACTORS = (0.01, 0.1, 10.0, 100.0)
 
 

@@ -158,7 +158,7 @@ def _jog(parts: _Parts, part: int, at: int | None, direction: int) -> list[float
         before, began = parts.where(), device.connection.now
         way = {parts.motion.direction: direction}
         request_change(probe, parts.request(part, min(SLOW, mover.speed), **way))
-        # What shows clearly, but not for long: it may be out of reach.
+        # A distance that shows clearly, but is short, since the target may be out of reach.
         clear = partial(parts.apart, before, often=SHOWS)
         device.poll(parts.where, clear, 4 * UNDER_WAY, POLL)
         after = _stopped(parts, device.connection.now - began)
