@@ -26,6 +26,7 @@ from cobotwire.simulator.clock import SteppedClock
 
 class Done(NamedTuple):
     """The outcome of a call: the result, a remark (perhaps empty), and the facts as JSON data."""
+
     result: Any
     remark: str
     facts: dict[str, Any]
