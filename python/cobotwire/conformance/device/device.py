@@ -64,7 +64,7 @@ class Noticed:
     Attributes:
         reply_seconds: the times of the valid replies, by command.
         retried: the commands that were replied to only when they were sent again.
-        acknowledged: what came after each command that may be acknowledged, when it was sent first.
+        acknowledged: the response to the first request of each command that may be acknowledged.
         changes: how often each of these was sent and checked.
         poses: the indices of the poses from which the arm has made a short motion, latest first.
     """
