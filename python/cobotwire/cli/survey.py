@@ -167,7 +167,10 @@ def _run(
 
 
 class _Tap:
-    """Records what passes; while it is to be hidden, received bytes are replaced by their hash."""
+    """Records all traffic.
+
+    While the traffic is private, received bytes are replaced by their hash.
+    """
 
     def __init__(self, recording: Recording) -> None:
         self.recording, self._hidden = recording, False

@@ -22,8 +22,8 @@ ANOTHER_ORDER = "the right numbers in another order"
 class Pair(NamedTuple):
     """A number that should have come, and the number that came.
 
-    ``near`` is how far apart two readings of the same quantity may be. ``number`` is how the number
-    is sent; None: it was converted.
+    ``near`` is the largest difference between two readings of the same quantity. ``number`` is how
+    the number is sent; None: it was converted.
     """
 
     name: str

@@ -1,7 +1,7 @@
 """Remove from a report what belongs to the tester's machine: paths, and numbers of persons' things.
 
-A path inside the working folder becomes relative, another one its last part; serial numbers become
-hashes, which still tell two of them apart. Ports (``/dev/ttyUSB0``) stay.
+A path inside the working folder becomes relative; of other paths only the last part remains. Serial
+numbers become hashes, so that two of them still differ. Ports (``/dev/ttyUSB0``) stay.
 """
 
 from __future__ import annotations

@@ -33,7 +33,7 @@ class Cause(StrEnum):
     RUN_ENDED = "run ended"
     # Inconclusive: the subject lacks what the test case is about, or is in the wrong state.
     NOT_SUPPORTED = "not supported"
-    # Inconclusive: what shows only for a while was not there any more, or the host was late.
+    # Inconclusive: a state that lasts only for a while was over, or the host was late.
     NOT_TIMED = "not timed"
     # Fail: repetitions of the same test case differ.
     UNSTABLE = "unstable"

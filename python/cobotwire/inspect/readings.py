@@ -35,7 +35,7 @@ LINKS_APART, LINKS_TURNED = 15.0, 5.0
 BEYOND, LIMIT_APART = 5.0, 1.0
 # The plausible readings of a robot on a desk, by unit; a part that is not connected reads 0.
 PLAUSIBLE = {"volt": (3.0, 60.0), "degree_celsius": (1.0, 110.0), "percent": (0.0, 110.0)}
-# With another choice than the first of these states, coordinates are not those of the flange.
+# If one of these states is not its first choice, the coordinates are not those of the flange.
 FRAMES = ("reference_frame", "end_type")
 
 

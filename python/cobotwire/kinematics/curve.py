@@ -15,8 +15,8 @@ SAMPLES = 4
 class Curve:
     """A cubic spline through points, one for each knot; knots are distances or times.
 
-    With ``rests`` it begins and ends without speed and acceleration, as a motion does in time; its
-    first and last piece are quintics then. Otherwise its ends are straight.
+    With ``rests`` it begins and ends at rest: speed and acceleration are zero. Then its first and
+    last pieces are quintics. Otherwise its ends are straight.
     """
 
     def __init__(self, knots: Sequence[float], points: Sequence[Point], *, rests: bool) -> None:

@@ -73,7 +73,9 @@ class Alignment:
             self.hold(())
 
     def cut(self, align: bytes, request: bytes, written: int | None) -> int | None:
-        """Note that of ``align + request`` only ``written`` bytes were taken; None: nobody knows.
+        """Note that only ``written`` bytes of ``align + request`` were taken.
+
+        None: the number is unknown.
 
         Returns:
             How many of these bytes belong to the request.
@@ -113,7 +115,7 @@ class Alignment:
         self.held = parts
 
     def _ending(self, parts: tuple[Part, ...]) -> bytes:
-        """Return what ends the part that the peer holds, whichever it is."""
+        """Return bytes that end the incomplete request, whichever of the parts the peer holds."""
         fill = fill_bytes(self._format, [part.data for part in parts])
         [first, *others] = parts
         return first.rest if not others and self._exposes(first, fill) else fill

@@ -19,8 +19,8 @@ deadline runs from the call: a request that was not sent by then is never sent. 
 request waits.
 
 Ctrl-C can interrupt any step in a client's thread. So each step commits with a single assignment:
-``done`` ends a request, ``_last`` makes it the one that waits. Other entries that an interrupt
-leaves in the lists are skipped.
+of ``done``, which ends a request, or of ``_last``, which makes it the one that waits. Other entries
+that an interrupt leaves in the lists are skipped.
 """
 
 from __future__ import annotations
@@ -211,7 +211,7 @@ class Exchange:
         waiting = self._waiting()
         if waiting is None or waiting.ends_by > now:
             return []
-        # A copy of it does not count as its reply: that one still had time to come.
+        # A copy of the request does not count as its reply: the reply still had time to come.
         return self._expire(waiting, now, now - waiting.queued_at, "reply")
 
     def note_full(self, full: bool) -> None:
@@ -436,7 +436,7 @@ class Exchange:
                 return [ReplyRejected(request.command, error)]
             waiting.reply(fields, now)
             return [ReplyMatched(request.command, fields, None)]
-        # The framer gives up what waits in it, so that a frame hidden after it still counts.
+        # Flush the framer, so that a frame after the incomplete bytes is found.
         events = self._sort(self._framer.flush(), now, self._framer.fed)
         if waiting.done or now < waiting.ends_at:
             return events

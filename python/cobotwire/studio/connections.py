@@ -30,7 +30,7 @@ class Connection:
         host: the address of the other end.
         abort: closes it at once.
         since: when it came, or when its last request began or was served.
-        served: whether a request is served at this moment.
+        served: whether a request is being served.
         known: whether one of its requests had the token.
     """
 

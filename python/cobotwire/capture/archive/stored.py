@@ -11,7 +11,7 @@ from cobotwire.protocol.errors import LinkError
 
 
 class Stored:
-    """The bytes of an input that were there when it was found; bytes added later do not count.
+    """An input with the size that it had when it was found; bytes added later are ignored.
 
     Attributes:
         size: the number of bytes.

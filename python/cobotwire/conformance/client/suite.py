@@ -13,7 +13,7 @@ from cobotwire.conformance.tally import Observation
 # Checks a received message against those that were received before it.
 Check = Callable[[History, Received], Iterator[Observation]]
 
-# What needs no script: these bodies check everything that is received.
+# Groups that need no script: their bodies check everything that is received.
 WITHOUT_SCRIPT: tuple[Group[Check], ...] = (
     frames.FRAMES,
     frames.INTERLEAVED_WRITES,

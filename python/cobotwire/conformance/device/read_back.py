@@ -1,4 +1,4 @@
-"""A setting and the query that reads it back: what is sent, and what must be reported."""
+"""A setting and the query that reads it back: the request to send, and the reply to expect."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ class Setting:
         given = {field.name: field for field in self.variant.fields}
         fields = self.query_variant.fields
         fields = tuple(f if f.const is not None else given[f.name] for f in fields)
-        # Of an argument that selects what is stored, only its part.
+        # If an argument selects the part to store, only that part.
         part = {name: (raw,) for name, raw in self.part}
         return requests(self.query, Variant(fields), limits={**self._limits, **part})
 

@@ -122,14 +122,17 @@ class Tester:
                     yield Step(group, command)
 
     def _own(self, command: Command) -> Command | None:
-        """Return a command that refers to none that the device lacks; None if it lacks this one."""
+        """Return a command without references to commands that the device lacks.
+
+        None if it lacks this one.
+        """
         return next((c for c in self.device.table.commands if c.name == command.name), None)
 
     def run(self, progress: Progress | None = None, plan: Plan | None = None) -> Report:
         """Run everything that is permitted; restore all changes, however the run ends.
 
-        What is not run, because the run ends before, is reported as such. ``plan`` takes the order,
-        and perhaps results, from an earlier report; left out: everything is run.
+        Test cases that are not run because the run ends early are reported as not run. ``plan``
+        takes the order, and perhaps results, from an earlier report; left out: everything is run.
 
         Raises:
             LinkError: the connection is lost; the report holds what was found until then.
@@ -171,7 +174,7 @@ class Tester:
                 self.report.results += self.results_without_run(step)
 
     def end(self) -> None:
-        """Restore what is still changed; then what was changed for the whole run: power and pose.
+        """Restore changes that are left, then those made for the whole run: power and pose.
 
         An interrupt also stops an arm that is on its way back.
         """

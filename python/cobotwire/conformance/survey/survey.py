@@ -39,8 +39,8 @@ SETTINGS = (settings.SETTINGS, settings.SHOWN_AMONG, references.REFERENCES)
 MOTIONS = (motion.POSES, motion.JOINTS, on_the_way.STOPPING)
 # The time that an arm has for a query by which its edition is recognised, in seconds.
 EDITION_SECONDS = 0.5
-# How far from its present pose the arm moves, the first step, and from where on that one is
-# stopped, in degrees; and the speed in percent.
+# The distance of a motion from the present pose, its first step, and the distance at which that
+# step is stopped, in degrees; and the speed in percent.
 AROUND, FIRST, TOO_FAR = 5.0, 1.0, 3.0
 SPEED = 10
 # How long a survey lasts at most, in seconds.
@@ -76,8 +76,8 @@ class Survey:
             package: the name by which ``editions.load`` finds the edition.
             settings: whether settings are stored and restored.
             motion: whether the arm makes a few small motions.
-            earlier: the content of the file of an interrupted survey: what it decided is not
-                found out again.
+            earlier: the content of the file of an interrupted survey; facts that it decided are not
+                tested again.
             sources: where the spec defines each command, by name.
             on_private: called with True before replies come that name a device, False after them.
         """
@@ -113,7 +113,7 @@ class Survey:
 
     @property
     def level(self) -> int:
-        """The level: 1 queries, 2 settings, too, 3 motion, too."""
+        """The level: 1 sends queries, 2 also settings, 3 also motion."""
         return 3 if self._motion else 2 if self._settings else 1
 
     @property

@@ -83,7 +83,7 @@ class LibraryClass:
         return found if found.by_hand or not self.is_by_hand(method) else None
 
     def called(self, name: str) -> Call | None:
-        """Return how the library calls what our client calls by a name; None if it has no such."""
+        """Return the library's name for a method of our client; None if it has no such method."""
         return next((each for each in self.methods.values() if each.calls == name), None)
 
     def has(self, method: str) -> bool:

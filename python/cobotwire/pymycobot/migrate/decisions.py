@@ -23,7 +23,7 @@ class Decision(NamedTuple):
 
 # Notes what to decide at a node of the program.
 Decide = Callable[[cst.CSTNode, str], None]
-# By the library's method: what the program must do otherwise.
+# What the program must do differently, by the library's method.
 _PINS = "our clients drive no pins of this computer; use RPi.GPIO or gpiozero"
 NO_COUNTERPART = {
     **dict.fromkeys(["gpio_init", "gpio_output", "get_gpio_input", "base_io_to_gpio"], _PINS),

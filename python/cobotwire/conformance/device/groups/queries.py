@@ -19,7 +19,7 @@ from cobotwire.protocol.table import Command, Field, Table
 UNKNOWN_ROW = "the device does not report the position that the query takes"
 # Between two requests a value with a unit may move by this share of its range.
 DRIFT = 0.02
-# How long an arm that has been switched on may take until what it reports is steady, in seconds.
+# The time after power on until the readings of an arm must be steady, in seconds.
 SETTLES = 1.0
 # So many replies in a row with NULs are no accident.
 NOISY = 10
@@ -112,7 +112,7 @@ def _is_powered_query(table: Table, command: Command) -> bool:
 
 
 def _query_with_power(probe: Probe) -> None:
-    """Request twice after the arm has got power: what was true before it shows in one reply."""
+    """Send the query twice after power on: the first reply may still show the state before."""
     device = probe.device
     was_off = POWER not in device.restore_at_end
     give_power(device)

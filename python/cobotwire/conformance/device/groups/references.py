@@ -27,7 +27,8 @@ Vector = tuple[float, float, float]
 # How far the reference is set from zero, and by how much the shift may be wrong, in millimetres.
 SHIFT, NEAR = 40.0, 2.0
 AXES = "xyz"
-# What stores a reference, and the setting by which the coordinates show it: its second choice.
+# The command that stores a reference, and the setting with whose second choice the coordinates show
+# it.
 CHOSEN_BY = {"tool": "end_type", "world": "reference_frame"}
 
 

@@ -1,4 +1,7 @@
-"""What is set is read back, and changes nothing else; what is not allowed changes nothing."""
+"""A value that is set is read back, and nothing else changes.
+
+A value that is not allowed changes nothing.
+"""
 
 from __future__ import annotations
 
@@ -109,7 +112,7 @@ def _takes_forbidden_values(table: Table, command: Command) -> bool:
 def _forbidden(probe: Probe) -> None:
     """Set two values in turn; after each, send wrong values, and read that nothing changes.
 
-    With two values, what a device takes a wrong value for differs from one of them.
+    With two values, the result of a wrong value differs from at least one of them.
     """
     device = probe.device
     for setting in settings_of(device.table, probe.command):
