@@ -1,4 +1,4 @@
-"""Ctrl-C at any line of a call neither delays the calls of other threads nor those that follow."""
+"""Ctrl-C at any line of a call delays neither calls of other threads nor later calls."""
 
 from __future__ import annotations
 
@@ -142,9 +142,9 @@ CALLS: dict[str, Callable[[MyCobot], object]] = {
 class Lines:
     """The numbers of the lines to interrupt, until calls end before them.
 
-    Which lines a call runs depends on the other threads, so one short call is not the end. A call
-    whose frames the reference codec cuts runs many lines; of these every fifth one is interrupted.
-    Listening for 1 ms runs as many lines as the machine has time for, so it skips none.
+    Which lines a call runs depends on the other threads, so one short call is not the end. With the
+    reference codec a call runs many lines; every fifth of these is interrupted. Listening for 1 ms
+    runs as many lines as the machine has time for, so it skips none.
     """
 
     def __init__(self, codec: str, name: str = "a query") -> None:

@@ -67,7 +67,7 @@ def test_setting_that_is_lost_after_malformed_bytes_is_named(after: str) -> None
     assert "get_speed() to stay" in outcome.killed_by
 
 
-# Numbers of a row that are set one by one, of a selector, and joints that are held one by one.
+# Numbers of a row that are set one by one; numbers of a selector; joints that are held one by one.
 @pytest.mark.parametrize(
     ("mutant", "killer"),
     [
@@ -85,7 +85,8 @@ def test_wrong_part_of_what_a_command_sets_is_named(mutant: str, killer: str) ->
     assert outcome.killed_by.startswith(killer)
 
 
-# Of unknown geometry; with a check value, events and fields of bytes; with addresses.
+# An edition of unknown geometry; one with a check value, events and fields of bytes; one with
+# addresses.
 @pytest.mark.parametrize("edition", ["mypalletizer260", "mercury_a1", "mybuddy"])
 def test_wrong_frame_of_another_edition_is_killed_or_excused(edition: str) -> None:
     suite = made(Key("device", edition))
@@ -103,7 +104,7 @@ def test_correct_client_passes(tester: str) -> None:
         assert suite.failure(name) == ""
 
 
-# Of several devices; with events that are sent between replies, alone and with late replies.
+# An edition with several devices; one with events between replies, also together with late replies.
 @pytest.mark.parametrize("edition", ["mycobot", "mycobot280", "mybuddy", "mercury_a1", "pro630"])
 def test_broken_arm_without_a_fault_passes_as_correct(edition: str) -> None:
     assert not _differs(editions.load(edition).TABLE, Mutant("none", "", Fault), rounds=3)

@@ -1,7 +1,7 @@
 """Draw arguments from what the maker's library documents and checks, not from our ranges.
 
-Sources are the numbers of a method's docstring, those of the check that the library applies to a
-parameter, its table of limits, and the ends of what fits into bytes and words.
+Sources are the numbers in a method's docstring and in the library's check of a parameter, its table
+of limits, and the bounds of bytes and words.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """Compare what the maker's class and ours return for the same reply: type, shape and value.
 
-The replies are legal ones of the edition, values that the library documents, legal ones after the
-request's first argument, and data of every size that the library's parser distinguishes.
+The replies are legal replies of the edition, values that the library documents, legal replies that
+follow the request's first argument, and data of every size that the library's parser distinguishes.
 """
 
 from __future__ import annotations
@@ -57,7 +57,7 @@ _NUMBER = re.compile(r"-?\b\d+\b")
 
 
 class Reply(NamedTuple):
-    """A reply: its kind, which rulings refer to; its data; and the number if it is documented."""
+    """A reply: its kind, by which rulings name it; its data; and the number if it is documented."""
 
     kind: str
     data: bytes

@@ -1,8 +1,8 @@
 """Decide which connections stay open: those without the token cannot keep out those with it.
 
-If connections were refused when there are too many, anyone could hold as many and keep all others
-out. So a new connection is always accepted. If too many have not shown the token, the one that
-has been idle for longest is closed. Connections that showed the token are not among them.
+If the server refused new connections instead, an attacker could hold all of them and lock everybody
+out. So a new connection is always accepted. If too many have not shown the token, the one that has
+been idle for longest is closed. Connections that showed the token are not among them.
 """
 
 from __future__ import annotations

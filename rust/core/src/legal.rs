@@ -229,7 +229,7 @@ struct Groups {
 }
 
 impl Groups {
-    /// Add a variant; one without an id can also be what other ids of its LEN stand for.
+    /// Add a variant. A variant without an id can match every id with its LEN.
     fn add(&mut self, length: u16, id: Option<u16>, variant: VariantId) {
         let Some(id) = id else {
             let named = self.named.iter().filter(|((of, _), _)| *of == length);

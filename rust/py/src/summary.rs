@@ -28,7 +28,7 @@ pub struct NativeSummary {
 type GivenTexts = (String, Vec<String>, Fields, Fields);
 type Fields = Vec<Vec<Vec<String>>>;
 
-/// The servo bus: the format and the legal LENs of its packets, and the words for what they say.
+/// The servo bus: the format and the legal LENs of its packets, and the words that describe them.
 #[derive(FromPyObject)]
 struct GivenBus<'py> {
     frame: Bound<'py, PyAny>,

@@ -74,7 +74,7 @@ def _message(record: Record, made: Any) -> Iterator[str]:
         | {"raw": list(map(str, f["raw"]))}
         for f in record["fields"]
     ]
-    # The bytes may decode as another command with the same id; then only that one is reported.
+    # The bytes may decode as another command with the same id. Then only that command is reported.
     if "error" in made or made["read_as"] != record["read_as"]:
         yield f"{made}, not read as {record['read_as']}"
     elif made.get("fields") != fields:

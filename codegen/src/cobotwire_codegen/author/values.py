@@ -45,7 +45,9 @@ def known_values(edition: Edition, frames: Sequence[Seen]) -> Known:
 
 
 def fitting(edition: Edition, item: Guess, frames: Sequence[Seen], known: Known) -> tuple[str, str]:
-    """Return the type that the values of some bytes fit best, and why; two empty texts if none.
+    """Return the type that fits the values of some bytes best, and why.
+
+    Two empty texts if none fits.
 
     A known number that had the same values at the same time counts most, then the type with the
     narrowest range that holds all of the values.

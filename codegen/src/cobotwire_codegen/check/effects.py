@@ -102,7 +102,7 @@ def _wrong_keys(effect: Effect) -> Iterator[str]:
 def _wrong_sizes(
     effect: Effect, command: Command, arguments: Mapping[str, Field | None]
 ) -> Iterator[str]:
-    """Yield which arguments are rows instead of single numbers, or the other way round."""
+    """Yield the arguments that are rows but should be single numbers, or the reverse."""
     options = {key: name for key, name in effect.options if isinstance(name, str)}
     rows = [options[key] for key in ("from", "near") if key in options]
     single = [*effect.at, *(options[key] for key in _SINGLE if key in options)]

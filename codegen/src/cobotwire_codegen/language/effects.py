@@ -142,7 +142,7 @@ class Unknown(Record):
 
 
 class Python(_Effect):
-    """Only code can say what a command does: the simulator has a function for it."""
+    """The effect of a command is implemented in code: the simulator has a function for it."""
 
     python = required(Text(), "What the command does.")
     EXAMPLE = "{python: Repeats the recorded motion.}"

@@ -16,9 +16,9 @@ PAGE = "https://cobotwire.github.io/cobotwire/reference/language.html"
 
 
 class Limit(NamedTuple):
-    """One thing that a spec cannot say: its heading, examples, what it is, and what to do instead.
+    """A feature that a spec cannot state: heading, examples, description, and what to do instead.
 
-    ``keys`` are those that authors try; the language has none of them.
+    ``keys`` are keys that authors try and that the language lacks.
     """
 
     heading: str

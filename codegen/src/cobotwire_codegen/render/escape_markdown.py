@@ -1,7 +1,7 @@
 """Escapes the texts of a spec for Markdown: the only place that does it.
 
-The whole model is copied with escaped texts before the templates see it, so that no template and
-no new text can forget it. The names in a model are identifiers, which Markdown takes as they are.
+The whole model is copied with escaped texts before the templates see it, so that no template can
+forget to escape. The names in a model are identifiers, which Markdown takes as they are.
 """
 
 from __future__ import annotations

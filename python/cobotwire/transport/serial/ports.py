@@ -59,7 +59,7 @@ def ports() -> list[Port]:
 
 
 def this_computer(device: str = "") -> Computer:
-    """Return what is known about this computer, for what to do so that a port can be opened."""
+    """Return facts about this computer, from which the remedies for a port follow."""
     devices = [port.device for port in ports()]
     if sys.platform == "linux":
         from cobotwire.transport.serial import linux

@@ -100,7 +100,7 @@ pub(crate) struct Finding {
     pub(crate) continued: bool,
 }
 
-/// What starts at a place: its class and its end.
+/// A finding that starts at a position: its class and its end.
 type Verdict = Option<(Kind, usize)>;
 
 /// Diagnoses the noise of a stream.

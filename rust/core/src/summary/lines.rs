@@ -131,8 +131,8 @@ impl Writer {
         });
     }
 
-    /// Append text and facts of noise. Only servo packets and texts have so many different ones
-    /// that they are written here.
+    /// Append text and facts of noise. Only servo packets and texts have many different
+    /// descriptions, so these are written here.
     fn describe(&mut self, out: &mut Vec<u8>, noise: &Described<'_>, sink: &mut impl Sink) {
         match noise.kind {
             Kind::Text => firmware_text::append(out, noise.data),
