@@ -176,7 +176,7 @@ class _Tap:
         self.recording, self._hidden = recording, False
 
     def hide(self, hidden: bool) -> None:
-        """Begin or end to hide what is received."""
+        """Start or stop replacing received bytes by their hash."""
         self._hidden = hidden
 
     def __call__(self, direction: Literal["sent", "received"], data: bytes, at: float) -> None:

@@ -1,10 +1,10 @@
 """Remember what a session left on its port, for the next session there of any process of this user.
 
-A reply that comes after its session has ended looks like the reply to the first like request of the
-next one. Half a request that was written completes with the first request of the next one. So a
-session that ends in such a state leaves a note in this process, and in a file for other processes
-(``port_notes``). Most sessions leave nothing and write no file. A process that is killed, or never
-closes its client, leaves no note.
+A reply can arrive after its session has ended. The next session takes it for the reply to its own
+first request of the same command. If a session wrote only half of a request, the robot completes it
+with the first bytes of the next session. A session that ends in one of these states leaves a note
+in this process, and in a file for other processes (``port_notes``). Most sessions leave nothing and
+write no file. A process that is killed, or never closes its client, leaves no note.
 """
 
 from __future__ import annotations
@@ -74,7 +74,7 @@ def _keys(url: str) -> tuple[str, ...]:
     device, link = os.path.realpath(url), os.path.abspath(url)
     links = (link,) if link != device else ()
     if device.startswith(PSEUDO_TERMINALS):
-        # The next pseudo-terminal with this number is another line.
+        # The system reuses the numbers of pseudo-terminals. The creation time tells them apart.
         with suppress(OSError):
             return f"{device} {os.stat(device).st_ctime_ns}", *links
     return device, *links

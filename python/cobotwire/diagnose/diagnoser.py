@@ -40,7 +40,8 @@ class Diagnoser:
         self._gap = 0
         self._last: Finding | None = None
         self._in_text = False
-        # At this many bytes from the start of the residue nothing can start, whatever comes.
+        # The number of bytes at the start of the residue at which nothing can be recognised,
+        # whichever bytes follow.
         self._plain = 0
         # Matches the places of the residue at which something may be recognised.
         self._interesting = re.compile(b"|".join(each.starts for each in self._recognisers))

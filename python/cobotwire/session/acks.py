@@ -215,7 +215,8 @@ class Acks:
     ) -> tuple[ExpectedAck, PendingAck | None]:
         """Note that a request goes out; its acknowledgement can begin at ``offset``.
 
-        The second is there if a caller waits ``within`` seconds for it, and not after ``ends_by``.
+        The second result is None unless a caller waits for the acknowledgement: at most ``within``
+        seconds, and not after ``ends_by``.
         """
         slow = request.command.safety == "motion" and not self._motions_at_once
         usual = MOTION_SECONDS if slow else GRACE_SECONDS

@@ -105,8 +105,8 @@ class Exchange:
     ) -> tuple[bytes, PendingAck | None]:
         """Return the bytes of a one-way request, to be written now.
 
-        The second is there if ``ack_within`` says how many seconds its acknowledgement is waited
-        for, and the edition has one. Its caller waits until ``ends_by``.
+        The second result is None unless the edition acknowledges the request and its caller waits
+        for that: at most ``ack_within`` seconds, and not after ``ends_by``.
         """
         offset = self._framer.fed
         self._echo.sent_one_way(request.frame, offset)
@@ -139,8 +139,8 @@ class Exchange:
         """End every request: the transport is gone.
 
         Returns:
-            What the bytes are that still waited: what comes after the transport is open again does
-            not complete them.
+            The events of the bytes that waited for more. Bytes that are received after the
+            transport is opened again do not complete them.
         """
         events = self._sort(self._framer.flush(), now, self._framer.fed)
         self.alignment.lose()
@@ -299,7 +299,7 @@ class Exchange:
         queued = self._queued()
         if not self._outstanding.replies:
             return [(pending, now) for pending in queued]
-        # Many callers may want the same.
+        # Many callers may have queued the same frame, which is checked once.
         alike = {pending.request.frame: pending.request for pending in queued}
         held = {frame: self._outstanding.held_until(request) for frame, request in alike.items()}
         known = {frame: now if until is None else until for frame, until in held.items()}

@@ -84,8 +84,8 @@ export class Series {
   }
 }
 
-// Return whether so many seconds between two samples are a gap. `inspect/plot/series.py` has the
-// same rule.
+// Return whether two samples that are `seconds` apart have a gap between them.
+// `inspect/plot/series.py` has the same rule.
 export const isGap = (seconds, usual) => seconds > Math.max(1, 4 * usual);
 
 const finite = (value) => (Number.isFinite(value) ? value : null);

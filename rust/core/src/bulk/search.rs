@@ -30,7 +30,7 @@ pub(crate) struct Search {
     pub(crate) space: Space,
 }
 
-/// Memory for scanning, which is made on first use. Between two calls nothing in it matters.
+/// Memory for scanning, which is made on first use. No call reads what an earlier call left in it.
 #[derive(Clone, Default)]
 pub(crate) struct Space {
     lanes: Option<Lanes>,

@@ -48,8 +48,9 @@ TIMED, LONGEST, SOON = 0.5, 20.0, 0.005
 # direction, both in degrees.
 QUEUED, NEWEST = "INTERPOLATION", "REFRESH"
 WAY, SHOWN = 8.0, 1.0
-# Slow enough to be seen on the way up, in percent of the fastest, and the longest time between two
-# readings in which the arm cannot go up and down, in seconds.
+# The speed of the motion upwards, in percent of the fastest: it is slow enough to be read on the
+# way. Then the longest time between two readings, in seconds: the arm cannot go up and down again
+# in it.
 UPWARDS, UNSEEN = 20, 0.1
 STEPS, TURNS = "step_per_second", "revolution_per_minute"
 # One revolution per minute, in degrees per second.
@@ -159,7 +160,7 @@ def _faster(probe: Probe) -> None:
 
 
 class _Left(NamedTuple):
-    """How far a joint has gone, in degrees, and between which times since it was sent off."""
+    """How far a joint has moved, in degrees, and the least and most seconds since its command."""
 
     way: float
     least: float
