@@ -34,7 +34,7 @@ MOST_FRAMES = 8
 MOST_BYTES = 1000
 # The members of a survey, and the size that each may have.
 MEMBERS = {"survey.json": MOST_JSON, "recording.pcapng": MOST_RECORDING}
-# What the verdict on a test case says about the facts of its command; * stands for every field.
+# The facts of a command that the verdict on a test case decides; * stands for every field.
 CASES = {
     "query-replied": ("command/present", "command/deadline"),
     "change-replied": ("command/present", "command/deadline"),
@@ -190,7 +190,10 @@ def _of(value: Any, kind: type, name: str) -> Any:
 
 
 def _text(record: dict[str, Any], key: str, most: int = 80, least: int = 1) -> str:
-    """Return a text of one line; longer ones, and ones that a terminal would obey, are refused."""
+    """Return a text of one line.
+
+    Reject texts with control characters, and texts that are too long.
+    """
     text = " ".join(_of(record.get(key), str, key).split())
     _require(least <= len(text) <= most, f"{key} must have {least} to {most} characters")
     _require(text.isprintable(), f"{key} has characters that cannot be printed")
@@ -210,7 +213,7 @@ def _day(text: str) -> str:
 
 
 def _bytes(value: Any) -> bytes:
-    """Return the bytes of a frame; none if they are too many, or shortened."""
+    """Return the bytes of a frame; empty if there are too many, or the text was shortened."""
     text = _of(value, str, "a frame")
     return bytes.fromhex(text) if _HEX.fullmatch(text) else b""
 
