@@ -52,6 +52,8 @@ _FACT = re.compile(
 )
 # The robot of a report, or of an owner who does not name it.
 _UNNAMED = "an arm"
+_SEAL = ("digest", "signature")
+_CHANGED = "the file was changed after it was written: its digest is another one"
 # The type of a block that holds a packet, in pcapng.
 _PACKET = 6
 _DAY = re.compile(r"(20\d\d-(0[1-9]|1[0-2])-(0[1-9]|[12]\d|3[01]))(T[\d:.+\-Z]{0,30})?", re.ASCII)
@@ -109,13 +111,30 @@ def submitted(data: bytes) -> Submitted:
     digest = sha256(data).hexdigest()
     if data.startswith(b"PK"):
         members = _members(data)
-        found = _survey(_parsed(members["survey.json"]), digest)
-        found.line = _line(members["recording.pcapng"])
+        document, recording = _parsed(members["survey.json"]), members["recording.pcapng"]
+        _check_digest(document, sha256(recording).hexdigest())
+        found = _survey(document, digest)
+        found.line = _line(recording)
         return found
     _require(
         len(data) <= MOST_REPORT, f"the report has more than {MOST_REPORT >> 20} MB, the limit"
     )
-    return _report(_parsed(data), digest)
+    document = _parsed(data)
+    _check_digest(document)
+    return _report(document, digest)
+
+
+def _check_digest(document: dict[str, Any], recording: str = "") -> None:
+    """Check the digest that a document states, as ``cobotwire.inspect.seal`` defines it.
+
+    The files of the first surveys state none. Who signed a file, ``conform verify`` checks.
+    """
+    if "digest" not in document:
+        return
+    _require(document.get("recording_digest", "") == recording, _CHANGED)
+    contents = {key: value for key, value in document.items() if key not in _SEAL}
+    text = json.dumps(contents, sort_keys=True, separators=(",", ":"))
+    _require(sha256(text.encode()).hexdigest() == document["digest"], _CHANGED)
 
 
 def _require(holds: bool, message: str) -> None:
