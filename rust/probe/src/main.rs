@@ -1,5 +1,7 @@
 //! Answers the tests in Python, one JSON value a line: `codec`, `exchange`, `client` or `texts`.
 
+#[cfg(unix)]
+mod client;
 mod codec;
 mod exchange;
 mod texts;
@@ -22,6 +24,8 @@ fn main() -> std::io::Result<()> {
             let mut exchanges = exchange::Exchanges::default();
             answer(|line| exchanges.answer(line))
         }
+        #[cfg(unix)]
+        "client" => client::serve(std::env::args().skip(2)),
         "texts" => {
             let mut texts = texts::Texts::default();
             answer(|line| texts.answer(line))

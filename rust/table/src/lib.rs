@@ -12,6 +12,7 @@ mod commands;
 mod frame;
 mod json;
 mod messages;
+mod named;
 mod rejection;
 mod robot;
 mod shown;
@@ -31,6 +32,7 @@ use crate::json::{Node, Within};
 use crate::messages::Messages;
 
 pub use crate::json::BadEdition;
+pub use crate::named::Filled;
 pub use crate::robot::Link;
 pub use crate::shown::{Quote, Shown, general};
 pub use crate::texts::{as_call, bad_argument, error_text, link_error};
