@@ -118,7 +118,7 @@ fn plain(value: Value) -> Value {
     match value {
         Value::Array(parts) => parts.into_iter().map(plain).collect(),
         Value::Object(mut typed) => match (typed.remove("bytes"), typed.remove("real")) {
-            (Some(bytes), _) => bytes,
+            (Some(Value::String(bytes)), _) => json!(bytes.to_uppercase()),
             (_, Some(Value::String(word))) => json!(word.to_lowercase()),
             _ => Value::Null,
         },
