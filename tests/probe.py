@@ -33,7 +33,8 @@ class Probe:
     def ask(self, question: Any) -> Any:
         """Return the answer to a line."""
         source, target = self._process.stdout, self._process.stdin
-        assert source is not None and target is not None
+        assert source is not None
+        assert target is not None
         target.write(json.dumps(question) + "\n")
         target.flush()
         return json.loads(source.readline())

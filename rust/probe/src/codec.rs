@@ -62,7 +62,7 @@ fn encoded(edition: &Edition, question: &Value) -> Option<Value> {
             .map(|field| value_of(field, &fields[&field.name]));
         let row = Sample(Value::Array(values.collect()));
         if let Ok(frame) = encode::<Sample>(table.frame(), command, direction, &row, choice) {
-            return Some(json!({"bytes": hex(&frame)}));
+            return Some(json!({"bytes": digits(&frame)}));
         }
         if sized {
             break;
@@ -147,13 +147,13 @@ fn streamed(edition: &Edition, question: &Value) -> Option<Value> {
 
 fn event(event: Event<'_>) -> Value {
     match event {
-        Event::Frame { offset, frame } => json!({"frame": hex(frame.bytes()), "offset": offset}),
+        Event::Frame { offset, frame } => json!({"frame": digits(frame.bytes()), "offset": offset}),
         Event::Noise {
             offset,
             reason,
             data,
         } => {
-            json!({"noise": hex(&data.concat()), "offset": offset, "reason": reason.word()})
+            json!({"noise": digits(&data.concat()), "offset": offset, "reason": reason.word()})
         }
     }
 }
@@ -177,4 +177,9 @@ fn direction(word: &Value) -> Option<Direction> {
         "reply" => Some(Direction::Reply),
         _ => None,
     }
+}
+
+/// Return bytes as the protocol writes them.
+fn digits(bytes: &[u8]) -> String {
+    hex(bytes).to_uppercase()
 }
