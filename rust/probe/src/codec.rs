@@ -36,7 +36,9 @@ pub fn answer(edition: &Edition, line: &str) -> String {
         _ => None,
     };
     let mut answer = found.unwrap_or_else(|| json!({"unsupported": "this is not a question"}));
-    answer["id"] = question["id"].clone();
+    if let Some(members) = answer.as_object_mut() {
+        members.insert("id".into(), question["id"].clone());
+    }
     answer.to_string()
 }
 
