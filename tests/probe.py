@@ -1,42 +1,45 @@
-"""The probe, built from the Rust sources that it tests."""
+"""The probe: a program that answers tests with the crates in Rust (``rust/probe``)."""
 
 from __future__ import annotations
 
 import json
+import os
 import shutil
 import subprocess
 from functools import lru_cache
+from pathlib import Path
 from typing import Any
 
 import pytest
 
-from vectors import ROOT
-
-needed = pytest.mark.skipif(shutil.which("cargo") is None, reason="cargo is not installed")
+ROOT = Path(__file__).parent.parent
+needed = pytest.mark.skipif(shutil.which("cargo") is None, reason="needs cargo: not installed")
 
 
 @lru_cache
 def path() -> str:
-    """Build the probe once; return the path of the program."""
-    subprocess.run(["cargo", "build", "--quiet", "-p", "cobotwire-probe"], cwd=ROOT, check=True)
-    return str(ROOT / "target/debug/cobotwire-probe")
+    """Return the path of the program; it is compiled once for each test run."""
+    command = ["cargo", "build", "--quiet", "--package", "cobotwire-probe"]
+    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    target = Path(os.environ.get("CARGO_TARGET_DIR", "target"))
+    return str(ROOT / target / "debug" / "cobotwire-probe")
 
 
 class Probe:
-    """The probe in one of its modes, which has the given arguments."""
+    """The probe in one of its modes that answer each line, which is JSON."""
 
-    def __init__(self, mode: str, *arguments: str) -> None:
+    def __init__(self, *mode: str) -> None:
         self._process = subprocess.Popen(
-            [path(), mode, *arguments], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
+            [path(), *mode], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
         )
 
     def ask(self, question: Any) -> Any:
         """Return the answer to a line."""
-        source, target = self._process.stdout, self._process.stdin
-        assert source is not None
+        target, source = self._process.stdin, self._process.stdout
         assert target is not None
-        target.write(json.dumps(question) + "\n")
-        target.flush()
+        assert source is not None
+        print(json.dumps(question), file=target, flush=True)
         return json.loads(source.readline())
 
     def close(self) -> None:

@@ -41,10 +41,13 @@ class Talk:
 
     def _chosen(self) -> list[Command]:
         """Return a few commands; those that share an id are chosen together."""
-        commands = self._table.commands
+        dice, commands = self._dice, self._table.commands
+        queries = [command for command in commands if command.requires_reply] or commands
         rare = [c for c in commands if c.text or c.request_text or c.event or c.accepted]
-        found = [self._dice.choice(rare or commands), *self._dice.choices(commands, k=2)]
-        ids = {command.id for command in found}
+        # The reply to such a query may have the bytes of its request.
+        alike = [c for c in queries if {v.size for v in c.request} & {v.size for v in c.reply}]
+        pools = (queries, commands, dice.choice([rare, alike, queries]) or commands)
+        ids = {dice.choice(pool).id for pool in pools}
         return [command for command in commands if command.id in ids]
 
     # What callers do.
@@ -60,9 +63,9 @@ class Talk:
         self._sent.append(request)
         ends_by = dice.choice([inf, inf, self.now + self._span()])
         if request.command.requires_reply:
-            attempts, shortest = dice.choice([(1, 0.125), (3, 0.1), (4, TICK)])
+            attempts, shortest = dice.choice([(1, 0.125), (3, 0.1), (4, TICK), (4, TICK)])
             policy = RetryPolicy(attempts, shortest, dice.choice([1.0, 0.25, 0.0]))
-            wait = dice.choice([None, None, self._span(), 0.25])
+            wait = dice.choice([None, None, self._span(), 0.25, 0.75])
             pending = PendingRequest(request, wait, policy, self.now, ends_by)
             self._pending.append(pending)
             self.exchange.enqueue(pending)
@@ -105,13 +108,13 @@ class Talk:
             return
         alignment, how = self.exchange.alignment, self._dice.random()
         align = alignment.align
-        if how < 0.86:
+        if how < 0.9:
             if align:
                 alignment.end()
-        elif how < 0.92:
+        elif how < 0.94:
             alignment.cut(align, request, self._dice.randrange(len(align + request)))
             self.exchange.fail_waiting(LINK_ERROR)
-        elif how < 0.94:
+        elif how < 0.95:
             alignment.cut(align, request, None)
         else:
             self._wait()
@@ -125,14 +128,17 @@ class Talk:
         self.now += self._dice.choice([until_next, until_next, self._span()])
 
     def _span(self) -> float:
-        spans = [0, 1, 2, 16, 64, 128, 512, self._dice.randrange(600)]
-        return TICK * self._dice.choice([*spans, self._dice.choice([0, 31000])])
+        dice = self._dice
+        spans = [0, 1, 2, 8, 16, 64, dice.randrange(64), dice.choice([128, 512, 600, 31000])]
+        return TICK * dice.choice(spans)
 
     def _wake(self) -> None:
         self._wait()
         dice, exchange = self._dice, self.exchange
         dice.choice([exchange.wake, exchange.wake, exchange.end_overdue])(self.now)
         exchange.note_full(dice.random() < 0.3)
+        if dice.random() < 0.7:
+            self._turn()
 
     def _lose(self) -> None:
         self.exchange.fail(LINK_ERROR, self.now)

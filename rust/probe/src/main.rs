@@ -1,26 +1,36 @@
-//! Answers the tests in Python, one JSON value a line: `codec`, `exchange` or `client`.
+//! Answers the tests in Python, one JSON value a line: `codec`, `exchange`, `client` or `texts`.
 
+#[cfg(unix)]
+mod client;
 mod codec;
 mod exchange;
+mod texts;
 mod values;
 
+use std::io::{BufRead, Error, Write, stdin, stdout};
+
 use cobotwire_table::Edition;
-use std::io::{BufRead, Write, stdin, stdout};
 
 /// Answer each line until there is no more.
 fn main() -> std::io::Result<()> {
-    let mode = std::env::args().nth(1).unwrap_or_default();
-    match mode.as_str() {
+    let (mode, path) = (std::env::args().nth(1), std::env::args().nth(2));
+    match mode.as_deref().unwrap_or_default() {
+        "codec" => {
+            let edition = Edition::read(&std::fs::read(path.unwrap_or_default())?);
+            let edition = edition.map_err(Error::other)?;
+            answer(|line| codec::answer(&edition, line))
+        }
         "exchange" => {
             let mut exchanges = exchange::Exchanges::default();
             answer(|line| exchanges.answer(line))
         }
-        "codec" => {
-            let path = std::env::args().nth(2).unwrap_or_default();
-            let edition = Edition::read(&std::fs::read(path)?).map_err(std::io::Error::other)?;
-            answer(|line| codec::answer(&edition, line))
+        #[cfg(unix)]
+        "client" => client::serve(std::env::args().skip(2)),
+        "texts" => {
+            let mut texts = texts::Texts::default();
+            answer(|line| texts.answer(line))
         }
-        _ => Err(std::io::Error::other("codec, exchange or client?")),
+        _ => Err(Error::other("codec, exchange, client or texts?")),
     }
 }
 
