@@ -29,8 +29,8 @@ pytestmark = needed
 EVERY = "EVERY_EDITION" in os.environ
 
 
-# A footer and a CRC, without and with bytes; `make every-edition` tests all.
-FEW = [name for name in vectors.sampled() if name in ("mycobot", "pro450") or EVERY]
+# Its questions take six seconds; `make every-edition` asks those of all.
+FEW = [name for name in vectors.sampled() if name == "mycobot" or EVERY]
 
 
 @pytest.mark.parametrize("name", FEW)
@@ -43,7 +43,7 @@ def test_codec_in_rust_passes_every_question(name: str) -> None:
 
 
 # Shrinking would take minutes.
-@settings(max_examples=10, phases=[Phase.generate], suppress_health_check=list(HealthCheck))
+@settings(max_examples=8, phases=[Phase.generate], suppress_health_check=list(HealthCheck))
 @given(data=st.data())
 def test_tables_of_random_editions_are_alike(tmp_path: Path, data: st.DataObject) -> None:
     edition = data.draw(editions(tmp_path, "rnd"))
@@ -59,7 +59,8 @@ def test_tables_of_random_editions_are_alike(tmp_path: Path, data: st.DataObject
 def _questions(found: Record, python: OurCodec) -> Iterator[Record]:
     """Yield a question for each vector: decode it, and encode what Python decodes."""
     for record in found["messages"] + found["malformed"]:
-        decode = {"do": "decode", "direction": record["direction"], "bytes": record["bytes"]}
+        data = record["bytes"].replace(" ", "")
+        decode = {"do": "decode", "direction": record["direction"], "bytes": data}
         yield decode
         if "command" in record:
             named = {**decode, "command": record["command"]}
@@ -68,7 +69,8 @@ def _questions(found: Record, python: OurCodec) -> Iterator[Record]:
             yield {**named, "do": "encode", "fields": fields}
             yield {**named, "do": "encode", "fields": {n: -1 for n in fields}}
     for record in found["streams"]:
-        yield {"do": "stream", "direction": record["direction"], "chunks": [record["bytes"], None]}
+        chunks = [record["bytes"].replace(" ", ""), None]
+        yield {"do": "stream", "direction": record["direction"], "chunks": chunks}
 
 
 def _compared(answer: Record) -> Record:

@@ -36,7 +36,9 @@ pub fn answer(edition: &Edition, line: &str) -> String {
         _ => None,
     };
     let mut answer = found.unwrap_or_else(|| json!({"unsupported": "this is not a question"}));
-    answer["id"] = question["id"].clone();
+    if let Some(members) = answer.as_object_mut() {
+        members.insert("id".into(), question["id"].clone());
+    }
     answer.to_string()
 }
 
@@ -62,7 +64,7 @@ fn encoded(edition: &Edition, question: &Value) -> Option<Value> {
             .map(|field| value_of(field, &fields[&field.name]));
         let row = Sample(Value::Array(values.collect()));
         if let Ok(frame) = encode::<Sample>(table.frame(), command, direction, &row, choice) {
-            return Some(json!({"bytes": hex(&frame)}));
+            return Some(json!({"bytes": digits(&frame)}));
         }
         if sized {
             break;
@@ -147,13 +149,13 @@ fn streamed(edition: &Edition, question: &Value) -> Option<Value> {
 
 fn event(event: Event<'_>) -> Value {
     match event {
-        Event::Frame { offset, frame } => json!({"frame": hex(frame.bytes()), "offset": offset}),
+        Event::Frame { offset, frame } => json!({"frame": digits(frame.bytes()), "offset": offset}),
         Event::Noise {
             offset,
             reason,
             data,
         } => {
-            json!({"noise": hex(&data.concat()), "offset": offset, "reason": reason.word()})
+            json!({"noise": digits(&data.concat()), "offset": offset, "reason": reason.word()})
         }
     }
 }
@@ -177,4 +179,9 @@ fn direction(word: &Value) -> Option<Direction> {
         "reply" => Some(Direction::Reply),
         _ => None,
     }
+}
+
+/// Return bytes as the protocol writes them.
+fn digits(bytes: &[u8]) -> String {
+    hex(bytes).to_uppercase()
 }
