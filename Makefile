@@ -21,6 +21,8 @@ ATTACK_SECONDS ?= 180
 STATES ?= 1000000
 REV ?= HEAD
 LEROBOT ?= lerobot==0.4.4
+WASM := wasm32-unknown-unknown
+CHECK_WASM := RUSTFLAGS=-Dwarnings cargo check --release --package cobotwire-core --target $(WASM) --quiet
 CARGO_FUZZ := .cargo-tools/bin/cargo-fuzz
 
 .PHONY: set-up spec-mutants help demo test lint lint-and-rust python-test computing-tests simulating-tests calling-tests waiting-tests other-tests rust-test products gen targets docs bench plots smoothness picture answers table fuzz figures clean faults conform defects attack archives lerobot bench-archive bench-compare rust-asan robots layer demos front-end front-end-if-reachable four-hours studio-pictures explore nightly rust-package release-check figures-page every-edition urdf
@@ -52,6 +54,8 @@ lint: .venv/.tools .venv/.native ## check formatting, types, stubs against the b
 	cargo fmt --manifest-path rust/fuzz/Cargo.toml --check
 # In release mode, because the dependencies are compiled in it already, for the native module.
 	+cargo clippy --release --workspace --lib --tests --quiet -- -D warnings
+	+if [ -d "$$(rustc --print target-libdir --target $(WASM))" ]; then $(CHECK_WASM) && $(CHECK_WASM) --no-default-features; \
+		else echo "skipped: the check of the core for $(WASM), which is not installed" >&2; fi
 
 # Linters and Rust tests use what the tests in Python leave, which wait a third of the time. First
 # the linters: most of what they find is found in seconds.

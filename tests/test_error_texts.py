@@ -1,4 +1,4 @@
-"""Check errors that are not about a bad value: they are sentences, and name what was called."""
+"""Check errors that are not about a bad value: they are sentences, and name the call."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What users and transports write down during a run; the judge reads it afterwards."""
+"""What users and transports write down during a run; the validator reads it afterwards."""
 
 from __future__ import annotations
 

@@ -15,7 +15,6 @@ from attack.arm import HostilePeer
 from attack.calls import SHORT
 from attack.ends import PtyEnd, TcpEnd
 from attack.fresh import run_fresh
-from attack.judge import Judge, Scene
 from attack.line import HostileLine
 from attack.machine import MachineMeter
 from attack.plans import Plan, plan
@@ -23,13 +22,14 @@ from attack.profiles import Profile
 from attack.setting import Setting, table_of
 from attack.tally import Tally
 from attack.users import Shared, run_threads
+from attack.validating import Scene, Validator
 from cobotwire import codec as codecs
 from machine_stalls import PtyMeter
 from stalls import StallMeter
 
 
 def attack(chosen: Plan, change: Callable[[Any], Any] | None = None) -> Tally:
-    """Run a plan and judge it; ``change`` makes another client of the edition's."""
+    """Run a plan and validate it; ``change`` makes another client of the edition's."""
     codec = codecs.load(table_of(chosen), "reference")
     peer = HostilePeer(codec, chosen.faults, chosen.seed)
     end = TcpEnd(small=chosen.profile.stalls) if chosen.tcp else PtyEnd()
@@ -54,7 +54,7 @@ def attack(chosen: Plan, change: Callable[[Any], Any] | None = None) -> Tally:
         counts = Counter(calls=1, lost=1)
         return Tally(chosen.profile.name, counts, failures=[f"{chosen}\n{failed}"])
     stalls = [meter.late, ptys.late, line.stalls, setting.stops, *machine.stops.values()]
-    return Judge(Scene(setting, line, peer, stalls)).judge()
+    return Validator(Scene(setting, line, peer, stalls)).validate()
 
 
 def _settle(line: HostileLine, setting: Setting) -> None:

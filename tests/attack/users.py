@@ -131,8 +131,8 @@ def run_threads(
 ) -> None:
     """Let the users of a run call until it is over.
 
-    ``during`` does what else happens, and ends the run; ``settle`` waits for what was written
-    before the client is closed.
+    ``during`` makes the other events and ends the run; ``settle`` waits for written bytes before
+    the client is closed.
     """
     shared = Shared(setting)
     plan = setting.plan

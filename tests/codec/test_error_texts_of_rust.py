@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import json
-import shutil
-import subprocess
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
@@ -13,6 +11,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
+import probe
 import random_tables
 from cobotwire import codec as codecs
 from cobotwire import editions
@@ -22,7 +21,7 @@ from cobotwire.protocol.table import Direction, Table, Variant
 from cobotwire_codegen.publish import edition_json
 from random_editions import sensors
 
-ROOT = Path(__file__).parents[2]
+pytestmark = probe.needed
 WAYS: tuple[Direction, ...] = ("request", "reply")
 Answer = Callable[[dict[str, Any]], str | None]
 
@@ -30,23 +29,9 @@ Answer = Callable[[dict[str, Any]], str | None]
 @pytest.fixture(scope="module")
 def answer() -> Iterator[Answer]:
     """Yield a function that asks the probe one question."""
-    if shutil.which("cargo") is None:
-        pytest.skip("the probe is built with cargo")
-    subprocess.run(["cargo", "build", "-q", "-p", "cobotwire-probe"], cwd=ROOT, check=True)
-    program = [ROOT / "target/debug/cobotwire-probe", "texts"]
-    with subprocess.Popen(program, stdin=-1, stdout=-1, text=True, encoding="utf-8") as probe:
-        stdin, stdout = probe.stdin, probe.stdout
-        assert stdin is not None
-        assert stdout is not None
-
-        def ask(question: dict[str, Any]) -> str | None:
-            stdin.write(json.dumps(question) + "\n")
-            stdin.flush()
-            text: str | None = json.loads(stdout.readline())
-            return text
-
-        yield ask
-        stdin.close()
+    asked = probe.Probe("texts")
+    yield asked.ask
+    asked.close()
 
 
 def text_of(act: Callable[[], object]) -> str | None:

@@ -1,4 +1,4 @@
-"""Make a case's calls with one client of any library, and judge how each call ends."""
+"""Make a case's calls with one client of any library, and return how each call ended."""
 
 from __future__ import annotations
 
@@ -136,10 +136,10 @@ def called(call: Call, arm: Any, options: bool) -> Outcome:
         )
     except Exception as error:
         return _failed(error)
-    return _judged(call, value)
+    return _outcome(call, value)
 
 
-def _judged(call: Call, value: Any) -> Outcome:
+def _outcome(call: Call, value: Any) -> Outcome:
     plain = list(value) if isinstance(value, tuple) else value
     if plain == call.right or call.right == DONE:
         return Outcome(RIGHT, repr(plain))

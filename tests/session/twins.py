@@ -43,6 +43,7 @@ METHODS = (
     *("enqueue", "send_one_way", "give_up", "fail", "fail_waiting", "persist", "restore"),
     *("advance", "receive", "wake", "end_overdue", "note_full", "outgoing", "written"),
 )
+_lines = received.ReceivedMeanwhile.lines
 # Thirds and twentieths of a second are no whole nanoseconds.
 NEAR = 2
 
@@ -107,23 +108,30 @@ class Recorder:
     ) -> None:
         self._patches.close()
 
-    def twin(self, exchange: Exchange) -> Twin:
-        """Return the twin of an exchange."""
-        return self._twins[id(exchange.alignment)]
-
-    def check(self, ask: Callable[[Any], Any]) -> None:
-        """Have Rust repeat all steps; compare what it does."""
+    def check(self, ask: Callable[[Any], Any]) -> list[str]:
+        """Have Rust repeat all steps; compare what it does. Return the states that were noted."""
         steps, self.steps = self.steps, []
+        states: list[str] = []
         for step, answer in zip(steps, ask([step.sent for step in steps]), strict=True):
-            if step.sent[2] in ("new", "state"):
-                assert isinstance(answer, list | None), answer
+            if step.sent[2] == "new":
+                assert answer is None, answer
                 continue
             assert isinstance(answer, list), (step, answer)
             result, seen = answer
+            if step.sent[2] == "state":
+                states.append(result)
+                continue
             assert step.result == result, (step, answer)
             *seen, ended = seen
             ended = [[ticket, self._outcome_of(outcome)] for ticket, outcome in ended]
             assert step.seen == [*seen, ended], (step, answer)
+        return states
+
+    def note_state(self, exchange: Exchange) -> Twin:
+        """Have Rust describe the state of an exchange; return its twin."""
+        twin = self._twins[id(exchange.alignment)]
+        self.steps.append(Step([twin.number, nanos(twin.now), "state"], None, None))
+        return twin
 
     def _recording(self, name: str, original: Callable[..., Any]) -> Callable[..., Any]:
         def call(subject: Any, *arguments: Any, **named: Any) -> Any:
@@ -278,7 +286,11 @@ class Recorder:
             case ReplyTimeout():
                 waited_for = error.waited_for or None
                 waited = nanos(error.waited)
-                return ["timeout", waited, error.attempts, waited_for, [*error.received]]
+                lines = error.received
+                if pending._received is not None and not lines:  # the explorer saves this time
+                    request = pending.request
+                    lines = _lines(pending._received, self._codec, request.frame, request.command)
+                return ["timeout", waited, error.attempts, waited_for, [*lines]]
             case RequestRefused():
                 return ["refused", error.field, error.status]
             case ProtocolError():

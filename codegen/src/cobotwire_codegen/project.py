@@ -107,8 +107,8 @@ def _library(root: Path, found: Sequence[Edition]) -> Library | None:
 def second_sources(root: Path, found: Sequence[Edition]) -> dict[str, Sources]:
     """Return what the maker's library and pages confirm of each edition.
 
-    Of a command that an edition has as its base has it, they confirm what they confirm there; so
-    does the library, unless it has a class for the edition.
+    If an edition has a command unchanged from its base, they confirm the same facts as there. So
+    does the library, unless it has its own class for the edition.
     """
     library, pages = _in_library(root, found), root / "spec" / "public_pages.txt"
     stated = facts_of_pages(pages.read_text(encoding="utf-8")) if pages.is_file() else {}

@@ -1,4 +1,4 @@
-"""Name the addresses of an edition, and say whose replies a request to each may have."""
+"""Name the addresses of an edition, and tell which devices may reply to a request to each."""
 
 from __future__ import annotations
 

@@ -19,8 +19,8 @@ class Chosen(NamedTuple):
 
     Attributes:
         first: its index among the variants.
-        variant: the same; None if several take the same arguments, so that the codec decides by the
-            values.
+        variant: the index of the variant; None if several take the same arguments, so that the
+            codec decides by the values.
         wire: the names of its arguments, and its constants, in the order of the wire.
         defaults: the defaults of the arguments that are not given.
     """

@@ -24,11 +24,10 @@ from cobotwire.session import text
 class EncodedRequest(NamedTuple):
     """A request as it goes over the line.
 
-    ``arguments`` are those that a reply can repeat, with the values that it would repeat; empty
-    where no reply repeats any. ``text`` follows some requests outside the frame. ``replier`` is
-    the address that its reply must have, or who replies to a broadcast (ANYBODY, SOMEBODY,
-    NOBODY); None if frames have no address.
-    Without ``reply_has_id`` its reply is known only by address and size.
+    ``arguments`` are the arguments that a reply repeats, with their values; empty if no reply
+    repeats any. ``text`` follows some requests outside the frame. ``replier`` is the address that
+    its reply must have, or who replies to a broadcast (ANYBODY, SOMEBODY, NOBODY); None if frames
+    have no address. Without ``reply_has_id`` its reply is known only by address and size.
     """
 
     command: Command
@@ -92,7 +91,7 @@ class RequestEncoder:
     ) -> EncodedRequest:
         """Validate and encode a request by its command's name.
 
-        Without ``variant``, it is the first one with that number of values that allows them.
+        Without ``variant``, the first variant with that number of values that allows them is used.
 
         Raises:
             UsageError: there is no such command, or an argument is not allowed.

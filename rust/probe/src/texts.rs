@@ -31,7 +31,7 @@ pub struct Texts(Option<Edition>);
 impl Texts {
     /// Answer one line with the text of its error; with null, if there is none.
     pub fn answer(&mut self, line: &str) -> String {
-        let question: Json = serde_json::from_str(line).unwrap_or_default();
+        let question: &Json = &serde_json::from_str(line).unwrap_or_default();
         let direction = match question["direction"].as_str() {
             Some("request") => Direction::Request,
             _ => Direction::Reply,
@@ -44,7 +44,7 @@ impl Texts {
                 }
                 Err(bad) => Some(bad.to_string()),
             },
-            (Some(edition), None) => text(edition, direction, &question),
+            (Some(edition), None) => text(edition, direction, question),
             (None, None) => Some("there is no edition".into()),
         };
         json!(text).to_string()

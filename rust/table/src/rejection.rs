@@ -21,7 +21,7 @@ pub(crate) struct Part<'a> {
     pub(crate) name: &'a Field,
     wire: &'a Wire,
     numbers: &'a [WireNumber],
-    names: &'a [Number],
+    case: usize,
 }
 
 impl Edition {
@@ -69,12 +69,12 @@ impl Edition {
         let name = variants(command, id.direction)
             .get(id.variant)?
             .get(field)?;
-        let (numbers, names) = (&wire.cases.get(case)?.numbers, name.cases.get(case)?);
+        let numbers = &wire.cases.get(case)?.numbers;
         Some(Part {
             name,
             wire,
             numbers,
-            names,
+            case,
         })
     }
 
@@ -236,10 +236,14 @@ impl Part<'_> {
         bad_argument(&argument, &value, &allowed)
     }
 
+    fn named(&self, at: usize) -> Option<&Number> {
+        self.name.number(self.case, at)
+    }
+
     /// Return the name of a number of the field.
     fn element(&self, at: usize) -> String {
         let field = &self.name.name;
-        let number = self.names.get(at).map_or("", |number| &number.name);
+        let number = self.named(at).map_or("", |number| &number.name);
         match at.checked_div(self.wire.each) {
             _ if !self.wire.many => field.clone(),
             Some(index) => format!("{field}[{index}].{number}"),
@@ -274,15 +278,16 @@ impl Part<'_> {
 
     /// Return what a row of the first numbers is.
     fn row(&self, count: usize) -> String {
-        let names = self.names.get(..count).unwrap_or_default();
-        let all = names.iter().all(|number| !number.name.is_empty());
-        let names = join(names.iter().map(|number| number.name.clone()), ", ");
+        let names = (0..count).filter_map(|at| self.named(at));
+        let names: Vec<&str> = names.map(|number| &*number.name).collect();
+        let all = names.iter().all(|name| !name.is_empty());
+        let names = names.join(", ");
         text!(if all { "named-row" } else { "row" }; count, names)
     }
 
     /// Return what a number of the field may be.
     fn allowed(&self, at: usize) -> String {
-        let Some((number, names)) = self.numbers.get(at).zip(self.names.get(at)) else {
+        let Some((number, names)) = self.numbers.get(at).zip(self.named(at)) else {
             return String::new();
         };
         let (labels, choices) = match names.labels.is_empty() {

@@ -33,6 +33,8 @@ IGNORED = {
         "_fields",
     ),
     *("queued_at", "requested_at", "replied_at", "policy", "_variant", "pending"),
+    # The same in all requests that have one.
+    *("_wait", "silence"),
 }
 
 
@@ -118,16 +120,21 @@ def run_out(world: World) -> None:
         raise Broken(f"{last} is not sent, although no late reply can come any more")
 
 
-def state_of(world: World) -> tuple[object, ...]:
-    """Return everything that later decisions depend on."""
-    now, fed, arm_fed = world.now, world.fed, world.arm.fed
-    unparsed = world.exchange._framer.pending
+def calls_of(world: World) -> list[Call]:
+    """Return the calls on which later decisions depend."""
     needed = {reply.call for reply in world.replies} | set(world.waiting)
-    calls = [
+    return [
         call
         for call in world.calls
-        if call in needed or (call.writes and now < call.writes[-1] + LATEST)
+        if call in needed or (call.writes and world.now < call.writes[-1] + LATEST)
     ]
+
+
+def state_of(world: World) -> tuple[object, ...]:
+    """Return everything that later decisions depend on; the first item is the exchange."""
+    now, fed, arm_fed = world.now, world.fed, world.arm.fed
+    unparsed = world.exchange._framer.pending
+    calls = calls_of(world)
     numbers = {id(call): number for number, call in enumerate(calls)}
     owners = {id(call.pending): number for number, call in enumerate(calls) if call.pending}
 

@@ -41,8 +41,10 @@ struct ExpectedAck {
     doubts: Vec<Nanos>,
     /// Whether it may still come, if each one belongs to the oldest request.
     expected: bool,
-    /// Whether a caller waits for it, and it is not certain that it came.
+    /// Whether a caller waits for it; so it is doubted until it is certain.
     uncertain: bool,
+    /// Whether it has come, whichever requests the other ones belong to.
+    certain: bool,
 }
 
 impl ExpectedAck {
@@ -55,7 +57,7 @@ impl ExpectedAck {
     fn count(&mut self, frame: &SeenFrame, began_at: Nanos) {
         self.doubts.retain(|until| *until > began_at);
         if self.doubts.is_empty() {
-            self.uncertain &= frame.offset < self.offset;
+            self.certain |= frame.offset >= self.offset;
         } else if self.request.replier != Replier::Anybody {
             // Of a broadcast several devices may acknowledge each other request.
             self.doubts.remove(0);
@@ -171,7 +173,7 @@ impl CommandAcks {
         for ack in self.known.iter_mut().filter(|ack| ack.uncertain) {
             if candidate.of(&ack.request).is_some() {
                 ack.count(frame, began_at);
-                certain.extend((!ack.uncertain).then_some(ack.number));
+                certain.extend(ack.certain.then_some(ack.number));
             }
         }
         self.known.retain(|ack| ack.expected || ack.uncertain);
@@ -191,7 +193,7 @@ impl CommandAcks {
             // Only the oldest ones: what is behind one that may still come stays.
             expired &= !ack.expected || ack.until <= now;
             ack.expected &= !expired;
-            ack.uncertain &= ack.until > now;
+            ack.uncertain &= ack.until > now && !ack.certain;
         }
         self.known.retain(|ack| ack.expected || ack.uncertain);
     }
@@ -255,6 +257,7 @@ impl Acks {
             doubts: Vec::new(),
             expected: true,
             uncertain: pending.is_some(),
+            certain: false,
         };
         self.commands
             .entry(command.id)

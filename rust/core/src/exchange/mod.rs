@@ -753,7 +753,7 @@ impl fmt::Debug for Exchange {
             .field("acks", &self.acks)
             .field("echo", &self.echo)
             .field("queue", &self.queue)
-            .field("last", &self.last)
+            .field("waiting", &self.waiting())
             .field("line_is_full", &self.line_is_full)
             .finish_non_exhaustive()
     }
