@@ -85,11 +85,23 @@ impl Client {
         })
     }
 
-    /// Close the port. Nothing is sent to the arm; calls of other threads end with a `LinkError`.
-    pub fn close(&self) {
+    /// Close the port when what was written is sent. Nothing more is sent to the arm; calls of other
+    /// threads end with a `LinkError`. Closing twice is harmless.
+    ///
+    /// # Errors
+    /// The port is lost; it is closed nevertheless.
+    pub fn close(&self) -> Result<(), Error> {
         let mut connection = self.connection();
-        connection.port = None;
+        let flushed = connection
+            .port
+            .take()
+            .map_or(Ok(()), |mut port| port.flush());
         connection.session.close();
+        flushed.map_err(|error| {
+            connection
+                .session
+                .lose(&format!("cannot be written: {error}"))
+        })
     }
 
     /// Send a request; return the result of its reply, if it has one.

@@ -9,8 +9,7 @@
 //! let arm = MyCobot280::open("socket://127.0.0.1:9000")?;
 //! println!("{:?}", arm.get_angles()?);
 //! arm.send_angles([0.0; 6], 30)?;
-//! arm.close();
-//! # Ok(())
+//! arm.close()
 //! # }
 //! # #[cfg(not(feature = "mycobot280"))]
 //! # fn main() {}

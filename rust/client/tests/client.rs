@@ -133,7 +133,7 @@ fn dropped_client_stops_moving_arm_once_unless_it_was_closed() {
         arm.set_fresh_mode(FreshMode::Refresh).unwrap();
         arm.send_angles([0.0; 6], 50).unwrap();
         if closed {
-            arm.close();
+            arm.close().unwrap();
         }
         let second = arm.clone();
         drop(arm);

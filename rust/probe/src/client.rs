@@ -81,13 +81,17 @@ impl Probe {
             *lock(&self.held) = held;
             say(id, json!({}));
         } else if line.get("open").is_some() {
-            say(id, self.open().map_or_else(|error| failed(&error), |()| json!({})));
+            say(
+                id,
+                self.open()
+                    .map_or_else(|error| failed(&error), |()| json!({})),
+            );
         } else if let Some(arm) = self.arm.clone() {
             let runtime = self.runtime.handle().clone();
             // A write that is held back has the connection until a further line releases it.
             spawn(move || {
                 match arm {
-                    Arm::Threads(client) => client.close(),
+                    Arm::Threads(client) => drop(client.close()),
                     Arm::Tasks(client) => runtime.block_on(client.close()),
                 }
                 say(id, json!({}));
@@ -158,8 +162,15 @@ impl Probe {
     }
 
     fn call(&mut self, id: u64, name: &str, line: &Json) {
-        let within = line.get("ack_within").and_then(Json::as_f64).map(Duration::from_secs_f64);
-        let fields = line.get("fields").and_then(Json::as_object).map(named).unwrap_or_default();
+        let within = line
+            .get("ack_within")
+            .and_then(Json::as_f64)
+            .map(Duration::from_secs_f64);
+        let fields = line
+            .get("fields")
+            .and_then(Json::as_object)
+            .map(named)
+            .unwrap_or_default();
         let name = name.to_owned();
         match self.arm.clone() {
             None => {}
@@ -174,12 +185,20 @@ impl Probe {
                 let task = self.runtime.spawn(async move {
                     let began = now();
                     client = within.map_or(client.clone(), |within| client.acknowledged(within));
-                    answer(id, began, client.call_named(&name, &borrowed(&fields)).await);
+                    answer(
+                        id,
+                        began,
+                        client.call_named(&name, &borrowed(&fields)).await,
+                    );
                 });
                 self.tasks.insert(id, task.abort_handle());
                 self.runtime.spawn(async move {
                     if let Err(error) = task.await {
-                        let name = if error.is_cancelled() { "Cancelled" } else { "Panic" };
+                        let name = if error.is_cancelled() {
+                            "Cancelled"
+                        } else {
+                            "Panic"
+                        };
                         say(id, json!({"error": name, "text": error.to_string()}));
                     }
                 });
@@ -193,7 +212,10 @@ fn terminal(path: &str) -> io::Result<impl AsyncRead + AsyncWrite + Send + Unpin
     let file = std::fs::File::options().read(true).write(true).open(path)?;
     rustix::io::ioctl_fionbio(&file, true)?;
     let reader = pipe::Receiver::from_file_unchecked(file.try_clone()?)?;
-    Ok(tokio::io::join(reader, pipe::Sender::from_file_unchecked(file)?))
+    Ok(tokio::io::join(
+        reader,
+        pipe::Sender::from_file_unchecked(file)?,
+    ))
 }
 
 /// A port whose writes are reported, and can be held back.
@@ -243,7 +265,11 @@ impl<P: Read> Read for Observed<P> {
 
 impl<P: Write> Write for Observed<P> {
     fn write(&mut self, data: &[u8]) -> io::Result<usize> {
-        self.observe(data, |port| port.write(data), |outcome| outcome.as_ref().ok().copied())
+        self.observe(
+            data,
+            |port| port.write(data),
+            |outcome| outcome.as_ref().ok().copied(),
+        )
     }
 
     fn flush(&mut self) -> io::Result<()> {
@@ -332,19 +358,26 @@ fn print(line: &Json) {
 }
 
 fn named(fields: &Map<String, Json>) -> Named {
-    fields.iter().map(|(name, value)| (name.clone(), value_of(value))).collect()
+    fields
+        .iter()
+        .map(|(name, value)| (name.clone(), value_of(value)))
+        .collect()
 }
 
 fn borrowed(fields: &Named) -> Vec<(&str, Value)> {
-    fields.iter().map(|(name, value)| (&**name, value.clone())).collect()
+    fields
+        .iter()
+        .map(|(name, value)| (&**name, value.clone()))
+        .collect()
 }
 
 fn value_of(json: &Json) -> Value {
     match json {
         Json::Bool(set) => Value::Flag(*set),
-        Json::Number(number) => number
-            .as_i64()
-            .map_or_else(|| Value::Real(number.as_f64().unwrap_or(f64::NAN)), Value::Integer),
+        Json::Number(number) => number.as_i64().map_or_else(
+            || Value::Real(number.as_f64().unwrap_or(f64::NAN)),
+            Value::Integer,
+        ),
         Json::String(text) => Value::Text(text.clone()),
         Json::Array(row) => Value::Row(row.iter().map(value_of).collect()),
         Json::Null | Json::Object(_) => Value::Absent,
