@@ -9,9 +9,9 @@ use cobotwire_core::{Decoded, Direction, decode};
 use cobotwire_table::{Quote, Shown, as_call, bad_argument};
 
 use crate::limits::{Limits, Workspace, refusals};
-use crate::options::Settings;
+use crate::options::{Settings, find_address};
 use crate::typed::{Request, Table, Typed, plain};
-use crate::{Address, Error, Options, Value};
+use crate::{Error, Options, Sample, Value};
 
 /// The values of a message with their names.
 pub(crate) type Named = Vec<(String, Value)>;
@@ -225,8 +225,8 @@ impl Handle {
         Ok(Self { encoder, settings })
     }
 
-    pub fn at(mut self, address: Address) -> Result<Self, Error> {
-        self.settings.address = Some(address.find(&self.encoder.edition)?);
+    pub fn at(mut self, address: &str) -> Result<Self, Error> {
+        self.settings.address = Some(find_address(&self.encoder.edition, address)?);
         Ok(self)
     }
 
@@ -283,6 +283,7 @@ impl Handle {
             period,
             next: None,
             missed: 0,
+            ended: false,
         })
     }
 }
@@ -293,9 +294,32 @@ pub(crate) struct Polling {
     period: Duration,
     next: Option<Instant>,
     pub missed: u64,
+    pub ended: bool,
 }
 
 impl Polling {
+    /// Return the sample of a period, or the error that ends the stream; a period may have neither.
+    pub fn sample<R: Request>(
+        &mut self,
+        handle: &Handle,
+        answer: Outcome,
+    ) -> Option<Result<Sample<R::Reply>, Error>> {
+        let times = answer.as_ref().ok().and_then(Option::as_ref);
+        let times = times.map_or((0, 0), |answer| (answer.requested_at, answer.replied_at));
+        let value = answer.and_then(|answer| handle.result::<R>(&self.prepared, answer));
+        self.ended = matches!(value, Err(Error::LinkError { .. }));
+        if value.is_err() && !self.ended {
+            self.missed += 1;
+            return None;
+        }
+        let (requested_at, replied_at) = times;
+        Some(value.map(|value| Sample {
+            value,
+            requested_at,
+            replied_at,
+        }))
+    }
+
     /// Return when the next period begins; those that have passed are missed.
     pub fn tick(&mut self) -> Instant {
         let now = Instant::now();
@@ -325,11 +349,8 @@ macro_rules! handle_methods {
             }
 
             /// Return this client for another address, by its name or number.
-            ///
-            /// # Errors
-            /// The edition has no such address.
-            pub fn at(&self, address: impl Into<Address>) -> Result<Self, Error> {
-                let handle = self.handle.clone().at(address.into())?;
+            pub fn at(&self, address: &str) -> Result<Self, Error> {
+                let handle = self.handle.clone().at(address)?;
                 Ok(Self {
                     handle,
                     shared: self.shared.clone(),
