@@ -12,7 +12,7 @@ use tokio::net::TcpStream;
 use tokio::sync::mpsc::{UnboundedReceiver, UnboundedSender, unbounded_channel};
 use tokio::sync::{Notify, oneshot};
 
-use crate::encoder::{Handle, Named, Outcome, Prepared, handle_methods, result};
+use crate::encoder::{Handle, Named, Outcome, Prepared, client_methods, result};
 use crate::options::{Settings, nanos};
 use crate::port::{CONNECT, socket_of};
 use crate::session::{Outgoing, Queue, Session};
@@ -54,7 +54,7 @@ struct Shared {
     begun: Instant,
 }
 
-handle_methods!(AsyncClient);
+client_methods!(AsyncClient [async] [.await]);
 
 impl AsyncClient {
     /// Connect to `socket://host:port`.
@@ -122,48 +122,8 @@ impl AsyncClient {
         let _ = closed.await;
     }
 
-    /// Send a request; return the result of its reply, if it has one.
-    pub async fn call<R: Request>(&self, request: R) -> Result<R::Reply, Error> {
-        let prepared = self.handle.prepare(request)?;
-        self.handle
-            .result::<R>(&prepared, self.perform(&prepared).await?)
-    }
-
-    /// Send a request by the name of its command; return the fields of its reply.
-    pub async fn call_named(
-        &self,
-        command: &str,
-        arguments: &[(&str, Value)],
-    ) -> Result<Named, Error> {
-        let prepared = self.handle.prepare_named(command, arguments)?;
-        Ok(self
-            .handle
-            .encoder
-            .fields(&prepared, self.perform(&prepared).await?))
-    }
-
-    /// Return a source of samples of a query, `rate` times a second; see `Client::poll`.
-    pub fn poll<R: Request>(&self, request: R, rate: f64) -> Result<Polls<R, Self>, Error> {
-        let polling = self.handle.polling(request, rate)?;
-        let mut client = self.clone();
-        client.handle.settings.retry.attempts = 1;
-        Ok(Polls {
-            client,
-            polling,
-            reply: PhantomData,
-        })
-    }
-
-    /// Return a source of the events of a type that come from now on.
-    pub fn events<E: DeviceEvent>(&self) -> Result<Events<E, Self>, Error> {
-        let queue = Queue::new(self.handle.encoder.command(E::COMMAND)?);
+    fn subscribe(&self, queue: &Arc<Mutex<Queue>>) {
         let _ = self.shared.orders.send(Order::Subscribe(queue.clone()));
-        Ok(Events {
-            client: self.clone(),
-            queue,
-            timeout: None,
-            event: PhantomData,
-        })
     }
 
     async fn perform(&self, prepared: &Prepared) -> Outcome {
@@ -197,22 +157,29 @@ impl Drop for Call<'_> {
 }
 
 impl<R: Request> Polls<R, AsyncClient> {
-    /// Wait for the next sample.
-    pub async fn next(&mut self) -> Result<Sample<R::Reply>, Error> {
-        loop {
+    /// Wait for the next sample; after an error there is none.
+    pub async fn next(&mut self) -> Option<Result<Sample<R::Reply>, Error>> {
+        while !self.polling.ended {
             let at = self.polling.tick();
             tokio::time::sleep_until(at.into()).await;
             let answer = self.client.perform(&self.polling.prepared).await;
-            if let Some(sample) = self.polling.sample::<R>(&self.client.handle, answer) {
+            let sample = self.polling.sample::<R>(&self.client.handle, answer);
+            if sample.is_some() {
                 return sample;
             }
         }
+        None
     }
 }
 
 impl<E: DeviceEvent> Events<E, AsyncClient> {
-    /// Wait for the next event.
-    pub async fn next(&mut self) -> Result<E, Error> {
+    /// Wait for the next event; there is none if the time is over.
+    pub async fn next(&mut self) -> Option<Result<E, Error>> {
+        let longest = self.timeout.unwrap_or(crate::FOREVER);
+        tokio::time::timeout(longest, self.received()).await.ok()
+    }
+
+    async fn received(&self) -> Result<E, Error> {
         loop {
             // Before the queue is read, so that no event is overlooked.
             let arrived = self.client.shared.arrived.notified();

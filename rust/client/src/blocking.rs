@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 
 use cobotwire_core::exchange::{Answer, Ticket};
 
-use crate::encoder::{Handle, Named, Outcome, Polling, Prepared, handle_methods, result};
+use crate::encoder::{Handle, Named, Outcome, Polling, Prepared, client_methods, result};
 use crate::port::{self, Port};
 use crate::session::{Outgoing, Queue, Session};
 use crate::typed::{DeviceEvent, Request, Table};
@@ -37,7 +37,7 @@ struct Shared {
     waiting: AtomicUsize,
 }
 
-handle_methods!(Client);
+client_methods!(Client [] []);
 
 impl Client {
     /// Open a port: that of a serial line, or `socket://host:port`.
@@ -99,48 +99,8 @@ impl Client {
         })
     }
 
-    /// Send a request; return the result of its reply, if it has one.
-    pub fn call<R: Request>(&self, request: R) -> Result<R::Reply, Error> {
-        let prepared = self.handle.prepare(request)?;
-        self.handle.result::<R>(&prepared, self.perform(&prepared)?)
-    }
-
-    /// Send a request by the name of its command; return the fields of its reply.
-    pub fn call_named(&self, command: &str, arguments: &[(&str, Value)]) -> Result<Named, Error> {
-        let prepared = self.handle.prepare_named(command, arguments)?;
-        Ok(self
-            .handle
-            .encoder
-            .fields(&prepared, self.perform(&prepared)?))
-    }
-
-    /// Return an iterator that samples a query `rate` times a second.
-    ///
-    /// A request is sent only when the loop wants a sample, and not again within its period. A
-    /// period without a reply has no sample; [`Polls::missed`] counts such periods, and those for
-    /// which the loop came too late.
-    pub fn poll<R: Request>(&self, request: R, rate: f64) -> Result<Polls<R>, Error> {
-        let polling = self.handle.polling(request, rate)?;
-        let mut client = self.clone();
-        client.handle.settings.retry.attempts = 1;
-        Ok(Polls {
-            client,
-            polling,
-            reply: PhantomData,
-        })
-    }
-
-    /// Return an iterator over the events of a type that come from now on. It ends if none comes
-    /// within `timeout`.
-    pub fn events<E: DeviceEvent>(&self, timeout: Option<Duration>) -> Result<Events<E>, Error> {
-        let queue = Queue::new(self.handle.encoder.command(E::COMMAND)?);
-        self.connection().session.subscribe(&queue);
-        Ok(Events {
-            client: self.clone(),
-            queue,
-            timeout,
-            event: PhantomData,
-        })
+    fn subscribe(&self, queue: &Arc<Mutex<Queue>>) {
+        self.connection().session.subscribe(queue);
     }
 
     /// Return the connection as soon as no other thread has it.
@@ -317,19 +277,12 @@ impl<E: DeviceEvent> Iterator for Events<E> {
     type Item = Result<E, Error>;
 
     fn next(&mut self) -> Option<Self::Item> {
-        let longest = self.timeout.unwrap_or(Duration::from_secs(3600));
-        loop {
-            let listened = self
-                .client
-                .listen(longest, || !lock(&self.queue).events.is_empty());
-            let event = lock(&self.queue).events.pop_front();
-            match (event, listened) {
-                (Some(fields), _) => return Some(result(fields, (E::FIELDS, false), &[])),
-                (None, Err(error)) => return Some(Err(error)),
-                (None, Ok(())) if self.timeout.is_some() => return None,
-                (None, Ok(())) => {}
-            }
-        }
+        let longest = self.timeout.unwrap_or(crate::FOREVER);
+        let waits = || !lock(&self.queue).events.is_empty();
+        let listened = self.client.listen(longest, waits);
+        let event = lock(&self.queue).events.pop_front();
+        let event = event.map(|fields| result(fields, (E::FIELDS, false), &[]));
+        event.or_else(|| listened.err().map(Err))
     }
 }
 

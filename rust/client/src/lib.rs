@@ -66,6 +66,9 @@ pub use options::{OnDrop, Options};
 pub use port::Port;
 pub use value::Value;
 
+/// How long a wait without a limit lasts.
+pub(crate) const FOREVER: std::time::Duration = std::time::Duration::from_secs(1 << 30);
+
 /// The result of a query at a time.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sample<T> {
