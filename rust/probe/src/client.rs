@@ -68,7 +68,7 @@ impl Probe {
             say(id, opened.map_or_else(lost, |()| json!({})));
         } else {
             match &self.arm {
-                Some(Arm::Threads(client)) => client.close(),
+                Some(Arm::Threads(client)) => drop(client.close()),
                 Some(Arm::Tasks(client)) => self.runtime.block_on(client.close()),
                 None => {}
             }
@@ -104,11 +104,12 @@ impl Probe {
     fn options(&self) -> Options {
         let number = |name| self.given.get(name).and_then(Json::as_f64);
         let seconds = |name| number(name).map(Duration::from_secs_f64);
+        let nanos = |name| number(name).map(|seconds| (seconds * 1e9) as u64);
         let usual = RetryPolicy::default();
         let retry = RetryPolicy {
             attempts: number("attempts").map_or(usual.attempts, |attempts| attempts as u8),
-            shortest_attempt: seconds("shortest_attempt").unwrap_or(usual.shortest_attempt),
-            grace: seconds("grace").unwrap_or(usual.grace),
+            shortest_attempt: nanos("shortest_attempt").unwrap_or(usual.shortest_attempt),
+            grace: nanos("grace").unwrap_or(usual.grace),
         };
         Options {
             timeout: seconds("timeout"),
