@@ -50,9 +50,7 @@ class Setting:
         self.stops: list[tuple[float, float]] = []
         edition = import_module(f"cobotwire.editions.{plan.edition}")
         self.client: Any = (
-            self._open_probe
-            if plan.rust
-            else getattr(edition, CLASSES[plan.edition, plan.client])
+            self._open_probe if plan.rust else getattr(edition, CLASSES[plan.edition, plan.client])
         )
         self.table = table_of(plan)
         self.baudrate = self.table.baudrate
