@@ -128,9 +128,11 @@ def named(edition: Edition) -> Iterator[str]:
             kept = [value for _, value in each.values]
             if each.verb in ("reports", "stores") and 1 < len({*kept}) < len(kept):
                 yield f"{command.name} {each.verb} one state for two of its fields"
-            single = "joint" in {f.name for variant in command.requests for f in variant}
-            if single and "all" not in command.name and kept and "joint" not in each.at:
-                yield f"{command.name} {each.verb} the same for every joint"
+            fields = (f for variant in command.requests for f in variant)
+            given = {f.name for f in fields if f.const is None}
+            missing = {"joint", "address", "parameter"} & given - {*each.at}
+            if missing and "all" not in command.name and kept:
+                yield f"{command.name} {each.verb} the same for every {missing}"
             for field, value in each.values if each.verb in ("reports", "stores", "sets") else ():
                 state = str(value if each.verb != "sets" else field)
                 several = each.verb != "sets" and (len(each.values) > 1 or label)
