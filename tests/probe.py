@@ -37,7 +37,8 @@ class Probe:
     def ask(self, question: Any) -> Any:
         """Return the answer to a line."""
         target, source = self._process.stdin, self._process.stdout
-        assert target is not None and source is not None
+        assert target is not None
+        assert source is not None
         print(json.dumps(question), file=target, flush=True)
         return json.loads(source.readline())
 

@@ -27,6 +27,7 @@ LARGEST = {
     "tables": 512,
     "linear": 256,
     "captures": 512,
+    "exchange": 512,
 }
 # An input that takes longer is a hang: every correct run is much shorter.
 SECONDS_FOR_ONE_INPUT = 20

@@ -184,7 +184,7 @@ class Recorder:
             if name == "give_up":
                 # It has ended without an outcome, unless the outcome was seen before.
                 twin.open.discard(ticket)
-            twin.now = (twin.now, *arguments)[-1] if name == "written" else twin.now
+            twin.now = arguments[1] if name == "written" else twin.now
         elif name == "restore":
             sent = [_persisted(*arguments)]
         elif name == "cut":
@@ -193,7 +193,7 @@ class Recorder:
         elif name == "note_full":
             sent = [*arguments]
         elif name == "outgoing":
-            twin.now, drained = (*arguments, *named.values())
+            twin.now, drained = [*arguments, *dict(named).values()]
             sent, result = [drained], result.hex()
         elif name in ("advance", "receive"):
             data, twin.now = arguments
@@ -354,8 +354,6 @@ def plain_fields(fields: dict[str, Any]) -> dict[Any, Any]:
     if fields and all(isinstance(value, str) for value in fields.values()):
         return dict(enumerate(fields.values()))
     return {name: plain(value) for name, value in fields.items()}
-
-
 
 
 def _persisted(state: PersistedState) -> list[Any]:
