@@ -33,7 +33,7 @@ STEPS = (
     *("give_up", "lose", "reopen"),
 )
 # How many events in a row `make test` explores on both; `make explore RUST=1` goes on from there.
-DEPTHS = {"unread": 3, "settings": 3, "reopening": 3, "echoes": 3}
+DEPTHS = {"unread": 3, "echoes": 3}
 TALKS = st.lists(
     st.tuples(st.sampled_from(STEPS), st.integers(0, 1 << 32)), min_size=20, max_size=50
 )
@@ -61,6 +61,7 @@ def _talk(probe: Probe, codec: Codec, path: str, seed: int, steps: list[tuple[st
 
 
 @needed
+@settings(max_examples=60)
 @given(st.sampled_from(EDITIONS).map(str), st.integers(0, 1 << 32), TALKS)
 def test_both_do_the_same_in_every_edition(
     probe: Probe, path: str, seed: int, steps: list[tuple[str, int]]
@@ -69,7 +70,7 @@ def test_both_do_the_same_in_every_edition(
 
 
 @needed
-@settings(max_examples=25)
+@settings(max_examples=12)
 @given(st.data(), st.integers(0, 1 << 32), TALKS)
 def test_both_do_the_same_with_random_tables(
     probe: Probe,
