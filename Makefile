@@ -21,9 +21,11 @@ ATTACK_SECONDS ?= 180
 STATES ?= 1000000
 REV ?= HEAD
 LEROBOT ?= lerobot==0.4.4
+WASM := wasm32-unknown-unknown
+CHECK_WASM := RUSTFLAGS=-Dwarnings cargo check --release --package cobotwire-core --target $(WASM) --quiet
 CARGO_FUZZ := .cargo-tools/bin/cargo-fuzz
 
-.PHONY: set-up spec-mutants help demo test lint lint-and-rust python-test computing-tests simulating-tests calling-tests waiting-tests other-tests rust-test products gen targets docs bench plots smoothness picture answers table fuzz figures clean faults conform defects attack archives lerobot bench-archive bench-compare rust-asan robots layer demos front-end front-end-if-reachable four-hours studio-pictures explore nightly release-check figures-page every-edition urdf
+.PHONY: set-up spec-mutants help demo test lint lint-and-rust python-test computing-tests simulating-tests calling-tests waiting-tests other-tests rust-test products gen targets docs bench plots smoothness picture answers table fuzz figures clean faults conform defects attack archives lerobot bench-archive bench-compare rust-asan robots layer demos front-end front-end-if-reachable four-hours studio-pictures explore nightly rust-package release-check figures-page every-edition urdf
 .DEFAULT_GOAL := help
 
 help: ## list the targets
@@ -52,11 +54,17 @@ lint: .venv/.tools .venv/.native ## check formatting, types, stubs against the b
 	cargo fmt --manifest-path rust/fuzz/Cargo.toml --check
 # In release mode, because the dependencies are compiled in it already, for the native module.
 	+cargo clippy --release --workspace --lib --tests --quiet -- -D warnings
+	+if [ -d "$$(rustc --print target-libdir --target $(WASM))" ]; then $(CHECK_WASM) && $(CHECK_WASM) --no-default-features; \
+		else echo "skipped: the check of the core for $(WASM), which is not installed" >&2; fi
 
 # Linters and Rust tests use what the tests in Python leave, which wait a third of the time. First
 # the linters: most of what they find is found in seconds.
 lint-and-rust: lint
 	+nice -n 5 $(MAKE) --no-print-directory rust-test
+
+rust-package: .venv/.tools .venv/.native ## package the Rust crates; use them in a clean folder; run the tests of the client
+	$(BIN)/cobotwire-gen --rust-data
+	PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/python tools/rust_package.py
 
 rust-test: .venv/.tools ## run the Rust tests
 	$(BIN)/cobotwire-gen --rust-data
@@ -235,7 +243,7 @@ figures: .venv/.tools .venv/.native ## count files and lines of each room, and t
 
 clean: ## remove the environment and all build products
 	git clean -dfqX docs spec
-	rm -rf .venv target targets rust/core/tests/data .cargo-tools rust/fuzz/target
+	rm -rf .venv target targets rust/core/tests/data rust/client/src/editions .cargo-tools rust/fuzz/target
 
 .venv/.base: pyproject.toml
 	$(PYTHON) -c 'import sys; sys.exit("cobotwire needs Python 3.11 or newer" if sys.version_info < (3, 11) else 0)'

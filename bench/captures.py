@@ -1,6 +1,6 @@
 """Compare reading recordings into columns with decoding the same bytes without times.
 
-Compare exports with pyarrow, which writes the tables when they are ready.
+Compare exports with pyarrow, which writes tables that are already in memory.
 
 The recording is a polled arm: a request and its reply, 100 times a second. Each round runs each
 program once; a ratio is the median over the rounds. The file is larger than the L3 cache of most

@@ -1,14 +1,14 @@
 """Measure the time of a call over a pty, with a trivial responder in another process.
 
-The floor is the time of bare system calls for the same bytes: os.write, select, os.read. A call of
-the floor on the same responder follows each call, so that both find caches and processor in the
-same state: on some machines the floor takes four times as long in one turn as in another, which is
-more than all that a client does. Candidates take turns. The fastest quarter of each
-candidate's turns counts, since other programs on the machine can only add time. The limits apply
-to the median of their ratios.
+The floor is the time of bare system calls for the same bytes: os.write, select, os.read. Each call
+is followed by a call of the floor on the same responder, so that both find caches and processor in
+the same state. On some machines the time of the floor varies by a factor of four, which is more
+than the time of the client. Candidates take turns. The fastest quarter of each candidate's turns
+counts, since other programs on the machine can only add time. The limits apply to the median of
+their ratios.
 
-The simulated arm replies on its own pty to the same bare system calls; its row shows how much
-longer it takes than the trivial responder.
+The simulated arm replies on its own pty to the same system calls. Its row shows how much longer it
+takes than the trivial responder.
 
 A pty has no baud rate. So the setters are compared with the fastest real line (ten bits a byte at
 1,000,000 baud), and with bare os.write of the same frames.

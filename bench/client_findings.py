@@ -28,6 +28,10 @@ CLIENTS = {
     "cobotwire tcp": ("blocking", TcpServer),
     "cobotwire asyncio": ("asyncio", PtyServer),
     "cobotwire asyncio tcp": ("asyncio", TcpServer),
+    "cobotwire rust": ("rust", PtyServer),
+    "cobotwire rust tcp": ("rust", TcpServer),
+    "cobotwire rust async": ("rust async", PtyServer),
+    "cobotwire rust async tcp": ("rust async", TcpServer),
 }
 
 
@@ -59,8 +63,11 @@ def play(library: str, url: str) -> list[str]:
         warnings.simplefilter("ignore")
         arm = OPENERS[library](url)
         for call in SESSION:
+            # The probe calls by name, with the values of the request: degrees, where methods take
+            # radians.
+            by_name = library.startswith("rust") and call.fields
             try:
-                result = getattr(arm, call.name)(*call.arguments)
+                result = getattr(arm, call.name)(*(by_name or call.arguments))
             except Exception as error:  # any exception is listed, and the session continues
                 failures.append(f"{call.name}: {type(error).__name__}: {error}")
             else:

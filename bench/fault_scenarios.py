@@ -84,10 +84,10 @@ def _measured(name: str, who: str) -> Run:
         timed = started.result(time.monotonic() + LIMIT_SECONDS)
         # Wait for the last bytes that the client wrote.
         time.sleep(0.3)
-    return _judged(timed, frames_of(received))
+    return _counted(timed, frames_of(received))
 
 
-def _judged(timed: list[TimedOutcome] | None, frames: list[bytes]) -> Run:
+def _counted(timed: list[TimedOutcome] | None, frames: list[bytes]) -> Run:
     if timed is None:
         return Run(Counter({"not ended": len(SESSION)}), [], 0)
     kinds = Counter(_kind(call, one.outcome, frames) for call, one in zip(SESSION, timed))

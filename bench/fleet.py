@@ -3,7 +3,7 @@
 The arms are TCP connections to the process of `asyncio_calls.py`, which compares a call with bare
 asyncio. A sample is late by the time from the begin of its period until the consumer has it. On
 Linux, one core is the client's and another the arms'. The CPU time is that of the client's process.
-Its memory is what the process grows by for each open arm with a stream, and what Python allocates
+Memory is the growth of the process for each open arm with a stream, and the allocations of Python
 for it (tracemalloc, measured with few arms).
 """
 
@@ -121,7 +121,7 @@ def _keep_apart(arms: int) -> None:
 
 
 async def _run(url: str, count: int, rate: float, seconds: float, rarely: bool) -> Result:
-    # What all arms share is there before the first measured one.
+    # What all arms share is loaded before the first measured arm.
     await _closed(await _opened(url, 1))
     gc.collect()
     before = _resident()

@@ -5,7 +5,7 @@ how far from the beginning of its period the request was written, and how late t
 result. A period without a sample counts as late by a whole period.
 
 A bare `time.sleep` until each of these times takes turns with the streams. It shows how late the
-machine and the interpreter are by themselves: no stream can be more punctual. Python lets a busy
+machine and the interpreter are without a client: no stream can be more punctual. Python lets a busy
 thread run for 5 ms (its switch interval) before another one gets its turn.
 """
 

@@ -103,7 +103,7 @@ def measure(scenario: Scenario, frames: int, seed: int, reference_bytes: int) ->
 
 
 def bounded(edition: str, frames: int, seed: int) -> list[dict[str, Any]]:
-    """Measure what the table is worth: scan without it, with any id and any LEN up to a bound."""
+    """Measure the effect of the table: scan without it, with any id and any LEN up to a bound."""
     table = TABLES[edition]
     line = Scenario(edition, "A", "reply", "line noise", 0.1).line(frames, 1000 * seed)
     scans: dict[str, Reader] = {"the table": readers.ours(table, "native", "reply")}

@@ -2,8 +2,8 @@
 
     python bench/smoothness.py [--plot docs/plots/smoothness.svg]
 
-The arm moves in stepped time, and its speeds are those of its joints, looked at every 5 ms. A loop
-of ``move_angles`` waits at each point; ``send_angles`` without waiting fills the arm's queue;
+The arm moves in stepped time; the speeds of its joints are computed every 5 ms. A loop of
+``move_angles`` waits at each point; ``send_angles`` without waiting fills the arm's queue;
 ``follow`` sends setpoints. The share is that of the lowest speed inside the path, of the lowest
 speed that was commanded in the 0.3 s before. Inside the path is where at least 80 % of the highest
 speed is commanded before and after.
@@ -31,7 +31,7 @@ SET_NEWEST, SEND_ANGLES = 0x16, 0x22
 
 
 class Watched(SteppedClock):
-    """A clock with an arm, of which it looks at the joints every five milliseconds."""
+    """A clock that reads the joints of an arm every five milliseconds."""
 
     def __init__(self, table: Table = TABLE, lag: float = 0.0) -> None:
         super().__init__()

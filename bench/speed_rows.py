@@ -1,6 +1,6 @@
 """The work that the speed benches time, by name.
 
-A row makes its work only when it is asked for, so that its memory can be freed before the next.
+A row creates its data only when it is measured, so that the memory is freed before the next row.
 """
 
 from __future__ import annotations

@@ -67,7 +67,7 @@ class Ratio:
 
 
 def measure(timed: dict[str, Timed], rounds: int) -> None:
-    """Run everything in turn, round by round, so that a slow moment affects all work equally."""
+    """Run everything in turn, round by round, so that a slow period affects all work equally."""
     for each in timed.values():
         each.work()  # not counted: it fills memory and caches
     for _ in range(rounds):

@@ -2,7 +2,7 @@
 
 Two processes reply at once, each on a pty of its own; a tap is before the second one. It records,
 prints, and a monitor watches it. Round trips of both alternate, at most 1,000 a second, so that
-what else the machine does hits both. Then the same while the tap's watching process is stopped.
+other load of the machine affects both. Then the same while the tap's watching process is stopped.
 Exits with 1 if the tap adds more than the limit at 99 %. Where other programs keep the processors
 busy, ``chrt -r 10`` keeps them out of the figures.
 """

@@ -1,8 +1,8 @@
 """Measure how soon a waited motion is noticed to have ended, and how many queries that takes.
 
 A simulated arm on a pty sends its replies at 115,200 baud, a few milliseconds after each request.
-The delay counts from when the arm would first reply that it is there; for an arm that reports the
-end of its motions, from when it is at rest.
+The delay starts when the arm is near enough to its target to report that it has reached it. For an
+arm that reports the end of its motions, it starts when the arm is at rest.
 """
 
 from __future__ import annotations

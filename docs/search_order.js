@@ -53,7 +53,7 @@ const Order = {
     return (Order._query ??= words().difference(new Set(["arm"])));
   },
 
-  /* The sections of each page; that of a command has what it does, and more if it has a role. */
+  /* The sections of each page. The section of a command has its effect, and more if it has a role. */
   get sections() {
     if (Order._sections) return Order._sections;
     const commands = new Map();

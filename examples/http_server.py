@@ -4,8 +4,8 @@
     curl -X POST localhost:8080/angles -d '[0,20,0,0,0,0]'    move there; replies when it is there
     curl -X POST localhost:8080/stop                  stop the arm, also during a motion
 
-It listens on this machine alone and asks for no password: every program here can move the arm. One
-task serves each connection, and all of them share one client, which sends `stop` at once.
+It listens only on this machine and needs no password: every program on this machine can move the
+arm. One task serves each connection, and all of them share one client, which sends `stop` at once.
 """
 
 import asyncio

@@ -16,7 +16,8 @@ FIELD = FRAME + READ + ANGLES + b"cmd_len error\r\n" + noise.PANIC + bytes(277) 
 
 
 def run(*words: str, stdin: bytes | None = None, cwd: Path | None = None) -> tuple[int, str, str]:
-    """Run ``cobotwire decode``: in another process if it reads standard input, else in this one."""
+    """Run ``cobotwire decode``: in a separate process if it reads standard input, otherwise in this
+    one."""
     if stdin is None:
         done = in_process.run(app, "cobotwire", "decode", *words, folder=cwd)
         return done.returncode, done.stdout, done.stderr

@@ -64,7 +64,7 @@ class MachineStalls:
     """The meters of the machine that a run used.
 
     Attributes:
-        meters: one of the processors, and one of pseudo-terminals if the system has them.
+        meters: one meter for the processors, and one for pseudo-terminals if the system has them.
     """
 
     def __init__(self, period: float) -> None:

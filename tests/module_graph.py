@@ -14,7 +14,7 @@ Imports = dict[str, set[str]]
 
 @cache
 def _read(path: Path) -> tuple[list[ast.Import | ast.ImportFrom], list[str]]:
-    """Return the imports of a file and its texts; several tests ask for those of each file."""
+    """Return the imports of a file and its texts, cached: several tests need them for each file."""
     nodes = list(ast.walk(ast.parse(path.read_text())))
     texts = [node.value for node in nodes if isinstance(node, ast.Constant)]
     return (

@@ -20,7 +20,7 @@ SENSOR = edition_of("sensor")
 
 @st.composite
 def editions(draw: st.DrawFn, folder: Path, name: str) -> Edition:
-    """Draw an edition; its vectors keep the frames of the format that it had at first."""
+    """Draw an edition. If its frame format is changed here, its vectors are not."""
     _, edition = draw(random_specs.specs(folder, name))
     check(edition)
     other = replace(edition.frame, replies_have_command=False)
@@ -33,7 +33,7 @@ def editions(draw: st.DrawFn, folder: Path, name: str) -> Edition:
 def sensors(draw: st.DrawFn, name: str) -> Edition:
     """Draw a frame format for the sensor, which has every type; its vectors are in such frames."""
     _, other = draw(formats())
-    # The sensor has replies without data.
+    # The sensor has replies without data; without an id, they would be empty.
     edition = replace(SENSOR, frame=replace(other.frame, replies_have_command=True))
     made = [replace(vector, frame=_framed(edition, vector)) for vector in edition.vectors]
     return replace(edition, name=name, vectors=tuple(made))

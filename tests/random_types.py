@@ -17,7 +17,7 @@ FEATURES = frozenset({"float", "bits", "bytes", "text", "list", "event", "ack"})
 PLAIN: frozenset[str] = frozenset()
 # Scales with finite decimals as multiples, so that a vector can state them exactly.
 SCALES = ["1", "1/10", "1/100", "1/1000", "1/8", "3/20", "5", "1/2"]
-# The types of fields by what they need: of a fixed size, and of one that varies.
+# The types of fields with a fixed size, and with a varying size.
 FIXED = {"bits": ["word"], "bytes": ["octets"], "text": ["name"], "list": ["numbers", "pairs"]}
 VARYING = {"bytes": ["blob"], "text": ["note"], "list": ["some", "groups"]}
 

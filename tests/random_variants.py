@@ -1,4 +1,4 @@
-"""Draw what makes calls choose: several variants of a message, constants, defaults, an order."""
+"""Draw several variants of a message, constants, defaults and orders of arguments."""
 
 from __future__ import annotations
 

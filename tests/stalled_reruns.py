@@ -5,7 +5,7 @@ or in several pieces, the failure says nothing about the code. A stall of one pr
 so does one of pseudo-terminals: either may stop the far end of a line, which is often another
 thread or process. A test that fails without a stall fails at once, and one that fails in each run
 fails. The summary names the tests that were run again. A test that measures short times is marked
-with the stall, in seconds, that makes its failure say nothing: ``@pytest.mark.stall(0.05)``.
+with the stall, in seconds, that makes its failure meaningless: ``@pytest.mark.stall(0.05)``.
 """
 
 from __future__ import annotations

@@ -51,7 +51,7 @@ class StallMeter:
         self.worst_second = max(self.worst_second, self.longest)
 
     def _visit(self) -> None:
-        """Use what a subclass measures; the time that this takes adds to the delay."""
+        """Call the subclass's measurement; its duration adds to the delay."""
 
     def _measure(self) -> None:
         self._before = second_from = time.monotonic()

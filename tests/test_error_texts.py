@@ -1,8 +1,9 @@
-"""Check errors that are not about a bad value: they are sentences, and name what was called."""
+"""Check errors that are not about a bad value: they are sentences, and name the call."""
 
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any, get_args
@@ -16,6 +17,8 @@ from cobotwire.codec.interface import Noise
 from cobotwire.conformance.reports import from_json
 from cobotwire.diagnose import DamagedFrame, Diagnoser
 from cobotwire.editions.mycobot280 import GetAngles, PowerOn, SendRadians, SetEndType
+from cobotwire.protocol import error_texts
+from cobotwire.protocol.error_texts import stored_texts
 from cobotwire.protocol.errors import ProtocolError, UsageError
 from cobotwire.protocol.messages import Request
 from cobotwire.session.received import ReceivedMeanwhile
@@ -145,3 +148,31 @@ def test_diagnosis_without_a_call_names_every_command_that_shares_the_id() -> No
     [found] = diagnoser.flush()
     assert isinstance(found, DamagedFrame)
     assert found.command == "get_angles or get_radians"
+
+
+@pytest.mark.parametrize("name", ["error_texts.json", "units.json"])
+def test_each_template_has_a_line_without_escapes_and_plain_names_as_places(name: str) -> None:
+    """Other languages read the file line by line."""
+    path = Path(error_texts.__file__).with_name(name)
+    lines = [line for line in path.read_text(encoding="ascii").splitlines() if line.strip("{}")]
+    assert lines
+    for line in lines:
+        assert re.fullmatch(r'"[\w-]+": "([^"\\{}]|{[a-z]+})+",?', line), line
+    assert len(lines) == len(stored_texts(name))
+
+
+def test_every_template_is_used_and_every_named_kind_has_one() -> None:
+    root = Path(__file__).parents[1]
+    files = [*root.glob("python/cobotwire/**/*.py"), *root.glob("rust/*/src/**/*.rs")]
+    source = "".join(file.read_text(encoding="utf-8") for file in files)
+    kinds = set(re.findall(r'(?:error_text\(|text!\()"([a-z-]+)"', source))
+    stored = stored_texts("error_texts.json").keys()
+    assert len(kinds) > 50
+    assert kinds <= stored
+    made = ("-with-unit", "-by-deadline")
+    assert [k for k in stored if f'"{k}"' not in source and not k.endswith(made)] == []
+
+
+def test_value_that_looks_like_a_place_stays_as_it_is() -> None:
+    error = UsageError("joint", "{allowed} {argument.__class__}", "{value}")
+    assert str(error) == "joint is '{allowed} {argument.__class__}'; allowed: {value}"

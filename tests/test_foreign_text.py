@@ -1,7 +1,7 @@
 """Text that a peer, a file or another program chose is shown without control characters.
 
-Each place where such text is shown is listed here, and gets it with ESC, BEL, C1 controls,
-bidirectional overrides, line ends and lone surrogates in it.
+Each place that shows foreign text is listed here. It gets text with ESC, BEL, C1 controls,
+bidirectional overrides, line ends and unpaired surrogates.
 """
 
 from __future__ import annotations

@@ -1,4 +1,5 @@
-"""A failed test runs again only if the machine stalled; what fails in each run fails."""
+"""A failed test runs again only if the machine stalled; a test that fails in each run has
+failed."""
 
 from __future__ import annotations
 

@@ -77,7 +77,7 @@ def _fields(name: str, vector: Vector) -> dict[str, Any]:
     return {key: _decoded(v, key in octets) for key, v in found.items()}
 
 
-# With the vector, so that no other one gets its id.
+# Keep the vector too, so that no other object gets its id.
 _FIELDS: dict[tuple[str, int], tuple[Vector, dict[str, Any]]] = {}
 
 

@@ -53,7 +53,7 @@ def version(root: Path = ROOT) -> str:
 
 
 def check_version() -> str:
-    """Check the version; tests/packages checks that nothing else states another one."""
+    """Check the version; tests/packages checks that every file states the same version."""
     number = version()
     if not VERSION.fullmatch(number):
         raise Failed(f"Cargo.toml: {number} is not a version such as 1.2.3 or 1.2.3rc1")
@@ -164,8 +164,8 @@ def git(*words: str) -> str:
 
 
 def _run(*words: str) -> str:
-    # Files of a source distribution have one date, which makes cargo reuse what a shared target
-    # folder has of an earlier one.
+    # All files of a source distribution have the same date. So cargo would reuse the results of an
+    # earlier one in a shared target folder.
     fresh = {name: value for name, value in os.environ.items() if name != "CARGO_TARGET_DIR"}
     ended = subprocess.run(words, cwd=ROOT, env=fresh, capture_output=True, text=True)  # noqa: S603
     if ended.returncode:

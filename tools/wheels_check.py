@@ -28,14 +28,14 @@ OTHERS = ("pytest", "hypothesis", "polars", "duckdb", "pandas", "s3fs", "dask", 
 
 
 class Part(NamedTuple):
-    """A program that checks an installation: the arguments of its Python, and what it checks."""
+    """A program that checks an installation: the arguments of Python, and a description."""
 
     what: str
     arguments: tuple[str | Path, ...]
 
 
 _PYTEST = ("-m", "pytest", "-q", "-p", "no:cacheprovider", f"--rootdir={ROOT}")
-# With the wheels alone.
+# With only the wheels.
 FIRST = Part("the first program of the README", (TESTS / "newcomer" / "first_program.py",))
 # With all extras.
 PARTS = (

@@ -69,7 +69,7 @@ with p.CLIENT(sys.argv[1], timeout=10{address}) as device:
 
 
 class Wrong(Exception):
-    """A command printed something else, or failed; the text says which and what."""
+    """A command failed or printed something else; the text names the command and the difference."""
 
 
 def main() -> int:

@@ -147,7 +147,10 @@ class NativeFramer:
         """Take bytes; return what is certain by now, in the order of the stream."""
 
     def flush(self) -> list[Event]:
-        """Reject what still waits, because the line is idle; return it and what follows it."""
+        """Reject the incomplete candidate, because the line is idle.
+
+        Return it and the events after it.
+        """
 
     @property
     def pending(self) -> int:

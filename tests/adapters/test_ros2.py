@@ -29,7 +29,15 @@ pytest.importorskip("cyclonedds", reason="cyclonedds has no wheel for this Pytho
 from cyclonedds.core import DDSException
 from cyclonedds.domain import Domain
 
-from adapters.ros_participant import LOCALHOST, STORE, Participant, received, sample, struct
+from adapters.ros_participant import (
+    LOCALHOST,
+    SECONDS,
+    STORE,
+    Participant,
+    received,
+    sample,
+    struct,
+)
 from cobotwire.adapters.ros2 import dds
 from cobotwire.adapters.ros2.bridge import Bridge, numbers_of
 from cobotwire.adapters.ros2.motion import waypoints_of
@@ -153,20 +161,26 @@ async def test_arm_follows_a_trajectory_in_its_time_and_order_of_joints() -> Non
         assert STOP not in here.sent
 
 
-@pytest.mark.parametrize("how", ["an empty trajectory", "gone sender", "Ctrl-C"])
+@pytest.mark.parametrize(
+    "how", ["an empty trajectory", "gone sender", "another, idle sender", "Ctrl-C"]
+)
 @in_loop
 async def test_motion_under_way_is_stopped_once(how: str) -> None:
     async with Published(silence=0.05) as here:
         writer = here.other.writer("rt/joint_trajectory", ros.JOINT_TRAJECTORY)
         writer.write(trajectory(([angle + 60 for angle in ANGLES], 5.0)))
-        while not any(map(moves, here.sent)):
-            await asyncio.sleep(0.01)
+        async with asyncio.timeout(SECONDS):
+            while not any(map(moves, here.sent)):
+                await asyncio.sleep(0.01)
         if how == "Ctrl-C":
             here.running.cancel()
             await asyncio.wait([here.running])
-        elif how == "gone sender":
+        elif how.endswith("sender"):
+            idle = how.startswith("another")
+            other = here.other.writer("rt/joint_trajectory", ros.JOINT_TRAJECTORY) if idle else None
             del writer
             await here.report("motion", "stopped: its sender is gone")
+            del other
         else:
             writer.write(trajectory())
             await here.report("motion", "stopped: another trajectory came")
@@ -246,7 +260,7 @@ def test_any_bytes_are_a_message_or_damaged() -> None:
         # Cyclone DDS drops what no message can be; the rest is in our hands.
         with suppress(DDSException):
             writer.write(sample(ros.JOINT_TRAJECTORY, right[:at] + data + right[at + len(data) :]))
-        for message in reader.take():
+        for message, _ in reader.take():
             if message is not None:
                 with suppress(UsageError):
                     waypoints_of(message, numbers_of(TABLE, "joints"))

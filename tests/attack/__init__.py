@@ -1,1 +1,1 @@
-"""A hostile peer, users of every kind, and a judge that proves for each call which reply it got."""
+"""A hostile peer, users of every kind, and a validator that proves which reply each call got."""

@@ -11,7 +11,7 @@ import sys
 import time
 from pathlib import Path
 
-from attack.profiles import PROFILES
+from attack.profiles import PROFILES, RUST_PROFILES
 from attack.running import campaign
 from attack.tally import Tally, markdown, text, total
 
@@ -19,11 +19,12 @@ from attack.tally import Tally, markdown, text, total
 def main() -> int:
     """Run the campaign and print its table; return 1 if something forbidden happened."""
     given = _arguments()
-    names = given.profile or list(PROFILES)
-    tallies = {name: Tally(name) for name in names}
+    known = RUST_PROFILES if given.client == "rust" else PROFILES
+    profiles = [known[name] for name in given.profile or known if name in known]
+    tallies = {profile.name: Tally(profile.name) for profile in profiles}
     began = time.monotonic()
     runs = 0
-    for tally in campaign(names, given.seed, given.seconds, given.processes):
+    for tally in campaign(profiles, given.seed, given.seconds, given.processes):
         runs += 1
         tallies[tally.profile].add(tally)
         for failure in tally.failures:
@@ -35,7 +36,7 @@ def main() -> int:
     print(f"limits: {dict(sorted(total(found).limits.items()))}")
     print(summary)
     if given.markdown:
-        _write(given.markdown, markdown(found) + f"\n{summary}.\n")
+        _write(given.markdown, given.client, markdown(found) + f"\n{summary}.\n")
     return 1 if any(tally.forbidden for tally in found) else 0
 
 
@@ -44,6 +45,7 @@ def _arguments() -> argparse.Namespace:
         prog="attack", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
     parser.add_argument("--profile", action="append", choices=list(PROFILES))
+    parser.add_argument("--client", choices=("python", "rust"), default="python")
     parser.add_argument("--seed", type=int, default=1, help="of the first run; 1")
     parser.add_argument("--seconds", type=float, default=180.0, help="after which no run begins")
     parser.add_argument("--processes", type=int, default=4)
@@ -51,14 +53,18 @@ def _arguments() -> argparse.Namespace:
     return parser.parse_args()
 
 
-BEGIN, END = "<!-- begin: make attack -->", "<!-- end -->"
+BEGIN = {
+    "python": "<!-- begin: make attack -->",
+    "rust": "<!-- begin: make attack CLIENT=rust -->",
+}
+END = "<!-- end -->"
 
 
-def _write(page: Path, table: str) -> None:
+def _write(page: Path, client: str, table: str) -> None:
     """Replace the table of a page, between its marks."""
-    before, _, rest = page.read_text().partition(BEGIN)
+    before, begin, rest = page.read_text().partition(BEGIN[client])
     after = rest.partition(END)[2]
-    page.write_text(f"{before}{BEGIN}\n\n{table}\n{END}{after}")
+    page.write_text(f"{before}{begin}\n\n{table}\n{END}{after}")
 
 
 if __name__ == "__main__":

@@ -25,7 +25,7 @@ class Made(NamedTuple):
         request: the request that it answers, as the arm received it.
         at: when the request arrived.
         damaged: whether the line had changed the request.
-        value: the result of a call that gets it; None: it is an acknowledgement.
+        value: the result of a call that gets this reply; None: it is an acknowledgement.
     """
 
     frame: bytes
@@ -40,7 +40,7 @@ class Span(NamedTuple):
 
     Attributes:
         data: the bytes.
-        made: the reply in whose place they are sent; None: there is no such reply.
+        made: the reply that these bytes replace; None: they replace none.
         label: ``reply``: exactly that reply. ``echo``: the request's own bytes. ``damage``:
             anything else.
     """
@@ -67,7 +67,7 @@ class NumberingArm:
     def receive(self, data: bytes) -> bytes:
         """Receive what the faults left of a request; return the reply."""
         self.last = None
-        # Each request comes alone: what is incomplete stays so.
+        # Each chunk is one request, so an incomplete request stays incomplete.
         session = DeviceSession(self._codec)
         for event in (*session.receive(data), *session.flush()):
             if isinstance(event, RequestReceived):

@@ -98,7 +98,7 @@ ONE_WAY = (
 )
 
 
-# Requests shorter than send_angles, of which a full line may have taken half.
+# Requests shorter than send_angles. A full line may have taken half of a send_angles.
 SHORT = ("stop", "set_color", "jog_increment")
 
 

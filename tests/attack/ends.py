@@ -26,8 +26,9 @@ class PtyEnd:
 
     Attributes:
         url: what clients open.
-        descriptor: what to read and write; -1: nobody is connected.
-        waiting: what is ready when a client connects; -1: clients connect without it.
+        descriptor: the descriptor to read and write; -1: nobody is connected.
+        waiting: the descriptor that is readable when a client connects; -1: clients need no
+            accept().
     """
 
     waiting = -1
@@ -72,7 +73,7 @@ class PtyEnd:
         if self.descriptor < 0:
             return 0
         filled = 0
-        # The first room that reading makes has another size than that which follows.
+        # The space that the first read frees differs in size from that of later reads.
         for _ in range(2):
             filled += self._fill_up(LARGE)
             read = 0

@@ -45,14 +45,15 @@ class Evidence:
         self._delivery = Delivery(codec.table.frame, spans, delivered)
 
     def limit_of(self, call: Call, kept: bool) -> str:
-        """Return the limit that explains a wrong result; empty: none does.
+        """Return the known limit of the protocol that explains a wrong result; empty: none does.
 
         ``kept``: whether bytes may have waited for a new connection.
         """
         return self._limit_of_query(call, kept) if call.query else self._limit_of_ack(call)
 
     def _limit_of_query(self, call: Call, kept: bool) -> str:
-        # A call ends with the reply that it takes, so of several like ones that is the last one.
+        # A call ends with the reply that it takes, so if several replies are equal, it took the
+        # last one.
         last = self._last_handed(call.request, call.ended)
         for since in (last - SLACK, call.began - SLACK, call.began - (KEPT_SECONDS * kept)):
             found = list(self._replies(call, since))
@@ -128,7 +129,8 @@ class Evidence:
         return self._displaced(found, made)
 
     def _displaced(self, found: Found, made: Made) -> str:
-        """Return the limit by which the call of a reply took another one, and left this one."""
+        """Return the known limit because of which the call of a reply took another reply instead of
+        this one."""
         for call in self._calls_of(made):
             # Equal values do not show it, but a call cannot take what was delivered after its end.
             took_another = call.value != made.value or call.ended < found.at
@@ -140,7 +142,8 @@ class Evidence:
 
     def _limit_of_taken(self, call: Call) -> str:
         if call.number not in self._limits:
-            # Calls may have left replies to each other; none explains itself.
+            # A call may have taken the reply of another call. A call cannot be the reason for its
+            # own.
             self._limits[call.number] = ""
             self._limits[call.number] = self._limit_of_query(call, kept=False)
         return self._limits[call.number]

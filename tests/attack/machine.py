@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import threading
 import time
+from collections.abc import Sequence
 from contextlib import suppress
 from pathlib import Path
 
@@ -16,7 +17,7 @@ PERIOD = 0.03
 SHORTEST = 0.02
 # /proc/stat counts hundredths of a second; the eighth number is the time taken by the host.
 TICK, STOLEN = 0.01, 8
-THREADS, PROCESSORS = Path("/proc/self/task"), Path("/proc/stat")
+SYSTEM, PROCESSORS = Path("/proc"), Path("/proc/stat")
 
 
 class MachineMeter:
@@ -25,9 +26,11 @@ class MachineMeter:
     Attributes:
         stops: for each thread and each processor: when it had been stopped, and for how many
             seconds.
+        processes: the processes whose threads are measured.
     """
 
     def __init__(self) -> None:
+        self.processes = ["self"]
         self.stops: dict[str, list[tuple[float, float]]] = {}
         self._over = threading.Event()
         self._thread = threading.Thread(target=self._measure, daemon=True)
@@ -41,9 +44,9 @@ class MachineMeter:
         self._thread.join()
 
     def _measure(self) -> None:
-        before = _stopped()
+        before = _stopped(self.processes)
         while not self._over.wait(PERIOD):
-            after = _stopped()
+            after = _stopped(self.processes)
             now = time.monotonic()
             for name, seconds in after.items():
                 stopped = seconds - before.get(name, seconds)
@@ -52,7 +55,7 @@ class MachineMeter:
             before = after
 
 
-def _stopped() -> dict[str, float]:
+def _stopped(processes: Sequence[str]) -> dict[str, float]:
     """Return for how many seconds each thread and processor has been stopped so far."""
     found = {}
     with suppress(OSError):
@@ -60,9 +63,10 @@ def _stopped() -> dict[str, float]:
             name, *numbers = line.split()
             if name.startswith("cpu") and name != "cpu":
                 found[name] = int(numbers[STOLEN - 1]) * TICK
-    with suppress(OSError):
-        for thread in THREADS.iterdir():
-            with suppress(OSError):
-                # Nanoseconds that it ran, and that it waited for a processor.
-                found[thread.name] = int((thread / "schedstat").read_text().split()[1]) / 1e9
+    for process in processes:
+        with suppress(OSError):
+            for thread in (SYSTEM / process / "task").iterdir():
+                with suppress(OSError):
+                    # Nanoseconds that it ran, and that it waited for a processor.
+                    found[thread.name] = int((thread / "schedstat").read_text().split()[1]) / 1e9
     return found

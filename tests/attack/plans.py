@@ -18,8 +18,8 @@ class Plan:
         profile: what happens.
         seed: repeats the draws of the run, not its timing.
         tcp: whether the line is TCP or a pty.
-        client: blocking or asyncio.
-        codec: native or reference.
+        client: blocking or asyncio, or the Rust client that resembles it.
+        codec: native or reference; it is Python's.
         edition: the edition's package.
         users: how many threads or tasks share the client.
         timeout: seconds that each request has.
@@ -52,6 +52,11 @@ class Plan:
     def faults(self) -> tuple[Fault, ...]:
         """The faults of the profile, with delays that fit into the grace."""
         return tuple(_scaled(fault, self.grace) for fault in self.profile.faults)
+
+    @property
+    def rust(self) -> bool:
+        """Whether a Rust client is attacked."""
+        return self.client.startswith("rust")
 
     @property
     def _way(self) -> str:

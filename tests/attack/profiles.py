@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Literal
 
 from cobotwire.simulator.faults import (
@@ -21,7 +21,7 @@ from cobotwire.simulator.faults import (
     Truncated,
 )
 
-Clients = Literal["blocking", "asyncio"]
+Clients = Literal["blocking", "asyncio", "rust", "rust async"]
 
 
 @dataclass(frozen=True)
@@ -186,3 +186,9 @@ _ALL = (
     ),
 )
 PROFILES = {profile.name: profile for profile in _ALL}
+# For the Rust clients: it is an exception of Python that interrupts a call.
+RUST_PROFILES = {
+    name: replace(profile, clients=("rust async",) if profile.cancels else ("rust", "rust async"))
+    for name, profile in PROFILES.items()
+    if not profile.interrupts
+}

@@ -1,4 +1,4 @@
-"""What users and transports write down during a run; the judge reads it afterwards."""
+"""What users and transports write down during a run; the validator reads it afterwards."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ import itertools
 import socket
 import threading
 import time
+from contextlib import AbstractContextManager
 from typing import Any, Literal, NamedTuple
 
 from cobotwire.transport import OpenedTransport, open_transport
@@ -55,6 +56,8 @@ class Record:
         running: the calls that have not, by user.
         handed: when which bytes were handed to the system.
         filling: held while the run fills the line, which must not come between parts of a request.
+        measured: when the call of a thread began and ended by the client's own measure, if it is in
+            another process.
         taken: when the system took the rest of those bytes, and how many bytes it has taken.
     """
 
@@ -65,7 +68,8 @@ class Record:
         self.taken: list[tuple[float, bytes]] = []
         self.bytes_taken = 0
         self.numbers = itertools.count(1)
-        self.filling = threading.Lock()
+        self.filling: AbstractContextManager[Any] = threading.Lock()
+        self.measured: dict[int, tuple[float, float]] = {}
 
     def begin(
         self, user: int, name: str, request: bytes, ack_within: float | None, query: bool
@@ -82,12 +86,26 @@ class Record:
         """Note that a call has ended, unless it was given up as lost."""
         if self.running.pop(call.user, None) is not call:
             return
-        self.calls.append(call._replace(ended=time.monotonic(), ending=ending, value=value))
+        here = (call.began, time.monotonic())
+        began, ended = self.measured.pop(threading.get_ident(), here)
+        self.calls.append(call._replace(began=began, ended=ended, ending=ending, value=value))
 
     def give_up(self) -> None:
         """Count the calls that still run as lost."""
         for call in tuple(self.running.values()):
             self.end(call, "lost", None)
+
+    def note_write(self, line: dict[str, Any]) -> None:
+        """Note a write of a client in another process, which uses the same clock."""
+        data = bytes.fromhex(line["data"])
+        self.handed.append((line["handed"], data))
+        self.bytes_taken += line["size"]
+        if line["size"] == len(data):
+            self.taken.append((line["taken"], data))
+
+    def note_times(self, began: float, ended: float) -> None:
+        """Note when the call of this thread began and ended in another process."""
+        self.measured[threading.get_ident()] = began, ended
 
 
 def open_observed(url: str, baudrate: int, record: Record, *, small: bool) -> OpenedTransport:

@@ -15,21 +15,21 @@ from attack.arm import HostilePeer
 from attack.calls import SHORT
 from attack.ends import PtyEnd, TcpEnd
 from attack.fresh import run_fresh
-from attack.judge import Judge, Scene
 from attack.line import HostileLine
 from attack.machine import MachineMeter
 from attack.plans import Plan, plan
-from attack.profiles import PROFILES
+from attack.profiles import Profile
 from attack.setting import Setting, table_of
 from attack.tally import Tally
 from attack.users import Shared, run_threads
+from attack.validating import Scene, Validator
 from cobotwire import codec as codecs
 from machine_stalls import PtyMeter
 from stalls import StallMeter
 
 
 def attack(chosen: Plan, change: Callable[[Any], Any] | None = None) -> Tally:
-    """Run a plan and judge it; ``change`` makes another client of the edition's."""
+    """Run a plan and validate it; ``change`` makes another client of the edition's."""
     codec = codecs.load(table_of(chosen), "reference")
     peer = HostilePeer(codec, chosen.faults, chosen.seed)
     end = TcpEnd(small=chosen.profile.stalls) if chosen.tcp else PtyEnd()
@@ -41,10 +41,11 @@ def attack(chosen: Plan, change: Callable[[Any], Any] | None = None) -> Tally:
         line,
     ):
         setting = Setting(chosen, line.url)
+        setting.processes = machine.processes
         if change is not None:
             setting.client = change(setting.client)
         settle, failed = partial(_settle, line, setting), ""
-        if chosen.profile.fresh and change is None:
+        if chosen.profile.fresh and change is None and not chosen.rust:
             failed = run_fresh(setting, settle)
         else:
             run_threads(setting, partial(_happen, line, setting), settle)
@@ -53,7 +54,7 @@ def attack(chosen: Plan, change: Callable[[Any], Any] | None = None) -> Tally:
         counts = Counter(calls=1, lost=1)
         return Tally(chosen.profile.name, counts, failures=[f"{chosen}\n{failed}"])
     stalls = [meter.late, ptys.late, line.stalls, *machine.stops.values()]
-    return Judge(Scene(setting, line, peer, stalls)).judge()
+    return Validator(Scene(setting, line, peer, stalls)).validate()
 
 
 def _settle(line: HostileLine, setting: Setting) -> None:
@@ -98,7 +99,9 @@ def _stall(line: HostileLine, setting: Setting, random: Random) -> None:
     setting.flooding = False
 
 
-def campaign(profiles: Sequence[str], seed: int, seconds: float, processes: int) -> Iterator[Tally]:
+def campaign(
+    profiles: Sequence[Profile], seed: int, seconds: float, processes: int
+) -> Iterator[Tally]:
     """Yield the tallies of plans until the seconds are over.
 
     Profiles take turns by their weights, so that each gets its share of the time.
@@ -113,12 +116,12 @@ def campaign(profiles: Sequence[str], seed: int, seconds: float, processes: int)
             yield from (future.result() for future in done)
 
 
-def _plans(names: Sequence[str], seed: int) -> Iterator[Plan]:
+def _plans(profiles: Sequence[Profile], seed: int) -> Iterator[Plan]:
     """Yield plans: the profile that had the least time for its weight is next."""
-    had = dict.fromkeys(names, 0.0)
+    had = dict.fromkeys(profiles, 0.0)
     while True:
-        name = min(had, key=lambda name: had[name] / PROFILES[name].weight)
-        chosen = plan(PROFILES[name], seed)
-        had[name] += chosen.seconds
+        profile = min(had, key=lambda profile: had[profile] / profile.weight)
+        chosen = plan(profile, seed)
+        had[profile] += chosen.seconds
         seed += 1
         yield chosen

@@ -15,6 +15,7 @@ from cobotwire import LinkError, ProtocolError, ReplyTimeout, RetryPolicy
 from cobotwire import codec as codecs
 from cobotwire.protocol.table import Table
 from cobotwire.transport.descriptor import WRITE_SECONDS
+from probe_client import Held, ProbeClient
 
 CLASSES = {
     ("mycobot280", "blocking"): "MyCobot280",
@@ -34,6 +35,7 @@ class Setting:
         flood: which ones; empty: any.
         longest: seconds that a call can take by its rules, the wait for its turn included.
         options: the arguments of the clients.
+        processes: where the ids of the processes that clients start are written down.
     """
 
     def __init__(self, plan: Plan, url: str) -> None:
@@ -43,8 +45,13 @@ class Setting:
         self.over = False
         self.flooding = False
         self.flood = ""
+        self.processes: list[str] = []
         edition = import_module(f"cobotwire.editions.{plan.edition}")
-        self.client: Any = getattr(edition, CLASSES[plan.edition, plan.client])
+        self.client: Any = (
+            self._open_probe
+            if plan.rust
+            else getattr(edition, CLASSES[plan.edition, plan.client])
+        )
         self.table = table_of(plan)
         self.baudrate = self.table.baudrate
         self.codec = codecs.load(self.table, "reference")
@@ -60,6 +67,24 @@ class Setting:
             turn += WRITE_SECONDS
         self.longest = plan.users * turn + 1.0
         self._numbers = itertools.count(1)
+
+    def _open_probe(self) -> ProbeClient:
+        """Start a Rust client in a process, whose writes and times are recorded."""
+        policy = {name: getattr(self.retry, name) for name in ("attempts", "shortest_attempt", "grace")}
+        client = ProbeClient(
+            self.url,
+            self.plan.edition,
+            written=self.record.note_write,
+            ended=self.record.note_times,
+            tasks=self.plan.client == "rust async",
+            small=self.plan.profile.stalls,
+            timeout=self.plan.timeout,
+            deadline=self.plan.deadline,
+            **policy,
+        )
+        self.processes.append(str(client.process.pid))
+        self.record.filling = Held(client)
+        return client
 
     def draw(self, random: Random) -> Drawn:
         """Draw the next call of a user."""

@@ -25,7 +25,7 @@ RUNS = [(name, client) for name, profile in PROFILES.items() for client in profi
 
 @pytest.fixture(scope="module")
 def tallies() -> Iterator[dict[tuple[str, str], Future[Tally]]]:
-    """Start all runs; they mostly wait, so that some run at once."""
+    """Start all runs in a pool: each mostly waits, so several processes share a core."""
     plans = {
         (name, client): replace(
             plan(PROFILES[name], seed, SECONDS, 400), client=client, users=3, grace=0.3

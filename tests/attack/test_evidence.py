@@ -31,7 +31,7 @@ def call(number: int, x: float, began: float, ended: float, value: bool) -> Call
 def evidence_of_a_chain(second_ended: float) -> tuple[Evidence, Call]:
     """Return a call that took the reply to the call before, which may have taken a copy.
 
-    All replies but its own have the same value, so that values alone do not tell them apart.
+    All replies but its own have the same value, so that values do not distinguish them.
     """
     first, second = reply(1.0, 10.00, False), reply(2.0, 10.07, False)
     calls = [

@@ -59,9 +59,11 @@ class Shared:
         self.client.close()
 
     def end(self) -> None:
-        """End the loops of asyncio clients, in which no call runs any more."""
+        """End the loops of asyncio clients, in which no call runs any more, or the process."""
         for loop in self._loops:
             loop.end()
+        if self.setting.plan.rust:
+            self.client.end()
 
     @property
     def transport_is_closed(self) -> bool:
@@ -71,6 +73,12 @@ class Shared:
 
     def _open(self) -> None:
         setting = self.setting
+        if setting.plan.rust:
+            if self.client is None:
+                self.client = self._transport = setting.client()
+            else:
+                self.client.open()
+            return
         small = setting.plan.profile.stalls
         self._transport = open_observed(setting.url, setting.baudrate, setting.record, small=small)
         if setting.plan.client == "blocking":
@@ -123,8 +131,8 @@ def run_threads(
 ) -> None:
     """Let the users of a run call until it is over.
 
-    ``during`` does what else happens, and ends the run; ``settle`` waits for what was written
-    before the client is closed.
+    ``during`` makes the other events and ends the run; ``settle`` waits for written bytes before
+    the client is closed.
     """
     shared = Shared(setting)
     plan = setting.plan
@@ -197,7 +205,10 @@ def _call(shared: Shared, user: int, random: Random, interrupts: Interrupts | No
     options = {} if drawn.ack_within is None else {"ack_within": drawn.ack_within}
     if setting.plan.profile.cancels and random.random() < 0.3:
         seconds = random.choice((0.0, 0.0005, 0.002, 0.02, 0.2)) * random.random()
-        method = _cancelled_after(seconds, shared.client, drawn.name)
+        if setting.plan.rust:
+            method = shared.client.cancelled_after(seconds, drawn.name)
+        else:
+            method = _cancelled_after(seconds, shared.client, drawn.name)
     call = setting.begin(user, drawn)
     try:
         try:

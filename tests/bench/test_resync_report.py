@@ -21,13 +21,13 @@ def _line(kind: str = "false header") -> Line:
     return damage(TABLE, catalogue(TABLE, 4000, "reply"), kind, 1e-2)
 
 
-def _judged(line: Line, read: Sequence[Accepted]) -> Verdict:
+def _verdict_on(line: Line, read: Sequence[Accepted]) -> Verdict:
     return score(TABLE, "reply", line, read)
 
 
 def test_every_frame_that_the_codec_loses_is_explained_by_the_table() -> None:
     line = _line()
-    verdict = _judged(line, readers.ours(TABLE, "native", "reply")(line.data))
+    verdict = _verdict_on(line, readers.ours(TABLE, "native", "reply")(line.data))
     assert verdict.covered
     assert verdict.unexplained == []
     assert verdict.recovered + len(verdict.covered) == verdict.undamaged
@@ -36,7 +36,7 @@ def test_every_frame_that_the_codec_loses_is_explained_by_the_table() -> None:
 @pytest.mark.parametrize("reader", [readers.textbook(TABLE), readers.pymycobot()])
 def test_reader_that_consumes_on_failure_loses_unexplained_frames(reader: readers.Reader) -> None:
     line = _line()
-    verdict = _judged(line, reader(line.data))
+    verdict = _verdict_on(line, reader(line.data))
     assert len(verdict.unexplained) > len(verdict.covered)
 
 
@@ -47,9 +47,9 @@ def test_perfect_reader_has_no_loss_and_a_missing_frame_is_unexplained() -> None
         for start, end, ok in zip(line.starts.tolist(), line.ends.tolist(), line.whole.tolist())
         if ok
     ]
-    verdict = _judged(line, whole)
+    verdict = _verdict_on(line, whole)
     assert (verdict.share, verdict.phantoms, verdict.altered) == (1.0, 0, 0)
-    missing = _judged(line, whole[:100] + whole[101:])
+    missing = _verdict_on(line, whole[:100] + whole[101:])
     assert missing.unexplained == [whole[100].start]
 
 
@@ -58,10 +58,10 @@ def test_wrong_frame_is_counted_as_altered_or_as_phantom() -> None:
     clean = catalogue(TABLE, 4000, "reply")
     line = damage(TABLE, clean, "flip", 1e-2)
     read = readers.ours(TABLE, "native", "reply")(line.data)
-    verdict = _judged(line, read)
+    verdict = _verdict_on(line, read)
     assert verdict.altered > 0
     nowhere = Accepted(len(line.data), len(line.data) + len(frame), frame)
-    assert _judged(line, [*read, nowhere]).phantoms == verdict.phantoms + 1
+    assert _verdict_on(line, [*read, nowhere]).phantoms == verdict.phantoms + 1
 
 
 def test_pymycobots_reader_reads_a_clean_line_completely() -> None:
@@ -72,7 +72,7 @@ def test_pymycobots_reader_reads_a_clean_line_completely() -> None:
 
 def test_pymycobot_drops_a_reply_after_an_ack() -> None:
     line = _line("ack")
-    verdict = _judged(line, readers.pymycobot_by_request(line))
+    verdict = _verdict_on(line, readers.pymycobot_by_request(line))
     assert verdict.undamaged - verdict.recovered == len(line.acks) > 0
 
 

@@ -1,4 +1,4 @@
-"""Recordings of several devices on one line: every row and file says whose message it is."""
+"""Recordings of several devices on one line: every row and file names the device of a message."""
 
 from __future__ import annotations
 

@@ -138,7 +138,7 @@ def test_panic_with_a_core_of_thousands_of_digits_is_decoded(
 def test_panic_with_a_core_of_thousands_of_digits_is_reported(words: list[str]) -> None:
     with ScriptedPeer(*[[PANIC.encode()]] * 200) as peer:
         _, text = run(*(peer.url if word == "URL" else word for word in words))
-    # Of two dumps the first is cut off, where only the start of what was received is kept.
+    # A command that keeps only the start of what it received sees the cause of the panic cut off.
     assert re.search("panic (LoadProhibited|of unknown cause)", text)
 
 

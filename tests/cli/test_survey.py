@@ -75,7 +75,7 @@ def test_survey_continues_an_interrupted_one(tmp_path: Path) -> None:
     assert done.returncode == 0, done.stderr
     after, recorded = read_survey(path)
     assert recorded.startswith(recording)
-    # What is known is not requested again, unless it is compared.
+    # Known values are not requested again, unless they are compared.
     request = b"\xfe\xfe\x02" + bytes([TABLE.command("get_reboot_count").id]) + b"\xfa"
     assert recorded.count(request) == recording.count(request)
     found = {fact["fact"]: fact["verdict"] for fact in after["facts"]}

@@ -107,7 +107,7 @@ def test_monitor_and_studio_watch_a_tap_and_send_nothing(served: PtyServer, tmp_
             result = cobotwire("monitor", source, "--json", "--rate", "10", "--count", "5")
             sample = json.loads(result.stdout.splitlines()[-1])
             assert sample["values"]["get_angles"]["j1"] == 0
-            # The program asks for no coordinates, and nobody does that for it.
+            # The program does not query the coordinates, and the monitor sends nothing itself.
             assert sample["values"]["get_coords"] is None
             assert sample["rate"] > 5
             assert sample["unanswered"] <= 1

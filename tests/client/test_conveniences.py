@@ -1,4 +1,4 @@
-"""What people expect beside the commands: defaults, home, the gripper, names of joints."""
+"""Conveniences besides the commands: defaults, home, the gripper, names of joints."""
 
 from __future__ import annotations
 

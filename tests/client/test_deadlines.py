@@ -1,6 +1,6 @@
 """No call takes longer than the client's deadline, whatever the line does and whoever else calls.
 
-A request that was not sent by then is never sent, and its error says which of both it was.
+A request that was not sent by then is never sent. The error says whether it was sent.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ from session.one_caller import submit
 from transport.ends import PtyEnd
 
 TIMEOUT, DEADLINE = 0.4, 0.5
-# What a call may take besides: until its thread or task has its turn.
+# The extra time that a call may take until its thread or task is scheduled.
 MORE = 0.05
 THREADS, TASKS, SECONDS = 8, 50, 0.7
 ONCE = RetryPolicy(attempts=1)
@@ -42,7 +42,8 @@ LATE = Late(seconds=0.3, jitter_seconds=0.6, probability=0.3)
 
 
 class Call(NamedTuple):
-    """How long a call took, how often its request was sent, and what it waited for at the end."""
+    """The duration of a call, the number of times that its request was sent, and what it waited for
+    at the end."""
 
     seconds: float
     attempts: int

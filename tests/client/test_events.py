@@ -223,7 +223,7 @@ def test_waited_motion_ends_with_its_event(staged: Any) -> None:
     assert _queues() == before, "the end of the wait removes its listener"
     assert arm.get_angles() == (60.0, 0.0, 0.0)
     queries = [one for one in traffic if one.direction == "sent" and one.data[3] == 0x20]
-    # One at the start, one a second, one after the event, and that of this test.
+    # The queries: one at the start, one a second, one after the event, and the test's own.
     assert 3 <= len(queries) <= 5
     assert EventReceived in [type(one.event) for one in traffic]
 

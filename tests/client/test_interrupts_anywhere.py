@@ -1,4 +1,4 @@
-"""Ctrl-C at any line of a call neither delays the calls of other threads nor those that follow."""
+"""Ctrl-C at any line of a call delays neither calls of other threads nor later calls."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ TIMEOUT = 0.4
 # The interrupt may lose bytes that were just read. Then the request that they replied to is sent
 # again, and the next one like it is held.
 RETRY = RetryPolicy(grace=0.05)
-# What the others may take besides: time to notice that the leader is gone, and to take over.
+# The extra time that the others may take to notice that the leader is gone, and to take over.
 LATE = TIMEOUT + RETRY.grace + 0.1
 
 
@@ -142,9 +142,9 @@ CALLS: dict[str, Callable[[MyCobot], object]] = {
 class Lines:
     """The numbers of the lines to interrupt, until calls end before them.
 
-    Which lines a call runs depends on the other threads, so one short call is not the end. A call
-    whose frames the reference codec cuts runs many lines; of these every fifth one is interrupted.
-    Listening for 1 ms runs as many lines as the machine has time for, so it skips none.
+    Which lines a call runs depends on the other threads, so one short call is not the end. With the
+    reference codec a call runs many lines; every fifth of these is interrupted. Listening for 1 ms
+    runs as many lines as the machine has time for, so it skips none.
     """
 
     def __init__(self, codec: str, name: str = "a query") -> None:
@@ -167,8 +167,8 @@ class Lines:
 def always_longer(limit: float, measure: Callable[[], float]) -> bool:
     """Return whether a time is beyond its limit three times in a row.
 
-    A machine that is busy may delay one run, and a stall that was measured counts for nothing. What
-    an interrupt does at one line, it does every time; and what it breaks for good shows every time.
+    A machine that is busy may delay one run, and a stall that was measured counts for nothing. An
+    interrupt at one line has the same effect every time, and lasting damage shows every time.
     """
     for _ in range(3):
         with StallMeter() as meter:

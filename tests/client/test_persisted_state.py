@@ -145,7 +145,7 @@ def test_note_of_another_boot_expects_no_reply(
     this_boot = folder.parent / "boot_id"
     this_boot.write_text("this\n")
     monkeypatch.setattr(port_notes, "BOOT_ID", str(this_boot))
-    # The clock of this boot shows more than that of the other one did.
+    # The monotonic clock of this boot is ahead of that of the other boot.
     _damage(memory, folder, boot=boot)
     assert memory.recall() == PersistedState((), (Part(MOTION, 8),)), "the arm may hold the part"
 
@@ -193,7 +193,7 @@ FRAMES = st.sampled_from([GET_ENCODER, MOTION, b"\xfe\xfe\x1a"]).map(bytes.hex) 
     max_size=8
 ).map(bytes.hex)
 NUMBERS = st.floats() | st.integers() | st.just(10**400)
-# Each is what a note has in that place, or anything else.
+# Each value is the right one for its key in a note, or any other.
 VALUES = {
     "port": ANY_JSON,
     "boot": ANY_JSON,

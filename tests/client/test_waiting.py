@@ -17,7 +17,8 @@ from cobotwire.session import AckReceived, Traffic
 from cobotwire.simulator import MemoryTransport, SimulatedArm, SteppedClock
 from cobotwire.simulator.faults import Fault, Late, Lost, Scenario
 
-# One whose query decides, one that only reports where it is, and one that reports the end.
+# An edition with a query for the target, one that only reports the position, and one that reports
+# the end of motions.
 REPRESENTATIVE = ("mycobot280", "myarm_m750", "mercury_a1")
 MOTIONS = 200
 # How many queries a wait may send in a second, whenever it begins.

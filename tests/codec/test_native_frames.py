@@ -1,6 +1,6 @@
 """The native classes of frames and framers: their memory, arguments and attributes.
 
-That its values are those of the reference is tested in test_agreement.
+test_agreement compares its values with those of the reference.
 """
 
 from __future__ import annotations

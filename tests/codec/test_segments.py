@@ -25,7 +25,8 @@ from strategies import CODECS, TABLES, codec_of
 LISTENING = st.sampled_from(["request", "reply", "both"])
 EACH_CODEC = pytest.mark.parametrize("name", CODECS)
 FLAG = bytes.fromhex("FE FE 03 12 01 FA")
-# Frames of 17 bytes that hold a frame of 6 each: a scan that starts inside one finds others.
+# Frames of 17 bytes that contain a frame of 6 bytes: a scan that starts inside one finds other
+# frames.
 OUTER = bytes.fromhex("FE FE 0E 20 FE FE 03 12 01 FA FE FE 03 12 01 FA FA")
 
 
@@ -88,7 +89,7 @@ def cuts(draw: st.DrawFn, size: int) -> list[int]:
 
 
 def adversarial(draw: st.DrawFn) -> bytes:
-    """Draw chains of frames within frames, of which each may be read in two ways."""
+    """Draw chains of frames within frames; each may be read in two ways."""
     step = draw(st.sampled_from([OUTER, OUTER[:4] + FLAG + OUTER[:4] + FLAG[:3], OUTER[4:], FLAG]))
     start = draw(st.integers(0, len(step)))
     return step[start:] + step * draw(st.integers(0, 40)) + step[: draw(st.integers(0, 17))]

@@ -16,7 +16,7 @@ NAME = "_xxsubinterpreters" if sys.version_info < (3, 13) else "_interpreters"
 pytestmark = pytest.mark.skipif(
     importlib.util.find_spec(NAME) is None, reason="this interpreter has no subinterpreters"
 )
-# Runs code in a subinterpreter that shares the lock, and fails with it.
+# Runs code in a subinterpreter that shares the GIL; if the code fails, so does this process.
 START = f"""
 import sys
 import {NAME} as interpreters
@@ -34,7 +34,7 @@ def run(interpreter, code):
         failed = interpreters.exec(interpreter, code)
         assert failed is None, failed.errdisplay
 """
-# Decodes and encodes, and checks that all that comes of it has this interpreter's classes.
+# Decodes and encodes, and checks that every result and error is of a class of this interpreter.
 USE = """
 from cobotwire import codec as codecs
 from cobotwire.codec.interface import DecodedMessage, Frame, Noise

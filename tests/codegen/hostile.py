@@ -45,7 +45,7 @@ request_text:
 """
 VECTOR = "{name: log in, command: log_in, direction: request, frame: FE FE 02 50 FA, values: {}}"
 
-# What ends or opens something in a target language, a terminal or a browser.
+# Texts that end or open a construct in a target language, a terminal or a browser.
 PAYLOADS = (
     'EVIL"""\nraise SystemExit(3)\n"""',
     "EVIL*/ static int evil(void){return 1;} /*",

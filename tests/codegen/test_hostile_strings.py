@@ -53,14 +53,14 @@ def _outputs(edition: Edition) -> dict[str, str]:
     return {str(name): text for name, text in made.items()}
 
 
-def _judge(files: dict[str, str]) -> None:
+def _validate(files: dict[str, str]) -> None:
     for name, text in files.items():
         assert odd_character(text) == "", name
-        if Path(name).suffix in JUDGES:
-            JUDGES[Path(name).suffix](text)
+        if Path(name).suffix in VALIDATORS:
+            VALIDATORS[Path(name).suffix](text)
 
 
-def _judge_python(text: str) -> None:
+def _validate_python(text: str) -> None:
     for node in ast.walk(ast.parse(text)):
         if not isinstance(node, ast.Constant):
             words = [word for word in vars(node).values() if isinstance(word, str)]
@@ -68,15 +68,15 @@ def _judge_python(text: str) -> None:
     compile(text, "generated", "exec")
 
 
-def _judge_c(text: str) -> None:
+def _validate_c(text: str) -> None:
     assert "EVIL" not in C_TEXT.sub("", text).upper()
 
 
-def _judge_lua(text: str) -> None:
+def _validate_lua(text: str) -> None:
     assert "EVIL" not in LUA_TEXT.sub("", text)
 
 
-def _judge_markdown(text: str) -> None:
+def _validate_markdown(text: str) -> None:
     assert "<script" not in text.lower()
     assert not re.search(r"(?<!\\)\]\(javascript", text)
     columns = 0
@@ -86,17 +86,17 @@ def _judge_markdown(text: str) -> None:
         columns = found
 
 
-def _judge_json(text: str) -> None:
+def _validate_json(text: str) -> None:
     json.loads(text)
 
 
-JUDGES = {
-    ".py": _judge_python,
-    ".c": _judge_c,
-    ".h": _judge_c,
-    ".lua": _judge_lua,
-    ".md": _judge_markdown,
-    ".json": _judge_json,
+VALIDATORS = {
+    ".py": _validate_python,
+    ".c": _validate_c,
+    ".h": _validate_c,
+    ".lua": _validate_lua,
+    ".md": _validate_markdown,
+    ".json": _validate_json,
 }
 
 
@@ -129,8 +129,8 @@ def attacked(tmp_path_factory: pytest.TempPathFactory) -> dict[str, str]:
 
 
 def test_free_text_stays_text_in_every_output(attacked: dict[str, str]) -> None:
-    _judge(attacked)
-    assert {Path(name).suffix for name in attacked} >= set(JUDGES)
+    _validate(attacked)
+    assert {Path(name).suffix for name in attacked} >= set(VALIDATORS)
 
 
 @pytest.mark.skipif(shutil.which("gcc") is None, reason="gcc is not installed")
@@ -171,4 +171,4 @@ def test_hostile_string_is_refused_at_its_place_or_stays_text(
             assert str(problem).isprintable()
             assert re.match(r"lamp\.yaml:\d+:\d+: [a-z-]+: ", str(problem))
         return
-    _judge(_outputs(edition))
+    _validate(_outputs(edition))

@@ -75,7 +75,7 @@ def equal(got: object, wanted: object) -> bool:
 
 
 def run(edition: str, example: Example) -> str:
-    """Return what is wrong about an example; nothing if its call does what the page says."""
+    """Return what is wrong with an example; empty if its call does what the page says."""
     module = load(edition)
     found = [import_module(f"cobotwire.editions.{edition}.{name}") for name in ("enums", "values")]
     known: dict[str, Any] = {name: value for each in found for name, value in vars(each).items()}

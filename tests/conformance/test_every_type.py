@@ -107,7 +107,7 @@ CALLS: list[tuple[str, tuple[Any, ...], tuple[Any, ...]]] = [
 
 
 @pytest.mark.parametrize("wrong", [False, True])
-def test_client_is_judged_by_values_of_every_type(sensor: Any, wrong: bool) -> None:
+def test_client_is_tested_with_values_of_every_type(sensor: Any, wrong: bool) -> None:
     clock = SteppedClock()
     script = [
         ScriptLine(sensor.TABLE.command(name), values, name, None) for name, _, values in CALLS

@@ -14,10 +14,10 @@ from collections.abc import Sequence
 from concurrent.futures import ProcessPoolExecutor
 from fnmatch import fnmatch
 
-from defects.judging import Judgement, Message, judge, messages_of
 from defects.key import SUBJECTS, Defect, defects
 from defects.listing import figures, line
 from defects.running import CORRECT, report_on
+from defects.verdicts import DefectVerdict, Message, messages_of, verdict_on
 
 
 def main() -> int:
@@ -31,17 +31,17 @@ def main() -> int:
         correct: dict[str, list[Message]] = {}
         for (subject, _), messages in zip(right, pool.map(_correct, right)):
             correct.setdefault(subject, []).extend(messages)
-        judgements = []
-        for judgement in pool.map(_judged, planted):
-            judgements.append(judgement)
-            print(line(judgement), flush=True)
+        verdicts = []
+        for verdict in pool.map(_verdict_on, planted):
+            verdicts.append(verdict)
+            print(line(verdict), flush=True)
             if given.messages:
-                print(*(f"       {message}" for message in judgement.messages), sep="\n")
+                print(*(f"       {message}" for message in verdict.messages), sep="\n")
     for subject, failures in correct.items():
         for message in failures:
             print(f"REJECTED correct {subject}: {message}")
-    print(*figures(judgements, correct), f"{time.monotonic() - began:.0f} s", sep="\n")
-    sound = all(each.found for each in judgements) and not any(correct.values())
+    print(*figures(verdicts, correct), f"{time.monotonic() - began:.0f} s", sep="\n")
+    sound = all(each.found for each in verdicts) and not any(correct.values())
     return 0 if sound else 1
 
 
@@ -50,8 +50,8 @@ def _correct(run: tuple[str, str]) -> list[Message]:
     return messages_of(report_on(subject, "", line))
 
 
-def _judged(defect: Defect) -> Judgement:
-    return judge(defect, messages_of(report_on(defect.subject, defect.switch, defect.line)))
+def _verdict_on(defect: Defect) -> DefectVerdict:
+    return verdict_on(defect, messages_of(report_on(defect.subject, defect.switch, defect.line)))
 
 
 def _arguments(words: Sequence[str] | None = None) -> argparse.Namespace:

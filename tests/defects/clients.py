@@ -1,4 +1,4 @@
-"""Let the referee judge independent clients: in plain Python, and in C."""
+"""Run the referee with independent clients: in plain Python, and in C."""
 
 from __future__ import annotations
 
@@ -26,18 +26,18 @@ ALLOWED_STALL = 0.1
 
 
 def report_on_client(defect: str = "", line: str = "") -> Report:
-    """Judge the client in plain Python."""
+    """Test the client in plain Python."""
     command = [sys.executable, str(HERE / "plain.py"), "PORT", *([defect] if defect else [])]
-    return _judged(command, HERE / "calls.txt", line)
+    return _report(command, HERE / "calls.txt", line)
 
 
 def report_on_c_client(defect: str = "", line: str = "") -> Report:
-    """Judge the client in C."""
-    return _judged([str(built(HERE / "client.c", defect)), "PORT"], HERE / "calls_c.txt", line)
+    """Test the client in C."""
+    return _report([str(built(HERE / "client.c", defect)), "PORT"], HERE / "calls_c.txt", line)
 
 
-def _judged(command: list[str], calls: Path, line: str) -> Report:
-    """Judge a session; repeat it if the machine stood still, because then its times say nothing."""
+def _report(command: list[str], calls: Path, line: str) -> Report:
+    """Return the report on a session; repeat it if the machine stood still: its times are wrong."""
     return unstalled(partial(_session, command, calls, line), ALLOWED_STALL)
 
 

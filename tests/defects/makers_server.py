@@ -59,7 +59,7 @@ def _firmware() -> Iterator[str]:
 
 @contextmanager
 def _serving(port: str) -> Iterator[str]:
-    """Run the server in front of a port while the block runs."""
+    """Run the server between its clients and a port while the block runs."""
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         (folder / "Server_280.py").write_text(_source(), "utf-8")

@@ -28,7 +28,8 @@ CORRECT = {
 def report_on(subject: str, defect: str = "", line: str = "") -> Report:
     """Test a subject with a defect.
 
-    ``line`` is what the referee does to replies to a client, or in which way a subject is correct.
+    For a client, ``line`` names the fault of the referee's replies. For a subject without a defect
+    it names the correct variant.
     """
     if subject == "client":
         return report_on_client(defect, line)

@@ -11,13 +11,13 @@ from defects.arm import closed_loop, two_arms
 from defects.arm.planted import DEFECTS
 from defects.clients import report_on_client
 from defects.devices import report_on_arm, report_on_closed_loop, report_on_two_arms
-from defects.judging import Message, judge, messages_of
 from defects.key import HERE, SUBJECTS, Defect, defects
 from defects.listing import figures, line
+from defects.verdicts import Message, messages_of, verdict_on
 
 KEY = {(defect.subject, defect.switch): defect for defect in defects()}
-# One defect for each rule that alone finds a defect, and for each way to name a cause. Of wrong
-# bytes and wrong parts there is one; tests/mutation has a mutant of each kind of them.
+# One defect for each rule that alone finds a defect, and for each way to name a cause. For wrong
+# bytes and wrong parts there is one defect each; tests/mutation has a mutant of each kind.
 ARM = (
     *("reply-of-the-request-before", "echo", "replies-in-reverse", "settings-coupled"),
     *("stores-forbidden-values", "never-gives-up-half-a-request", "any-instead-of-all", "dies"),
@@ -32,8 +32,8 @@ CLIENTS = ("truncates", "takes-text-for-the-reply", "moves-after-release")
 
 @pytest.mark.parametrize("switch", ARM)
 def test_defect_of_the_arm_is_named(switch: str) -> None:
-    judgement = judge(KEY["arm", switch], messages_of(report_on_arm(switch)))
-    assert judgement.named, judgement.messages
+    verdict = verdict_on(KEY["arm", switch], messages_of(report_on_arm(switch)))
+    assert verdict.named, verdict.messages
 
 
 def test_correct_arm_conforms() -> None:
@@ -42,14 +42,14 @@ def test_correct_arm_conforms() -> None:
 
 @pytest.mark.parametrize("switch", closed_loop.DEFECTS)
 def test_defect_of_the_closed_loop_is_named(switch: str) -> None:
-    judgement = judge(KEY["closed_loop", switch], messages_of(report_on_closed_loop(switch)))
-    assert judgement.named, judgement.messages
+    verdict = verdict_on(KEY["closed_loop", switch], messages_of(report_on_closed_loop(switch)))
+    assert verdict.named, verdict.messages
 
 
 @pytest.mark.parametrize("switch", two_arms.DEFECTS)
 def test_defect_of_two_arms_is_named(switch: str) -> None:
-    judgement = judge(KEY["two_arms", switch], messages_of(report_on_two_arms(switch)))
-    assert judgement.named, judgement.messages
+    verdict = verdict_on(KEY["two_arms", switch], messages_of(report_on_two_arms(switch)))
+    assert verdict.named, verdict.messages
 
 
 def test_correct_two_arms_conform() -> None:
@@ -64,8 +64,8 @@ def test_correct_closed_loop_conforms(way: str) -> None:
 @pytest.mark.parametrize("switch", CLIENTS)
 def test_defect_of_the_client_is_named(switch: str) -> None:
     defect = KEY["client", switch]
-    judgement = judge(defect, messages_of(report_on_client(switch, defect.line)))
-    assert judgement.named, judgement.messages
+    verdict = verdict_on(defect, messages_of(report_on_client(switch, defect.line)))
+    assert verdict.named, verdict.messages
 
 
 @pytest.mark.parametrize("line", ["", "text", "late"])
@@ -116,21 +116,21 @@ def test_message_names_a_cause_by_command_and_every_word(
     command: str, text: str, named: bool
 ) -> None:
     message = Message("reply-frame", command, text)
-    assert judge(DEFECT, [message]).named == (message if named else None)
+    assert verdict_on(DEFECT, [message]).named == (message if named else None)
 
 
 def test_listing_counts_and_shows_each_defect() -> None:
     message = Message("reply-frame", "get_angles", "LEN is 0F")
-    judgements = [
-        judge(DEFECT, [Message("state-kept", "stop", "it moved"), message]),
-        judge(DEFECT._replace(words=("x",)), [message]),
-        judge(DEFECT, []),
+    verdicts = [
+        verdict_on(DEFECT, [Message("state-kept", "stop", "it moved"), message]),
+        verdict_on(DEFECT._replace(words=("x",)), [message]),
+        verdict_on(DEFECT, []),
     ]
-    _, arm, every = figures(judgements, {"arm": [message]})
+    _, arm, every = figures(verdicts, {"arm": [message]})
     assert arm.split("  ")[0] == SUBJECTS["arm"]
     assert arm.split()[-5:] == ["3", "2", "1", "1", "failures"]
     assert every.split() == ["all", "3", "2", "1"]
-    assert list(map(line, judgements)) == [
+    assert list(map(line, verdicts)) == [
         "named  arm x: it is wrong\n       reply-frame get_angles: LEN is 0F (+1)",
         "found  arm x: it is wrong\n       reply-frame get_angles: LEN is 0F",
         "MISSED arm x: it is wrong",

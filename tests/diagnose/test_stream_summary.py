@@ -100,7 +100,7 @@ def check(
     cut = data.draw(strategies.chunked(twice))
     expected = diagnosed(codec, listening, accept, twice)
     assert summarized(codec, listening, accept, cut) == expected
-    # Counts alone take another path: frames never leave the native code.
+    # Without lines of output another path is used: frames never leave the native code.
     assert summarized(codec, listening, accept, cut, lines=False)[1:] == expected[1:]
 
 
@@ -151,7 +151,7 @@ FOOTERS = [found for size in range(1, 4) for found in combinations(range(-2, 3),
 
 @pytest.mark.parametrize("footers", FOOTERS, ids=str)
 def test_survey_ends_damaged_frame_at_same_of_several_footers(footers: tuple[int, ...]) -> None:
-    # LEN is one less than that of a reply; the footers are near the end of an undamaged one.
+    # LEN is one less than in a reply; the footers are near the end of an undamaged reply.
     frame = bytearray(b"\xfe\xfe\x0d\x20" + bytes(range(0x81, 0x90)))
     for place in footers:
         frame[16 + place] = 0xFA

@@ -1,4 +1,4 @@
-"""Each page says for whom it is, and links to what it names."""
+"""Each page names its readers, and links to what it mentions."""
 
 from __future__ import annotations
 

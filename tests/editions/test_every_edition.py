@@ -1,7 +1,7 @@
 """Each further edition works everywhere: clients, simulator, recordings, columns.
 
-The two editions of the 280 have tests of their own for all of this. A further edition is stated as
-the difference from another one, so each of these tests takes it as a whole. The conformance of
+The two editions of the 280 have tests of their own for all of this. An edition may be stated as a
+difference from another one, so each of these tests checks whole editions. The conformance of
 simulated arms is in ``tests/conformance/device/test_every_edition.py``.
 """
 
@@ -49,7 +49,7 @@ UNKNOWN = {
 }
 
 POWERS = {"power_on", "set_robot_power_on", "focus_all_servos"}
-# With mode 0, no joint is held after power_on: then the motions that follow are a mistake.
+# With mode 0, no joint is held after power_on, so later motions would be a mistake.
 HOLDING = {"mode": 1}
 CODECS: tuple[codecs.CodecName, ...] = ("native", "reference")
 
@@ -137,8 +137,8 @@ def test_client_conforms(edition: str) -> None:
 def in_order(table: Table) -> list[tuple[Command, dict[str, Any]]]:
     """Return calls in an order in which a client makes no mistake.
 
-    Without power, a motion is one: what switches it off comes last. So is the same request twice:
-    the second name of a message comes after others.
+    A motion without power is a mistake, so commands that switch the power off come last. The same
+    request twice is one too, so the second name of a message comes after other requests.
     """
     known = list(calls(table))
     ids = [command.id for command, _ in known]

@@ -39,7 +39,8 @@ STEADY.query(GetServoData, lambda arm, now, request: REGISTER_READ)
 
 
 def steady_arm(received: list[DeviceEvent]) -> SimulatedArm:
-    """Return an arm with constant replies, so that only the line changes what a client reads.
+    """Return an arm with constant replies, so that only faults of the line change what a client
+    reads.
 
     The arm adds what it receives to ``received``.
     """

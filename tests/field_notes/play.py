@@ -1,4 +1,4 @@
-"""Make a case's calls with one client of any library, and judge how each call ends."""
+"""Make a case's calls with one client of any library, and return how each call ended."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from typing import Any, NamedTuple
 from both_ways import InLoop
 from cobotwire import CobotwireError
 from cobotwire.editions.mycobot280 import AsyncMyCobot280, MyCobot280
+from probe_client import ProbeClient
 from field_notes.case import DONE, Call, Case
 
 RIGHT, WRONG = "right", "wrong, silently"
@@ -50,6 +51,16 @@ def open_pymycobot(url: str) -> Any:
     return _opened(import_module("pymycobot"), url)
 
 
+def open_rust(url: str) -> Any:
+    """Open the blocking client of the Rust crate, in a process of its own."""
+    return ProbeClient(url, "mycobot280")
+
+
+def open_rust_async(url: str) -> Any:
+    """Open the async client of the Rust crate, in a process of its own."""
+    return ProbeClient(url, "mycobot280", tasks=True)
+
+
 def _opened(library: Any, url: str) -> Any:
     if url.startswith("socket://"):
         host, port = url.removeprefix("socket://").split(":")
@@ -62,6 +73,8 @@ AS_LIBRARY = {"layer", "pymycobot"}
 OPENERS: dict[str, Callable[[str], Any]] = {
     "blocking": open_blocking,
     "asyncio": open_asyncio,
+    "rust": open_rust,
+    "rust async": open_rust_async,
     "layer": open_layer,
     "pymycobot": open_pymycobot,
 }
@@ -123,10 +136,10 @@ def called(call: Call, arm: Any, options: bool) -> Outcome:
         )
     except Exception as error:
         return _failed(error)
-    return _judged(call, value)
+    return _outcome(call, value)
 
 
-def _judged(call: Call, value: Any) -> Outcome:
+def _outcome(call: Call, value: Any) -> Outcome:
     plain = list(value) if isinstance(value, tuple) else value
     if plain == call.right or call.right == DONE:
         return Outcome(RIGHT, repr(plain))

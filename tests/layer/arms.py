@@ -46,7 +46,7 @@ def made(
     """Return an arm of a class on a simulated robot in stepped time, and that robot.
 
     ``edition`` is the client's, and the robot's unless ``robot`` names another one. ``peer`` makes
-    what takes the robot's place on the line; ``options`` are those of the robot.
+    the peer that replaces the robot on the line; ``options`` are those of the robot.
     """
     kind = getattr(layer, name)
     native = load(edition).CLIENT if edition else kind.NATIVE

@@ -1,4 +1,5 @@
-"""What a program does with results and arms: the rewritten one does the same, or it is listed."""
+"""The rewritten program handles results and arms as the original one does, or the difference is
+listed."""
 
 from __future__ import annotations
 

@@ -28,7 +28,8 @@ def counted(outcomes: Sequence[Outcome]) -> Counts:
 
 
 def table(all_verdicts: Iterable[Verdicts]) -> str:
-    """Return a row for each edition: what each tester killed + what is excused, of all mutants."""
+    """Return a row for each edition: for each tester the killed and the excused mutants, of all
+    mutants."""
     rows: dict[str, dict[str, str]] = {"edition": {tester: tester for tester in TESTERS}}
     for suite, outcomes, _ in all_verdicts:
         rows.setdefault(suite.edition, {})[suite.tester] = str(counted(outcomes))

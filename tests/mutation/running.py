@@ -21,7 +21,7 @@ TESTERS: dict[str, Callable[[Table], Suite]] = {
     "client without a script": ScriptlessSuite,
     "codec": CodecSuite,
 }
-# Without a script, the referee judges only whether requests are legal: one edition shows that.
+# Without a script, the referee checks only whether requests are legal: one edition shows that.
 WITHOUT_SCRIPT = "mycobot280"
 # Mutants per task: few, so that all processes end at about the same time.
 CHUNK = 8
@@ -71,7 +71,7 @@ def run(
             if sample is not None:
                 rights = rights[:: max(1, len(rights) // 2)]
             right_runs = list(pool.map(_accepted, rights, chunksize=1))
-            yield Verdicts(key, list(pool.map(_judged, tasks, chunksize=CHUNK)), right_runs)
+            yield Verdicts(key, list(pool.map(_outcome, tasks, chunksize=CHUNK)), right_runs)
 
 
 def sampled(suite: Suite, most: int | None, seed: int) -> list[str]:
@@ -92,9 +92,9 @@ def made(key: Key) -> Suite:
     return TESTERS[key.tester](editions.load(key.edition).TABLE)
 
 
-def _judged(task: tuple[Key, str]) -> Outcome:
+def _outcome(task: tuple[Key, str]) -> Outcome:
     key, id = task
-    return made(key).judge(id)
+    return made(key).outcome(id)
 
 
 def _accepted(task: tuple[Key, str]) -> RightRun:

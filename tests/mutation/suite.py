@@ -45,7 +45,7 @@ class Suite:
         self.mutants = {mutant.id: mutant for mutant in every}
         assert len(self.mutants) == len(every), "ids are unique"
 
-    def judge(self, id: str) -> Outcome:
+    def outcome(self, id: str) -> Outcome:
         """Run the tester on a mutant; if it survives, let the oracle give the reason."""
         mutant = self.mutants[id]
         try:

@@ -44,7 +44,7 @@ def test_each_sampled_mutant_is_killed_or_excused(key: Key) -> None:
     suite = made(key)
     assert len(suite.mutants) >= least
     assert key.tester != "device" or {m.kind for m in suite.mutants.values()} == KINDS
-    assert missed(map(suite.judge, sampled(suite, sample, seed=7))) == []
+    assert missed(map(suite.outcome, sampled(suite, sample, seed=7))) == []
 
 
 @pytest.mark.parametrize(
@@ -55,19 +55,19 @@ def test_broken_device_of_each_other_edition_is_found(edition: str) -> None:
     # Each edition gets other commands.
     seed = Random(edition).randrange(1 << 32)
     chosen = [id for id in sampled(suite, 1, seed) if suite.mutants[id].kind in QUICK]
-    outcomes = [suite.judge(id) for id in chosen]
+    outcomes = [suite.outcome(id) for id in chosen]
     assert len(outcomes) == len(QUICK)
     assert [outcome for outcome in outcomes if not outcome.killed_by] == []
 
 
 @pytest.mark.parametrize("after", STIMULI)
 def test_setting_that_is_lost_after_malformed_bytes_is_named(after: str) -> None:
-    outcome = made(Key("device", "mycobot")).judge(f"state lost: set_speed: after {after}")
+    outcome = made(Key("device", "mycobot")).outcome(f"state lost: set_speed: after {after}")
     assert "state-kept: " in outcome.killed_by
     assert "get_speed() to stay" in outcome.killed_by
 
 
-# Numbers of a row that are set one by one, of a selector, and joints that are held one by one.
+# Numbers of a row that are set one by one; numbers of a selector; joints that are held one by one.
 @pytest.mark.parametrize(
     ("mutant", "killer"),
     [
@@ -81,16 +81,17 @@ def test_setting_that_is_lost_after_malformed_bytes_is_named(after: str) -> None
     ],
 )
 def test_wrong_part_of_what_a_command_sets_is_named(mutant: str, killer: str) -> None:
-    outcome = made(Key("device", "mercury_a1")).judge(mutant)
+    outcome = made(Key("device", "mercury_a1")).outcome(mutant)
     assert outcome.killed_by.startswith(killer)
 
 
-# Of unknown geometry; with a check value, events and fields of bytes; with addresses.
+# An edition of unknown geometry; one with a check value, events and fields of bytes; one with
+# addresses.
 @pytest.mark.parametrize("edition", ["mypalletizer260", "mercury_a1", "mybuddy"])
 def test_wrong_frame_of_another_edition_is_killed_or_excused(edition: str) -> None:
     suite = made(Key("device", edition))
     chosen = [id for id in sampled(suite, 1, seed=7) if suite.mutants[id].kind in FRAMING]
-    outcomes = [suite.judge(id) for id in chosen]
+    outcomes = [suite.outcome(id) for id in chosen]
     assert missed(outcomes) == []
     assert counted(outcomes).killed > len(outcomes) / 2
 
@@ -103,7 +104,7 @@ def test_correct_client_passes(tester: str) -> None:
         assert suite.failure(name) == ""
 
 
-# Of several devices; with events that are sent between replies, alone and with late replies.
+# An edition with several devices; one with events between replies, also together with late replies.
 @pytest.mark.parametrize("edition", ["mycobot", "mycobot280", "mybuddy", "mercury_a1", "pro630"])
 def test_broken_arm_without_a_fault_passes_as_correct(edition: str) -> None:
     assert not _differs(editions.load(edition).TABLE, Mutant("none", "", Fault), rounds=3)

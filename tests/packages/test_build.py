@@ -63,7 +63,7 @@ def test_source_distribution_has_the_page_or_the_build_says_that_it_lacks_it(
 
 
 def _fetched(clone: Path) -> None:
-    """Make the files that a fetch leaves; what they contain matters only to the page."""
+    """Make the files that a fetch writes; only the page needs their contents."""
     for package in front_end.PACKAGES:
         if package.shipped:
             stamp = clone / package.stamp.relative_to(ROOT)

@@ -1,7 +1,7 @@
 """What differs between the maker's classes and ours, and the rulings on it.
 
-``differences.txt`` has a section for each reason. A row of it rules differences that show the same:
-its methods, its parts, what it shows and its classes, separated by tabs.
+``differences.txt`` has a section for each reason. A row gives that reason to equal differences: its
+methods, their parts, the difference, and the classes, separated by tabs.
 """
 
 from __future__ import annotations
@@ -69,10 +69,10 @@ def unruled(name: str, found: Iterable[Difference]) -> list[str]:
 def stale(
     name: str, found: Collection[Difference], compared: Mapping[str, Collection[str]]
 ) -> list[str]:
-    """Return the rulings that nothing of a class needs any more.
+    """Return the rulings that no difference of a class needs any more.
 
     ``compared`` has the compared methods, by what was compared: ``values``, ``calls``, ``replies``.
-    Only if that is all three, rulings are found of which some methods were not compared.
+    If all three were compared, a ruling can be stale even if some of its methods were not compared.
     """
     left = []
     for ruling in rulings():
@@ -124,7 +124,7 @@ def relation(theirs: Any, ours: Any) -> str:
 
 
 def kind_of(result: Any) -> str:
-    """Return the type of a result and of its parts, in words; of lists in it, only that."""
+    """Return the type of a result and of its parts, in words; for lists inside it, only "list"."""
     if isinstance(result, list | tuple):
         parts = ["list" if isinstance(each, list) else kind_of(each) for each in result]
         counts = ", ".join(f"{parts.count(part)} {part}" for part in dict.fromkeys(parts))

@@ -1,7 +1,7 @@
 """Draw arguments from what the maker's library documents and checks, not from our ranges.
 
-Sources are the numbers of a method's docstring, those of the check that the library applies to a
-parameter, its table of limits, and the ends of what fits into bytes and words.
+Sources are the numbers in a method's docstring and in the library's check of a parameter, its table
+of limits, and the bounds of bytes and words.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from robots.robot import Call, Robot
 EDGES: tuple[int, ...] = (-32769, -32768, -129, -128, -1, 0, 1, 127, 128, 254, 255, 256)
 EDGES += (4095, 4096, 4097, 32767, 32768, 65535, 65536)
 OFF_STEP = (0.29, 12.37, -0.5)
-# Registers and pins are small numbers, of which the library often allows some.
+# Registers and pins are small numbers; the library often allows only some of them.
 SMALL = range(61)
 _LISTED = re.compile("address|data_id|pin")
 # How many calls of a method are varied at most, by replacing one argument.

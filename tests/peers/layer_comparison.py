@@ -46,7 +46,8 @@ class Recorded(MemoryTransport):
 
 
 class Called(NamedTuple):
-    """What a call wrote, and its result; ``rejected`` if it raised an error before it wrote."""
+    """The bytes that a call wrote, and its result; ``rejected`` if it raised an error before it
+    wrote."""
 
     written: bytes
     result: Any
@@ -116,7 +117,7 @@ def _call_ours(robot: Robot, call: Call, reply: bytes | None) -> Called:
     clock = SteppedClock(1000.0)
     transport = Recorded(_arm(robot, clock, reply), clock)
     layer = layer_on(class_of(robot).__name__, transport, load(robot.edition).CLIENT)
-    # What the constructor writes is not a part of the call, and neither is what it reads.
+    # Bytes that the constructor writes or reads are not part of the call.
     transport.written, layer._waits = b"", True
     start = clock()
     result = result_of_ours(layer, call)
@@ -148,7 +149,7 @@ def _arm(robot: Robot, clock: Any, reply: bytes | None) -> Any:
 
 
 class Compared(NamedTuple):
-    """What the calls of a class showed: how many were compared, and what differs."""
+    """The result for the calls of a class: how many were compared, and the differences."""
 
     compared: int
     methods: set[str]
@@ -199,7 +200,7 @@ def _frames(robot: Robot, theirs: bytes, ours: bytes) -> str:
 
 
 def _cut(robot: Robot, written: bytes) -> list[bytes]:
-    """Return the frames of what was written; a text after them counts as one."""
+    """Return the frames in the written bytes; a text after them counts as a frame."""
     frame, found = robot.table.frame, []
     while written.startswith(frame.header) and len(written) > frame.head_size:
         size = frame.read_length(written) + frame.overhead

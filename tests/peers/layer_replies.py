@@ -1,7 +1,7 @@
 """Compare what the maker's class and ours return for the same reply: type, shape and value.
 
-The replies are legal ones of the edition, values that the library documents, legal ones after the
-request's first argument, and data of every size that the library's parser distinguishes.
+The replies are legal replies of the edition, values that the library documents, legal replies that
+follow the request's first argument, and data of every size that the library's parser distinguishes.
 """
 
 from __future__ import annotations
@@ -57,7 +57,7 @@ _NUMBER = re.compile(r"-?\b\d+\b")
 
 
 class Reply(NamedTuple):
-    """A reply: its kind, which rulings refer to; its data; and the number if it is documented."""
+    """A reply: its kind, by which rulings name it; its data; and the number if it is documented."""
 
     kind: str
     data: bytes
@@ -72,7 +72,7 @@ def _tool_replies(request: bytes) -> list[bytes]:
     return [request[: at + 4] + word.to_bytes(2, "big") + b"\0\0" for word in (1, 0, 300)]
 
 
-# Replies in other protocols, by the command that relays them.
+# Replies in other protocols, by the command that forwards them.
 SENSOR, HEAD = b"\x01\x04", b"\xfe\xfe"
 DATA: dict[str, Any] = {
     "tool_serial_write_data": _tool_replies,
@@ -227,7 +227,7 @@ def _all_replies(robot: Robot, codec: Codec, call: Call) -> Iterator[Reply]:
     # What our class does with data of any size depends on the robot only.
     further = _distinguished() if not command.ack and robot.peer in ROBOTS else SMALLEST
     if command.name in DATA:
-        # The command relays data of any size.
+        # The command forwards data of any size.
         return
     for size in sorted(near | further):
         fillings = FILLINGS if size in sizes else FILLINGS[-1:]

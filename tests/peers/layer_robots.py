@@ -1,4 +1,5 @@
-"""The classes that the layer is compared with: those of ``robots``, and others of these robots."""
+"""The classes that the layer is compared with: the classes of ``robots``, and other classes of the
+same robots."""
 
 from __future__ import annotations
 
@@ -67,7 +68,7 @@ LAYER_ROBOTS: dict[str, Robot] = {**ROBOTS, **SAME_ROBOT}
 ALL_ROBOTS = {**LAYER_ROBOTS, **CLOSED_LOOP}
 # The classes that open a TCP connection.
 SOCKETS = [name for name in ALL_ROBOTS if name.endswith(("Socket", "Client"))]
-# Those of a robot that has a serial class, too, but one, which stands for all.
+# Classes of robots that also have a serial class. One of them is compared, as an example of all.
 TCP_TWINS = {name for name in SOCKETS if name not in ROBOTS} - {"MyCobot280Socket"}
 # It cannot be compared: each call of the maker's class fails.
 PALLETIZER = _another("MyPalletizer", "MyPalletizer260")

@@ -92,7 +92,8 @@ def _side(robot: Robot, theirs: bytes | str, ours: bytes | str) -> str:
 
 
 def _shown(side: str, values: list[Tried]) -> str:
-    """Return what differs: of a list, its size or its numbers; else also what ours sends."""
+    """Return the difference: for a list, its size or its numbers; otherwise also the value that
+    ours sends."""
     labels = {each.label for each in values if each.side == side}
     if any(isinstance(each, str) for each in labels):
         kinds = {"numbers" if "=" in each else each.strip("[]") for each in labels}

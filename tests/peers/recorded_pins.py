@@ -10,7 +10,7 @@ import pytest
 
 
 class Pins(ModuleType):
-    """Stands in for RPi.GPIO, which needs the hardware: it keeps what is called."""
+    """Replaces RPi.GPIO, which needs the hardware: it records the calls."""
 
     OUT, IN, BCM, LOW, HIGH = "out", "in", "bcm", 0, 1
 

@@ -182,8 +182,8 @@ def test_each_call_of_the_makers_palletizer_fails_and_ours_succeeds() -> None:
     assert len(calls) >= 40
     results = {name: call_ours(PALLETIZER, call).result for name, call in calls.items()}
     rejected = {name for name, result in results.items() if str(result).startswith(FAILURES)}
-    # No source gives the geometry, so the simulated arm does not reply to the first; the call of
-    # the second lacks the mode that this class wants.
+    # No source gives the geometry, so the simulated arm does not reply to the first call. The
+    # second call lacks the mode that this class needs.
     assert rejected == {"get_coords", "sync_send_coords"}
 
 

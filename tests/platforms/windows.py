@@ -1,6 +1,7 @@
 """Turn this process into one that lacks what Windows lacks, as far as our code can notice.
 
-Modules of the standard library, and pyserial, are imported before: they stay those of this system.
+Modules of the standard library, and pyserial, are imported earlier, so they keep the behaviour of
+this system.
 """
 
 from __future__ import annotations
@@ -60,7 +61,8 @@ _replace = os.replace
 
 
 def pretend(extras: Iterable[str] = ()) -> None:
-    """Remove what Windows lacks, and refuse what it refuses; first import ``extras``."""
+    """First import ``extras``. Then remove modules that Windows lacks, and reject calls that fail
+    there."""
     for name in (*THIRD_PARTY, *extras):
         importlib.import_module(name)
     sysconfig.get_config_vars()

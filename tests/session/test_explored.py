@@ -63,7 +63,7 @@ def _only_late(exchange: Exchange, now: float) -> PersistedState:
 _held_until, _find = OutstandingReplies.held_until, OutstandingReplies.find
 _outgoing, _persist = Exchange.outgoing, Exchange.persist
 _late, _request = OutstandingReplies, PendingRequest
-# A rule that is replaced: in which topic, with which requests and by which promise it is found.
+# A rule that is replaced, and the topic, the requests and the promise that find this.
 FAULTS: dict[str, tuple[str, str, str, Any, str, Any]] = {
     "not held": ("queries", "plain", "settled by", _late, "held_until", _no),
     "held for too long": ("queries", "plain", "held", _late, "held_until", _held_longer),

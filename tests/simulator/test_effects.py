@@ -1,4 +1,4 @@
-"""Effects of a spec on a simulated arm, where shipped editions do not reach."""
+"""Effects on a simulated arm that no shipped edition has, and rare cases of those that one has."""
 
 from __future__ import annotations
 

@@ -7,7 +7,7 @@ import pytest
 from cobotwire_codegen.load import Mapping, load
 from spec_mutants.campaign import Task, run, tasks
 from spec_mutants.nodes import changed
-from spec_mutants.spec_files import PATHS, files, judged
+from spec_mutants.spec_files import PATHS, files, verdict_on
 from spec_mutants.survivors import accepted
 
 # One for each statement, and for each edition; tests/codegen/bad_specs.yaml has one for each check.
@@ -72,7 +72,7 @@ def test_every_kind_of_fact_has_mutants(all_tasks: list[Task]) -> None:
 
 def test_spec_as_it_is_is_not_noticed() -> None:
     path = next(files("pro450"))
-    verdict = judged("pro450", path, load(path))
+    verdict = verdict_on("pro450", path, load(path))
     assert (verdict.killer, verdict.equal) == ("", True)
 
 

@@ -36,9 +36,9 @@ def _progress(done: int, total: int) -> None:
 
 def _report(results: list[Result], seconds: float) -> int:
     """Print kills per edition, and the survivors; return 1 if there are too many."""
-    judged = [(task, verdict) for task, verdict in results if not verdict.equal]
+    differing = [(task, verdict) for task, verdict in results if not verdict.equal]
     total, killed, listed = Counter[str](), Counter[str](), Counter[str]()
-    for task, verdict in judged:
+    for task, verdict in differing:
         total[task.edition] += 1
         killed[task.edition] += bool(verdict.killer)
         if not verdict.killer:
@@ -51,7 +51,7 @@ def _report(results: list[Result], seconds: float) -> int:
         print(f"{name:17} {total[name]:7} {killed[name]:7} {listed[name]:12} {share:12.1%}")
     print(
         f"{killed.total()} of {total.total()} mutants killed, {listed.total()} unconfirmed; "
-        f"{len(results) - len(judged)} more leave the edition as it is; {seconds:.0f} s"
+        f"{len(results) - len(differing)} more leave the edition as it is; {seconds:.0f} s"
     )
     return int(min(shares.values(), default=1) < LEAST)
 

@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 from cobotwire_codegen.load import Node, load
 from spec_mutants.mutants import Mutant, mutants_of
-from spec_mutants.spec_files import PATHS, ROOT, Verdict, built, files, judged
+from spec_mutants.spec_files import PATHS, ROOT, Verdict, built, files, verdict_on
 
 
 class Task(NamedTuple):
@@ -52,7 +52,7 @@ def tasks() -> Iterator[Task]:
 def run(task: Task) -> Result:
     """Return what notices a mutant."""
     root, mutants = _mutants(task.edition, task.file)
-    return task, judged(task.edition, task.file, mutants[task.number].applied(root))
+    return task, verdict_on(task.edition, task.file, mutants[task.number].applied(root))
 
 
 def run_all(

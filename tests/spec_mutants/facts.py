@@ -42,7 +42,7 @@ EVIDENCE = {language.Dispute, language.Evidence}
 
 
 class Fact(NamedTuple):
-    """A node that states a fact: where it is, what kind it is, and whether it can be left out."""
+    """A node that states a fact: its place, its kind, and whether it is optional."""
 
     path: Path
     kind: str

@@ -207,7 +207,7 @@ def _near(given: str, names: list[str]) -> list[str]:
 
 
 def _states(node: Node, edition: Edition) -> Wrong:
-    """Yield what is reported or stored with another state: a neighbour, or one of its type."""
+    """Yield effects that report or store another state: a neighbour, or one of the same type."""
     if isinstance(node, Mapping):
         for name, inner in node.entries.items():
             for what, wrong in _states(inner, edition):

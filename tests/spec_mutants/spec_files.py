@@ -76,7 +76,7 @@ def _without_prose(value: object) -> object:
     return [_without_prose(item) for item in value] if isinstance(value, list) else value
 
 
-def judged(edition: str, path: Path, node: Node) -> Verdict:
+def verdict_on(edition: str, path: Path, node: Node) -> Verdict:
     """Return what notices that a file of an edition has other content."""
     equal = True
     for name in {edition: 0, **dict.fromkeys(_users(path))}:

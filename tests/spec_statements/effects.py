@@ -1,8 +1,8 @@
 """States what commands do by the names and words with which they are described.
 
 An effect is written in a line, such as ``stores pins at pin``: the verb, what it is about, ``at``
-with the arguments that choose an index, and the other keys. Names of state are this project's own,
-but that of a setter and its query follows from their names. What a state is like follows from the
+with the arguments that choose an index, and the other keys. This project chose the names of state.
+The state of a setter and its query follows from their names. What a state is like follows from the
 fields that report and set it.
 """
 
@@ -77,7 +77,7 @@ SAYS: dict[str, str] = {
     "read": r"get|reads",
     "written": r"set|writes",
 }
-# Commands with words that name other state as well: what they are about.
+# Commands whose words also name other state: the state that they are about.
 ABOUT = (
     (r"power_on", "powered held free connected"),
     (r"get_robot_power_status", "powered"),
@@ -108,7 +108,8 @@ ABOUT_ITS_OWN = {
 
 
 def named(edition: Edition) -> Iterator[str]:
-    """Report state that neither the name nor the words of a command name, or another one better."""
+    """Report state that neither the name nor the words of a command mention, or that fits another
+    name better."""
     states = [*BUILT_IN, *(state.name for state in edition.states)]
     for command in edition.commands:
         effect = command.effect

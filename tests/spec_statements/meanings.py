@@ -91,8 +91,8 @@ ROLES = (
 )
 # The maker's page prints it, the library lacks it: nothing should rely on it.
 WITHOUT_ROLE = {("myarm_c650", "is_power_on")}
-# A command, the query that reads it back, and what the query then reports (None: fields of the same
-# names).
+# A command, the query that reads it back, and the values that the query must report (None: fields
+# of the same names).
 READ_BY: tuple[tuple[str, str, tuple[tuple[str, str | int], ...] | None], ...] = (
     (r"power_on", "is_power_on", (("powered", 1),)),
     (r"power_off", "is_power_on", (("powered", 0),)),
@@ -179,7 +179,7 @@ def roles(edition: Edition) -> Iterator[str]:
 
 
 def read_back(edition: Edition) -> Iterator[str]:
-    """Report setters that another query reads back than the one that their name tells."""
+    """Report setters that are read back by another query than their name suggests."""
     known = {command.name for command in edition.commands}
     names = (edition.name, *edition.bases)
     rows = [row for name in names for row in READ_BY_OF.get(name, ())]

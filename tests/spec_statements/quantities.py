@@ -129,8 +129,8 @@ def flags(edition: Edition) -> Iterator[str]:
 def uniform(edition: Edition) -> Iterator[str]:
     """Report a part with another type than the parts beside it, or a number that is missing.
 
-    Joints, servos and fingers count from 1. Only a type with its number or letter in its name is
-    for one of them.
+    Joints, servos and fingers count from 1. Only a type with a number or letter in its name is for
+    a single joint or axis.
     """
     for type in edition.types:
         rows: dict[str, list[tuple[str, str]]] = {}

@@ -45,8 +45,8 @@ SECONDS_A_TIME = 2.5
 NOISE_EVERY = 100
 NOISE = b"ets Jun  8 2016 00:22:57\r\n"
 REPORTS = 8
-# The first part fills what is bounded. After it, this much more is noise of the measurement: a
-# batch for a page that was slow, which has up to 3 MB, exists several times at once.
+# The first part fills what is bounded. After that, growth up to this size is noise: a batch for a
+# slow page has up to 3 MB, and exists several times at once.
 FILLED = 3
 GROWTH, BATCHES_MB = 1.15, 10.0
 

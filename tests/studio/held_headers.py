@@ -20,7 +20,7 @@ WAYS = {
     "a request, then half a header": b"GET /icon.svg HTTP/1.1\r\nHost: 127.0.0.1:PORT\r\n\r\nGET /",
     "half a WebSocket": b"GET /api/feed HTTP/1.1\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n",
 }
-# Within which an open page stops the arm, and a new one does so.
+# The limits for a stop: of a page that is open, and of a new one.
 OPEN_SECONDS, NEW_SECONDS = 2.0, 5.0
 
 
@@ -29,13 +29,13 @@ def holding(studio: Studio, count: int, way: str) -> Iterator[None]:
     """Hold as many connections; open another one for each that the server closes."""
     sent = WAYS[way].replace(b"PORT", str(studio.port).encode())
     held: list[socket.socket] = []
-    over = threading.Event()
+    ended = threading.Event()
 
     def hold() -> None:
-        while not over.is_set():
+        while not ended.is_set():
             held[:] = [each for each in held if not _ended(each)]
             held.extend(_opened(studio, sent) for _ in range(count - len(held)))
-            over.wait(0.5)
+            ended.wait(0.5)
 
     held.extend(_opened(studio, sent) for _ in range(count))
     thread = threading.Thread(target=hold)
@@ -43,7 +43,7 @@ def holding(studio: Studio, count: int, way: str) -> Iterator[None]:
     try:
         yield
     finally:
-        over.set()
+        ended.set()
         thread.join()
         for each in held:
             each.close()

@@ -124,7 +124,7 @@ def test_arm_follows_a_drag_if_the_user_says_so(opened: Page) -> None:
 
 @pytest.mark.parametrize("by", ["mouse", "touch", "arrow key", "Enter"])
 def test_jog_moves_while_it_is_held_and_release_stops(opened: Page, by: str) -> None:
-    # So slowly that the joint is far from its limit also on a busy machine.
+    # The speed is so low that the joint stays far from its limit even on a busy machine.
     opened.choose("speed-of-motion", "10")
     x, y = opened.middle(JOG.format(3, 2))
     hands: dict[str, tuple[Callable[[], None], Callable[[], None]]] = {

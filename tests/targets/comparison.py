@@ -19,15 +19,15 @@ class Comparison(NamedTuple):
 
 
 def compared(
-    document: dict[str, Any], judges: Mapping[str, Callable[[dict[str, Any]], Iterable[str]]]
+    document: dict[str, Any], comparers: Mapping[str, Callable[[dict[str, Any]], Iterable[str]]]
 ) -> Comparison:
-    """Compare the records of a document by its parts; a judge yields the differences of one."""
-    records = {part: document.get(part, []) for part in judges}
+    """Compare the records of a document by its parts; a comparer yields the differences of one."""
+    records = {part: document.get(part, []) for part in comparers}
     differences = [
         f"{part}: {record.get('name', record.get('command'))}: {difference}"
-        for part, judge in judges.items()
+        for part, compare in comparers.items()
         for record in records[part]
-        for difference in judge(record)
+        for difference in compare(record)
     ]
     fields = sum(len(f["raw"]) for record in document["messages"] for f in record["fields"])
     refused = sum(len(records.get(part, ())) for part in ("rejected", "malformed"))

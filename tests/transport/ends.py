@@ -47,7 +47,7 @@ class PtyEnd:
         return os.read(self._master, size) if ready else b""
 
     def drain(self) -> bytes:
-        """Return all that was written, when no more comes."""
+        """Wait until nothing more comes; return everything that was written."""
         return b"".join(iter(lambda: self.poll(0.2), b""))
 
     def unplug(self) -> None:
@@ -83,7 +83,7 @@ class TcpEnd:
         return received
 
     def poll(self, seconds: float) -> bytes:
-        """Return what comes within some seconds, of the first client that connects."""
+        """Return what the first client that connects sends within some seconds."""
         with suppress(TimeoutError, ConnectionResetError):
             if self._peer is None:
                 self._server.settimeout(seconds)

@@ -1,4 +1,4 @@
-"""A forked child cannot use the transports of its parent; closing them there does not affect it."""
+"""A forked child cannot use its parent's transports; if it closes them, the parent keeps them."""
 
 from __future__ import annotations
 

@@ -25,7 +25,8 @@ user: ContextVar[int] = ContextVar("user")
 
 
 class Ends:
-    """Pairs of sockets whose one ends a loop reads; ``received`` has what came, by number."""
+    """Pairs of sockets; a loop reads one end of each. ``received`` has the received bytes by
+    number."""
 
     def __init__(self, count: int = MANY) -> None:
         self.readers = LoopReaders(asyncio.get_running_loop())

@@ -11,25 +11,25 @@ from hypothesis import strategies as st
 from serial.tools import list_ports
 
 from cobotwire.transport.serial.chips import CHIPS, Chip
-from cobotwire.transport.serial.ports import judge, ports
+from cobotwire.transport.serial.ports import ports, recognise
 
 
 @pytest.mark.parametrize("chip", CHIPS)
 def test_known_usb_chip_is_likely_under_any_port_name(chip: Chip) -> None:
     for device in ("/dev/ttyUSB0", "/dev/cu.usbserial-1", "COM3"):
-        assert judge(device, chip.usb) == (True, chip.name)
+        assert recognise(device, chip.usb) == (True, chip.name)
 
 
 @pytest.mark.parametrize("device", ["/dev/ttyAMA0", "/dev/ttyTHS1"])
 def test_built_in_port_of_a_board_in_the_base_is_likely(device: str) -> None:
-    likely, why = judge(device, "")
+    likely, why = recognise(device, "")
     assert likely
     assert "built-in port" in why
 
 
 @given(st.text(), st.text())
 def test_every_port_has_a_reason(device: str, usb: str) -> None:
-    likely, why = judge(device, usb)
+    likely, why = recognise(device, usb)
     assert why
     assert likely or usb not in {chip.usb for chip in CHIPS}
 

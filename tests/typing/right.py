@@ -97,7 +97,7 @@ class GuardedArm(MyArm300):
 
 
 class GuardedAsyncArm(AsyncMyArm300):
-    """The same for asyncio."""
+    """The same calls on asyncio."""
 
     async def is_paused(self) -> bool:
         """Check twice."""

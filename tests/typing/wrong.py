@@ -57,7 +57,7 @@ async def drive_delta_async(arm: AsyncMyArm300) -> None:
 
 
 def find(port: str) -> None:
-    """Use what only some editions have, and take a client for that of one edition."""
+    """Use methods that only some editions have, and assume the client of one edition."""
     arm = cobotwire.connect(port)
     arm.get_atom_version()  # wrong
     one: MyCobot = arm  # wrong

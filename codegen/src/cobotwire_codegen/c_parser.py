@@ -1,8 +1,8 @@
 """Parses plain YAML in C, which is faster; the parser in Python decides everything else.
 
-The C parser is optional. It follows YAML 1.1 and has other messages, so its result counts only for
-text that both parsers read alike: one document without directives, anchors, aliases, tags and
-mistakes, that is a mapping or a list, and in which no value is left out or empty without quotes.
+The C parser is optional. It follows YAML 1.1 and has other messages. So its result is used only for
+text that both parsers read alike: one document that is a mapping or a list, without mistakes,
+directives, anchors, aliases, tags, and empty values without quotes.
 ``tests/codegen/test_c_parser.py`` compares both parsers.
 """
 
@@ -34,12 +34,12 @@ try:
 except ImportError:
     c_library = None
 
-# What the C parser reads otherwise: tabs, byte order marks, line breaks of YAML 1.1, a comment
-# right after | or >.
+# Text that the C parser reads differently: tabs, byte order marks, line breaks of YAML 1.1, a
+# comment right after | or >.
 _READ_OTHERWISE = re.compile(r"[\t\ufeff\x85\u2028\u2029]|[|>][-+0-9]*#")
 _RESOLVER = YAML(typ="safe", pure=True).resolver
 _TAG = "tag:yaml.org,2002:"
-# Shared by nodes: a tag remembers its text, which it makes letter by letter.
+# Nodes share these tags: a tag caches its text, which takes long to make.
 _SEQUENCE, _MAPPING = Tag(suffix=f"{_TAG}seq"), Tag(suffix=f"{_TAG}map")
 
 

@@ -34,7 +34,7 @@ SOURCES = {
     "capture": "a public capture of an arm shows it",
     "survey": "an owner's survey, or conformance report, shows it",
 }
-# What only an arm can show: no page or library states it as bytes.
+# Aspects that only an arm can show: no page or library states them as bytes.
 ON_AN_ARM = ("effect", "agreement", "deadline")
 Confirmed = Mapping[str, frozenset[str]]
 
@@ -96,7 +96,7 @@ def _aspects(field: Field) -> Iterator[str]:
 
 
 class Sources(NamedTuple):
-    """What confirms facts besides arms: commands of the maker's library, facts of its pages."""
+    """Sources of facts besides arms: commands of the maker's library, facts of its pages."""
 
     library: frozenset[str] = frozenset()
     pages: frozenset[str] = frozenset()

@@ -25,9 +25,9 @@ Plain = str | int | bool | Fraction | None
 _TAG = "tag:yaml.org,2002:"
 _EXPONENT = re.compile(r"[eE]([+-]?\d+)")
 
-# The limits of one file, and of all files of an edition and its bases together: many times what
-# the largest spec needs. Aliases count as often as they are used, and so do files, since every use
-# is read.
+# The limits of one file, and of all files of an edition and its bases together. The largest spec
+# needs a small part of them. Aliases count as often as they are used, and so do files, since every
+# use is read.
 MOST_BYTES = 2 * 1024 * 1024
 MOST_NODES = 200_000
 MOST_BYTES_TOGETHER = 2 * MOST_BYTES
@@ -40,7 +40,8 @@ LONGEST_NUMBER = 100
 class Scalar:
     """A text, number, truth value or nothing. Decimal numbers are kept exact.
 
-    ``text`` is a number as it is written: ``0x55`` is 85, but as bytes it is neither 85 nor 55.
+    ``text`` is a number as written: the number ``0x55`` is 85, but where bytes are expected it is
+    an error.
     """
 
     place: Place

@@ -28,6 +28,7 @@ from cobotwire_codegen.render.unit_module import render_clients, render_units
 from cobotwire_codegen.suite_pages import suite_pages
 from cobotwire_codegen.targets.c import render_c
 from cobotwire_codegen.targets.decoder import render_decoder
+from cobotwire_codegen.targets.rust import render_every_rust
 from cobotwire_codegen.targets.vectors import render_shared_vectors
 from cobotwire_codegen.targets.wireshark import render_wireshark
 
@@ -92,7 +93,7 @@ def committed(root: Path, found: list[Edition]) -> list[Target]:
         folder = root / "python" / "cobotwire" / "pymycobot"
         made.append(Target(folder, render_library(library), alone=False))
     made += _servo_bus(root)
-    units = {PurePosixPath("units.py"): render_units()}
+    units = {PurePosixPath("units.json"): render_units()}
     made.append(Target(root / "python" / "cobotwire" / "protocol", units, alone=False))
     return made
 
@@ -106,8 +107,8 @@ def _library(root: Path, found: Sequence[Edition]) -> Library | None:
 def second_sources(root: Path, found: Sequence[Edition]) -> dict[str, Sources]:
     """Return what the maker's library and pages confirm of each edition.
 
-    Of a command that an edition has as its base has it, they confirm what they confirm there; so
-    does the library, unless it has a class for the edition.
+    If an edition has a command unchanged from its base, they confirm the same facts as there. So
+    does the library, unless it has its own class for the edition.
     """
     library, pages = _in_library(root, found), root / "spec" / "public_pages.txt"
     stated = facts_of_pages(pages.read_text(encoding="utf-8")) if pages.is_file() else {}
@@ -195,7 +196,9 @@ def _robots(root: Path, found: Sequence[Edition]) -> Files:
     return robot_pages([(each, confirmed(each, sources[each.name])) for each in found])
 
 
+# What the crates of this project need to be tested.
 RUST_DATA = "rust/core/tests/data"
+RUST_EDITIONS = "rust/client/src/editions"
 REFERENCE = "docs/reference"
 ROBOTS = "docs/robots"
 # What docs/conf.py writes before it builds the site.
@@ -206,6 +209,7 @@ PRODUCTS: dict[str, Callable[[Path, Sequence[Edition]], Files]] = {
     ROBOTS: _robots,
     "docs/_static/decoder/editions": lambda _, found: render_decoder(found),
     RUST_DATA: lambda _, found: _every_vectors(found),
+    RUST_EDITIONS: lambda _, found: render_every_rust(found),
     "targets/c": lambda _, found: _every_c(found),
     "targets/vectors": lambda _, found: render_shared_vectors(found),
     "targets/wireshark": lambda _, found: render_wireshark(found),

@@ -1,4 +1,4 @@
-"""Explains the mistakes of YAML files in our words: what is wrong, where, and what to do."""
+"""Explains mistakes in YAML files: what is wrong, where, and what to do."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ Spot = tuple[int, int]
 
 @dataclass(frozen=True, slots=True)
 class Mistake:
-    """What the YAML library reports: its two texts, where a construct begins, where it fails."""
+    """A report of the YAML library: two texts, where a construct begins, and where it fails."""
 
     context: str
     problem: str
@@ -29,7 +29,7 @@ def explained(mistake: Mistake, quote: tuple[Spot, Spot] | None) -> tuple[Spot, 
     """Return the place to look at, and what is wrong there.
 
     ``quote`` is the start and end of a quoted text of several lines that ends right before the
-    mistake: then probably its first quote was never closed.
+    mistake. Probably the first quote of that text was never closed.
     """
     began, failed = mistake.began, mistake.failed or mistake.began or (0, 0)
     if "quoted scalar" in mistake.context and "end of stream" in mistake.problem and began:

@@ -274,8 +274,8 @@
   }
 
   Object.assign(cobotwire, {
-    // `source` is this code after that of values.js, for a worker: a page that is a file may not load
-    // another file into one.
+    // `source` is this code, with values.js before it, for a worker: a page that is opened as a file may not load
+    // another file into a worker.
     Law, Rejection, hex, parse, source: `${cobotwire.source}"use strict";(${law})();`,
   });
 })();

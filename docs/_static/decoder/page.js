@@ -20,7 +20,8 @@
   const UNITS = { degree: "°", degree_celsius: " °C", millimetre: " mm", percent: " %", volt: " V",
     milliampere: " mA", hertz: " Hz", step_per_second: " steps/s", tick: " ticks" };
 
-  // Of a long input, this much is shown at first: events, and bytes of each; "more" shows as many again.
+  // The number of events of a long input that are shown at first, and of bytes of each event; "more" shows as many
+  // again.
   const EVENTS = 200;
   const BYTES = 1024;
   // A longer input is not kept in the address, which browsers limit.

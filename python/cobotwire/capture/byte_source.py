@@ -129,7 +129,7 @@ def _read(
     if found.notice and format is None:
         notify(found.notice)
     if found.recording and found.reader is None and size is not None:
-        # A file on a disk is read faster without the blocks between.
+        # A recording that is a plain file is read faster directly than in blocks.
         stored.close()
         return read(name)
     if found.recording:

@@ -37,7 +37,7 @@ def open_capture(
         raise unusable_file("capture", path, error) from None
     name = str(path)
     try:
-        # A pipe is not read before the packets are.
+        # A pipe cannot go back to its start, so its format is not detected.
         if not file.seekable():
             return file
         compression = compression_of(file.peek(MAGIC)[:MAGIC])
@@ -67,7 +67,7 @@ def _recognised(
     ports: Sequence[int],
     missing: list[str],
 ) -> Recognised | None:
-    """Return the contents of a file; None if reading it as a recording says what is wrong."""
+    """Return the contents of a file; None if the reader of recordings is to report the error."""
     try:
         return recognise(blocks, name, format, ports, missing)
     except (UnreadableInput, CaptureError):

@@ -27,7 +27,7 @@ from cobotwire.protocol.errors import CaptureError
 
 # A file, or its contents.
 Source = str | os.PathLike[str] | Data
-# One codec for all interfaces, or a function that returns that of an interface's edition.
+# One codec for all interfaces, or a function that returns the codec of an interface's edition.
 Codecs = Codec | Callable[[Interface], Codec]
 
 PIECE = 1 << 22
@@ -43,13 +43,16 @@ class ColumnsReader(Protocol):
     def feed(self, data: Data) -> CapturedColumns:
         """Take the next bytes of the file; return what became certain since the last call.
 
-        Damage raises nothing: this batch and all later ones have it as their ``error``, and later
-        bytes are ignored.
+        Damage raises no exception: this batch and all later ones have it as their ``error``, and
+        later bytes are ignored.
         """
         ...
 
     def add(self, data: Data) -> None:
-        """Take the next bytes of the file; the next call of the others returns what is certain."""
+        """Take the next bytes of the file.
+
+        The next call of another method returns what is certain.
+        """
         ...
 
     def finish(self) -> CapturedColumns:
@@ -161,7 +164,7 @@ class Pieces:
     Attributes:
         name: the name of the file, for messages.
         error: why the file cannot be decompressed to its end; None if nothing is wrong so far.
-        origin: what a file that is no plain recording was read from; None for other sources.
+        origin: how a compressed file or a file of another program was read; None for other sources.
     """
 
     def __init__(self, source: Source, size: int) -> None:

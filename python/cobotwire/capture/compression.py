@@ -18,7 +18,7 @@ _SLICES: dict[Compression, int] = {"gzip": 1 << 12, "zstd": 1 << 9}
 # The longest distance that zstd may refer back to, as a power of two: what its own tool allows.
 # The decompressor keeps as many bytes.
 _WINDOW = 27
-# What is wrong with compressed data that ends too early, after the name of the file.
+# The error of compressed data that ends too early; it follows the name of the file.
 CUT_OFF = "has compressed data that is cut off"
 
 

@@ -90,7 +90,8 @@ def cut(
     the statistics at the end, which describe the whole recording.
 
     Returns:
-        How many packets are ``kept``, and how many are not: by reason; and what the source lacks.
+        The number of packets that are ``kept``, the number that are not, by reason, and what the
+        source lacks.
 
     Raises:
         CaptureError: the source is damaged.
@@ -208,8 +209,8 @@ def merge(
 ) -> tuple[list[MergedInterface], list[str]]:
     """Write several recordings into one section, by the times of their packets.
 
-    Each interface of each recording becomes an interface of its own. The packets of a recording
-    keep their order, which is that of its streams, also where their times decrease.
+    Each interface of each recording becomes an interface of its own. The packets of one recording
+    keep their order, even where their times decrease: it is the order of the streams.
 
     Returns:
         The interfaces of the merged file, by their numbers; what the sources lack.
@@ -315,7 +316,7 @@ class Repair:
         self._last: list[int | None] = []
 
     def lose(self, begin: int, end: int, why: str) -> None:
-        """Count a range of bytes; adjacent ones that are lost for one reason are one range."""
+        """Count a range of lost bytes; adjacent ranges with the same reason are one range."""
         self.lost_bytes += end - begin
         last = self.losses[-1] if self.losses else None
         if last is not None and (last.end, last.why) == (begin, why):
@@ -342,7 +343,8 @@ class Repair:
             self.packets += 1
             self._last[index] = max(stamp, self._last[index] or 0)
         elif block.kind == blocks.INTERFACE:
-            # What is lost may have been an interface: then this one would get its number.
+            # The lost blocks may have described an interface: then this interface would get its
+            # number.
             if self.lost_bytes > self._lost_before:
                 raise damaged(name, block.offset, "interface-lost")
             self._parser.take(block.parsed)
@@ -371,8 +373,7 @@ def repair(
 ) -> Repair:
     """Write the whole blocks of a recording, and mark the recording as finished.
 
-    A recording that is whole is copied. Only those of cobotwire are marked: other programs need not
-    write a mark.
+    A recording that is whole is copied. Only recordings of cobotwire are marked as finished.
     """
     done = Repair()
     with (

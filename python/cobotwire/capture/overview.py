@@ -81,7 +81,8 @@ class Overview:
         interfaces: the ports that it describes.
         streams: each direction of each interface.
         messages: the messages by interface and label, such as ``get_angles.reply``.
-        rejected: frames with a value that the edition does not allow; they are in no message.
+        rejected: frames with a value that the edition does not allow; they are not among the
+            messages.
         times: those of the messages, rejected frames and noise; None for an empty recording.
         gaps: the longest pauses, longest first.
         gap_count, gap_ns: the number of all pauses, and their sum.

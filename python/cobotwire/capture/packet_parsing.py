@@ -13,9 +13,9 @@ DIRECTIONS: tuple[Direction, ...] = ("unknown", "received", "sent", "unknown")
 MICROSECONDS = 6
 # Files of other applications hold raw chunks; ours hold frames and noise.
 OURS = "cobotwire"
-# What the application of a recording without times ends with; its packets all have the time 0.
+# The end of the application's name in a recording without times. All its packets have the time 0.
 UNTIMED = " (no times)"
-# The same of one with times that are counted from some start: they have no date.
+# The same in a recording whose times count from an unknown start, so that they have no date.
 UNDATED = " (no dates)"
 
 

@@ -21,8 +21,8 @@ def merge(files: tuple[str, ...], output: str, overwrite: bool) -> None:
     """Write the recordings FILE... into OUT, by the times of their packets.
 
     Each interface of each FILE becomes an interface of OUT, with its own name and edition. The
-    times do not change: they are those of the clock of the computer that recorded, so the order of
-    packets from different computers is only as good as their clocks agree.
+    times do not change. Packets from different computers are in the right order only if the clocks
+    of the computers agreed.
 
     \b
       cobotwire capture merge left.pcapng right.pcapng -o both.pcapng

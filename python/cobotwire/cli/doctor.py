@@ -75,7 +75,7 @@ def doctor(
 
 
 def _lines(report: Report) -> list[str]:
-    # A port that was never open says nothing about an edition; its error says what to do.
+    # If the port was never open, the edition is unknown, and the error says what to do.
     lines = [f"{report.url}: edition {report.edition}"] if report.kind else []
     width = max(map(len, report.values), default=0)
     lines += [f"  {name:<{width}} {format_result(value)}" for name, value in report.values.items()]

@@ -27,7 +27,8 @@ from cobotwire.inspect.monitor import FollowingMonitor, monitored
 from cobotwire.protocol.errors import UsageError
 from cobotwire.protocol.json_values import as_json_value
 
-# The width of a number with its name and the space after it; of borders, less the last such space.
+# The width of a number with its name and the space after it; and the width of the borders, minus
+# one such space.
 NUMBER_COLUMNS, BORDER_COLUMNS = 13, 5
 
 
@@ -51,8 +52,8 @@ def monitor(
 ) -> None:
     """Show joints and coordinates of the arm at URL, the sample rate, errors and noise.
 
-    With follow:FILE, nothing is sent: the values are those that another program queries, which
-    records them to FILE, such as cobotwire tap.
+    With follow:FILE, nothing is sent. The values come from a recording that another program, such
+    as cobotwire tap, is writing.
 
     Only queries are sent. A query without a reply in time is repeated, and each repeat counts as a
     request. The reply to an unanswered request may still come: then it is late. On a terminal the

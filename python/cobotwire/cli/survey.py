@@ -167,13 +167,16 @@ def _run(
 
 
 class _Tap:
-    """Records what passes; while it is to be hidden, received bytes are replaced by their hash."""
+    """Records all traffic.
+
+    While the traffic is private, received bytes are replaced by their hash.
+    """
 
     def __init__(self, recording: Recording) -> None:
         self.recording, self._hidden = recording, False
 
     def hide(self, hidden: bool) -> None:
-        """Begin or end to hide what is received."""
+        """Start or stop replacing received bytes by their hash."""
         self._hidden = hidden
 
     def __call__(self, direction: Literal["sent", "received"], data: bytes, at: float) -> None:

@@ -184,7 +184,7 @@ class _Show:
             if not self._ended:
                 self.lines.print(line)
         except OSError as error:
-            # The recording goes on: the output may be a file on another disk, which is full.
+            # The recording continues: only the disk of the output may be full.
             self._ended = True
             click.echo(f"cobotwire: the output ends here: {error}", err=True)
 

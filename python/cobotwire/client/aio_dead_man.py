@@ -15,7 +15,7 @@ from cobotwire.protocol.errors import CobotwireError
 class AsyncDeadMan:
     """Sends ``stop`` once when :meth:`alive` was not called for some seconds.
 
-    It is :class:`cobotwire.DeadMan` for asyncio, with ``async with``; a task of it watches.
+    It is :class:`cobotwire.DeadMan` for asyncio, with ``async with``; a task watches the time.
 
     Attributes:
         stops: how often the arm was stopped.

@@ -49,7 +49,7 @@ class AsyncFollowingClient(AsyncClient):
 
         Args:
             path: a sequence of targets or of :class:`Waypoint`, which are passed on a smooth curve;
-                or a live source: an iterator at any rate, of which the newest target counts, or a
+                or a live source. A live source is an iterator, whose newest target counts, or a
                 function that returns the newest target, or None, until it raises StopIteration.
             speed: percent of the fastest, which no joint exceeds.
             rate: setpoints a second; default: 50. No more are sent than the line and the arm take,
@@ -57,8 +57,8 @@ class AsyncFollowingClient(AsyncClient):
             coords: whether targets are coordinates of the flange in the frame of the base: it moves
                 on straight lines, with rounded corners.
             limits: how fast joints may move and speed up; default: what the edition states.
-            silence: a live source that brings no target for that many seconds ends the motion with
-                an error; None: it may be silent.
+            silence: if a live source yields no target for that many seconds, the motion ends with
+                an error; None: never.
             timeout: seconds to wait at most for the arm after the last setpoint.
 
         Returns:

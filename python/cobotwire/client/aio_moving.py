@@ -202,7 +202,8 @@ class AsyncMovingClient(AsyncFollowingClient):
             return
         except MotionTimeout as error:
             if error.stopped:
-                # This arm needs no further stop for the error; others that it ends do.
+                # This arm was stopped for the error. Other arms that the error ends are still to be
+                # stopped.
                 self._stopped_for = error
             raise
 

@@ -38,7 +38,7 @@ class Timed:
         self.due = inf
 
     def plan(self, due: float) -> None:
-        """Note when it is called, and at no other time."""
+        """Set the time of the call; an earlier setting no longer counts."""
         self.due = due
 
     def cancel(self) -> None:
@@ -51,8 +51,8 @@ class LoopTimers:
 
     def __init__(self, loop: asyncio.AbstractEventLoop) -> None:
         self._loop = loop
-        # Each with the time at which it is due, and a number that decides between equal times. What
-        # was cancelled, or set to another time, stays until then.
+        # Each with the time at which it is due, and a number that decides between equal times.
+        # Entries that were cancelled or set to another time stay until then.
         self._waiting: list[tuple[float, int, Timed]] = []
         self._numbers = count()
         self._wakes_at = inf
@@ -60,7 +60,7 @@ class LoopTimers:
         self._clock = _clock_of(loop, self._run)
 
     def set(self, timed: Timed, due: float) -> None:
-        """Make a call at a time, and at no other; soon if that has passed."""
+        """Set the time of a call, in place of an earlier setting. A past time means: soon."""
         timed.plan(due)
         heappush(self._waiting, (due, next(self._numbers), timed))
         if due < self._wakes_at:
@@ -79,7 +79,7 @@ class LoopTimers:
 
     def _run(self) -> None:
         """Make the calls that are due."""
-        # What they set needs no timer yet.
+        # The calls may set others. No timer is needed for these before the end of this function.
         self._wakes_at = -inf
         waiting, now = self._waiting, time.monotonic()
         try:

@@ -1,4 +1,4 @@
-"""Write requests on an event loop, or remember what the peer has of one that was cut."""
+"""Write requests on an event loop; if one is cut, note how many of its bytes were written."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ Done = Callable[[LinkError | None], None]
 
 
 class AsyncWriter:
-    """Writes requests, and before them what ends an earlier request that was cut."""
+    """Writes requests. If the last one was cut, fill bytes that end it precede the next one."""
 
     def __init__(
         self,
@@ -26,7 +26,7 @@ class AsyncWriter:
         listeners: TrafficListeners,
         limited: bool,
     ) -> None:
-        """Take what writes, and whether a deadline limits calls."""
+        """Write to ``transport``; ``limited``: a deadline limits the calls."""
         self._transport = transport
         self._limited = limited
         self._alignment = alignment
@@ -35,8 +35,8 @@ class AsyncWriter:
     def is_free(self) -> bool:
         """Return whether a request may be written now.
 
-        If calls are ``limited`` by a deadline, the line takes bytes: what is queued would be sent
-        after it, too.
+        If a deadline limits calls, it waits until nothing is queued in the transport: queued bytes
+        would be sent even after the deadline.
         """
         return not self._limited or self._transport.is_free()
 
@@ -47,13 +47,13 @@ class AsyncWriter:
             LinkError: the transport is gone, or does not take the bytes.
         """
         loop = asyncio.get_running_loop()
-        over: asyncio.Future[None] = loop.create_future()
-        if not self.begin(request, partial(_end_wait, over)):
+        written: asyncio.Future[None] = loop.create_future()
+        if not self.begin(request, partial(_end_wait, written)):
             if ends_by < inf:
-                await asyncio.wait([over], timeout=ends_by - time.monotonic())
-                if not over.done():
+                await asyncio.wait([written], timeout=ends_by - time.monotonic())
+                if not written.done():
                     self._transport.end_writing()
-            await over
+            await written
 
     def begin(self, request: bytes, done: Done) -> bool:
         """Write a request; return whether it was taken at once. Otherwise ``done`` is called.
@@ -87,10 +87,10 @@ class AsyncWriter:
         self._listeners.sent(align, request)
 
 
-def _end_wait(over: asyncio.Future[None], error: LinkError | None) -> None:
-    if over.done():
+def _end_wait(written: asyncio.Future[None], error: LinkError | None) -> None:
+    if written.done():
         return
     if error is None:
-        over.set_result(None)
+        written.set_result(None)
     else:
-        over.set_exception(error)
+        written.set_exception(error)

@@ -7,6 +7,7 @@ from typing import Any
 
 from cobotwire.codec.interface import Codec
 from cobotwire.kinematics import coords_of, geometry_of
+from cobotwire.protocol.error_texts import error_text
 from cobotwire.protocol.errors import UsageError
 from cobotwire.protocol.limits import AXES, Limits
 from cobotwire.protocol.refusals import refusals
@@ -62,8 +63,14 @@ class LimitedEncoder(RequestEncoder):
         end = coords_of(self._geometry, angles)
         for axis, at, allowed in zip(AXES, end, self._workspace):
             if allowed is not None and not allowed[0] <= at <= allowed[1]:
-                message = (
-                    f"{command.name}() to {tuple(angles)} would move the end to {axis} {at:.1f} mm;"
-                    f" limits.workspace allows {axis} {allowed[0]:g}..{allowed[1]:g} mm"
+                low, high = (f"{end:g}" for end in allowed)
+                message = error_text(
+                    "leaves-workspace",
+                    command=command.name,
+                    target=tuple(angles),
+                    axis=axis,
+                    at=f"{at:.1f}",
+                    low=low,
+                    high=high,
                 )
-                raise UsageError(axis, at, f"{allowed[0]:g}..{allowed[1]:g}", message=message)
+                raise UsageError(axis, at, f"{low}..{high}", message=message)

@@ -1,4 +1,4 @@
-"""What generated packages say of a method that is written elsewhere."""
+"""Docstrings in generated packages for methods that are written elsewhere."""
 
 from __future__ import annotations
 

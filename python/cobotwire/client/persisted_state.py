@@ -1,10 +1,10 @@
 """Remember what a session left on its port, for the next session there of any process of this user.
 
-A reply that comes after its session has ended looks like the reply to the first like request of the
-next one. Half a request that was written completes with the first request of the next one. So a
-session that ends with one of these leaves a note: in this process, and in a file for other ones
-(``port_notes``). Most sessions leave nothing and write no file. A process that is killed, or never
-closes its client, leaves no note.
+A reply can arrive after its session has ended. The next session takes it for the reply to its own
+first request of the same command. If a session wrote only half of a request, the robot completes it
+with the first bytes of the next session. A session that ends in one of these states leaves a note
+in this process, and in a file for other processes (``port_notes``). Most sessions leave nothing and
+write no file. A process that is killed, or never closes its client, leaves no note.
 """
 
 from __future__ import annotations
@@ -27,8 +27,8 @@ PSEUDO_TERMINALS = "/dev/pts/"
 class PortMemory:
     """The notes on one port.
 
-    Only what leads to the same arm again has notes: a serial port or a socket, in real time. An
-    open transport of the user's own has none, since its URL need not identify a port.
+    Only transports that lead to the same arm again have notes: serial ports and sockets, in real
+    time. An open transport of the user's own has none, since its URL need not identify a port.
     """
 
     def __init__(self, transport: Transport) -> None:
@@ -55,7 +55,7 @@ class PortMemory:
         state = PersistedState(state.late[-MOST_ENTRIES:], state.parts[-MOST_ENTRIES:])
         for key in self._keys:
             _here[key] = state
-            # Without a folder of its own, this process alone remembers.
+            # Without a folder for notes, only this process remembers.
             with suppress(OSError):
                 write_note(key, state)
 
@@ -74,7 +74,7 @@ def _keys(url: str) -> tuple[str, ...]:
     device, link = os.path.realpath(url), os.path.abspath(url)
     links = (link,) if link != device else ()
     if device.startswith(PSEUDO_TERMINALS):
-        # The next pseudo-terminal with this number is another line.
+        # The system reuses the numbers of pseudo-terminals. The creation time tells them apart.
         with suppress(OSError):
             return f"{device} {os.stat(device).st_ctime_ns}", *links
     return device, *links

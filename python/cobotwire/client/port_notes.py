@@ -2,7 +2,7 @@
 
 They lie in a folder that only this user can write. Each says until when late replies are expected,
 by ``time.monotonic()``, which all processes of a machine share and each boot begins anew. So it
-also says in which boot it was written. What is no note (a damaged file, a pipe in its place) is
+also says in which boot it was written. A file that is not a note (a damaged file, a pipe) is
 removed with a warning.
 """
 

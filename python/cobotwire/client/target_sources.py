@@ -53,7 +53,7 @@ class Mailbox(Source):
 
     def take(self) -> list[Target]:
         """Return the targets that came since the last call; raise the error that ended them."""
-        # The end is looked at first: what came before it is among the targets then.
+        # Read the end before the targets, so that targets that came before it are not lost.
         self.over = self._ended
         targets = [self._targets.popleft() for _ in range(len(self._targets))]
         if self.over and self._error is not None:

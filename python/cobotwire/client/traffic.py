@@ -70,7 +70,7 @@ class TrafficListeners:
         return remove
 
     def sent(self, align: bytes, request: bytes) -> None:
-        """Report what was written: bytes that align the line, if any; and a request with its text.
+        """Report what was written: fill bytes, if any, and a request with its text.
 
         They are two events, so that listeners get a frame.
         """

@@ -39,7 +39,10 @@ class DecodedMessage(NamedTuple):
 
 
 class Read(Protocol):
-    """Decodes a frame that a framer returned; None means every direction that it listened to."""
+    """Decodes a frame that a framer returned.
+
+    None: in every direction that the framer listened to.
+    """
 
     def __call__(
         self, data: bytes, direction: Direction | None = None, of: str | None = None
@@ -51,8 +54,8 @@ class Read(Protocol):
 class Frame(metaclass=ABCMeta):  # noqa: B024  (the native class registers as a virtual subclass)
     """A legal frame with its command id; ``offset`` is its start in the stream.
 
-    The message is decoded on first use. The frames of the native codec are instances of this class
-    too; they decode it at each use.
+    The message is decoded on first use. Frames of the native codec are instances of this class too;
+    each use decodes the bytes again.
     """
 
     __slots__ = ("_message", "_read", "command", "data", "offset")

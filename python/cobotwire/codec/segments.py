@@ -1,11 +1,11 @@
 """Divide a stream into segments that can be decoded on their own, and decode one of them.
 
 A scan has no memory: what it finds from a position on depends only on the bytes from there on. So
-two scans that ever stand at the same position agree from there on. A frame that begins before a
-position reaches at most the longest frame beyond it, so the scan of the whole stream enters the
-bytes after any cut at one of a few positions. Where the scans from all of these have met, the scan
-of the whole stream stands too. A segment goes from the meeting point of one cut to that of the next
-one. Each is found from the bytes after its cut alone.
+two scans that ever stand at the same position agree from there on. A frame that begins before a cut
+ends at most one longest frame after it. So the scan of the whole stream continues after the cut at
+one of a few positions. Where the scans from all of these have met, the scan of the whole stream
+stands too. A segment goes from the meeting point of one cut to that of the next one. Each is found
+from the bytes after its cut only.
 """
 
 from __future__ import annotations
@@ -20,8 +20,8 @@ from cobotwire.codec.interface import Codec, Listening
 from cobotwire.protocol.frame_index import longest_frame
 from cobotwire.protocol.table import Direction
 
-# Scans that have not met within this many bytes probably never do: the bytes were made so. Then the
-# cut does not count, and the segment before it goes on.
+# Scans that have not agreed within this many bytes probably never will: such bytes are made on
+# purpose. Then the cut does not count, and the segment before it goes on.
 PATIENCE = 1 << 16
 # Bytes that are read and decoded at once.
 CHUNK = 1 << 23

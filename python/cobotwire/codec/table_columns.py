@@ -8,8 +8,8 @@ from typing import NamedTuple
 from cobotwire.protocol.fields import Field, Variant
 from cobotwire.protocol.frame_format import Direction
 
-# The columns in front of the fields. Which of them a table has depends on its source, but the names
-# of the other columns do not.
+# The columns before the fields. A table has some of them, depending on its source. Fields never get
+# one of these names, so that the names of their columns are the same for every source.
 LEADING = ("offset", "address", "time", "direction", "interface", "robot", "source")
 
 
@@ -47,7 +47,7 @@ def table_columns(
 
     With ``wide`` each number of a field has a column of its own, which has the name of the number,
     such as ``j1``. If the message has several columns of that name, or the number has no name, the
-    name of the field comes in front: ``encoders_j1``, ``data_1``.
+    name of the field precedes it: ``encoders_j1``, ``data_1``.
     """
     fields: dict[str, dict[str, None]] = {}
     for variant in sorted(variants, key=lambda variant: len(variant.fields), reverse=True):
@@ -77,9 +77,9 @@ def column_name(field: str, direction: Direction) -> str:
 def part_names(field: Field) -> tuple[str, ...]:
     """Return the names of a field's numbers or texts, which become columns of a wide table.
 
-    Numbers without a name, or with different names in different cases, are counted from 1. A group
-    of a list has its number in front: ``1_x``. The result is empty for a field that is one value:
-    a number, bytes, a text, or a list of a size that varies.
+    Numbers without a name, or with different names in different cases, are counted from 1. In a
+    list of groups, the number of the group comes first: ``1_x``. The result is empty for a field
+    that is one value: a number, bytes, a text, or a list of a size that varies.
     """
     if field.sizes is not None or not field.dimensions or field.kind == "bytes":
         return ()

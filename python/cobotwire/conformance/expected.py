@@ -3,9 +3,9 @@
     decode-values/get_encoder/*   the library reads the number as signed
     reply-fields/get_speed        fixed in firmware 2.1
 
-For a codec, names are those of questions; for a device and a client, they are
-``TEST-CASE/COMMAND``, and the test case alone for the line. The reason is required. Empty lines,
-and lines that begin with ``#``, do not count.
+For a codec, the names are those of questions. For a device and a client they are
+``TEST-CASE/COMMAND``, or only the test case if it is about the whole line. The reason is required.
+Empty lines, and lines that begin with ``#``, do not count.
 """
 
 from __future__ import annotations
@@ -78,7 +78,7 @@ def with_known(expectations: Sequence[Expectation], results: Sequence[Result]) -
 
 def _excused(expectations: Sequence[Expectation], result: Result) -> Result:
     name = f"{result.case}/{result.command}" if result.command else result.case
-    # What was not run may still fail, so a line about it is not wrong.
+    # A test case that was not run may still fail, so a line about it is not wrong.
     reason = excuse(expectations, name, failed=result.verdict is not Verdict.PASS)
     if not reason or result.verdict is not Verdict.FAIL:
         return result

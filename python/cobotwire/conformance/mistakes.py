@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 from cobotwire.protocol.table import Number
 
-# A wrong scale multiplies by the same of these factors, within a tenth.
+# A wrong scale multiplies all numbers by one of these factors, within a tenth.
 FACTORS = {
     **{factor: f"{factor:g} times the right number" for factor in (10.0, 100.0, 1000.0)},
     **{1 / factor: f"{1 / factor:g} times the right number" for factor in (10.0, 100.0, 1000.0)},
@@ -22,8 +22,8 @@ ANOTHER_ORDER = "the right numbers in another order"
 class Pair(NamedTuple):
     """A number that should have come, and the number that came.
 
-    ``near`` is how far apart two readings of the same quantity may be. ``number`` is how the number
-    is sent; None: it was converted.
+    ``near`` is the largest difference between two readings of the same quantity. ``number`` is how
+    the number is sent; None: it was converted.
     """
 
     name: str

@@ -10,7 +10,7 @@ from cobotwire.conformance.expected import Expectation, read_expectations
 from cobotwire.conformance.report import Kind
 from cobotwire.protocol.errors import UsageError
 
-# How the text of an option is read, by its annotation; the others are text.
+# The function that reads the text of an option, by its annotation; other options are texts.
 READERS: Mapping[str, type] = {"int": int, "float": float, "bool": bool}
 
 

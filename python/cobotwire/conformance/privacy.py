@@ -1,7 +1,7 @@
-"""Remove from a report what belongs to the tester's machine: paths, and numbers of persons' things.
+"""Remove from a report the paths and serial numbers of the tester's machine.
 
-A path inside the working folder becomes relative, another one its last part; serial numbers become
-hashes, which still tell two of them apart. Ports (``/dev/ttyUSB0``) stay.
+A path inside the working folder becomes relative; of other paths only the last part remains. Serial
+numbers become hashes, so that two of them still differ. Ports (``/dev/ttyUSB0``) stay.
 """
 
 from __future__ import annotations
@@ -46,7 +46,8 @@ def anonymous(report: Report) -> Report:
 
     def cleaned(value: Any) -> Any:
         if isinstance(value, Exchange):
-            # The evidence of a codec is text, that of a line is what was sent.
+            # The evidence of a codec is text, which can hold paths. The evidence of a line is the
+            # bytes of frames, which stay as they are.
             data = value.data if report.kind != "codec" else _bytes(value.data)
             return value._replace(data=data, note=without_paths(value.note))
         return _cleaned(value, cleaned)

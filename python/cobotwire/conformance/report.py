@@ -33,7 +33,7 @@ class Cause(StrEnum):
     RUN_ENDED = "run ended"
     # Inconclusive: the subject lacks what the test case is about, or is in the wrong state.
     NOT_SUPPORTED = "not supported"
-    # Inconclusive: what shows only for a while was not there any more, or the host was late.
+    # Inconclusive: a state that lasts only for a while was over, or the host was late.
     NOT_TIMED = "not timed"
     # Fail: repetitions of the same test case differ.
     UNSTABLE = "unstable"
@@ -70,11 +70,11 @@ class Result:
 
     ``command`` is empty if the test case is about the line as a whole. ``case`` is the id of the
     test case, ``source`` where the requirement is stated (``spec/commands/motion.yaml:12``),
-    ``reason`` a sentence that states what was expected and what came. ``further`` states the same
-    of the next failures of the test case on the command; ``reason`` counts them all. ``group`` is
-    the group of test cases that was run; empty if the subject's groups are checked together.
-    ``load`` is the load of the host for each processor, if the verdict depends on time; 0: it does
-    not, or the load is unknown.
+    ``reason`` a sentence that states what was expected and what came. ``further`` has the sentences
+    of the next failures of the test case on the command; ``reason`` counts all. ``group`` is the
+    group of test cases that was run; empty if the subject's groups are checked together. ``load``
+    is the load of the host for each processor, if the verdict depends on time; 0: it does not, or
+    the load is unknown.
     """
 
     case: str

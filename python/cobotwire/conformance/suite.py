@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 # Exercises or checks the test cases of a group; each kind of subject has its own type.
 Body = TypeVar("Body", covariant=True)
 
-# What a group is for: nothing, or what its body needs to know of the command.
+# The subject of a group: None, or what its body needs to know of the command.
 Selects = Callable[["Table", "Command"], object]
 
 

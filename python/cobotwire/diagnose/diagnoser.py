@@ -27,9 +27,10 @@ class Diagnoser:
     """Turns noise into findings. Frames pass through, so the items are in the order of the stream.
 
     Each byte of noise is in exactly one finding. The findings depend on the stream, on where the
-    framer was flushed and on the requests passed to :meth:`sent`, but not on the chunks. Noise that
-    more bytes could change waits, and so do the frames after it: at most a panic dump (8 KiB) and
-    64 bytes of frames for each of its bytes, in practice far less. :meth:`flush` ends the waiting.
+    framer was flushed and on the requests passed to :meth:`sent`, but not on the chunks. Noise
+    waits while more bytes could change its diagnosis, and so do the frames after it. At most a
+    panic dump (8 KiB) waits, with 64 bytes of frames for each of its bytes; in practice far less.
+    :meth:`flush` ends the waiting.
     """
 
     def __init__(self, codec: Codec, listening: Listening = "reply") -> None:
@@ -39,7 +40,8 @@ class Diagnoser:
         self._gap = 0
         self._last: Finding | None = None
         self._in_text = False
-        # At this many bytes from the start of the residue nothing can start, whatever comes.
+        # The number of bytes at the start of the residue at which nothing can be recognised,
+        # whichever bytes follow.
         self._plain = 0
         # Matches the places of the residue at which something may be recognised.
         self._interesting = re.compile(b"|".join(each.starts for each in self._recognisers))

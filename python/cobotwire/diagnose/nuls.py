@@ -30,7 +30,7 @@ class Nuls(Finding):
 
     @property
     def failure(self) -> str | None:
-        """Return "" if the controller possibly restarts, since NULs do not say why."""
+        """Return "" if the controller may have restarted: NULs do not state a reason."""
         return "" if self.reboot else None
 
     @property

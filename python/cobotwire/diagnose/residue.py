@@ -27,7 +27,7 @@ class Residue:
     """Consecutive bytes of noise, with marks where frames interrupted them.
 
     A servo packet or a line of text may continue after a frame, so its recogniser sees all of
-    ``data``. For everything else a mark is an end: its recogniser sees a :meth:`segment_end`.
+    ``data``. All other noise ends at a mark: its recogniser gets a :meth:`segment_end`.
     """
 
     def __init__(self) -> None:

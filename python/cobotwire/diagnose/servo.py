@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 # Servo id to the register and number of bytes that its next status packet holds.
 Expected = dict[int, tuple[int, int]]
 
-# The header, and an id, which FF is not. The table knows this too, but is loaded only where this
+# The header FF FF, and an id other than FF. The table knows this too, but is loaded only where this
 # matches; see tests/diagnose/test_servo_bus.py.
 STARTS = rb"\xff(?:\xff(?:[^\xff]|\Z)|\Z)"
 _START = re.compile(STARTS, re.DOTALL)
@@ -116,7 +116,7 @@ class ServoBus(Recogniser):
         self.expected: Expected = {}
 
     def recognise(self, residue: Residue, at: int) -> Verdict:
-        """Recognise the packet at ``at``; a frame may interrupt it, as its checksum is checked."""
+        """Recognise the packet at ``at``, even if it contains a frame: its checksum is right."""
         size = packet_size(residue.data, at)
         if size is None:
             return None if residue.closed else Wait.WAIT
@@ -128,8 +128,8 @@ class ServoBus(Recogniser):
         instruction, status = bus.instruction(packet), bus.status(servo, code)
         # A status packet with the error bits of an instruction is rare: assume an instruction.
         is_status = instruction is None and status is not None
-        said = instruction or bus.unknown(code)
-        register, count = said.register, said.size
+        content = instruction or bus.unknown(code)
+        register, count = content.register, content.size
         if is_status:
             read, expected = self.expected.get(servo, (0, -1))
             register = read if expected == len(parameters) else None
@@ -139,13 +139,13 @@ class ServoBus(Recogniser):
             servo=servo,
             role="status" if is_status else "instruction",
             ambiguous=instruction is not None and status is not None,
-            instruction=None if is_status else said.name,
+            instruction=None if is_status else content.name,
             error=code if is_status else None,
             errors=status.errors if is_status and status else (),
             register=register,
             register_name=None if register is None else bus.register_name(register) or None,
             count=count,
-            servos=said.servos,
+            servos=content.servos,
             parameters=parameters,
         )
 

@@ -50,7 +50,7 @@ class Lines(Frame):
     __slots__ = ("text",)
 
     def __init__(self, offset: int, size: int, text: str) -> None:
-        # For the diagnosis only the number of bytes counts, and whether it is more than its reach.
+        # The diagnosis uses only the number of bytes, up to its reach.
         super().__init__(offset, bytes(min(size, REACH + 1)), 0)
         self.text = text
 
@@ -104,8 +104,8 @@ class Rest:
     def diagnose(self, parts: list[Part], closed: bool, expected: Expected) -> Expected:
         """Diagnose the noise in ``parts``; if ``closed``, no later noise belongs to it.
 
-        ``expected`` is what the packets before it made the servo bus expect. Returns the same after
-        the noise.
+        ``expected`` is what the servo bus expects after the packets before this noise. Return what
+        it expects after the noise.
         """
         self._bus.expected = expected
         self._add(parts)

@@ -25,7 +25,7 @@ from cobotwire.simulator.clock import SteppedClock
 
 
 class Done(NamedTuple):
-    """What a call did: the result, perhaps a sentence how it went, and the same for programs."""
+    """The outcome of a call: the result, a remark (perhaps empty), and the facts as JSON data."""
 
     result: Any
     remark: str

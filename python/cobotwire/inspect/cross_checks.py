@@ -1,4 +1,4 @@
-"""Find the mistake that explains readings which do not fit, and which mistakes they exclude.
+"""Find the mistake that explains contradictory readings, and the mistakes that they exclude.
 
 A hypothesis is a mistake of the edition, such as tenths taken for hundredths, with what corrects
 the readings. It explains them if all relations of the corrected readings hold. If the relations
@@ -34,7 +34,7 @@ class Hypothesis(NamedTuple):
 
 
 class Mistake(NamedTuple):
-    """What is wrong with readings: the aspect, which readings, in which relations it shows."""
+    """A mistake in readings: the aspect, the readings, and the relations that show it."""
 
     aspect: str
     keys: tuple[Key, ...]
@@ -118,7 +118,7 @@ class CrossChecks:
         return {key: list(hypotheses(numbers)) for key, numbers in self._numbers.items()}
 
     def mistakes(self, snapshots: Sequence[Snapshot]) -> list[Mistake]:
-        """Return what is wrong: each mistake that explains readings, then what none explains."""
+        """Return the mistakes that explain readings, then the readings that no mistake explains."""
         rows, found = [dict(snapshot) for snapshot in snapshots], list[Mistake]()
         while (broken := self._broken(rows, self._relations)) and len(found) < MOST:
             best = self._best(rows, broken)
@@ -169,7 +169,7 @@ class CrossChecks:
         best, most = list[tuple[tuple[Key, ...], Hypothesis]](), (0, 0)
         for subject in self._subjects(broken):
             own = [r for r in self._relations if {*subject} & {*r.keys}]
-            # Of one id there is one reading, whatever names it has.
+            # Commands with one id have one reading.
             size = len({self._ids[name] for name, _ in subject})
             shown = [relation for relation in own if relation in broken]
             repaired = len(shown), -size
@@ -185,7 +185,7 @@ class CrossChecks:
         return best
 
     def _subjects(self, broken: list[Relation]) -> list[tuple[Key, ...]]:
-        """Return the readings that may be wrong: those of one id, and all that are sent alike.
+        """Return sets of readings that may be wrong: of one id, or all that are encoded alike.
 
         Several commands may have the same id, and name its reply in different ways.
         """
@@ -208,7 +208,10 @@ class CrossChecks:
         broken: list[Relation],
         read: Container[Key],
     ) -> Mistake:
-        """Name the mistake; several explanations that are as good leave it open which is right."""
+        """Name the mistake.
+
+        If several explanations are equally good, say that it is open which is right.
+        """
         found = [([key for key in subject if key in read], h) for subject, h in best]
         texts = [h.text for _, h in found]
         if len(found) > 1:

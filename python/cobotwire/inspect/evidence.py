@@ -71,8 +71,9 @@ def bare_queries(table: Table) -> list[Command]:
 def own_query(table: Table, others: Iterable[Table]) -> Command | None:
     """Return a query without arguments to which only this edition has a legal reply; or None.
 
-    If no other edition has as many joints, it is the query for their angles. Else it has an id that
-    no other edition with as many joints has; if the query of the version has, it is returned.
+    If no other edition has as many joints, it is the query for their angles. If there is no such
+    reply, its id must be one that no other edition with as many joints has. The query of the
+    version is preferred.
     """
     alike = [other for other in others if other.joints == table.joints]
     if not alike and table.find_role("joints") is not None:

@@ -2,8 +2,8 @@
 
 Why that is safe: each probe is a query, which changes nothing. An arm with another frame format may
 take a probe for the beginning of a longer frame, and the next probe for the rest of it. So bytes
-that end every such frame go out between two formats (:func:`fill_bytes`, which proves this for any
-LEN). A test feeds all probes to the parser of every edition: it finds queries only.
+that end every incomplete frame are sent between two formats (:func:`fill_bytes` returns bytes that
+do so for any LEN). A test feeds all probes to the parser of every edition: it finds queries only.
 """
 
 from __future__ import annotations
@@ -48,7 +48,7 @@ class Probes:
         self.transport = tapped(transport, self._note)
 
     def separate(self, format: FrameFormat) -> None:
-        """End whatever a parser of a format believes to be a frame of its own so far.
+        """End every incomplete frame that a parser of a format may have found so far.
 
         Raises:
             LinkError: the transport is gone.

@@ -155,7 +155,7 @@ def identify_on(
 def _first_queries(names: list[str]) -> Iterator[tuple[str, Command]]:
     """Yield an edition, and a query for which every arm that knows it has a reply.
 
-    It is that of the power; for arms without motors, which have none, that of the version.
+    It is the query of the power; for arms without motors, the query of the version.
     """
     tables = {name: editions.load(name).TABLE for name in names}
     for role in ("powered", "version"):
@@ -350,7 +350,7 @@ def _rates(port: str, baudrate: int | None) -> list[tuple[int, list[str]]]:
     """Return the baud rates to try, each with the editions to ask for; none twice.
 
     At first all are asked for, since a pseudo-terminal or an adapter has its own rate. At another
-    rate, only those are that have the frames of an edition which states this rate.
+    rate, only queries with the frames of an edition that states this rate are sent.
     """
     tables = {name: editions.load(name).TABLE for name in editions.names()}
     usual = tables[editions.DEFAULT].baudrate

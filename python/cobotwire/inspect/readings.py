@@ -33,9 +33,9 @@ APART = {"": 0.0, "degree": 0.2, "millimetre": 1.0, "tick": 2.0}
 LINKS_APART, LINKS_TURNED = 15.0, 5.0
 # How far an angle may be beyond a limit, and a reported limit from a stated one, in degrees.
 BEYOND, LIMIT_APART = 5.0, 1.0
-# What a robot on a desk can report, by unit; zeros come from what is not connected.
+# The plausible readings of a robot on a desk, by unit; a part that is not connected reads 0.
 PLAUSIBLE = {"volt": (3.0, 60.0), "degree_celsius": (1.0, 110.0), "percent": (0.0, 110.0)}
-# With another choice than the first of these states, coordinates are not those of the flange.
+# If one of these states is not its first choice, the coordinates are not those of the flange.
 FRAMES = ("reference_frame", "end_type")
 
 
@@ -66,12 +66,13 @@ class Source(NamedTuple):
 
 
 class Relation(NamedTuple):
-    """What holds between readings if the edition is right.
+    """A relation that readings have if the edition is right.
 
-    ``holds`` takes the rows of the ``keys``, then those of ``conditions``, which are not judged by
-    it. ``independent`` is whether the readings differ in kind, so that a mistake which all of one
-    kind share shows, too. ``aspect`` is what is wrong if no mistake explains that it does not hold.
-    One that is not ``exact`` gives only a range: that shows no sign and no order.
+    ``holds`` takes the rows of the ``keys``, then those of ``conditions``, whose readings it does
+    not test. ``independent`` is whether the readings differ in kind; then it also finds a mistake
+    that all readings of one kind share. ``aspect`` is what is wrong if the relation does not hold
+    and no known mistake explains why. A relation that is not ``exact`` gives only a range, which
+    finds no wrong sign and no wrong order.
     """
 
     keys: tuple[Key, ...]

@@ -1,8 +1,8 @@
 """Turn a chain of joints with any axes into Denavit-Hartenberg links with the same flange.
 
 A link reaches from the axis of its joint along the common normal to the next axis. If two axes are
-nearly parallel, their common normal is far away: two links then take its place, the second one
-still.
+nearly parallel, their common normal is far away. Then two links replace it; the second one does not
+move.
 """
 
 from __future__ import annotations
@@ -36,8 +36,8 @@ class Axis(NamedTuple):
 def links_of(axes: Iterable[Axis]) -> tuple[Link, ...]:
     """Return the links from the base to the flange; the first axis is that of the base."""
     links: list[Link] = []
-    # How far the next frame is turned about its own z axis, and moved along it: the next link
-    # takes that over.
+    # The turn of the next frame about its own z axis, and its shift along it; both are added to the
+    # next link.
     turn = way = 0.0
     for turned_by, offset, following in axes:
         (first, *others), turn_after, way_after = _between(following)

@@ -1,9 +1,10 @@
 """Inverse kinematics in closed form, for arms with the axes of the 280, the 320 or the mechArm.
 
 The second and the third joint are parallel, and the first crosses the second at a right angle. On
-the 280 and the 320 the fourth joint is parallel to them too; the fifth and the sixth each cross the
-one before at a right angle. On the mechArm the last three axes meet in one point. So a pose has at
-most eight solutions: two shoulders, two wrists, two elbows.
+the 280 and the 320 the fourth joint is parallel to them too. The axis of the fifth intersects that
+of the fourth at a right angle, and the axis of the sixth that of the fifth. On the mechArm the last
+three axes meet in one point. So a pose has at most eight solutions: two shoulders, two wrists, two
+elbows.
 """
 
 from __future__ import annotations
@@ -14,8 +15,9 @@ from collections.abc import Iterable, Iterator, Sequence
 from cobotwire.kinematics.geometry import Angles, Geometry
 from cobotwire.kinematics.pose import Pose, Vector
 
-# Alpha of each link, in degrees, of the three arms. Turning the fourth frame half about its x axis
-# makes the 320 a 280: the fifth joint then turns the other way, and its offset changes its sign.
+# Alpha of each link, in degrees, of the three arms. If the fourth frame is turned by 180 degrees
+# about its x axis, the 320 has the form of the 280: the fifth joint then turns in the opposite
+# direction, and its offset has the opposite sign.
 AXES_280 = (90, 0, 0, 90, -90, 0)
 AXES_320 = (90, 0, 0, -90, 90, 0)
 AXES_SPHERICAL = (-90, 0, -90, 90, -90, 0)
@@ -41,9 +43,9 @@ def is_solved(geometry: Geometry) -> bool:
 def solutions(geometry: Geometry, target: Pose, present: Sequence[float]) -> Iterator[Angles]:
     """Yield each solution in degrees, -180..180, without regard to limits.
 
-    If the target is out of reach, yield angles that may come close to it. Those with shoulder,
-    wrist and elbow as in the ``present`` angles come first; these also decide about the sixth joint
-    where a straight wrist leaves it free.
+    If the target is out of reach, yield angles that may come close to it. Solutions with shoulder,
+    wrist and elbow as in the ``present`` angles come first. If the wrist is straight, which leaves
+    the sixth joint free, these angles determine it.
     """
     links = geometry.links
     spherical = links[2].alpha != 0

@@ -1,4 +1,4 @@
-"""The coordinates of an end, of which an edition may have fewer than six."""
+"""The coordinates of an end; an edition may have fewer than six of them."""
 
 from __future__ import annotations
 

@@ -15,8 +15,8 @@ SAMPLES = 4
 class Curve:
     """A cubic spline through points, one for each knot; knots are distances or times.
 
-    With ``rests`` it begins and ends without speed and acceleration, as a motion does in time; its
-    first and last piece are quintics then. Otherwise its ends are straight.
+    With ``rests`` it begins and ends at rest: speed and acceleration are zero. Then its first and
+    last pieces are quintics. Otherwise its ends are straight.
     """
 
     def __init__(self, knots: Sequence[float], points: Sequence[Point], *, rests: bool) -> None:
@@ -79,7 +79,8 @@ def _quintic(
     step: float, value: float, rise: float, v: float, w: float, a: float, b: float
 ) -> list[float]:
     """Return the polynomial with a value, speeds v and w, and second derivatives a and b."""
-    # What is left to do by the powers 3, 4 and 5 until the end: way, speed, second derivative.
+    # The distance, speed and second derivative that the terms of power 3, 4 and 5 must add by the
+    # end.
     way = (rise - v - a * step / 2) * step
     speed = (w - v - a * step) * step
     bend = (b - a) * step * step

@@ -15,8 +15,8 @@ from cobotwire.kinematics.geometry import Angles, Geometry
 from cobotwire.kinematics.nearness import Limits
 from cobotwire.kinematics.pose import Pose, Vector, cross
 
-# How many steps are taken at most: of one descent, and of all descents for one request. A step
-# takes about 0.1 ms, and a reply must not wait for a search.
+# The most steps of one descent, and of all descents for one request. A step takes about 0.1 ms, and
+# a reply must not wait for a search.
 STEPS, STEPS_OF_A_REQUEST = 60, 80
 # The descent ends after PATIENCE steps in a row that do not cut the distance by share PROGRESS.
 PROGRESS, PATIENCE = 0.02, 8

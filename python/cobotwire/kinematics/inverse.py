@@ -1,7 +1,7 @@
 """Inverse kinematics: the joint angles that bring the flange to a pose, for any geometry.
 
-Arms with the axes of the 280, the 320 or the mechArm have a solution in closed form. A pose may lie
-slightly out of their reach, because the wire rounds it or the arm is stretched out; then least
+Arms with the axes of the 280, the 320 or the mechArm have a solution in closed form. Rounding on
+the wire can put a pose slightly out of reach, above all if the arm is stretched out. Then least
 squares find the nearest angles. For other arms, ``search`` finds the angles step by step.
 """
 
@@ -36,8 +36,8 @@ GUESSES = 8
 SOLUTIONS_A_STEP = 2
 # How many solutions may continue a way, before all are compared.
 CONTINUING = 4
-# A turn weighs as much as the distance by which it moves the ends of the three axes: 7.07 mm for a
-# degree. This is nearly the ratio of the two tolerances, so least squares come near to both alike.
+# A turn is weighted by the distance that it moves the ends of the three axes: 7.07 mm for a degree.
+# This is nearly the ratio of the two tolerances, so least squares come near to both alike.
 REFINING_RADIAN = math.degrees(1) * 5 * math.sqrt(2)
 
 

@@ -78,7 +78,7 @@ class Along:
 
 
 class InTime:
-    """A motion along a curve of which the knots are times."""
+    """A motion along a curve whose parameter is time."""
 
     def __init__(self, curve: Curve) -> None:
         self._curve, self.seconds = curve, curve.length
@@ -89,7 +89,7 @@ class InTime:
 
 
 class Excess(NamedTuple):
-    """By how much a motion uses a bound: the joint that comes nearest to it, or exceeds it most.
+    """How far a motion uses a bound: the largest ratio of any joint to its bound.
 
     ``slower`` is how many times as long the motion would take to reach the bound exactly.
     """
@@ -146,9 +146,8 @@ class Chase:
 def paced(points: Sequence[Point], bounds: Bounds) -> Curve:
     """Return a curve through points on which a speed of 1 is within the bounds everywhere, nearly.
 
-    The speed is even where it can be: the steps between points are those of the fastest joint, as
-    long as a usual piece allows. Around sharper bends they are made longer, until the joints can
-    follow.
+    The speed is constant where possible: the fastest joint determines the time between points.
+    Around sharper bends they are made longer, until the joints can follow.
     """
     steps = [
         max(map(truediv, (abs(b - a) for a, b in zip(one, two)), bounds.speed))

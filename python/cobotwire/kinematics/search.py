@@ -37,7 +37,7 @@ def search(
     """Return angles inside the limits that bring the flange to ``target``; None: none were found.
 
     The search ends with the ``effort``. It starts only at angles within ``largest_turn`` degrees of
-    the present ones: for a point on the way of a motion, whose joints cannot jump. What it finds
+    the present ones. This is for a point inside a motion, where joints cannot jump. What it finds
     may be further away.
 
     Of several solutions, the nearest to ``present`` is returned. If none is exact, angles that miss

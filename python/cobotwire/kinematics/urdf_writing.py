@@ -96,5 +96,5 @@ def _origin(parent: Element, place: Iterable[float], turned: Iterable[float]) ->
 
 
 def _text(numbers: Iterable[float]) -> str:
-    # What cosines and sines of right angles leave is rounded away, and so is -0.0.
+    # Rounding errors of cosines and sines of right angles are removed, and so is -0.0.
     return " ".join(f"{round(number, 15) + 0.0:.15g}" for number in numbers)

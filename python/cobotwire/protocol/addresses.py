@@ -1,7 +1,8 @@
-"""Name the addresses of an edition, and say whose replies a request to each may have."""
+"""Name the addresses of an edition, and tell which devices may reply to a request to each."""
 
 from __future__ import annotations
 
+from cobotwire.protocol.error_texts import error_text
 from cobotwire.protocol.errors import UsageError
 from cobotwire.protocol.table import Address, Command, Table
 
@@ -42,8 +43,8 @@ def check_one_moves(table: Table, given: int | str | None) -> None:
     address = find_address(table, given)
     if given is None and address is not None and address.replies != "own":
         names = ", ".join(each.name for each in devices_of(table))
-        message = f"address is not given, and all of the robot would move; allowed: {names}"
-        raise UsageError("address", given, message=f"{message}, or {address.name}")
+        message = error_text("all-would-move", names=names, name=address.name)
+        raise UsageError("address", given, message=message)
 
 
 def lacks_joints(table: Table, address: Address | None, command: Command) -> str:
@@ -56,8 +57,8 @@ def lacks_joints(table: Table, address: Address | None, command: Command) -> str
     fields = (f for each in (*command.request, *command.reply) for f in each.fields)
     if not any(f.many and len(f.cases[0].numbers) == table.joints for f in fields):
         return ""
-    has = "joint" if address.joints == 1 else "joints"
-    return f"has rows of {table.joints} values, and {address.name} has {address.joints} {has}"
+    kind = "lacks-joints-but-one" if address.joints == 1 else "lacks-joints"
+    return error_text(kind, count=table.joints, name=address.name, joints=address.joints)
 
 
 def find_address(table: Table, given: int | str | None) -> Address | None:
@@ -87,9 +88,11 @@ def named_address(table: Table, given: int | str) -> Address:
         elif not isinstance(given, bool) and given == address.value:
             return address
     if not known:
-        message = f"edition {table.edition} has no addresses"
+        message = error_text("no-addresses", edition=table.edition)
         raise UsageError("address", given, message=message)
-    allowed = ", ".join(f"{address.name} ({address.value})" for address in known)
+    allowed = ", ".join(
+        error_text("label", label=address.name, raw=address.value) for address in known
+    )
     raise UsageError("address", given, allowed)
 
 

@@ -9,6 +9,8 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping
 from typing import Any, NamedTuple
 
+from cobotwire.protocol.error_texts import error_text
+
 Row = tuple[Any, ...]
 
 
@@ -17,8 +19,8 @@ class Chosen(NamedTuple):
 
     Attributes:
         first: its index among the variants.
-        variant: the same; None if several take the same arguments, so that the codec decides by the
-            values.
+        variant: the index of the variant; None if several take the same arguments, so that the
+            codec decides by the values.
         wire: the names of its arguments, and its constants, in the order of the wire.
         defaults: the defaults of the arguments that are not given.
     """
@@ -51,13 +53,15 @@ def misfit(call: str, rows: tuple[Row, ...], given: Collection[str]) -> str:
     """Return the text of the error that no variant takes exactly the given arguments."""
     nearest = min(rows, key=lambda row: len(_missing(row, given)) + len(_odd(row, given)))
     forms = [*dict.fromkeys(map(_shown, rows))]
-    legal = forms[0] if len(forms) == 1 else " or ".join([f"({form})" for form in forms])
+    either = error_text("or").join([f"({form})" for form in forms])
+    allowed = forms[0] if len(forms) == 1 else either
     odd = _odd(nearest, given)
     if odd:
         others = [name for name in given if name != odd[0]]
-        beside = f" together with {' and '.join(others)}" if others else ""
-        return f"{call}() does not take its argument {odd[0]}{beside}; it takes {legal}"
-    return f"{call}() is missing its argument {_missing(nearest, given)[0]}; it takes {legal}"
+        beside, kind = error_text("and").join(others), "odd-beside" if others else "odd-argument"
+        return error_text(kind, call=call, name=odd[0], others=beside, allowed=allowed)
+    name = _missing(nearest, given)[0]
+    return error_text("missing-argument", call=call, name=name, allowed=allowed)
 
 
 def _missing(row: Row, given: Collection[str]) -> list[str]:
@@ -75,7 +79,7 @@ def _shown(row: Row) -> str:
         for part in row
         if isinstance(part, str | tuple)
     ]
-    return ", ".join(words) or "no arguments"
+    return ", ".join(words) or error_text("no-arguments")
 
 
 def arranged(

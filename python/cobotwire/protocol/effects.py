@@ -5,7 +5,7 @@ The effect of a command is one of the records below. What an arm keeps is declar
 (``language/words.py`` of the generator lists the built-in state).
 
 Every record has ``assumed``: why no source states the effect; empty if one does. A simulated arm
-has an assumed effect too, but no tester judges a device by it.
+has an assumed effect too, but testers do not test it.
 """
 
 from __future__ import annotations
@@ -163,7 +163,7 @@ class Cases(NamedTuple):
 
 
 class Code(NamedTuple):
-    """Only code can say what the command does; ``what`` is that in words."""
+    """The effect is implemented in code; ``what`` describes it in words."""
 
     what: str
     assumed: str = ""
@@ -194,7 +194,7 @@ def each_case(effect: Effect | None) -> Iterator[Effect]:
 
 
 def fresh_mode(table: Table) -> tuple[Command, str, Command | None]:
-    """Return what sets whether a new target replaces the present one, and what reports it.
+    """Return the setting that decides whether a new target replaces the present one, and its query.
 
     Returns:
         The setting; its argument, which is 1 if a new target replaces the old one and 0 if it

@@ -11,6 +11,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from difflib import get_close_matches
 from typing import Any, Literal, NamedTuple
 
+from cobotwire.protocol.error_texts import error_text
 from cobotwire.protocol.printable import printable
 
 # The name of an argument in ``angles[2]``, ``coords.x``, ``len(data)`` and ``account, password``.
@@ -63,7 +64,9 @@ class UsageError(CobotwireError, ValueError):
         self.argument = argument
         self.value = value
         self.allowed = allowed
-        super().__init__(message or f"{argument} is {_short(value)}; allowed: {allowed}")
+        super().__init__(
+            message or error_text("value", argument=argument, value=_short(value), allowed=allowed)
+        )
 
     def renamed(self, names: Mapping[str, str]) -> UsageError:
         """Return the error for an interface that has other names for some arguments.
@@ -112,7 +115,8 @@ class ProtocolError(CobotwireError):
         self.offset = offset
         self.data = data
         self.detail = detail
-        super().__init__(f"{detail} (at byte {offset} of {data.hex(' ').upper() or 'no bytes'})")
+        shown = data.hex(" ").upper() or error_text("no-bytes")
+        super().__init__(error_text("protocol", detail=detail, offset=offset, data=shown))
 
 
 class RequestRefused(ProtocolError):
@@ -128,7 +132,7 @@ class RequestRefused(ProtocolError):
         self.request = request
         self.field = field
         self.status = status
-        detail = f"the arm did not carry out {request}: {field} is {status}"
+        detail = error_text("refused", request=request, field=field, status=status)
         super().__init__("rejected", 0, data, detail)
 
     def __reduce__(self) -> tuple[Any, ...]:
@@ -149,16 +153,10 @@ class LinkError(CobotwireError, OSError):
         self.url = url
         self.detail = detail
         self.written = written
-        super().__init__(f"{url}: {detail}")
+        super().__init__(error_text("link", url=url, detail=detail))
 
 
 WaitedFor = Literal["turn", "hold", "line", "reply"]
-_WHILE: dict[WaitedFor, str] = {
-    "turn": "while it waited for its turn",
-    "hold": "while a late reply to an earlier request could still come, and pass for its own",
-    "line": "while the line took no bytes",
-    "reply": "while it waited for its reply",
-}
 # How the line of text begins that a simulated arm sends in place of a reply that it cannot make.
 SIMULATED = "simulated arm: "
 
@@ -194,23 +192,20 @@ class ReplyTimeout(CobotwireError, TimeoutError):
         self.attempts = attempts
         self.request = request or command
         self.waited_for = waited_for or ""
-        meanwhile = "; ".join(received) if received else "nothing"
+        meanwhile = "; ".join(received) if received else error_text("nothing")
         found = re.search(f"{SIMULATED}([^']+)", meanwhile)
         self.refusal = found[1] if found else ""
-        if waited_for is not None and not attempts:
-            why = f"its deadline passed after {waited:.3f} s {_WHILE[waited_for]}"
-            super().__init__(f"{self.request} was not sent: {why}")
-            return
-        if attempts:
-            times = "1 attempt" if attempts == 1 else f"{attempts} attempts"
-            within = "" if waited_for is None else "its deadline, "
-            what = f"no reply to {self.request} within {within}{waited:.3f} s after {times}"
-        else:
-            what = f"{self.request} was not sent within {waited:.3f} s"
-        if self.refusal:
-            super().__init__(f"{what}, because the arm is simulated: {self.refusal}")
-        else:
-            super().__init__(f"{what}; received meanwhile: {meanwhile}")
+        what = error_text(
+            f"{'no-reply' if attempts else 'not-sent'}{'-by-deadline' * bool(waited_for)}",
+            request=self.request,
+            waited=f"{waited:.3f}",
+            attempts=error_text("attempt" if attempts == 1 else "attempts", count=attempts),
+            meanwhile=error_text(waited_for or "nothing"),
+        )
+        if waited_for is None or attempts:
+            kind = "simulated" if self.refusal else "meanwhile"
+            what = error_text(kind, what=what, refusal=self.refusal, received=meanwhile)
+        super().__init__(what)
 
 
 class EditionUnknown(CobotwireError):
@@ -401,5 +396,5 @@ def _short(value: Any, limit: int = 80) -> str:
         text = repr(value)
     # Python writes no whole number of more than 4300 digits, and no list that is nested too deeply.
     except (ValueError, RecursionError):
-        return f"{type(value).__name__} that is too long to be shown"
+        return error_text("too-long", type=type(value).__name__)
     return text if len(text) <= limit else text[: limit - 3] + "..."

@@ -43,7 +43,8 @@ class Field(NamedTuple):
     ``sizes`` are the least and the most elements of a list whose number varies; a variant has one
     of these numbers, and other variants have the others. A field that ``counts`` the elements of
     another one has the same ``sizes``; callers pass ``...`` for it.
-    ``meanings`` say what raw values from the first to the second stand for; others are legal too.
+    ``meanings`` describe ranges of raw values, each with its first and last; other values are legal
+    too.
     """
 
     name: str
@@ -229,8 +230,8 @@ class Variant(_VariantFields):
     def excludes(self, other: Variant) -> bool:
         """Return whether no data bytes are legal in both variants.
 
-        That is known if their sizes differ, or if a number of each, at the same place, have no raw
-        value in common, such as two constants.
+        That is certain if their sizes differ, or if two numbers at the same offset, such as two
+        constants, have no raw value in common.
         """
         if self.size != other.size:
             return True

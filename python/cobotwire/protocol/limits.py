@@ -10,6 +10,7 @@ from collections.abc import Sequence
 from math import isfinite
 from typing import Any, NamedTuple
 
+from cobotwire.protocol.error_texts import error_text
 from cobotwire.protocol.errors import UsageError
 from cobotwire.protocol.roles import picked, row_index
 from cobotwire.protocol.table import Case, Command, Field, Number, Role, Table, Variant
@@ -117,14 +118,10 @@ class _Rule:
         if self._cuts:
             lowest, highest = max(lowest, inside[0]), min(highest, inside[1])
         if lowest < inside[0] or highest > inside[1] or lowest > highest:
-            low, high = map(number.physical, inside)
-            why = (
-                "what the wire carries" if self._wider else "the edition's; wider=True allows more"
-            )
-            fits = f"a range inside {low:g}..{high:g} {number.units}, {why}"
-            meets = f"a range that meets {low:g}..{high:g} {number.units}"
-            argument = f"limits.{self._what}[{part}]"
-            raise UsageError(argument, given, meets if self._cuts else fits)
+            kind = "workspace" if self._cuts else "wider-limit" if self._wider else "limit"
+            low, high = (f"{number.physical(end):g}" for end in inside)
+            allowed = error_text(kind, low=low, high=high, unit=number.units)
+            raise UsageError(f"limits.{self._what}[{part}]", given, allowed)
         return number._replace(minimum=lowest, maximum=highest)
 
 
@@ -136,7 +133,7 @@ class _Workspace(_Rule):
     def __init__(self, workspace: Ranges, names: list[str]) -> None:
         box = dict(zip(AXES, checked_ranges("workspace", workspace, len(AXES))))
         if not {*AXES} <= {*names}:
-            message = f"a workspace needs the coordinates x, y, z; this edition has {names}"
+            message = error_text("no-coordinates", names=names)
             raise UsageError("limits.workspace", workspace, message=message)
         super().__init__("workspace", [box.get(name) for name in names], names)
 
@@ -147,7 +144,7 @@ def checked_ranges(what: str, ranges: Ranges, count: int) -> list[Range | None]:
     Raises:
         UsageError: there are not ``count`` of them, or one is neither None nor a pair of numbers.
     """
-    allowed = f"{count} ranges"
+    allowed = error_text("ranges", count=count)
     if isinstance(ranges, str) or not isinstance(ranges, Sequence):
         raise UsageError(f"limits.{what}", ranges, allowed)
     if len(ranges) != count:
@@ -161,13 +158,13 @@ def _checked(argument: str, given: object) -> Range | None:
     pair = list(given) if isinstance(given, Sequence) and not isinstance(given, str) else []
     if len(pair) == 2 and all(map(_is_number, pair)) and pair[0] <= pair[1]:
         return pair[0], pair[1]
-    raise UsageError(argument, given, "a pair (lowest, highest), or None")
+    raise UsageError(argument, given, error_text("pair"))
 
 
 def _checked_speed(speed: float) -> float:
     if _is_number(speed) and 1 <= speed <= 100:
         return speed
-    raise UsageError("limits.speed", speed, "a number 1..100 percent")
+    raise UsageError("limits.speed", speed, error_text("speed"))
 
 
 def _slower(command: Command, cap: float) -> Command:

@@ -47,7 +47,7 @@ class Message:
     command: ClassVar[str] = ""
     """The name of the command."""
     fieldless: ClassVar[bool] = False
-    """Whether there is nothing to choose: it has no fields, and no constants on the wire."""
+    """Whether all its messages are equal: it has no fields, and no constants on the wire."""
 
     _names: ClassVar[tuple[str, ...]] = ()
     # Names and constants in wire order; empty if that is the order of declaration.

@@ -6,7 +6,7 @@ import struct
 from math import inf
 from typing import Literal, NamedTuple
 
-from cobotwire.protocol.units import PLURALS
+from cobotwire.protocol.error_texts import stored_texts
 
 Encoding = Literal["integer", "float"]
 # The formats of ``struct``: the float, and the signed integer of its bits.
@@ -68,7 +68,7 @@ class Number(NamedTuple):
     @property
     def units(self) -> str:
         """The unit as it follows a number: its plural; empty if there is none."""
-        return PLURALS.get(self.unit, self.unit)
+        return stored_texts("units.json").get(self.unit, self.unit)
 
     @property
     def scaled(self) -> bool:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from cobotwire.protocol.effects import Stores, effect_of
+from cobotwire.protocol.error_texts import error_text
 from cobotwire.protocol.limits import Limits, is_speed
 from cobotwire.protocol.roles import moves_arm
 from cobotwire.protocol.table import Command, Table
@@ -20,29 +21,27 @@ def refusals(table: Table, limits: Limits) -> dict[str, str]:
     """
     found = {}
     for command in table.commands:
-        why = ""
+        kind = ""
         limited = limits.workspace is not None or limits.speed is not None
         if limited and command.safety == "persistent write":
-            why = "its effect stays, and limits.speed or limits.workspace is set"
+            kind = "refused-lasting"
         elif limits.workspace is not None:
-            why = _leaves_workspace(table, command)
-        if limits.speed is not None and not why and moves_arm(table, command):
+            kind = _leaves_workspace(table, command)
+        if limits.speed is not None and not kind and moves_arm(table, command):
             capped = all(any(map(is_speed, variant.fields)) for variant in command.request)
-            why = "" if capped else "limits.speed is set, and it takes no speed in percent"
-        if why:
-            found[command.name] = f"{command.name}() is refused: {why}"
+            kind = "" if capped else "refused-speedless"
+        if kind:
+            found[command.name] = error_text(kind, command=command.name, edition=table.edition)
     return found
 
 
 def _leaves_workspace(table: Table, command: Command) -> str:
-    """Return why a command could leave a workspace whose ranges its targets keep; or nothing."""
+    """Return the kind of refusal of a command that could leave a workspace; or nothing."""
     effect = effect_of(command)
     if isinstance(effect, Stores) and not _FRAMES.isdisjoint(effect.values.values()):
-        return "it changes what coordinates mean, and limits.workspace is set"
+        return "refused-frame"
     if not moves_arm(table, command) or command.role in ("coordinate targets", "coordinate target"):
         return ""
     if command.role != "joint targets":
-        return "limits.workspace is set, and where the end would go is not known before"
-    if table.robot.geometry is None:
-        return f"limits.workspace is set, and edition {table.edition} states no geometry"
-    return ""
+        return "refused-blind"
+    return "refused-shapeless" if table.robot.geometry is None else ""

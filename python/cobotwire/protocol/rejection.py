@@ -10,6 +10,7 @@ import math
 from functools import lru_cache
 from typing import Any, Literal
 
+from cobotwire.protocol.error_texts import error_text
 from cobotwire.protocol.errors import ProtocolError, UsageError
 from cobotwire.protocol.fields import Case, Field
 from cobotwire.protocol.frame_format import FrameFormat, Unsigned
@@ -24,7 +25,7 @@ FrameFault = Literal[
 
 def reject_direction(given: Any) -> UsageError:
     """Return the error for a word that is not a direction."""
-    return UsageError("direction", given, "request or reply")
+    return UsageError("direction", given, error_text("direction"))
 
 
 def reject_variant(command: Command, direction: Direction, given: int) -> UsageError:
@@ -32,37 +33,34 @@ def reject_variant(command: Command, direction: Direction, given: int) -> UsageE
     argument = f"{command.name} {direction}"
     variants = command.variants(direction)
     if not variants:
-        message = f"{command.name} has no {direction} in a frame"
+        message = error_text("no-message", command=command.name, direction=direction)
         return UsageError(argument, given, message=message)
-    allowed = " or ".join(
+    allowed = error_text("or").join(
         [f"({', '.join([field.name for field in variant.fields])})" for variant in variants]
     )
-    values = "1 value" if given == 1 else f"{given} values"
-    message = f"{values} given for the {argument}; it takes {allowed}"
+    kind = "value-count" if given == 1 else "values-count"
+    message = error_text(kind, count=given, message=argument, allowed=allowed)
     return UsageError(argument, given, allowed, message=message)
 
 
 def reject_address(given: Any, addresses: tuple[int, ...]) -> UsageError:
     """Return the error for an address byte that the frame format does not have."""
-    runs = [str(a) if a == b else f"{a}..{b}" for a, b in ranges(addresses)]
-    allowed = ", ".join(runs) or "None, because the frames have no address"
-    return UsageError("address", given, allowed)
+    return UsageError("address", given, _runs(addresses, "{}") or error_text("no-address"))
 
 
 def reject_shared(what: str) -> UsageError:
     """Return the error for an object that another thread uses at the same time."""
-    message = f"another thread uses this {what}; give each thread its own, or share a lock"
-    return UsageError(what.replace(" ", "_"), message=message)
+    return UsageError(what.replace(" ", "_"), message=error_text("shared", what=what))
 
 
 def reject_offset(given: Any) -> UsageError:
     """Return the error for an offset at which no segment of a stream can begin."""
-    return UsageError("offset", given, "0 to 2**63 - 1")
+    return UsageError("offset", given, error_text("offset"))
 
 
 def reject_workers(given: Any) -> UsageError:
     """Return the error for a number of threads that cannot read a stream."""
-    return UsageError("workers", given, "1 to 65535")
+    return UsageError("workers", given, error_text("workers"))
 
 
 def reject_value(
@@ -83,7 +81,7 @@ def reject_value(
                 f"len({field.name})", len(value.encode(field.encoding)), _sizes(field, case)
             )
         listed = element < 0 and field.each
-        return UsageError(name, value, "a sequence of texts" if listed else _text(field, each))
+        return UsageError(name, value, error_text("texts") if listed else _text(field, each))
     if field.counts and fault == "choice":
         return UsageError(f"len({field.counts})", value, _sizes(field, case))
     if fault == "count" and (field.sizes or field.each or field.kind == "bytes"):
@@ -93,9 +91,9 @@ def reject_value(
         name = f"{field.name}[{element // field.each}]"
         return UsageError(name, value, _elements(group))
     if element < 0 and field.kind == "bytes":
-        return UsageError(field.name, value, "bytes, or a sequence of numbers")
+        return UsageError(field.name, value, error_text("bytes"))
     if element < 0 and field.each:
-        return UsageError(field.name, value, f"a sequence of {_sizes(field, case)} elements")
+        return UsageError(field.name, value, error_text("list", sizes=_sizes(field, case)))
     if element < 0:
         if fault == "count":
             # The elements may all be legal; only their number is wrong.
@@ -120,9 +118,9 @@ def reject_radians(error: UsageError, field: Field, given: Any) -> UsageError:
     number = field.cases[0].numbers[at]
     bounds = number.physical(number.minimum), number.physical(number.maximum)
     # Rounded inwards, so that the bounds themselves are allowed.
-    low, high = (math.trunc(math.radians(bound) * 1e4) / 1e4 for bound in bounds)
+    low, high = (f"{math.trunc(math.radians(bound) * 1e4) / 1e4:g}" for bound in bounds)
     value = list(given)[at] if field.many else given
-    return UsageError(error.argument, value, f"a number {low:g}..{high:g} radians")
+    return UsageError(error.argument, value, error_text("radians", low=low, high=high))
 
 
 def reject_raw(
@@ -130,14 +128,17 @@ def reject_raw(
 ) -> ProtocolError:
     """Return the error for a raw value on the wire that the edition does not allow."""
     number = case.numbers[element]
-    value, allowed = number.physical(raw), _allowed(field, number)
-    if field.kind == "text":
-        detail = (
-            f"{command.name}: byte {element} of {field.name} is {raw:02X}, not {field.encoding}"
-        )
-        return ProtocolError("bad-value", offset, data, detail)
-    name = _element(field, number, element) if field.each or number.bits else field.name
-    detail = f"{command.name}: {name} is {value}; allowed: {allowed}"
+    whole = field.kind == "text" or not (field.each or number.bits)
+    detail = error_text(
+        "bad-byte" if field.kind == "text" else "bad-value",
+        command=command.name,
+        name=field.name if whole else _element(field, number, element),
+        value=number.physical(raw),
+        allowed=_allowed(field, number),
+        at=element,
+        raw=f"{raw:02X}",
+        encoding=field.encoding,
+    )
     return ProtocolError("bad-value", offset, data, detail)
 
 
@@ -151,42 +152,39 @@ def reject_frame(
 def _frame_fault(table: Table, direction: Direction, fault: FrameFault, data: bytes) -> str:
     frame = table.frame
     if fault == "no-header":
-        return f"the bytes do not start with the header {frame.header.hex(' ').upper()}"
+        return error_text("no-header", header=frame.header.hex(" ").upper())
     if fault == "bad-address":
-        return f"the address is {frame.address(data):02X}; allowed: {_hex_ranges(frame.addresses)}"
+        allowed = _runs(frame.addresses, "{:02X}")
+        return error_text("bad-address", address=f"{frame.address(data):02X}", allowed=allowed)
     if fault == "truncated":
         return _truncated(frame, data)
     if fault == "bad-length":
         return _bad_length(table, direction, data)
     if fault == "unknown-id":
         id = _digits(frame.read_id(data), frame.id_number)
-        return f"edition {table.edition} has no {direction} with id {id}"
+        return error_text("unknown-id", edition=table.edition, direction=direction, id=id)
     if fault == "bad-check":
         return _bad_check(frame)
     length = _digits(frame.read_length(data), frame.length_number)
-    return f"LEN is {length}, but more bytes follow the end of the frame"
+    return error_text("trailing", length=length)
 
 
 def _truncated(frame: FrameFormat, data: bytes) -> str:
     if len(data) < frame.length_at + frame.length_number.width:
-        return "the bytes end before LEN"
+        return error_text("no-len")
     length = frame.read_length(data)
     missing = length + frame.overhead - len(data)
-    what = "byte of the frame is" if missing == 1 else f"{missing} bytes of the frame are"
-    return f"LEN is {_digits(length, frame.length_number)}, but the last {what} missing"
+    kind = "truncated-by-one" if missing == 1 else "truncated"
+    return error_text(kind, length=_digits(length, frame.length_number), missing=missing)
 
 
 def _digits(number: int, form: Unsigned) -> str:
     return f"{number:0{2 * form.width}X}"
 
 
-def _hex_ranges(addresses: tuple[int, ...]) -> str:
-    return ", ".join(
-        [
-            f"{first:02X}" if first == last else f"{first:02X}..{last:02X}"
-            for first, last in ranges(addresses)
-        ]
-    )
+def _runs(numbers: tuple[int, ...], digits: str) -> str:
+    runs = [(digits.format(first), digits.format(last)) for first, last in ranges(numbers)]
+    return ", ".join([a if a == b else error_text("range", low=a, high=b) for a, b in runs])
 
 
 def ranges(numbers: tuple[int, ...]) -> list[tuple[int, int]]:
@@ -208,9 +206,9 @@ def ranges(numbers: tuple[int, ...]) -> list[tuple[int, int]]:
 
 def _bad_check(frame: FrameFormat) -> str:
     if frame.check is None:
-        return f"the frame does not end with the footer {frame.footer.hex().upper()}"
-    wrong = {"crc": "the CRC is wrong", "sum": "the sum is wrong"}
-    return wrong.get(frame.check.algorithm, "the check is wrong")
+        return error_text("no-footer", footer=frame.footer.hex().upper())
+    wrong = {"crc": "bad-crc", "sum": "bad-sum"}
+    return error_text(wrong.get(frame.check.algorithm, "bad-check"))
 
 
 def _bad_length(table: Table, direction: Direction, data: bytes) -> str:
@@ -226,14 +224,16 @@ def _bad_length(table: Table, direction: Direction, data: bytes) -> str:
         for variant in command.variants(direction)
     }
     if not legal:
-        return f"no {direction} of edition {table.edition} has LEN {length}"
-    lengths = " or ".join([_digits(each, frame.length_number) for each in sorted(legal)])
-    if id is None or not has_id:
-        return f"LEN of the {direction} is {length}; allowed: {lengths}"
-    # Commands that share an id are all named: the frame does not tell which one was called.
-    name = " or ".join([command.name for command in commands if command.variants(direction)])
-    what = f"{direction} {_digits(id, frame.id_number)} ({name})"
-    return f"LEN of the {what} is {length}; allowed: {lengths}"
+        edition = table.edition
+        return error_text("no-length", direction=direction, edition=edition, length=length)
+    either, what = error_text("or"), str(direction)
+    if id is not None and has_id:
+        # Commands that share an id are all named: the frame does not tell which one was called.
+        names = either.join([command.name for command in commands if command.variants(direction)])
+        id_text = _digits(id, frame.id_number)
+        what = error_text("identified", direction=direction, id=id_text, names=names)
+    lengths = either.join([_digits(each, frame.length_number) for each in sorted(legal)])
+    return error_text("bad-length", message=what, length=length, allowed=lengths)
 
 
 def _element(field: Field, number: Number, at: int) -> str:
@@ -250,44 +250,44 @@ def _sizes(field: Field, case: Case) -> str:
     if field.sizes is None:
         return str(len(case.numbers) // (field.each or 1))
     least, most = field.sizes
-    return f"{least}..{most}" if least < most else str(most)
+    return error_text("range", low=least, high=most) if least < most else str(most)
 
 
 def _text(field: Field, size: int) -> str:
     """Return what a text may be."""
     name = {"ascii": "ASCII", "utf-8": "UTF-8", "latin-1": "Latin-1"}[field.encoding]
     if field.sizes and not field.each:
-        return f"{name} text of {field.sizes[0]}..{field.sizes[1]} bytes"
-    if field.padding < 0:
-        return f"{name} text of {size} bytes"
-    return (
-        f"{name} text of at most {size} bytes that does not end with the byte {field.padding:02X}"
-    )
+        sizes = error_text("range", low=field.sizes[0], high=field.sizes[1])
+        return error_text("text-of-sizes", encoding=name, sizes=sizes)
+    kind = "text" if field.padding < 0 else "padded-text"
+    return error_text(kind, encoding=name, size=size, padding=f"{field.padding:02X}")
 
 
 def _elements(case: Case) -> str:
     names = [number.name for number in case.numbers]
-    text = f"a sequence of {len(names)} numbers"
-    return f"{text} ({', '.join(names)})" if all(names) else text
+    kind = "named-row" if all(names) else "row"
+    return error_text(kind, count=len(names), names=", ".join(names))
 
 
 def _allowed(field: Field, number: Number) -> str:
     if "flag" in (field.kind, number.kind):
-        return "True or False"
-    if number.labels:
-        pairs = zip(number.labels, number.choices)
-        return ", ".join([f"{label} ({raw})" for label, raw in pairs])
-    if field.labels:
-        return ", ".join([f"{label} ({raw})" for label, raw in zip(field.labels, field.choices)])
+        return error_text("flag")
+    labelled = number if number.labels else field
+    if labelled.labels:
+        pairs = zip(labelled.labels, labelled.choices)
+        return ", ".join([error_text("label", label=label, raw=raw) for label, raw in pairs])
     if choices := field.choices or number.choices:
         return ", ".join(map(str, choices))
-    kind = "a number" if number.real else "a whole number"
-    unit = f" {number.units}" if number.unit else ""
-    if number.takes_not_finite:
-        return f"{kind}{unit}, also infinity and NaN"
-    if number.encoding == "float" and (number.minimum, number.maximum) == number.raw_range:
-        return f"a finite number of {number.width} bytes{unit and f', in{unit}'}"
-    return f"{kind} {_bound(number, number.minimum)}..{_bound(number, number.maximum)}{unit}"
+    is_float = number.encoding == "float"
+    all_finite = is_float and (number.minimum, number.maximum) == number.raw_range
+    kind = "any-float" if number.takes_not_finite else "finite" if all_finite else ""
+    return error_text(
+        f"{kind or ('real' if number.real else 'whole')}{'-with-unit' * bool(number.unit)}",
+        low=_bound(number, number.minimum),
+        high=_bound(number, number.maximum),
+        width=number.width,
+        unit=number.units,
+    )
 
 
 @lru_cache(maxsize=1000)  # a stream of wrong values has few bounds, and a fraction takes long

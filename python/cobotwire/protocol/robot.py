@@ -38,8 +38,8 @@ class Dynamics(NamedTuple):
         speed: degrees a second for each percent of speed.
         fastest: the highest speed of a joint, in degrees a second.
         acceleration: the highest acceleration, in degrees per second squared.
-        near_degrees: how near to its target a joint counts as there.
-        near_millimetres: how near to its target the end counts as there.
+        near_degrees: the distance from its target at which a joint has reached it.
+        near_millimetres: the distance from its target at which the end has reached it.
     """
 
     speed: float
@@ -88,7 +88,7 @@ class Encoders(NamedTuple):
         return self.sign(joint) * (reading - self.zero) * self.degrees
 
     def inside(self, joint: int, lowest: float, highest: float) -> tuple[float, float]:
-        """Return the outermost angles on ticks within limits; without any, the first is higher."""
+        """Return the lowest and highest angle on a tick within limits; low > high if none is."""
         ends = self.angle(joint, 0), self.angle(joint, self.highest)
         lowest, highest = max(lowest, min(ends)), min(highest, max(ends))
         step = self.degrees

@@ -151,7 +151,7 @@ class Command(_CommandFields):
     """
 
     def __hash__(self) -> int:
-        """Return a hash of some fields, which tell commands apart: that of all takes long."""
+        """Return a hash of some fields that distinguish commands: hashing all fields takes long."""
         return hash((self.package, self.name, self.id))
 
     @property
@@ -184,7 +184,10 @@ class Command(_CommandFields):
 
     @property
     def starts_motion(self) -> bool:
-        """Whether it is a motion with arguments; one without ends, pauses or continues a motion."""
+        """Whether it is a motion with arguments.
+
+        A motion command without arguments ends, pauses or continues a motion.
+        """
         return self.safety == "motion" and all(variant.fields for variant in self.request)
 
     @property
@@ -267,7 +270,7 @@ class Table(NamedTuple):
     bases: tuple[str, ...] = ()
 
     def __hash__(self) -> int:
-        """Return a hash of some fields, which tell editions apart: that of all takes long."""
+        """Return a hash of some fields that distinguish editions: hashing all fields takes long."""
         return hash((self.edition, self.title, self.joints, self.baudrate, len(self.commands)))
 
     def command(self, name: str, *, also: Iterable[str] = ()) -> Command:

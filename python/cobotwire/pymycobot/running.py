@@ -149,7 +149,7 @@ def _report(error: BaseException, path: str) -> int:
 
 
 def _hide_ours(frames: TracebackType | None) -> None:
-    """Cut the frames of a call at the first of this package: its error says what is wrong."""
+    """Cut the traceback at the first frame of this package: the error itself says what is wrong."""
     while frames is not None and (after := frames.tb_next):
         if Path(after.tb_frame.f_code.co_filename).is_relative_to(_PACKAGE):
             frames.tb_next = None

@@ -1,11 +1,11 @@
 """Acknowledgements: which of the one-way requests that were sent has been acknowledged.
 
-An acknowledgement carries the command's id, perhaps a constant and arguments of the request. Where
-several requests with the same of these were sent and some acknowledgements are lost, it is unknown
-which request each belongs to. So a request counts as acknowledged once more acknowledgements have
-come than the other requests can still have caused.
-It may seem unacknowledged although it was, never the reverse, if each acknowledgement comes once
-and in time. An acknowledgement that was lost causes doubt only until it is too late to come.
+An acknowledgement carries the command's id, perhaps a constant and arguments of the request. If
+several requests with equal ids and arguments were sent and some acknowledgements are lost, it is
+unknown which request each acknowledgement belongs to. So a request counts as acknowledged once more
+acknowledgements have come than the other requests can still have caused. It may seem unacknowledged
+although it was, never the reverse, if each acknowledgement comes once and in time. An
+acknowledgement that was lost causes doubt only until it is too late to come.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ class ExpectedAck:
         offset: where in the received stream it can begin at the earliest.
         doubts: until when the acknowledgement of each other request may come, and look like this
             one; soonest first.
-        certain: whether it has come, whichever requests the other ones belong to.
+        certain: whether it has come in every assignment of the other acknowledgements.
     """
 
     __slots__ = ("certain", "doubts", "offset", "request", "sent_at", "until")
@@ -117,9 +117,10 @@ class _CommandAcks:
     """The requests of one command id, oldest first.
 
     Attributes:
-        expected: those whose acknowledgement may still come, if each one belongs to the oldest.
-        uncertain: those that a caller waits for, while it is not certain that they came.
-        copied: the request of which a copy came.
+        expected: those whose acknowledgement may still come, if each acknowledgement belongs to the
+            oldest request.
+        uncertain: those that a caller waits for and whose arrival is not certain.
+        copied: the request that the received frame is a copy of.
         began_at: since when acknowledgements have been expected without a break.
     """
 
@@ -214,7 +215,8 @@ class Acks:
     ) -> tuple[ExpectedAck, PendingAck | None]:
         """Note that a request goes out; its acknowledgement can begin at ``offset``.
 
-        The second is there if a caller waits ``within`` seconds for it, and not after ``ends_by``.
+        The second result is None unless a caller waits for the acknowledgement: at most ``within``
+        seconds, and not after ``ends_by``.
         """
         slow = request.command.safety == "motion" and not self._motions_at_once
         usual = MOTION_SECONDS if slow else GRACE_SECONDS
@@ -256,9 +258,9 @@ class Acks:
     def _learn(self, acks: _CommandAcks, received: _Received, now: float) -> None:
         """Learn whether motions are acknowledged at once.
 
-        They are if the acknowledgement of a single motion comes at once. They are too if the newest
-        motion always seems to be the acknowledged one for longer than a motion may take: then an
-        earlier acknowledgement was lost.
+        They are if the acknowledgement of a single motion comes at once. They also are if, for
+        longer than a motion may take, the newest motion always seems to be the acknowledged one:
+        then an earlier acknowledgement was lost.
         """
         newest = next(ack for ack in reversed(acks.expected) if received.of(ack.request))
         if newest.request.command.safety != "motion" or now - newest.sent_at >= GRACE_SECONDS:

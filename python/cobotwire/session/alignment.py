@@ -1,9 +1,8 @@
 """Half a request on the line: what must be sent before the next one.
 
 A write may end after a part of a frame. The peer's parser then waits for the rest, and takes the
-next request for it: both together can be a legal frame that nobody sent. So fill bytes go out
-first. They end the frame that was begun, and make its check wrong, whatever LEN the parser
-believes.
+next request for it: both together can be a legal frame that nobody sent. So fill bytes are sent
+first. They end the incomplete frame and make its check wrong, whatever LEN the parser accepts.
 
 Fill bytes cannot help if the part that was written contains a whole legal frame: a parser that
 rejects the outer frame finds the inner one. Then the rest of the frame is sent instead, so that the
@@ -74,7 +73,9 @@ class Alignment:
             self.hold(())
 
     def cut(self, align: bytes, request: bytes, written: int | None) -> int | None:
-        """Note that of ``align + request`` only ``written`` bytes were taken; None: nobody knows.
+        """Note that only ``written`` bytes of ``align + request`` were taken.
+
+        None: the number is unknown.
 
         Returns:
             How many of these bytes belong to the request.
@@ -114,7 +115,7 @@ class Alignment:
         self.held = parts
 
     def _ending(self, parts: tuple[Part, ...]) -> bytes:
-        """Return what ends the part that the peer holds, whichever it is."""
+        """Return bytes that end the incomplete request, whichever of the parts the peer holds."""
         fill = fill_bytes(self._format, [part.data for part in parts])
         [first, *others] = parts
         return first.rest if not others and self._exposes(first, fill) else fill
@@ -133,8 +134,8 @@ def fill_bytes(format: FrameFormat, parts: Sequence[bytes]) -> bytes:
     """Return bytes that end any frame that begins in a part, and complete none of them.
 
     They do so for every LEN, not only for those of the table: a parser may know other commands, or
-    believe any LEN. They repeat a pair of values that no header or footer has. Equal values would
-    not do: two of them are command and check of a frame that ends with a sum.
+    accept any LEN. They repeat a pair of different values that no header or footer has. Two equal
+    values could be the command and the check of a frame that ends with a sum.
     """
     reserved = format.header + format.footer
     values = [value for value in range(256) if value not in reserved]

@@ -1,9 +1,10 @@
 """Whether the line echoes: a loop, some adapters and a transponder send our own bytes back.
 
-A few requests are legal replies too: ``FE FE 03 50 01 FA`` asks whether servo 1 is powered, and
-older firmware says with the same bytes that it is. So the first copy of a request is only a
-candidate. If another reply follows, that one counts. If none does by the deadline, the candidate
-counts, unless the line was ever seen to echo: to send back a request that cannot be a reply.
+A few requests are legal replies too: ``FE FE 03 50 01 FA`` queries whether servo 1 is powered, and
+older firmware replies "yes" with the same bytes. So the first copy of a request is only a
+candidate. If another reply follows, that one counts. If no other reply comes by the deadline, the
+candidate counts, unless the line is known to echo: it has sent back a request that cannot be a
+reply.
 """
 
 from __future__ import annotations
@@ -81,7 +82,7 @@ class EchoDetector:
     def take_copy(self, frame: Frame) -> bool:
         """Return whether a frame is a copy of a request.
 
-        Each sending has one copy; one that comes beyond that is the arm's own frame.
+        Each request that was sent has one copy; any further copy is a frame of the arm.
         """
         self._noise = b""
         request, one_way = self._request, self._one_way

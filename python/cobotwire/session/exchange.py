@@ -19,8 +19,8 @@ deadline runs from the call: a request that was not sent by then is never sent. 
 request waits.
 
 Ctrl-C can interrupt any step in a client's thread. So each step commits with a single assignment:
-``done`` ends a request, ``_last`` makes it the one that waits. What an interrupt leaves in the
-lists besides is skipped.
+of ``done``, which ends a request, or of ``_last``, which makes it the one that waits. Other entries
+that an interrupt leaves in the lists are skipped.
 """
 
 from __future__ import annotations
@@ -30,6 +30,7 @@ from typing import Any
 
 from cobotwire.codec.interface import Codec, Event, Frame, Noise
 from cobotwire.protocol.addresses import ANYBODY, NOBODY
+from cobotwire.protocol.error_texts import error_text
 from cobotwire.protocol.errors import LinkError, ProtocolError, ReplyTimeout, WaitedFor
 from cobotwire.protocol.shared import once_per_table
 from cobotwire.protocol.table import Table
@@ -59,7 +60,6 @@ from cobotwire.session.request import EncodedRequest, as_call, request_of
 
 # For how long received bytes are read before a request is sent, if they do not end.
 DRAIN_SECONDS = 0.05
-NOT_SENT = "more than can be read; a late reply may be among it"
 
 
 @once_per_table
@@ -82,7 +82,8 @@ class Exchange:
         self._outstanding = OutstandingReplies()
         self._acks = Acks(codec)
         self._echo = EchoDetector()
-        # What waits for its turn, oldest first; an interrupt may leave in it what is done, or sent.
+        # Requests that wait for their turn, oldest first. An interrupt may leave requests in it
+        # that are done or sent.
         self._queue: list[PendingRequest] = []
         # The request that was sent last; it waits for its reply unless it is done.
         self._last: PendingRequest | None = None
@@ -104,8 +105,8 @@ class Exchange:
     ) -> tuple[bytes, PendingAck | None]:
         """Return the bytes of a one-way request, to be written now.
 
-        The second is there if ``ack_within`` says how many seconds its acknowledgement is waited
-        for, and the edition has one. Its caller waits until ``ends_by``.
+        The second result is None unless the edition acknowledges the request and its caller waits
+        for that: at most ``ack_within`` seconds, and not after ``ends_by``.
         """
         offset = self._framer.fed
         self._echo.sent_one_way(request.frame, offset)
@@ -138,8 +139,8 @@ class Exchange:
         """End every request: the transport is gone.
 
         Returns:
-            What the bytes are that still waited: what comes after the transport is open again does
-            not complete them.
+            The events of the bytes that waited for more. Bytes that are received after the
+            transport is opened again do not complete them.
         """
         events = self._sort(self._framer.flush(), now, self._framer.fed)
         self.alignment.lose()
@@ -210,7 +211,7 @@ class Exchange:
         waiting = self._waiting()
         if waiting is None or waiting.ends_by > now:
             return []
-        # A copy of it does not count as its reply: that one still had time to come.
+        # A copy of the request does not count as its reply: the reply still had time to come.
         return self._expire(waiting, now, now - waiting.queued_at, "reply")
 
     def note_full(self, full: bool) -> None:
@@ -298,7 +299,7 @@ class Exchange:
         queued = self._queued()
         if not self._outstanding.replies:
             return [(pending, now) for pending in queued]
-        # Many callers may want the same.
+        # Many callers may have queued the same frame, which is checked once.
         alike = {pending.request.frame: pending.request for pending in queued}
         held = {frame: self._outstanding.held_until(request) for frame, request in alike.items()}
         known = {frame: now if until is None else until for frame, until in held.items()}
@@ -330,7 +331,7 @@ class Exchange:
         """End a request: the late reply that holds it may be among the bytes not read yet."""
         request, waited = pending.request, now - pending.queued_at
         call = as_call(request, self._codec)
-        pending.fail(ReplyTimeout(request.command.name, waited, (NOT_SENT,), 0, call))
+        pending.fail(ReplyTimeout(request.command.name, waited, (error_text("too-much"),), 0, call))
         self._drop_done()
 
     def _end_overdue_queued(self, now: float) -> None:
@@ -427,7 +428,7 @@ class Exchange:
         """End the wait by silence after a text, by a copy that counts as reply, or by timeout."""
         request = waiting.request
         if waiting.text is not None and waiting.text.is_over(now):
-            # What waits in the framer came after the text, and does not belong to it.
+            # Bytes that wait in the framer came after the text, and do not belong to it.
             try:
                 fields = waiting.text.decode()
             except ProtocolError as error:
@@ -435,7 +436,7 @@ class Exchange:
                 return [ReplyRejected(request.command, error)]
             waiting.reply(fields, now)
             return [ReplyMatched(request.command, fields, None)]
-        # The framer gives up what waits in it, so that a frame hidden after it still counts.
+        # Flush the framer, so that a frame after the incomplete bytes is found.
         events = self._sort(self._framer.flush(), now, self._framer.fed)
         if waiting.done or now < waiting.ends_at:
             return events

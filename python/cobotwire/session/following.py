@@ -1,6 +1,6 @@
 """Follow a path or a live source of targets: what to send, and when; times are numbers.
 
-A generator yields the next step and is sent how it went, as in :mod:`cobotwire.session.motion`.
+A generator yields each step and receives its outcome, as in :mod:`cobotwire.session.motion`.
 
 The arm must be in its mode in which a new target replaces the old one (*fresh* mode). A setpoint is
 sent when its tick begins; if the process or the line is late by a tick, the setpoints in between
@@ -56,10 +56,10 @@ STALL_SECONDS = 0.5
 # An arm that stands still for this long at the end of the path does not continue by itself.
 STILL_SECONDS = 1.0
 LOOK_SECONDS = 0.1
-# The arm lags behind its setpoints, so it gets the highest speed of those of this time.
+# The arm lags behind its setpoints, so it gets the highest speed of the setpoints of this duration.
 LAG_SECONDS = 1.0
-# What an arm may do if its edition does not state it: degrees a second for each percent of speed,
-# and degrees per second squared. A joint is at its full acceleration after JERK_SECONDS.
+# The limits of an arm whose edition states none: degrees a second for each percent of speed, and
+# degrees per second squared. A joint is at its full acceleration after JERK_SECONDS.
 UNSTATED_SPEED, UNSTATED_ACCELERATION, JERK_SECONDS = 1.0, 60.0, 0.1
 # Half of what the arm can do is left for catching up.
 SHARE_OF_ACCELERATION = 0.5
@@ -341,7 +341,8 @@ class Follow:
         row = self._target.request[0].fields[row_index(self._target.request[0])].name
         arguments: tuple[str, ...] = self._target.request_type.__match_args__
         names = [each for each in arguments if each != row]
-        # Coordinates also need a mode in some editions: any allowed one, since it is not sent.
+        # Coordinates also need a mode in some editions. Any allowed mode will do, since it is not
+        # sent.
         fields = named_fields(self._target.request)
         others = [(*fields[each][0].choices, self._speed)[0] for each in names]
         try:

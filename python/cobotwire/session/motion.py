@@ -19,8 +19,8 @@ from cobotwire.protocol.roles import COORDS, kinds_of, place_role, reached_query
 from cobotwire.protocol.table import Command, Role, Table
 from cobotwire.session.request import EncodedRequest
 
-# A moving arm replies to 10 to 20 queries a second. A wait sends at most 12 in any second: these,
-# and two repeats of a query whose reply is lost.
+# A moving arm replies to 10 to 20 queries a second. A wait sends at most 12 queries in any second:
+# these, and two repeats of a query whose reply is lost.
 MOST_QUERIES = 10
 # Queries near the end are this far apart, divided by how many more this second allows.
 SPACING_SECONDS = 0.1
@@ -69,7 +69,7 @@ class Stop(NamedTuple):
 
 
 class Outcome(NamedTuple):
-    """How a step went: the time after it, and the result; None where no reply came.
+    """The outcome of a step: the time after it, and the result; None if no reply came.
 
     The result of :class:`Stop` is whether it was sent.
     """
@@ -166,9 +166,10 @@ def ack_seconds(request: EncodedRequest) -> float | None:
 def until_reached(table: Table, goal: Goal, limit: float, started: float) -> Steps:
     """Yield the steps of waiting until the arm is at a target.
 
-    Two readings of where the arm is tell when it will be there. Until shortly before, it is looked
-    at rarely; then it is asked often whether it is there. What the device itself sends about the
-    end of a motion looks the same for an earlier motion, so a query confirms it.
+    Two readings of where the arm is tell when it will be there. The position is queried rarely
+    until shortly before the arrival; then the arm is often queried whether it is there. What the
+    device itself sends about the end of a motion looks the same for an earlier motion, so a query
+    confirms it.
 
     A request without a reply is not an error: the arm is busy. A later one repeats it, until the
     time is over.
@@ -231,8 +232,8 @@ class _Wait:
     def _look(self, place: Any, near: bool) -> Generator[Step, Outcome, None]:
         """Find out when the arm may be there, or else whether it stands still.
 
-        ``place`` is where it is, None if it did not reply; where the query of the goal does not
-        report that, another one does. ``near`` tells whether it could be there.
+        ``place`` is the position, None if the arm did not reply. If the query of the goal does not
+        report it, another query does. ``near`` tells whether it could be there.
         """
         if self._where is not None and self._goal.decides:
             place = yield from self._ask(self._where.request_type())
@@ -308,7 +309,7 @@ class _Wait:
 
 
 def _state(table: Table, goal: Goal) -> Generator[Step, Outcome, ArmState]:
-    """Yield queries for what explains that the arm is not there; return the answers."""
+    """Yield queries for the reasons why the arm is not there; return the replies."""
     roles: tuple[Role, ...] = (goal.place, "powered", "paused", "error")
     found: list[Any] = []
     for role in roles:

@@ -2,7 +2,7 @@
 
 A late reply looks like the reply to the next request of the same command. So that request is held
 until the late reply is too late to come at all. It is not sent earlier, even if a late reply has
-come: some lines double replies, so the one that came may be a copy of another attempt's.
+come: some lines double replies, so that reply may be a copy of the reply to another attempt.
 
 What an ended session leaves outstanding on its port is persisted, for the next session there.
 """
@@ -88,7 +88,7 @@ class PersistedState(NamedTuple):
     """Replies that may still come, and what the peer may hold of a request that was cut.
 
     Attributes:
-        late: the requests of which replies are outstanding; times are those of the port's clock.
+        late: the requests with outstanding replies; times are those of the port's clock.
         parts: every part of a request that the peer may hold.
     """
 

@@ -1,4 +1,4 @@
-"""What ``follow`` takes, returns and sends; the rest of it is imported when it is first called."""
+"""Arguments, results and setpoints of ``follow``; its first call imports the rest."""
 
 from __future__ import annotations
 

@@ -39,7 +39,7 @@ class RetryPolicy(_RetryFields):
     """Splits the ``timeout`` of a query into attempts. Only queries are ever sent again.
 
     On real lines a reply comes within some 30 ms or never, so sending again beats waiting longer.
-    The time to reply does not change: three attempts within 500 ms are one every 167 ms.
+    Attempts do not extend the timeout: three attempts within 500 ms are one every 167 ms.
 
     Attributes:
         attempts: how often a query is sent at most, 1..100; 1 never repeats it.
@@ -211,7 +211,7 @@ class PendingRequest(Pending):
         """When the wait ends unless more is received."""
         if self.text is None or self.text.ends_at is None:
             return self._deadline
-        # A text that has begun may end after the deadline, but a babbling line may not go on.
+        # A text that has begun may end after the deadline, but endless noise must not extend it.
         return min(self.text.ends_at, self._deadline + self.text.silence)
 
     @property

@@ -6,6 +6,7 @@ from collections import deque
 from collections.abc import Iterator
 
 from cobotwire.codec.interface import Codec, Event, Noise
+from cobotwire.protocol.error_texts import error_text
 from cobotwire.protocol.lazy import import_aside
 from cobotwire.protocol.table import Command
 from cobotwire.session.events import AckReceived, EchoReceived, EventReceived, FrameEvent, LateReply
@@ -66,7 +67,7 @@ class ReceivedMeanwhile:
         return tuple(
             _noise_line(item, next(diagnoses))
             if isinstance(item, _NoiseSpan)
-            else f"{_kind(item, command.id)} {_hex(item.frame.data, len(item.frame.data))}"
+            else _frame_line(item, command.id)
             for item in self._items
         )
 
@@ -106,22 +107,23 @@ def _as_events(items: deque[_Item]) -> Iterator[Event]:
 
 
 def _noise_line(span: _NoiseSpan, diagnosis: str) -> str:
-    line = f"noise ({span.reason}) {_hex(span.data, span.size)}"
-    return f"{line}: {diagnosis}" if diagnosis else line
+    kind, data = "diagnosed-noise" if diagnosis else "noise", _hex(span.data, span.size)
+    return error_text(kind, reason=span.reason, data=data, diagnosis=diagnosis)
 
 
-def _kind(event: FrameEvent, request_id: int) -> str:
+def _frame_line(event: FrameEvent, request_id: int) -> str:
+    data = _hex(event.frame.data, len(event.frame.data))
     if isinstance(event, LateReply):
-        return f"late reply to {event.command.name}"
+        return error_text("late-reply", command=event.command.name, data=data)
     if isinstance(event, EventReceived):
-        return f"event {event.command.name}"
+        return error_text("event", command=event.command.name, data=data)
     if isinstance(event, AckReceived):
         # An acknowledgement has only the command's id, so an earlier request may have caused it.
-        doubt = ", perhaps of an earlier request" if event.frame.command == request_id else ""
-        return f"acknowledgement of {event.command.name}{doubt}"
-    return "the request's own bytes" if isinstance(event, EchoReceived) else "frame"
+        kind = "doubtful-ack" if event.frame.command == request_id else "ack"
+        return error_text(kind, command=event.command.name, data=data)
+    return error_text("echo" if isinstance(event, EchoReceived) else "frame", data=data)
 
 
 def _hex(data: bytes | bytearray, size: int) -> str:
-    rest = f" ... {size} bytes" if size > SHOWN else ""
-    return data[:SHOWN].hex(" ").upper() + rest
+    shown = data[:SHOWN].hex(" ").upper()
+    return error_text("cut-data", data=shown, size=size) if size > SHOWN else shown

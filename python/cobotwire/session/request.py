@@ -13,6 +13,7 @@ from cobotwire.protocol.addresses import (
     lacks_joints,
     replier_of,
 )
+from cobotwire.protocol.error_texts import error_text
 from cobotwire.protocol.errors import ProtocolError, UsageError
 from cobotwire.protocol.messages import Request, Result
 from cobotwire.protocol.rejection import reject_radians
@@ -23,11 +24,10 @@ from cobotwire.session import text
 class EncodedRequest(NamedTuple):
     """A request as it goes over the line.
 
-    ``arguments`` are those that a reply can repeat, with the values that it would repeat; empty
-    where no reply repeats any. ``text`` follows some requests outside the frame. ``replier`` is
-    the address that its reply must have, or who replies to a broadcast (ANYBODY, SOMEBODY,
-    NOBODY); None if frames have no address.
-    Without ``reply_has_id`` its reply is known only by address and size.
+    ``arguments`` are the arguments that a reply repeats, with their values; empty if no reply
+    repeats any. ``text`` follows some requests outside the frame. ``replier`` is the address that
+    its reply must have, or who replies to a broadcast (ANYBODY, SOMEBODY, NOBODY); None if frames
+    have no address. Without ``reply_has_id`` its reply is known only by address and size.
     """
 
     command: Command
@@ -91,7 +91,7 @@ class RequestEncoder:
     ) -> EncodedRequest:
         """Validate and encode a request by its command's name.
 
-        Without ``variant``, it is the first one with that number of values that allows them.
+        Without ``variant``, the first variant with that number of values that allows them is used.
 
         Raises:
             UsageError: there is no such command, or an argument is not allowed.
@@ -142,13 +142,13 @@ def check_acknowledged(request: EncodedRequest) -> None:
         UsageError: no device acknowledges a request to its address.
     """
     if request.replier == NOBODY:
-        message = f"{request.command.name}() cannot be waited for: nobody replies to its address"
+        message = error_text("unacknowledged", command=request.command.name)
         raise UsageError("ack_within", message=message)
 
 
 def _unanswered(name: str, address: Address | None) -> UsageError:
     assert address is not None, "only an address can have no replies"
-    message = f"{name}() has a reply, and nobody replies to the address {address.name}"
+    message = error_text("unanswered", command=name, name=address.name)
     return UsageError("address", address.name, message=message)
 
 

@@ -4,7 +4,7 @@ A stream is cut into periods. Period k begins at ``started + k / rate`` and has 
 Its requests are sent when it begins, or up to half a period later; after that the period is missed,
 and the stream waits for the next one. Missed samples are therefore not sent later in bursts: two
 samples are requested at least half a period apart. If another thread's request or an outstanding
-reply delays a sample, it belongs to the period that begins nearest to its sending.
+reply delays a sample, it belongs to the period that begins nearest to the time at which it is sent.
 
 A sample is requested only when the consumer waits for one; while the consumer is busy, periods are
 missed. So there is no queue that could grow, and no sample is older than the call that returns it.
@@ -38,8 +38,8 @@ class Poll(NamedTuple):
 class Sampler:
     """The periods of one stream; ``now`` is the caller's seconds and never goes back.
 
-    The stream takes turns with it: :meth:`plan`, wait until then, send the requests,
-    :meth:`answered` or :meth:`unanswered`; :meth:`interrupted` if it is stopped in between.
+    For each sample the stream calls :meth:`plan`, waits until that time, sends the requests, and
+    calls :meth:`answered` or :meth:`unanswered`; if it is stopped in between, :meth:`interrupted`.
     """
 
     def __init__(self, requests: tuple[Request[Any], ...], rate: float) -> None:

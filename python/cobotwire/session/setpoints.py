@@ -130,7 +130,7 @@ class Path:
 
 
 class Live:
-    """The way after the targets of a source. Each step brings the joints nearer to the newest one.
+    """The setpoints that follow the targets of a source. Each step is nearer to the newest target.
 
     A new target is approached over the time that the source takes from one to the next, so that
     joints do not stop at each.

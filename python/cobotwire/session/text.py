@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
+from cobotwire.protocol.error_texts import error_text
 from cobotwire.protocol.errors import ProtocolError, UsageError
 from cobotwire.protocol.table import TextReply, TextRequest
 
@@ -23,7 +24,7 @@ def encode(variant: Text, values: Mapping[str, str]) -> bytes:
     for name in variant.fields:
         value = values[name]
         if not isinstance(value, str) or not value.isascii() or not value.isprintable():
-            raise UsageError(name, value, "printable ASCII text")
+            raise UsageError(name, value, error_text("printable"))
     pieces = (prefix + values[name] for prefix, name in zip(variant.prefixes, variant.fields))
     data = ("".join(pieces) + variant.suffix).encode("ascii")
     try:
@@ -31,9 +32,12 @@ def encode(variant: Text, values: Mapping[str, str]) -> bytes:
     except ProtocolError:
         unambiguous = False
     if not unambiguous:
-        words = " or ".join(repr(word) for word in (*variant.prefixes[1:], variant.suffix) if word)
+        words = error_text("or").join(
+            [repr(word) for word in (*variant.prefixes[1:], variant.suffix) if word]
+        )
         given = tuple(values[name] for name in variant.fields)
-        raise UsageError(", ".join(variant.fields), given, f"text without {words} inside")
+        allowed = error_text("unambiguous", words=words)
+        raise UsageError(", ".join(variant.fields), given, allowed)
     return data
 
 
@@ -47,16 +51,19 @@ def decode(variant: Text, data: bytes) -> dict[str, str]:
     try:
         text = data.decode("ascii").rstrip("\r\n")
     except UnicodeDecodeError as error:
-        raise ProtocolError("bad-text", error.start, data, "the text is not ASCII") from None
+        detail = error_text("text-not-ascii")
+        raise ProtocolError("bad-text", error.start, data, detail) from None
     if not text.startswith(variant.prefixes[0]):
-        raise ProtocolError("bad-text", 0, data, f"the text starts with {variant.prefixes[0]!r}")
+        detail = error_text("text-start", prefix=repr(variant.prefixes[0]))
+        raise ProtocolError("bad-text", 0, data, detail)
     if not text.endswith(variant.suffix) or len(text) < len(variant.prefixes[0] + variant.suffix):
-        raise ProtocolError("bad-text", len(data), data, f"the text ends with {variant.suffix!r}")
+        detail = error_text("text-end", suffix=repr(variant.suffix))
+        raise ProtocolError("bad-text", len(data), data, detail)
     rest = text[len(variant.prefixes[0]) : len(text) - len(variant.suffix)]
     values = []
     for prefix in variant.prefixes[1:]:
         if rest.count(prefix) != 1:
-            detail = f"{prefix!r} stands {rest.count(prefix)} times in the text, not once"
+            detail = error_text("text-prefix", prefix=repr(prefix), count=rest.count(prefix))
             raise ProtocolError("bad-text", len(text) - len(rest), data, detail)
         value, rest = rest.split(prefix)
         values.append(value)
@@ -107,6 +114,6 @@ class TextCollector:
             ProtocolError: the text is longer than allowed, or has another form.
         """
         if len(self._data) > TEXT_LIMIT:
-            detail = f"the text is longer than {TEXT_LIMIT} bytes"
+            detail = error_text("text-length", most=TEXT_LIMIT)
             raise ProtocolError("bad-text", TEXT_LIMIT, self._data[:64], detail)
         return dict(decode(self._variant, self._data))

@@ -76,7 +76,7 @@ class SimulatedArm:
             geometry: the lengths of the links; None: those that the edition states. If
                 it states none, the arm does not reply to queries of coordinates, and rejects
                 motions to coordinates.
-            lag: by how many seconds the joints run after the motion that the arm computes.
+            lag: the delay of the joints behind the computed motion, in seconds.
             on_note: called with each new note; ``notes`` keeps the last 1000.
             behaviours: what the arm does for its commands, instead of the behaviour that comes with
                 cobotwire; None: those that installed packages provide for the edition (entry

@@ -1,8 +1,8 @@
 """What the arm does for each command, as the effect that its edition states.
 
 A motion is physics (:mod:`cobotwire.simulator.targets`), and so is the built-in state
-(:mod:`cobotwire.simulator.built_in`). Everything else is a value in ``ArmState.kept``, by the name
-that the edition gives it; of a state with a value for each index, a mapping from the index.
+(:mod:`cobotwire.simulator.built_in`). Everything else is a value in ``ArmState.kept``, by its name
+in the edition. A state with a value for each index is a mapping from the index.
 """
 
 from __future__ import annotations
@@ -74,7 +74,8 @@ class Asked(NamedTuple):
 def perform(asked: Asked, *, elsewhere: bool = False) -> dict[str, Any]:
     """Perform a command; return the fields that its reply has.
 
-    With ``elsewhere`` the request is for a joint that the arm lacks: what it sets is only kept.
+    With ``elsewhere`` the request is for a joint that the arm lacks: its values are stored and have
+    no other effect.
 
     Raises:
         Unanswerable: the arm does not know what the reply reports.
@@ -91,7 +92,7 @@ def perform(asked: Asked, *, elsewhere: bool = False) -> dict[str, Any]:
 
 
 def _keep_or_recall(asked: Asked, effect: Effect) -> dict[str, Any]:
-    """Keep what a request sets for a joint that the arm lacks, or report it; at first zero."""
+    """Store or report a value for a joint that the arm lacks; it is zero at first."""
     kept = asked.arm.elsewhere
     at = getattr(effect, "at", ())
     index = _index(asked, at)
@@ -175,7 +176,7 @@ def _write(asked: Asked, given: Mapping[str, Any], at: Sequence[str]) -> None:
         _keep(arm, declared[state], index, tuple(value) if isinstance(value, list) else value)
     if built_in:
         led = arm.released
-        # Without power nothing is held, so that power is switched first.
+        # Without power no joint can be held, so power is switched first.
         for state in sorted(built_in, key="powered".__ne__):
             WRITERS[state](arm, asked.now, built_in[state], index[0] if index else None)
         after_writing(arm, asked.now, built_in, led=led)

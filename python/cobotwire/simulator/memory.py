@@ -79,8 +79,8 @@ class MemoryTransport:
             now = self.clock()
             deadline = now + timeout
             if timeout > 0:
-                # A caller that reads until its time is over would read for ever if the rest of its
-                # time is too little to change the clock.
+                # A remaining time that is too small to change the clock would let a caller read for
+                # ever.
                 deadline = max(deadline, math.nextafter(now, math.inf))
             while True:
                 self._with_peer(self._connection.pass_time)
@@ -107,7 +107,7 @@ class MemoryTransport:
     def reopen(self) -> None:
         """Connect again; what was not read is lost. The peer keeps its state.
 
-        A fault scenario keeps its state, too: it may disconnect again.
+        A fault scenario keeps its state too, so it may disconnect again.
         """
         with self._news:
             if isinstance(self._peer, SharedPeer):

@@ -115,7 +115,10 @@ def _move_joint(
 
 
 def _move_servo(arm: ArmState, now: float, joint: int, encoder: int, speed: int) -> None:
-    """Move one servo to a reading of its encoder; the one after the last joint is the gripper's."""
+    """Move one servo to a reading of its encoder.
+
+    The servo after the last joint is the gripper's.
+    """
     if joint <= arm.joints:
         go_to_encoders(arm, {joint - 1: encoder}, speed, now)
     elif 0 <= arm.opening_at(encoder) <= 100:

@@ -10,7 +10,7 @@ IDLE_SECONDS = 0.2
 
 
 class PeerDisconnected(Exception):
-    """Raised by a peer that disappears; whatever serves it closes the connection."""
+    """Raised by a peer that disappears; the server of the peer closes the connection."""
 
 
 class Peer(Protocol):

@@ -67,7 +67,7 @@ class Pty:
             os.close(slave)
 
     def close(self) -> None:
-        """Close it: a program that has it open finds it hung up."""
+        """Close it; a program that has it open gets a hangup."""
         for descriptor in (self.master, *self._held):
             os.close(descriptor)
         if self.openings is not None:

@@ -89,7 +89,10 @@ def _variant(command: Command, result: Mapping[str, Any]) -> Variant:
 
 
 def _legal(field: Field, usual: int) -> Any:
-    """Return the usual value if it is legal; else the nearest one, or the first of a list."""
+    """Return the usual value if it is legal.
+
+    Otherwise the nearest legal value, or the first of a closed list.
+    """
     values = []
     for number in field.cases[0].numbers:
         choices = field.choices or number.choices

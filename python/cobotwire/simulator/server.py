@@ -15,7 +15,7 @@ from cobotwire.simulator.peer import Peer, PeerDisconnected
 
 READ, WRITE = selectors.EVENT_READ, selectors.EVENT_WRITE
 READ_SIZE = 4096
-# select() takes no time of some weeks, which a recorded pause may have.
+# A recorded pause may last weeks, for which select() would raise an error.
 LONGEST_WAIT = 3600.0
 
 
@@ -38,7 +38,7 @@ class Server:
         self._clock = RunningClock() if clock is None else clock
         self._clients: dict[int, _Client] = {}
         self._selector = selectors.DefaultSelector()
-        # A byte sent to the second one ends :meth:`serve`. Windows can wait for no pipe.
+        # A byte sent to the second one ends :meth:`serve`. On Windows, select() accepts no pipe.
         self._stop, self._stopper = socket.socketpair()
         self._stopper.setblocking(False)
         self._selector.register(self._stop, READ)

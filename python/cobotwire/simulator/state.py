@@ -40,7 +40,7 @@ MOST_POINTS = 32767
 class ArmState:
     """Every setting of the arm, and its axes. Angles are in degrees.
 
-    ``robot`` is what the edition states about the robot, ``geometry`` its links or others.
+    ``robot`` is what the edition states about the robot; ``geometry`` may replace its links.
     """
 
     joints: int
@@ -76,7 +76,7 @@ class ArmState:
     gripper: Axes = field(default_factory=lambda: Axes((0.0,), OPENING_ACCELERATION))
     # Why the present request had no effect or waits; the arm turns these remarks into notes.
     remarks: list[str] = field(default_factory=list)
-    # Why the present request was rejected, as an error; 0: for another reason; None: it was not.
+    # The error code of the rejection of the present request; 0: it has no code; None: not rejected.
     rejection: int | None = None
     # Whether the present request started a motion, even if it takes no time.
     at_once: bool = False
@@ -169,7 +169,7 @@ class ArmState:
         return motion.near_degrees or NEAR_DEGREES, motion.near_millimetres or NEAR_MILLIMETRES
 
     def emit(self, event: Event, at: float) -> None:
-        """Let the arm send an event at a time: that of the present request, or a later one."""
+        """Let the arm send an event at the time of the present request, or later."""
         self.emitted.append((event, at))
 
     def standing(self, now: float) -> tuple[float, ...]:

@@ -19,7 +19,7 @@ ANY_FREE_PORT = 0
 HIGHEST_PORT = 65535
 # Further clients are disconnected: a runaway program must not use up all descriptors.
 MOST_CLIENTS = 64
-# Unless a client has been silent for this long: it is disconnected instead.
+# A client that has been silent for this long is disconnected instead.
 IDLE_SECONDS = 2.0
 # While the system has no descriptor left, a client is accepted at most this often.
 RETRY_SECONDS = 0.2

@@ -1,4 +1,4 @@
-"""Accept connections for uvicorn one at a time, so that none waits until it is served its turn."""
+"""Accept connections for uvicorn, one at a time, and close those that wait for too long."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from cobotwire.studio.gate import SCOPE_STATE
 # How many connections the system keeps until they are accepted. If a connection finds no place
 # there, its next attempt comes a second later.
 QUEUE = 4096
-# How often connections are looked through for those that have waited too long.
+# The period of the search for connections that have waited too long.
 SWEEP_SECONDS = 1.0
 # After the process could open no file for a connection.
 NO_MORE_FILES = (errno.EMFILE, errno.ENFILE, errno.ENOBUFS, errno.ENOMEM)
@@ -56,7 +56,7 @@ class Server(uvicorn.Server):
             try:
                 accepted, _ = await loop.sock_accept(self._listening)
             except OSError as error:
-                # Else the other end has gone again, which must cost the others nothing.
+                # Otherwise the other end has disconnected, which must not affect other connections.
                 if error.errno in NO_MORE_FILES:
                     self._open.make_room()
                 await asyncio.sleep(PAUSE_SECONDS if error.errno in NO_MORE_FILES else 0)

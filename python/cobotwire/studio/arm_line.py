@@ -18,8 +18,9 @@ from cobotwire.studio.sending import NotPermitted
 from cobotwire.transport import open_transport
 
 POLLED: tuple[Role, ...] = ("joints", "coordinates")
-# A query that gets no reply this often, although another one does, is asked again after a pause: an
-# arm of unknown geometry may not know its coordinates, and waiting for them slows down the rest.
+# If a query had no reply this often although another one had, it is sent again only after a pause:
+# an arm of unknown geometry may not report its coordinates, and waiting for them slows down the
+# rest.
 UNANSWERED, PAUSE_SECONDS = 2, 60.0
 # A port that disappeared is opened again at most this often.
 REOPEN_SECONDS = 1.0

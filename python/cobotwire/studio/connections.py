@@ -1,8 +1,8 @@
 """Decide which connections stay open: those without the token cannot keep out those with it.
 
-If connections were refused when there are too many, anyone could hold as many and keep all others
-out. So a new connection is always accepted. If too many have not shown the token, the one that
-has been idle for longest is closed. Connections that showed the token are not among them.
+If the server refused new connections instead, an attacker could hold all of them and lock everybody
+out. So a new connection is always accepted. If too many have not shown the token, the one that has
+been idle for longest is closed. Connections that showed the token are not among them.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from operator import attrgetter
 
 # Connections that have not shown the token: in all, and from one address.
 MOST_UNKNOWN, MOST_OF_ONE_HOST = 64, 32
-# What remains of that in a process that may open only few files.
+# The same limit in a process that may open only few files.
 LEAST_UNKNOWN = 8
 # Connections with the token that are never closed for others.
 MOST_KNOWN = 64
@@ -30,7 +30,7 @@ class Connection:
         host: the address of the other end.
         abort: closes it at once.
         since: when it came, or when its last request began or was served.
-        served: whether a request is served at this moment.
+        served: whether a request is being served.
         known: whether one of its requests had the token.
     """
 

@@ -22,7 +22,7 @@ class Entry(NamedTuple):
         direction: of the bytes.
         data: the bytes; empty for a remark.
         finding: what the noise is; None for a frame.
-        remark: what happened besides the bytes: an injected fault, a lost port.
+        remark: an event without bytes: an injected fault, a lost port.
         label: the kind of the remark.
     """
 

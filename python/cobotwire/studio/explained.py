@@ -75,7 +75,7 @@ def _part(part: Part) -> dict[str, Any]:
 
 
 def _finding(finding: Finding) -> Explanation:
-    # What is not so, or not known, says nothing.
+    # A fact that is false or unknown adds no words.
     facts = {
         name: text
         for name, value in finding.facts.items()

@@ -89,7 +89,7 @@ def _hold(holding: Holding, wish: dict[str, Any]) -> None:
 
 async def _send(socket: WebSocket, viewer: Viewer) -> None:
     async for batch in viewer.batches():
-        # This waits while the page does not read; its queues then lose what is old.
+        # This waits while the page does not read; its queues then drop old entries.
         await socket.send_text(batch)
 
 

@@ -28,7 +28,7 @@ App = Callable[[Scope, Receive, Send], Awaitable[None]]
 
 
 class Gate:
-    """An ASGI application around another one, which sees only requests that may pass."""
+    """An ASGI application that passes permitted requests to another one."""
 
     def __init__(self, inner: App, access: Access, connections: Connections) -> None:
         self._inner, self._access, self._connections = inner, access, connections

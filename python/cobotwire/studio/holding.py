@@ -1,4 +1,7 @@
-"""Motions that go on only while a page holds a button: a page that is gone or stuck ends them."""
+"""Motions that last only while a page holds a button.
+
+They also end if the page is gone or stuck.
+"""
 
 from __future__ import annotations
 

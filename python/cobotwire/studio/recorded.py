@@ -24,7 +24,7 @@ from cobotwire.studio.viewers import Viewer
 MOST_ENTRIES = 1_000_000
 STEP_SECONDS = 0.05
 SLOWEST, FASTEST = 0.05, 1000.0
-# What a page gets of the time before the place that it jumps to.
+# The seconds before the target of a jump that a page also gets.
 PAST_ENTRIES, PAST_SAMPLED = 400, 4000
 
 

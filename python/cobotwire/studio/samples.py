@@ -26,8 +26,8 @@ class Sampler:
 
     A sample has the time ``t`` in seconds, and some of: ``j`` joint angles, ``c`` coordinates of
     the end, ``r`` the reply time in milliseconds, ``z`` bytes of noise; the targets: ``tj`` of the
-    joints, ``te`` where the end goes, in millimetres. A target that is None is one no longer: the
-    arm has reached it, was stopped, or got another kind of target.
+    joints, ``te`` where the end goes, in millimetres. A target that is None has ended: the arm has
+    reached it, was stopped, or got another kind of target.
     """
 
     def __init__(self, table: Table) -> None:

@@ -1,4 +1,7 @@
-"""Who may send, and what: one page at a time, queries at once, the rest with two permissions."""
+"""Decide who may send what: one page at a time.
+
+Queries always, other commands with two permissions.
+"""
 
 from __future__ import annotations
 

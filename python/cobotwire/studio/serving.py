@@ -45,7 +45,7 @@ class Options(NamedTuple):
     """What to show and how.
 
     Attributes:
-        source: a port, a URL, the file of a recording, ``follow:`` and one that grows; None: a
+        source: a port, a URL, the file of a recording, ``follow:FILE`` for one that grows; None: a
             simulated arm.
         edition: the name of the edition.
         baudrate, record, address: as for other verbs.
@@ -209,7 +209,7 @@ def _listening(host: str, port: int) -> socket.socket:
     family = socket.AF_INET6 if ":" in host else socket.AF_INET
     try:
         return socket.create_server((host, port), family=family)
-    # A host that cannot be encoded as a name is a UnicodeError; a port that is too high, another.
+    # A host that is no valid name raises UnicodeError, and a port that is too high OverflowError.
     except (OSError, UnicodeError, OverflowError) as error:
         reason = getattr(error, "strerror", None) or str(error)
         raise LinkError(f"{host}:{port}", f"cannot listen: {reason}") from error

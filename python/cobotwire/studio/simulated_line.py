@@ -121,7 +121,7 @@ def scenarios(table: Table) -> list[ScenarioChoice]:
             scenario = find(name, table)
         except CobotwireError:
             continue
-        # One that replays a recording has another arm in it.
+        # A scenario that replays a recording contains an arm of its own.
         if scenario.replay is None:
             found.append(ScenarioChoice(name, scenario.about))
     return found

@@ -48,8 +48,9 @@ class Stage:
     ) -> None:
         """Show a session.
 
-        ``limits`` are those of the client; ``silence`` ends what a page holds, in seconds. The page
-        draws the arm of the table ``drawn``, whose geometry may be a user's; no check uses it.
+        ``limits`` are those of the client; ``silence`` is the time after which a held motion ends,
+        in seconds. The page draws the arm of the table ``drawn``, whose geometry may be a user's;
+        no check uses it.
         """
         self._drawn = drawn or edition.TABLE
         self.table, self.session, self.control = edition.TABLE, session, control
@@ -61,7 +62,7 @@ class Stage:
         self.simulated = simulated
         self._scenarios = scenarios(self.table) if simulated is not None else []
         self._senders = ThreadPoolExecutor(SENDERS, "cobotwire-send")
-        # Stop has a thread of its own, so that it waits for no request.
+        # Stop has its own thread, so that it does not wait for other requests.
         self._stopper = ThreadPoolExecutor(1, "cobotwire-stop")
         self.viewers: dict[str, Viewer] = {}
 

@@ -1,4 +1,4 @@
-"""The pages that watch: each has queues of its own, which lose old news if the page is slow."""
+"""The pages that watch. Each has its own queues, which drop old entries if the page is slow."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from cobotwire.studio.describing import Described
 # What waits for a page. A page that stalls for longer misses the oldest, and says how many.
 QUEUED_ENTRIES = 4000
 QUEUED_SAMPLES = 8000
-# News is collected for this long, so that a page draws some twenty times a second at most.
+# Updates are collected for this long, so that a page draws about twenty times a second at most.
 BATCH_SECONDS = 0.05
 
 

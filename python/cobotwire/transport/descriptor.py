@@ -15,7 +15,7 @@ from cobotwire.transport.log import Log
 from cobotwire.transport.waiting import Waiter, native_calls
 
 READ_SIZE = 4096
-# A write may take this long, and twice the time besides that the line needs for the bytes.
+# The time limit of a write: this, plus twice the time that the line needs for the bytes.
 WRITE_SECONDS = 1.0
 # Start bit, eight data bits, stop bit.
 BITS_A_BYTE = 10
@@ -148,8 +148,7 @@ class DescriptorTransport(ABC):
         """Close it; a read or write in another thread ends at once."""
         self._closed = True
         self._waiter.wake()
-        # Only when no thread waits any longer: another file may get the number of a closed
-        # descriptor a moment later.
+        # Closed only when no thread waits any longer: another file may get its number immediately.
         with self._reading, self._writing:
             self._waiter.close()
             self._descriptor = -1

@@ -1,4 +1,4 @@
-"""Notice a fork: what the parent opened is not the child's to use, nor to close.
+"""Notice a fork: a child must neither use nor close the transports that its parent opened.
 
 A forked child has copies of the parent's descriptors. If it reads them, it takes bytes from the
 parent; if it shuts a connection down or wakes a wait, the parent notices. In the child, therefore,

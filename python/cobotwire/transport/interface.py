@@ -43,7 +43,7 @@ class PollableTransport(Transport, Protocol):
     """A transport that an event loop can watch; the asyncio client needs no threads for it."""
 
     def fileno(self) -> int | None:
-        """Return the descriptor to watch; None: this one has none after all."""
+        """Return the descriptor to watch; None if this transport has no descriptor."""
         ...
 
     def write_some(self, data: bytes) -> int:

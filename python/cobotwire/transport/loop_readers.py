@@ -14,7 +14,7 @@ from contextlib import suppress
 from contextvars import Context, copy_context
 from weakref import WeakValueDictionary
 
-# The loop itself watches this many descriptors: with few, each turn serves one or two of them, and
+# The loop itself watches this many descriptors. If there are few, each turn serves one or two, and
 # a second epoll costs more than it saves.
 FEW = 64
 # The most descriptors that are served in one turn of the loop.

@@ -19,8 +19,8 @@ def open_transport(url: str, baudrate: int) -> OpenedTransport:
 
     Args:
         url: the port's name or the URL.
-        baudrate: bits a second. For TCP, that of the serial line at the other end: it limits the
-            time that a write may take.
+        baudrate: bits a second. For TCP, the baud rate of the serial line at the other end, which
+            limits the time of a write.
 
     Raises:
         UsageError: the URL or baud rate is not allowed.

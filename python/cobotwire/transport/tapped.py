@@ -17,8 +17,8 @@ Tap = Callable[[Literal["sent", "received"], bytes, float], None]
 class Tapped:
     """A :class:`~cobotwire.transport.Transport` around another one.
 
-    The tap gets each chunk at its own time, which no traffic listener can see: half a frame when it
-    comes, and of a write that fails the bytes that were taken. It runs in the thread that reads or
+    The tap gets each chunk at its own time, which no traffic listener sees: half a frame when it
+    arrives, and the written bytes of a write that fails. It runs in the thread that reads or
     writes, and must not raise.
     """
 
@@ -100,7 +100,8 @@ class _BorrowedTransport(TappedTransport):
 def borrowed(transport: Transport) -> Transport:
     """Return a transport to the same peer; closing it leaves ``transport`` open.
 
-    So a client can be closed, and notes what may still come, before another one uses the transport.
+    So a client can be closed, and persist its outstanding replies, before another client uses the
+    transport.
     """
     if isinstance(transport, OpenedTransport):
         return _BorrowedTransport(transport, _show_nobody)

@@ -73,7 +73,10 @@ class Waiter:
         return alarm is None or is_ready(descriptor, timeout, writing=writing, or_readable=alarm)
 
     def alarm(self) -> int | None:
-        """Return the descriptor that :meth:`wake` makes readable; None: it was called already."""
+        """Return the descriptor that :meth:`wake` makes readable.
+
+        None if :meth:`wake` was called already.
+        """
         if not self._alarms:
             # Two threads that begin at once open two alarms; both wait for the first.
             self._alarms.append(new_alarm())

@@ -124,8 +124,8 @@ fn no_message(table: &Table, rules: &Rules, frame: Frame<'_>, of: Option<usize>)
     reject(table.frame(), reason, data)
 }
 
-/// Return why `data` is not a frame of the command `of`, whatever follows its id; `None` if it may
-/// be one.
+/// Return why `data` cannot be a frame of the command `of`, by its id only; `None` if it may be
+/// one.
 fn misnamed(table: &Table, rules: &Rules, data: &[u8], of: Option<usize>) -> Option<Reason> {
     let of = of?;
     let claim = rules.claim(data).ok().flatten()?;

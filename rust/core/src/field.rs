@@ -47,9 +47,9 @@ pub struct Field {
     pub cases: Vec<Case>,
     /// What its value is.
     pub shape: Shape,
-    /// The numbers of each element of a list of rows or texts; 0: it is no such list.
+    /// The count of numbers in each element of a list of rows or texts; 0 for other fields.
     pub each: usize,
-    /// Whether other variants have other numbers of elements, or it counts those of another field.
+    /// Whether its size differs between variants, or it counts the elements of another field.
     pub varies: bool,
 }
 

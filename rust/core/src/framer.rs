@@ -2,7 +2,7 @@
 //!
 //! Either a frame starts at position i, or the byte at i is noise. The first byte that contradicts
 //! a candidate rejects it. The scan then continues at i + 1: it never skips the bytes that a false
-//! header claims. A candidate that more bytes could complete waits. Judging a position reads at
+//! header claims. A candidate that more bytes could complete waits. Validating a candidate reads at
 //! most the bytes of the longest frame, once (for a CRC or sum, when all its bytes have come), and
 //! no position is rejected twice. So the work is linear in the size of any input.
 

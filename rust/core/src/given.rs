@@ -53,8 +53,8 @@ pub enum Unread<E> {
     Foreign(E),
 }
 
-/// A value of the caller. The encoder converts it only when it reaches it: a conversion may run the
-/// caller's code, and the leftmost mistake must be reported.
+/// A value of the caller. The encoder converts a value only when it reaches it: a conversion may
+/// run the caller's code, and the leftmost mistake must be reported.
 pub trait Given: Sized {
     /// The error of a conversion, other than a wrong type.
     type Error;

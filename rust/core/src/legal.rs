@@ -28,8 +28,8 @@ pub(crate) const BAD_LENGTH: u16 = u16::MAX;
 pub(crate) const UNKNOWN_ID: u16 = u16::MAX - 1;
 /// The number of groups that bulk reading tells apart.
 const GROUPS: u16 = 0x7FFD;
-/// The highest cell of a legal frame.
-pub(crate) const BELIEVED: u16 = u16::MAX - 2;
+/// The cell of a frame with an unknown id that is accepted: the highest cell of a legal frame.
+pub(crate) const ACCEPTED: u16 = u16::MAX - 2;
 
 /// What a header can be, by its LEN (the low byte of the index) and its id (the high byte).
 pub(crate) type Headings = [u16; 0x1_0000];
@@ -108,7 +108,7 @@ impl Legal {
         let mut lengths = Set::clone(&self.lengths);
         (least..=most).for_each(|length| lengths.add(length));
         let mut headings = *self.headings;
-        fill_unknown(&mut headings, &self.known, &lengths, BELIEVED);
+        fill_unknown(&mut headings, &self.known, &lengths, ACCEPTED);
         self.headings = Arc::new(headings);
         self.lengths = Arc::new(lengths);
         self.permissive = true;
@@ -187,7 +187,7 @@ fn heading(cell: u16) -> Heading {
     match cell {
         UNKNOWN_ID => Heading::Rejected(Reason::UnknownId),
         BAD_LENGTH => Heading::Rejected(Reason::BadLength),
-        BELIEVED => Heading::Unknown,
+        ACCEPTED => Heading::Unknown,
         group => Heading::Group(group),
     }
 }
@@ -233,7 +233,7 @@ struct Groups {
 }
 
 impl Groups {
-    /// Add a variant; one without an id can also be what other ids of its LEN stand for.
+    /// Add a variant. A variant without an id can match every id with its LEN.
     fn add(&mut self, length: u16, id: Option<u16>, variant: VariantId) {
         let Some(id) = id else {
             let named = self.named.iter().filter(|((of, _), _)| *of == length);

@@ -9,6 +9,7 @@
 //!
 //! Without the feature `std`, which is on by default, it needs only `alloc`. Then it has one thread,
 //! in which a [`Table`] stays, and does not read in bulk, read captures or summarize.
+//! An edition's table takes 0.6 to 0.9 MB, and its construction 128 KiB of stack.
 
 // What needs `std` uses more of the other modules.
 #![cfg_attr(not(feature = "std"), no_std, allow(dead_code))]

@@ -190,7 +190,7 @@ impl Number {
         }
     }
 
-    /// Return the bytes of a raw value, of which the first ones count.
+    /// Return the bytes of a raw value; only the first ones are used.
     #[inline]
     fn ordered_bytes(&self, raw: i64) -> [u8; 8] {
         let raw = match self.bits {

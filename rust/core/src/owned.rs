@@ -33,8 +33,8 @@ impl From<Frame<'_>> for OwnedFrame {
 
 /// Return the bytes, and zeros after them; `None` if they are too many.
 ///
-/// They pass through registers, in pieces that lie in memory as they are copied: if pieces are read
-/// in another size than they were written, the processor waits until they are in the cache.
+/// They are copied through registers, in pieces of the size in which they were written: if they
+/// were read in another size, the processor would wait until they are in the cache.
 #[inline(always)]
 fn in_place(bytes: &[u8]) -> Option<[u8; IN_PLACE]> {
     let mut place = [0; IN_PLACE];

@@ -109,21 +109,21 @@ impl Rules {
     #[inline]
     #[must_use]
     pub fn validate<'a>(&self, rest: &'a [u8]) -> Verdict<'a> {
-        // The fast path for most positions: the same as `judge_stepwise`, with four bytes at once.
+        // The fast path for most positions: the same as `validate_stepwise`, with four bytes at once.
         if let Some(&[first, second, length, id]) = rest.first_chunk()
             && self.plain
         {
             return if [first, second] == self.first_two {
-                self.judge_body(rest, length, id)
+                self.validate_body(rest, length, id)
             } else {
                 Verdict::Rejected(Reason::NoHeader)
             };
         }
-        self.judge_stepwise(rest)
+        self.validate_stepwise(rest)
     }
 
     #[inline(never)]
-    fn judge_stepwise<'a>(&self, rest: &'a [u8]) -> Verdict<'a> {
+    fn validate_stepwise<'a>(&self, rest: &'a [u8]) -> Verdict<'a> {
         let claim = match self.claim(rest) {
             Err(reason) => return Verdict::Rejected(reason),
             Ok(None) => return Verdict::Waits,
@@ -132,7 +132,7 @@ impl Rules {
         let Claim { length, id } = claim;
         match self.legal.wide_heading(length, id) {
             Heading::Rejected(reason) => Verdict::Rejected(reason),
-            _ => self.judge_rest(rest, self.frame.layout.overhead, claim),
+            _ => self.validate_rest(rest, self.frame.layout.overhead, claim),
         }
     }
 
@@ -175,16 +175,16 @@ impl Rules {
 
     /// Validate a candidate of a plain format; `h h LEN` precede the id.
     #[inline]
-    fn judge_body<'a>(&self, rest: &'a [u8], length: u8, id: u8) -> Verdict<'a> {
+    fn validate_body<'a>(&self, rest: &'a [u8], length: u8, id: u8) -> Verdict<'a> {
         if let Heading::Rejected(reason) = self.legal.heading(length, id) {
             return Verdict::Rejected(reason);
         }
         let (length, id) = (u16::from(length), u16::from(id));
-        self.judge_rest(rest, 3, Claim { length, id })
+        self.validate_rest(rest, 3, Claim { length, id })
     }
 
     #[inline]
-    fn judge_rest<'a>(&self, rest: &'a [u8], overhead: usize, claim: Claim) -> Verdict<'a> {
+    fn validate_rest<'a>(&self, rest: &'a [u8], overhead: usize, claim: Claim) -> Verdict<'a> {
         let Claim { length, id } = claim;
         match rest.get(..overhead + usize::from(length)) {
             None => Verdict::Waits,

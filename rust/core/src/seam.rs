@@ -34,8 +34,8 @@ impl Seam {
         self.kept.len()
     }
 
-    /// Pass that many bytes, of which none waits; return the position of the first. `None`: earlier
-    /// bytes wait, and nothing changed.
+    /// Skip that many bytes if no earlier byte is pending; return the position of the first.
+    /// `None`: earlier bytes wait, and nothing changed.
     #[inline]
     pub(crate) fn pass(&mut self, count: usize) -> Option<u64> {
         if !self.kept.is_empty() {

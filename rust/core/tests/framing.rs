@@ -62,7 +62,7 @@ fn an_unknown_id_is_a_frame_only_if_accepted() {
 }
 
 #[test]
-fn a_candidate_is_refuted_by_the_first_byte_that_contradicts_it() {
+fn a_candidate_is_rejected_by_the_first_byte_that_contradicts_it() {
     let mut framer = framer(false);
     let mut seen = Vec::new();
     framer.feed(&[0xFE, 0xFE, 0x0E], |event| seen.push(owned(event)));

@@ -121,8 +121,8 @@ fn noise_that_spans_many_pieces_is_one_span() {
     check(&table, &[&[], &[0xFE], &[]], [(2, 1)]);
 }
 
-/// The scan from a guess finds other frames than the scan of the stream, and never meets it: each
-/// frame holds the start of another one, which ends in the next frame.
+/// The scan from a guessed offset finds other frames than the scan of the stream, and never agrees
+/// with it: each frame contains the start of another one, which ends in the next frame.
 #[test]
 fn a_guess_that_never_meets_the_scan_changes_nothing() {
     let (table, _) = generated("mycobot");

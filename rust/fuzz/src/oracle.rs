@@ -87,7 +87,7 @@ impl Oracle {
             ..
         } = self.frame.layout;
         let (mut length, mut id) = (None, None);
-        // What decides at the earliest byte counts.
+        // The reason that is known at the earliest byte is the one that is reported.
         for at in self.frame.header.len()..self.frame.layout.data_at {
             if rest.len() <= at {
                 return Found::Waits;

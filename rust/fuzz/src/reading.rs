@@ -160,7 +160,7 @@ fn size(fields: &[Field]) -> usize {
 }
 
 /// Return the raw value by its definition: the unsigned number, minus `256^width` above
-/// `signed_at`; for a float its rank among the floats, counted from 0.0.
+/// `signed_at`; for a float its index in the ordered list of floats, with 0.0 at 0.
 fn raw_value(number: &Number, data: &[u8]) -> i64 {
     let mut bytes = data[..number.width].to_vec();
     if number.order == Order::Little {

@@ -1,13 +1,12 @@
 //! Answers the questions of docs/codec-protocol.md with the codec of the core.
 
 use cobotwire_core::{
-    Choice, DecodeError, Decoded, Direction, Encoding, Event, Framer, Listening,
-    Value as CoreValue, decode, encode,
+    Choice, DecodeError, Decoded, Direction, Event, Framer, Listening, decode, encode,
 };
 use cobotwire_table::{Edition, Field};
 use serde_json::{Map, Value, json};
 
-use crate::values::Sample;
+use crate::values::{Sample, from_hex, hex, nested};
 
 const ABILITIES: [&str; 9] = [
     "encode request",
@@ -21,8 +20,9 @@ const ABILITIES: [&str; 9] = [
     "reasons",
 ];
 
-/// Return the answer to one question; a question that is not one has an `unsupported` answer.
-pub fn answer(edition: &Edition, question: &Value) -> Value {
+/// Return the answer to one question, as lines; to what is no question, it is `unsupported`.
+pub fn answer(edition: &Edition, line: &str) -> String {
+    let question: &Value = &serde_json::from_str(line).unwrap_or_default();
     let found = match question["do"].as_str() {
         Some("hello") => Some(json!({
             "protocol": 1,
@@ -37,7 +37,7 @@ pub fn answer(edition: &Edition, question: &Value) -> Value {
     };
     let mut answer = found.unwrap_or_else(|| json!({"unsupported": "this is not a question"}));
     answer["id"] = question["id"].clone();
-    answer
+    answer.to_string()
 }
 
 fn encoded(edition: &Edition, question: &Value) -> Option<Value> {
@@ -88,7 +88,7 @@ fn value_of(field: &Field, given: &Value) -> Value {
 
 fn decoded(edition: &Edition, question: &Value) -> Option<Value> {
     let direction = direction(&question["direction"])?;
-    let bytes = bytes(&question["bytes"])?;
+    let bytes = from_hex(&question["bytes"])?;
     let of = match &question["command"] {
         Value::Null => None,
         name => Some(index(edition, name)?),
@@ -103,45 +103,27 @@ fn decoded(edition: &Edition, question: &Value) -> Option<Value> {
 }
 
 /// Return the command and the fields of a message.
-pub fn fields(edition: &Edition, decoded: &Decoded) -> Option<Value> {
+fn fields(edition: &Edition, decoded: &Decoded) -> Option<Value> {
     let id = decoded.variant;
     let variant = variants(edition, id.command, id.direction)?.get(id.variant)?;
-    let mut values = decoded.values.iter();
-    let fields = variant
-        .iter()
-        .map(|field| Some((field.name.clone(), plain(&mut values)?)));
-    let fields: Map<String, Value> = fields.collect::<Option<_>>()?;
+    let names = variant.iter().map(|field| field.name.clone());
+    let values = nested(&decoded.values).into_iter().map(plain);
+    let fields: Map<String, Value> = names.zip(values).collect();
     let command = &edition.commands.get(id.command)?.name;
     Some(json!({"command": command, "fields": fields}))
 }
 
-/// Return the next value as JSON.
-fn plain<'a>(values: &mut impl Iterator<Item = &'a CoreValue>) -> Option<Value> {
-    Some(match values.next()? {
-        CoreValue::Integer(integer) => json!(integer),
-        CoreValue::Real(real) if real.is_finite() => json!(real),
-        CoreValue::Real(real) => json!(real.to_string().to_lowercase()),
-        CoreValue::Row(count) | CoreValue::Rows(count) => {
-            let row: Option<Vec<Value>> = (0..*count).map(|_| plain(values)).collect();
-            Value::Array(row?)
-        }
-        CoreValue::Bytes(count) => json!(hex(&raw(values, *count))),
-        CoreValue::Text(count, encoding) => {
-            let raw = raw(values, *count);
-            json!(match encoding {
-                Encoding::Latin1 => raw.iter().map(|byte| char::from(*byte)).collect(),
-                _ => String::from_utf8(raw).ok()?,
-            })
-        }
-    })
-}
-
-fn raw<'a>(values: &mut impl Iterator<Item = &'a CoreValue>, count: usize) -> Vec<u8> {
-    let byte = |value: &CoreValue| match value {
-        CoreValue::Integer(byte) => u8::try_from(*byte).unwrap_or_default(),
-        _ => 0,
-    };
-    values.take(count).map(byte).collect()
+/// Return a value as the protocol writes it: bytes and special floats are texts.
+fn plain(value: Value) -> Value {
+    match value {
+        Value::Array(parts) => parts.into_iter().map(plain).collect(),
+        Value::Object(mut typed) => match (typed.remove("bytes"), typed.remove("real")) {
+            (Some(Value::String(bytes)), _) => json!(bytes.to_uppercase()),
+            (_, Some(Value::String(word))) => json!(word.to_lowercase()),
+            _ => Value::Null,
+        },
+        other => other,
+    }
 }
 
 fn streamed(edition: &Edition, question: &Value) -> Option<Value> {
@@ -156,7 +138,7 @@ fn streamed(edition: &Edition, question: &Value) -> Option<Value> {
         let sink = |found: Event<'_>| certain.push(event(found));
         match chunk {
             Value::Null => framer.flush(sink),
-            chunk => framer.feed(&bytes(chunk)?, sink),
+            chunk => framer.feed(&from_hex(chunk)?, sink),
         }
         events.push(Value::Array(certain));
     }
@@ -195,23 +177,4 @@ fn direction(word: &Value) -> Option<Direction> {
         "reply" => Some(Direction::Reply),
         _ => None,
     }
-}
-
-/// Return bytes as hexadecimal digits.
-pub fn hex(bytes: &[u8]) -> String {
-    bytes.iter().map(|byte| format!("{byte:02X}")).collect()
-}
-
-/// Return the bytes of hexadecimal digits.
-pub fn bytes(digits: &Value) -> Option<Vec<u8>> {
-    let digits: Vec<char> = digits
-        .as_str()?
-        .chars()
-        .filter(|digit| *digit != ' ')
-        .collect();
-    let pair = |pair: &[char]| match pair {
-        [high, low] => u8::try_from(high.to_digit(16)? << 4 | low.to_digit(16)?).ok(),
-        _ => None,
-    };
-    digits.chunks(2).map(pair).collect()
 }

@@ -1,7 +1,12 @@
-//! Answers the tests in Python, one JSON value a line: `codec`, `exchange` or `client`.
+//! Answers the tests in Python, one JSON value a line: `codec`, `exchange`, `client` or `texts`.
 
+#![allow(clippy::indexing_slicing)] // reading a name of a JSON value never panics
+
+#[cfg(unix)]
+mod client;
 mod codec;
 mod exchange;
+mod texts;
 mod values;
 
 use std::io::{BufRead, Error, Write, stdin, stdout};
@@ -13,19 +18,21 @@ fn main() -> std::io::Result<()> {
     let (mode, path) = (std::env::args().nth(1), std::env::args().nth(2));
     match mode.as_deref().unwrap_or_default() {
         "codec" => {
-            let data = std::fs::read(path.unwrap_or_default())?;
-            let edition = Edition::read(&data);
-            let edition = edition.map_err(|error| Error::other(format!("{error:?}")))?;
-            answer(|line| {
-                let question = serde_json::from_str(line).unwrap_or_default();
-                codec::answer(&edition, &question).to_string()
-            })
+            let edition = Edition::read(&std::fs::read(path.unwrap_or_default())?);
+            let edition = edition.map_err(Error::other)?;
+            answer(|line| codec::answer(&edition, line))
         }
         "exchange" => {
             let mut exchanges = exchange::Exchanges::default();
             answer(|line| exchanges.answer(line))
         }
-        _ => Err(Error::other("codec, exchange or client?")),
+        #[cfg(unix)]
+        "client" => client::serve(std::env::args().skip(2)),
+        "texts" => {
+            let mut texts = texts::Texts::default();
+            answer(|line| texts.answer(line))
+        }
+        _ => Err(Error::other("codec, exchange, client or texts?")),
     }
 }
 

@@ -140,8 +140,9 @@ fn borrow<'fd>(number: RawFd) -> PyResult<BorrowedFd<'fd>> {
         return Err(failed(Errno::BADF));
     }
     // SAFETY: the number is not -1. `DescriptorTransport` holds a lock during the call, and takes it
-    // before it closes the descriptor. Any other number is as harmless as in Python's `os.read`: the
-    // descriptor is used only during the call, only by system calls, and they refuse closed ones.
+    // before it closes the descriptor. Any other number is as harmless as in Python's `os.read`:
+    // the descriptor is used only during the call and only by system calls, which reject closed
+    // descriptors.
     Ok(unsafe { BorrowedFd::borrow_raw(number) })
 }
 

@@ -4,8 +4,9 @@ use pyo3::exceptions::PyImportError;
 use pyo3::prelude::*;
 
 /// Fail in a subinterpreter. The classes here, and the Python objects of `Names`, exist once in a
-/// process: in another interpreter their errors would be of foreign classes, which no `except`
-/// there catches. PyO3 itself accepts the first interpreter that loads the module, whichever it is.
+/// process. In another interpreter their errors would have classes that no `except` of that
+/// interpreter catches. PyO3 itself accepts the first interpreter that loads the module, whichever
+/// it is.
 pub fn check_main(py: Python<'_>) -> PyResult<()> {
     if is_main(py)? {
         return Ok(());

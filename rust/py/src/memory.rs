@@ -212,7 +212,7 @@ pub fn large_pages(start: *const u8, size: usize) {
 }
 
 /// Untrack an object that cannot be part of a cycle: otherwise the garbage collector would visit
-/// millions of such objects again and again (`docs/speed.md` says what that costs).
+/// millions of these objects again and again (`docs/speed.md` has the cost).
 pub fn untrack<T>(object: &Bound<'_, T>) {
     // SAFETY: the object is complete, and its class supports the collector, as tuples and all classes
     // of PyO3 do. An untracked object is freed like any other.

@@ -28,7 +28,7 @@ pub struct NativeSummary {
 type GivenTexts = (String, Vec<String>, Fields, Fields);
 type Fields = Vec<Vec<Vec<String>>>;
 
-/// The servo bus: the format and the legal LENs of its packets, and the words for what they say.
+/// The servo bus: the format and the legal LENs of its packets, and the words that describe them.
 #[derive(FromPyObject)]
 struct GivenBus<'py> {
     frame: Bound<'py, PyAny>,
@@ -169,7 +169,7 @@ fn instruction(given: GivenInstruction) -> Instruction {
 struct Parts<'a, 'py> {
     names: &'static Names,
     edition: &'a Edition,
-    /// What does the rest in Python: `cobotwire.diagnose.stream_summary.Rest`.
+    /// The object that does the rest in Python: `cobotwire.diagnose.stream_summary.Rest`.
     rest: &'a Bound<'py, PyAny>,
     list: Bound<'py, PyList>,
     failed: Option<PyErr>,

@@ -35,7 +35,7 @@ pub fn objects<'py>(py: Python<'py>, values: &[Value]) -> PyResult<Bound<'py, Py
     }
 }
 
-/// Return the same of a message that a template reads; `None` if a number is not allowed.
+/// Return the tuple of a message that a template reads; `None` if a number is not allowed.
 #[inline]
 pub fn plain_objects<'py>(
     py: Python<'py>,
@@ -90,7 +90,7 @@ fn compound(value: &Value) -> bool {
 /// Return a tuple of numbers; the values contain no row.
 fn numbers<'py>(py: Python<'py>, values: &[Value]) -> PyResult<Bound<'py, PyTuple>> {
     let all = PyTuple::new(py, values.iter().map(|value| Number(*value)))?;
-    // PlainNumbers refer to nothing; the collector would untrack the tuple itself, but later.
+    // Numbers refer to no other object. The collector would untrack the tuple itself, but later.
     untrack(&all);
     Ok(all)
 }

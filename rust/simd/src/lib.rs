@@ -1,7 +1,7 @@
 //! Instructions that plain Rust cannot express: the one place with unsafe code below the binding.
 //!
-//! Each function has the same result as plain code, which runs on processors that lack the
-//! instructions, and with which the tests compare it.
+//! Each function has the same result as a plain version. The plain version runs on processors
+//! without the instructions, and the tests compare the two.
 
 mod six;
 mod window;

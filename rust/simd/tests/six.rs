@@ -79,7 +79,7 @@ fn every_raw_value_is_kept() {
 }
 
 #[test]
-fn every_raw_value_is_judged_by_its_bounds() {
+fn every_raw_value_is_checked_against_its_bounds() {
     let limits = [
         (0x8000, -0x8000, 0x7FFF),
         (0x8000, -17_500, 17_500),

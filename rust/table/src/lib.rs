@@ -12,7 +12,11 @@ mod commands;
 mod frame;
 mod json;
 mod messages;
+mod named;
+mod rejection;
 mod robot;
+mod shown;
+mod texts;
 mod types;
 
 use alloc::collections::BTreeSet;
@@ -28,7 +32,10 @@ use crate::json::{Node, Within};
 use crate::messages::Messages;
 
 pub use crate::json::BadEdition;
+pub use crate::named::Filled;
 pub use crate::robot::Link;
+pub use crate::shown::{Quote, Shown, general};
+pub use crate::texts::{as_call, bad_argument, error_text, link_error};
 
 /// The version of the format.
 const VERSION: i64 = 3;

@@ -18,6 +18,7 @@ from hypothesis import strategies as st
 import vectors
 from cobotwire.conformance.survey import ASPECTS as SURVEYED
 from cobotwire.conformance.survey.facts import Facts
+from cobotwire.conformance.survey.file import survey_file
 from cobotwire.editions import load
 from cobotwire_codegen.build import build_edition
 from cobotwire_codegen.evidence import submitted as reading
@@ -133,6 +134,22 @@ def test_new_frames_of_undoubted_commands_become_vectors() -> None:
     ]
     assert checked(BUS, given).vectors == []  # the edition has these frames
     assert checked(bare, submitted(packed(survey(right, wrong)))).vectors == []
+
+
+def test_sealed_file_is_taken_and_a_changed_one_is_not() -> None:
+    with zipfile.ZipFile(io.BytesIO(GOOD)) as archive:
+        document, recording = (archive.read(name) for name in MEMBERS)
+    sealed = survey_file(json.loads(document), recording)
+    assert submitted(sealed).facts == submitted(GOOD).facts
+    with zipfile.ZipFile(io.BytesIO(sealed)) as archive:
+        stated = json.loads(archive.read("survey.json"))
+    for changed in (
+        packed(stated | {"robot": "Your lamp"}, more={"recording.pcapng": recording}),
+        packed(stated, more={"recording.pcapng": recording + recording}),
+        report([], digest="00"),
+    ):
+        with pytest.raises(NotEvidence, match="was changed after it was written"):
+            submitted(changed)
 
 
 @pytest.mark.parametrize(

@@ -21,7 +21,7 @@ from cobotwire_codegen.project import SERVO_BUS
 from codegen.author import samples
 from codegen.test_generator import EDITIONS, copy_spec
 
-# Files of the spec that the schema does not describe: one has types of its own, one is no edition.
+# Files of the spec that the schema does not describe: one has only types, one is not an edition.
 OTHERS = {vectors.ROOT / SERVO_BUS, vectors.ROOT / "spec" / "pymycobot.yaml"}
 FILES = sorted({*(vectors.ROOT / "spec").rglob("*.yaml")} - OTHERS)
 # The values of a vector: any fields.

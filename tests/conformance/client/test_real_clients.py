@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from functools import partial
+from itertools import cycle
 
+import probe
 import pytest
 
 from client_findings import LINES, Line, checked
@@ -16,25 +18,34 @@ from stalls import unstalled
 ALLOWED_STALL = 0.1
 
 
-def judged_on_time(client: str, line: Line) -> tuple[Report, list[str]]:
+def tested_on_time(client: str, line: Line) -> tuple[Report, list[str]]:
     """Run the session; run it again if the machine or its ptys stalled long enough to matter."""
     return unstalled(partial(checked, client, line), ALLOWED_STALL, PtyMeter)
 
 
 OURS = ["cobotwire", "cobotwire tcp", "cobotwire asyncio", "cobotwire asyncio tcp"]
+RUST = ["cobotwire rust", "cobotwire rust tcp", "cobotwire rust async", "cobotwire rust async tcp"]
 
 
 @pytest.mark.parametrize("client", OURS)
 @pytest.mark.parametrize("line", ["good", "no-acks"])
 def test_our_client_passes_on_a_good_line(client: str, line: str) -> None:
-    report, failures = judged_on_time(client, LINES[line])
+    report, failures = tested_on_time(client, LINES[line])
     assert report.failures == []
     assert (report.conforms, failures) == (True, [])
 
 
 @pytest.mark.parametrize("line", ["lost", "late", "merged", "noise", "split"])
 def test_our_client_passes_on_a_bad_line(line: str) -> None:
-    report, failures = judged_on_time("cobotwire", LINES[line])
+    report, failures = tested_on_time("cobotwire", LINES[line])
+    assert report.failures == []
+    assert (report.conforms, failures) == (True, [])
+
+
+@probe.needed
+@pytest.mark.parametrize(("client", "line"), list(zip(cycle(RUST), LINES, strict=False)))
+def test_rust_client_passes_on_every_line(client: str, line: str) -> None:
+    report, failures = judged_on_time(client, LINES[line])
     assert report.failures == []
     assert (report.conforms, failures) == (True, [])
 

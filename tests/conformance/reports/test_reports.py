@@ -73,7 +73,7 @@ class Found(HTMLParser):
         self.scripts = 0
         self.loads: list[str] = []
         self.text = ""
-        # The elements that are open; at the end: those that were never closed.
+        # The open elements; at the end, the elements that were never closed.
         self.unclosed: list[str] = []
         self.feed(text)
         self.close()

@@ -51,7 +51,7 @@ class Arm:
         self._powered, self._free, self.enabled = True, 0, [1] * 6
         self.limits = {0x4A: [-1650] * 6, 0x4B: [1650] * 6}
         self._registers: dict[tuple[int, int], int] = {}
-        # What is sent later, and when; and what a planted defect remembers.
+        # The bytes to send later, with their times; and the state of a planted defect.
         self._due: list[tuple[float, bytes]] = []
         self.memory: dict[str, Any] = {}
         self.reset()

@@ -8,7 +8,7 @@ from defects.arm.arm import IDLE, SIZES, Arm
 
 HEADER, ALL, LEFT, RIGHT = b"\xfe\xfe", 0, 1, 2
 TARGETS = 0x22
-# By address: the arms that take a request, the one that replies last.
+# By address: the arms that receive a request; the last one replies.
 RIGHT_WAY = {ALL: (RIGHT, LEFT), LEFT: (LEFT,), RIGHT: (RIGHT,)}
 DEFECTS = {
     "right-drives-left": {**RIGHT_WAY, RIGHT: (LEFT, RIGHT)},

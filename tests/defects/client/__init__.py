@@ -1,4 +1,4 @@
-"""Independent clients: one in plain Python, from the document alone, and one in C.
+"""Independent clients: one in plain Python, written only from the document, and one in C.
 
 Nothing in this folder imports the package that is tested.
 """

@@ -35,7 +35,7 @@ class Client:
     def __init__(self, line: socket.socket, defect: str = "") -> None:
         self._line, self._defect = line, defect
         self._received = b""
-        # By id: a query that was sent again, and until when a late reply to it may come.
+        # By id: the queries that were sent again, and the time until which a late reply may come.
         self._doubtful: dict[int, tuple[bytes, float]] = {}
 
     def run(self) -> None:

@@ -9,7 +9,7 @@ from cobotwire.conformance.codec.questions.malformed import damages
 from cobotwire.protocol.table import Command
 from mutation.client.sessions import PAUSE, ClientMutant, Sent, Session
 
-# Of the class motion, but a client may send them at any time: they start no motion.
+# Commands of the class motion that a client may send at any time: they start no motion.
 NO_MOTION = ("stop", "pause", "resume", "clear_queue", "jog_stop")
 NO_MOTION_ROLES = ("stop", "halt")
 

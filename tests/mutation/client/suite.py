@@ -38,12 +38,12 @@ class ClientSuite(Suite):
         self.right_runs = [f"{lines[number % len(lines)]} {number}" for number in range(RUNS)]
 
     def killer(self, mutant: ClientMutant) -> str:
-        """Let the referee judge a mutant."""
+        """Run the referee with a mutant."""
         scenario = faulty_replies(DELAY_SECONDS, ("lost",), 1) if mutant.lost else None
         return self._first_failure(mutant.writes, mutant.script, scenario)
 
     def failure(self, run: str) -> str:
-        """Let the referee judge a correct client: every request once, in a random order."""
+        """Run the referee with a correct client: every request once, in a random order."""
         line, number = run.split()
         every = [s for s in sessions(self.table) if s.command.safety != "power"]
         Random(int(number)).shuffle(every)
@@ -99,7 +99,7 @@ class ClientSuite(Suite):
 
 
 class ScriptlessSuite(ClientSuite):
-    """The same clients; the referee judges only whether requests are legal."""
+    """The same clients; the referee checks only whether requests are legal."""
 
     def __init__(self, table: Table) -> None:
         super().__init__(table, with_script=False)

@@ -68,7 +68,7 @@ class BrokenFramer(ReferenceFramer):
     def _changed(self, events: list[Event]) -> list[Event]:
         return [changed for event in events for changed in self._flaw.event(self, event)]
 
-    def _refuted_size(self, data: bytes, start: int, reason: NoiseReason) -> int:
+    def _rejected_size(self, data: bytes, start: int, reason: NoiseReason) -> int:
         return self._flaw.skip(self._validator, data, start, reason)
 
     def forget(self) -> list[Event]:
@@ -162,7 +162,7 @@ FLAWS = (
         ),
     ),
     Flaw(
-        "skips the whole header of a refuted frame",
+        "skips the whole header of a rejected frame",
         skip=lambda validator, data, start, reason: (
             1 if reason == "no-header" else len(validator.frame.header)
         ),

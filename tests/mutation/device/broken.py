@@ -52,7 +52,7 @@ Change = Callable[[Table, DecodedMessage, bytes], bytes | list[TimedBytes]]
 
 
 class WrongReply(Fault):
-    """What one command gets in reply is changed; silence only if ``also_silence``."""
+    """The reply to one command is changed; a missing reply only with ``also_silence``."""
 
     def __init__(self, command: Command, change: Change, *, also_silence: bool = False) -> None:
         self._command = command
@@ -108,7 +108,7 @@ class BrokenArm(ArmConnection):
         self._correct = SimulatedArm(table, clock=clock)
         super().__init__(self._correct, None)
         self._fault = fault
-        # What is sent later: when it is due, its number, and its bytes.
+        # The bytes that are sent later: the time, the number, and the bytes.
         self._late: list[tuple[float, int, bytes]] = []
         self._count = 0
         # Whether the arm did not receive the last request, so that its text is lost, too.
@@ -136,7 +136,7 @@ class BrokenArm(ArmConnection):
         return late + super().flush()
 
     def _handle_all(self, events: list[DeviceEvent]) -> bytes:
-        # Noise is judged as a whole, because a broken request is refuted byte by byte.
+        # Noise is examined as a whole, because a broken request is rejected byte by byte.
         sent = noise = b""
         for event in events:
             if isinstance(event, Noise):

@@ -35,7 +35,7 @@ class DeviceSuite(Suite):
 
     def __init__(self, table: Table) -> None:
         super().__init__(table, device_mutants(table))
-        # Failures that the correct device has, too; they do not count. Keyed by the tested command.
+        # Failures that the correct device has too; they do not count. Keyed by the tested command.
         self._groundless: dict[tuple[str, str | None], set[tuple[str, str]]] = {}
 
     def killer(self, mutant: Mutant) -> str:

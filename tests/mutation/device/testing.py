@@ -56,12 +56,12 @@ class OnCorrectArm(NamedTuple):
     """What a whole run on the correct arm shows.
 
     ``lacking`` are the commands that the arm does not support, with the reason it states: the
-    coordinates of an unknown geometry. ``judged`` are the commands on which a test case passed,
+    coordinates of an unknown geometry. ``tested`` are the commands on which a test case passed,
     ``replied`` the queries that had replies.
     """
 
     lacking: dict[str, str]
-    judged: frozenset[str]
+    tested: frozenset[str]
     replied: frozenset[str]
 
 
@@ -76,8 +76,8 @@ def _of_edition(edition: str, address: str | None) -> OnCorrectArm:
         if result.verdict is Verdict.PASS
     ]
     replied = (result.command for result in passed if result.case == QUERY_REPLIED)
-    judged = (result.command for result in passed)
-    return OnCorrectArm(stated.reasons, frozenset(judged), frozenset(replied))
+    tested = (result.command for result in passed)
+    return OnCorrectArm(stated.reasons, frozenset(tested), frozenset(replied))
 
 
 def on_correct_arm(table: Table, address: str | None = None) -> OnCorrectArm:
@@ -96,9 +96,9 @@ def lacking(table: Table, command: str) -> str:
     return next((arm.lacking[command] for arm in arms if command in arm.lacking), "")
 
 
-def is_judged(table: Table, command: str) -> bool:
+def is_tested(table: Table, command: str) -> bool:
     """Return whether a test case passes on a command of the correct arm."""
-    return any(command in on_correct_arm(table, each).judged for each in tested_addresses(table))
+    return any(command in on_correct_arm(table, each).tested for each in tested_addresses(table))
 
 
 def tested_addresses(table: Table) -> tuple[str | None, ...]:

@@ -177,7 +177,7 @@ def conversations(table: Table, command: str, rounds: int = ROUNDS) -> Iterator[
     """Yield the conversations for a mutant of a command; the same ones each time."""
     known = (table.edition, command)
     if known not in _kept:
-        # Mutants of one command are judged one after another, so its conversations are cached.
+        # Mutants of one command are run one after another, so its conversations are cached.
         _kept.clear()
         _kept[known] = []
     kept = _kept[known]

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from cobotwire.protocol.table import Command, Field, Table
 from mutation.device.broken import Mutant
 from mutation.device.exchanges import reply_fields, request_fields
-from mutation.device.testing import is_judged, lacking
+from mutation.device.testing import is_tested, lacking
 from mutation.oracle.conversation import Conversation, conversations, only_legal, replies_of
 from mutation.oracle.undefined import (
     ERRORS,
@@ -65,7 +65,7 @@ TURNS = "CLOCKWISE"
 
 def _undefined(table: Table, mutant: Mutant) -> str:
     """Return what the edition does not define about a field, so that any effect is correct."""
-    if mutant.command and not is_judged(table, mutant.command):
+    if mutant.command and not is_tested(table, mutant.command):
         unsafe = _unsafe(table.command(mutant.command))
         if unsafe:
             return unsafe

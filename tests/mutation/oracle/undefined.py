@@ -45,7 +45,7 @@ LEFT_OPEN = {
     "drag_clear_record_data": "the maker's library marks the recording's calls as not yet tested",
 }
 # Commands of outputs, with the queries of the inputs of the same numbers. The simulated arm wires
-# one to the other; an edition that does not say so has no command that reads an output back.
+# each output to its input. An edition that does not state this wiring has no query of an output.
 WIRED = {"set_digital_output": "get_digital_input", "set_base_io_output": "get_base_io_input"}
 UNWIRED = "no source says that an output of this arm is wired to an input, and no query reads one"
 # Queries of errors: see "clear_error_information".

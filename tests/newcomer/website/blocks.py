@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterator
 from typing import NamedTuple
 
-# A block of which any line starts with one of these holds commands, unless it is in another
+# A block with a line that starts with one of these holds commands, unless it is in another
 # language.
 PROGRAMS = {
     *("cobotwire", "cobotwire-gen", "python", "python3", "pip", "pipx", "pytest", "make", "eval"),

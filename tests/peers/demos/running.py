@@ -35,7 +35,7 @@ RUNS, RUNS_ON = "runs", "runs on"
 
 
 class Outcome(NamedTuple):
-    """How a demo ended: ``runs``, ``runs on`` if it loops, or its exception; and its last line."""
+    """The end of a demo: ``runs``, ``runs on`` if it loops, or its exception; and its last line."""
 
     word: str
     detail: str = ""
@@ -119,7 +119,7 @@ def outcome(demo: Demo, folder: Path, how: tuple[str, ...]) -> Outcome:
 
 
 def _ended(running: subprocess.Popen[bytes], errors: IO[str], longest: float) -> Outcome:
-    """Wait until a demo ends, or end it; what it writes after that does not count."""
+    """Wait until a demo ends, or end it; ignore what it writes after that."""
     try:
         running.wait(longest)
     except subprocess.TimeoutExpired:

@@ -20,7 +20,7 @@ class Demo(NamedTuple):
         typed: lines that a person types.
         keys: keys that a person presses afterwards, one after another.
         is_test: whether it is run by pytest.
-        refused: why our layer refuses what the library sends; empty if it need not.
+        refused: why our layer rejects what the library sends; empty if it does not.
     """
 
     path: str

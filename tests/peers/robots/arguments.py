@@ -63,8 +63,8 @@ def corners(variant: Variant) -> Iterator[Arguments]:
 def inside(variant: Variant) -> Iterator[Arguments]:
     """Return values inside of the corners, for the lowest selector: whole ones, and other ones.
 
-    The other ones are few steps above the lowest, each field some more than the one before, so that
-    no two fields are alike. The maker's classes truncate some of them.
+    The other values are a few steps above the lowest. Each field has more steps than the one
+    before, so that all fields differ. The maker's classes truncate some of them.
     """
     if not any(_is_range(field) for field in variant.fields):
         return

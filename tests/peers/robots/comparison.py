@@ -46,7 +46,7 @@ class Compared(NamedTuple):
 
 
 def compare(robot: Robot, methods: Iterable[str] | None = None) -> list[Compared]:
-    """Return what methods of a class showed; left out: all public methods that send a frame.
+    """Return the results of methods of a class; by default of all public methods that send a frame.
 
     A ruling that no call needs counts as open, so that the rulings stay true.
     """
@@ -102,7 +102,8 @@ def _compared(robot: Robot, method: str, calls: list[Call]) -> Compared:
 
 
 def difference(robot: Robot, call: Call) -> str | None:
-    """Return why the two sides differ in a call, or ``open:`` and how; None: they are equal."""
+    """Return the ruling on the difference of a call, or ``open:`` and the difference; None: there
+    is none."""
     theirs, ours = sent_by_peer(robot, call), sent_by_us(robot, call)
     if theirs == ours and isinstance(theirs, bytes):
         return None

@@ -48,7 +48,7 @@ def _commands(robot: Robot) -> list[Any]:
 
 
 def _other(robot: Robot, method: str, at: int, given: Any) -> st.SearchStrategy[Any]:
-    """Draw another value for an argument: of a list, for one of its numbers."""
+    """Draw another value for an argument; for a list, another value of one of its numbers."""
     kind: Any = library(robot.peer)
     taken = [*inspect.signature(getattr(kind, method)).parameters][1:]
     name = taken[min(at, len(taken) - 1)]

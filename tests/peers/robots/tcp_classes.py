@@ -48,7 +48,7 @@ class SteppedEvent:
 
 
 class SocketFrames(ReadFrames):
-    """The frames that the class has read; it returns those that it took, and the rest."""
+    """The frames that the class has read. Return those that it accepted, and the rest."""
 
     def _taken(self, frame: bytes) -> bool:
         taken, _ = self._peer._process_received(frame)

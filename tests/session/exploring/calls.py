@@ -38,7 +38,7 @@ class Call:
 
     @property
     def waits(self) -> bool:
-        """Whether neither its caller nor the exchange has ended it."""
+        """Whether the call has been ended neither by its caller nor by the exchange."""
         return not self.ended and self.pending is not None and not self.pending.done
 
 

@@ -38,16 +38,16 @@ class Promises:
     def __init__(self, world: World) -> None:
         self._world = world
         self.limits: Counter[str] = Counter()
-        # The limit by which an acknowledgement of a command may be that of another request.
+        # The known limit: an acknowledgement of a command may belong to another request.
         self.doubtful: dict[str, str] = {}
         # Whether an echo was read that cannot be a reply.
         self.echo_shown = False
-        # Where the requests begin of which nobody knows how much the arm has.
+        # The offsets of requests that the arm may have received only in part.
         self.torn: set[int] = set()
         self._copy_at = 0
 
     def check(self, settled: bool) -> None:
-        """Check every call; ``settled``: the client has done all that it can do now."""
+        """Check every call; ``settled``: the client can do nothing more at this time."""
         world = self._world
         self.note(())
         idle = world.exchange.idle_seconds(world.now)
@@ -177,7 +177,8 @@ class Promises:
         return "second copy" if arrival.copy > 1 and not expected else call.misled
 
     def _echo_limit(self, call: Call, deadline: float) -> str | None:
-        """Return the limit that makes the echo of a request its reply; None: it is not."""
+        """Return the known limit by which the echo of a request counts as its reply; None: no limit
+        does."""
         looks_alike = REQUESTS[call.kind].frame in REPLIES[call.kind]
         unknown = self._world.topic.echoes and not self.echo_shown
         counts = looks_alike and unknown and self._world.now >= deadline

@@ -60,7 +60,7 @@ EVENT = CODEC.encode("motion_ended", "reply", (0,))
 
 
 class Topic(NamedTuple):
-    """What may happen: which requests, which events, and how a write may go wrong.
+    """The requests and the events that may happen, and the ways in which a write may fail.
 
     ``cut 3``: 3 bytes are taken, ``cut -1``: all but one; ``torn``: likewise, but nobody knows how
     many; ``lost``: the transport takes all, the arm gets only these, and the transport is gone.

@@ -1,6 +1,6 @@
 """One exchange with its callers, its line and its arm; each event is a method.
 
-The world knows which request each reply belongs to: what the exchange has to find out. It reads and
+The world knows which request each reply belongs to; the exchange has to find this out. It reads and
 writes as the clients do: ``cobotwire.client.steps``, ``cobotwire.client.writing``.
 """
 

@@ -56,14 +56,14 @@ class Validator:
     def compare(self, document: Record) -> Comparison:
         """Compare every message, rejected value, malformed frame and stream."""
         rejected = [record for record in document["rejected"] if self._fits_struct(record)]
-        judges = {
+        comparers = {
             "messages": self._message,
             "rejected": self._rejected,
             "malformed": self._malformed,
             "streams": self._stream,
             "encoded": self._encoded,
         }
-        return compared(document | {"rejected": rejected}, judges)
+        return compared(document | {"rejected": rejected}, comparers)
 
     def _place(self, record: Record) -> int:
         return self._index[record["command"], record["direction"], record["variant"]]

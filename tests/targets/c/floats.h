@@ -1,7 +1,7 @@
 #include <stdint.h>
 #include <string.h>
 
-/* The raw values of floats: that of the smallest float above 0.0 is 1, that of -0.0 is -1. */
+/* The raw values of floats: the smallest float above 0.0 has 1, and -0.0 has -1. */
 static inline int64_t rank32(const float *value)
 {
     int32_t bits;

@@ -40,11 +40,11 @@ class Sides:
         self.codec = self.document.codec
         self.table = self.codec.table
         self.peer = CPeer(program(edition, name=name))
-        self._judge = Validator(edition, self.peer)
+        self._validator = Validator(edition, self.peer)
 
     def compare(self) -> None:
         """Compare the vectors of the document, and begin a new one."""
-        found = self._judge.compare(self.document.record)
+        found = self._validator.compare(self.document.record)
         self.document.clear()
         assert found.differences == []
 

@@ -32,11 +32,11 @@ def compare(edition: str) -> Comparison:
 
 def validated(document: Record, table: str) -> Comparison:
     """Run a document's messages, malformed bytes and streams with a table's script."""
-    [found] = judged_all([(document, table)])
+    [found] = compare_all([(document, table)])
     return found
 
 
-def judged_all(documents: Sequence[tuple[Record, str]]) -> list[Comparison]:
+def compare_all(documents: Sequence[tuple[Record, str]]) -> list[Comparison]:
     """Run several documents, each with the script of its table, in one browser."""
     with tempfile.TemporaryDirectory() as folder:
         page = Path(folder) / "harness.html"
@@ -47,13 +47,13 @@ def judged_all(documents: Sequence[tuple[Record, str]]) -> list[Comparison]:
 
 
 def _compared(document: Record, found: Any) -> Comparison:
-    judges = {"messages": _message, "malformed": _malformed, "streams": _stream}
-    made = {part: iter(found[part]) for part in judges}
+    comparers = {"messages": _message, "malformed": _malformed, "streams": _stream}
+    made = {part: iter(found[part]) for part in comparers}
 
-    def judge(part: str, record: Record) -> Iterator[str]:
-        return judges[part](record, next(made[part]))
+    def compare(part: str, record: Record) -> Iterator[str]:
+        return comparers[part](record, next(made[part]))
 
-    return compared(document, {part: partial(judge, part) for part in judges})
+    return compared(document, {part: partial(compare, part) for part in comparers})
 
 
 def _page(documents: Sequence[tuple[Record, str]]) -> str:
@@ -74,7 +74,7 @@ def _message(record: Record, made: Any) -> Iterator[str]:
         | {"raw": list(map(str, f["raw"]))}
         for f in record["fields"]
     ]
-    # The bytes may decode as another command with the same id; then only that one is reported.
+    # The bytes may decode as another command with the same id. Then only that command is reported.
     if "error" in made or made["read_as"] != record["read_as"]:
         yield f"{made}, not read as {record['read_as']}"
     elif made.get("fields") != fields:

@@ -14,7 +14,7 @@ from cobotwire_codegen.targets.decoder import edition_script
 from random_editions import editions
 from strategies import TABLES
 from targets.decoder.browser import needs_chromium
-from targets.decoder.comparison import judged_all
+from targets.decoder.comparison import compare_all
 from targets.expected import Document
 from targets.specs import SPECS, edition_of
 from targets.vectors.comparison import read
@@ -29,7 +29,7 @@ COLLECT = settings(phases=[Phase.generate], suppress_health_check=list(HealthChe
 def test_decoder_page_agrees_with_every_vector() -> None:
     names = sorted(TABLES)
     scripts = [edition_script(vectors.edition(name)) for name in names]
-    for found in judged_all(list(zip(map(read, names), scripts))):
+    for found in compare_all(list(zip(map(read, names), scripts))):
         assert found.differences == []
         assert found.vectors > 1000
 
@@ -38,7 +38,7 @@ def test_decoder_page_of_a_wrong_model_differs_from_the_vectors() -> None:
     model, document = vectors.edition("mycobot"), read("mycobot")
     wrong = [replace(with_wrong_angles(model, WRONG[kind]), name=kind) for kind in WRONG]
     documents = [(document | {"edition": each.name}, edition_script(each)) for each in wrong]
-    for found in judged_all(documents):
+    for found in compare_all(documents):
         assert found.differences
         assert all("get_angles" in difference for difference in found.differences)
 
@@ -68,7 +68,7 @@ def test_any_messages_and_streams_are_decoded_as_in_codec(tmp_path: Path) -> Non
     collect_of_random_protocols()
     scripts = [edition_script(edition) for edition in found]
     records = [document.record for document in documents]
-    compared = judged_all(list(zip(records, scripts, strict=True)))
+    compared = compare_all(list(zip(records, scripts, strict=True)))
     assert [text for each in compared for text in each.differences] == []
     assert sum(each.fields for each in compared) > 100
     noise = {e.get("noise") for r in records for s in r["streams"] for e in s["events"]}

@@ -77,7 +77,7 @@ def all_compared(
             shown[chunk.line].append(items)
     fields, refused, differences = 0, 0, []
     for number, (line, codec) in enumerate(lines):
-        validated = list(_judge(line, codec, shown[number]))
+        validated = list(_check(line, codec, shown[number]))
         refused += line.name.startswith("malformed: ")
         fields += sum(check.is_field for check in validated)
         differences += [
@@ -128,7 +128,7 @@ def _text(
     return Line(f"text of {name}", direction, [data], fields, frame)
 
 
-def _judge(line: Line, codec: Codec, packets: list[list[Item]]) -> Iterator[Check]:
+def _check(line: Line, codec: Codec, packets: list[list[Item]]) -> Iterator[Check]:
     """Yield every comparison of a line."""
     truth = events_of(codec, line.direction, ((chunk, False) for chunk in line.chunks))
     wanted = summary(truth, b"".join(line.chunks))

@@ -51,7 +51,8 @@ class Item:
 
 def tshark(capture: Path, *words: str, scripts: list[Path] | None = None) -> str:
     """Return what tshark prints; fail if one of our scripts has an error."""
-    # Of several dissectors for one TCP port, Wireshark uses the one loaded last: that of the 280.
+    # If several dissectors are registered for one TCP port, Wireshark uses the last one loaded:
+    # that of the 280.
     usual = [built("wireshark") / f"{edition}.lua" for edition in sorted(TABLES)]
     used = usual if scripts is None else scripts
     loaded = [word for script in used for word in ("-X", f"lua_script:{script}")]

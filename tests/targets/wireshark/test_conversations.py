@@ -92,7 +92,7 @@ EXCHANGES: dict[str, tuple[list[Any], list[dict[str, str]]]] = {
         [(0, *ASK), (8, *ANSWER), (20, *ASK), (30, "reply", "is_power_on", (True,))],
         [{"response_in": "2"}, {"request_in": "1", "ms": "8"}, UNANSWERED, {}],
     ),
-    # Either of the first two requests may be the one that got a reply; later pairs are certain.
+    # Either of the first two requests may have the reply; later pairs are certain.
     "a lost request": (
         [(0, *ASK), (100, *ASK), (108, *ANSWER), (200, *ASK), (208, *ANSWER)],
         [

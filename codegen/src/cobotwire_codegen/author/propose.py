@@ -54,11 +54,11 @@ def _numbered(name: str) -> Iterator[str]:
 def typical_values(edition: Edition, command: Command, variant: Variant) -> dict[str, object]:
     """Return legal values of a variant that would show a mistake in the spec.
 
-    Numbers are asymmetric, so that another byte order has another frame. Fields and elements differ
-    from each other where they can, so that an exchange shows. A field has the same value in request
-    and reply. Lists have three elements if the frame has room.
+    Numbers are asymmetric, so that a wrong byte order changes the frame. Fields and elements differ
+    from each other where possible, so that exchanging two of them shows. A field has the same value
+    in request and reply. Lists have three elements if the frame has room.
     """
-    # Flags are numbered apart, so that the first one is true.
+    # Flags have their own numbering, so that the first one is true.
     names = {
         flag: list(
             dict.fromkeys(f.name for f in command.fields if isinstance(f.type, Flag) == flag)

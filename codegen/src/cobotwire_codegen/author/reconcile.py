@@ -25,7 +25,8 @@ class News:
     guesses: tuple[Guess, ...]
     # For each guess, the type that its values fit, and why.
     types: tuple[tuple[str, str], ...]
-    # Whether it ``stores`` what another message reports or ``reports`` what another one stores.
+    # Whether it ``stores`` a value that another message reports, or ``reports`` one that another
+    # stores.
     effect: str
     other: int
 
@@ -105,7 +106,7 @@ def draft_lines(edition: Edition, news: News, direction: str) -> Iterator[str]:
 
 
 def _effect(news: News) -> Iterator[str]:
-    """Yield the effect of a message that sets or reports what another one reports or sets."""
+    """Yield the effect of a message that sets or reports the same state as another one."""
     state = min(news.id, news.other)
     yield f"  effect:  # GUESSED; declare the state, see 0x{news.other:02X}"
     yield f"    {news.effect}:"

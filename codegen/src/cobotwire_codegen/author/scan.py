@@ -3,8 +3,8 @@
 docs/framing.md states the law for unknown firmware: any id is legal, and any LEN up to the longest
 of the frame format. The first illegal byte rejects a candidate, and the scan continues one byte
 after the start of the candidate. A valid frame is consumed as a whole. This scan looks for unknown
-lengths, so it differs in two ways. A known id may have any length. An unknown frame is rejected if
-a known frame starts inside it; otherwise noise would be reported as an unknown message.
+lengths, so it differs in two ways. A known id may have any length. An unknown frame with a known
+frame inside it is rejected; otherwise noise would count as an unknown message.
 """
 
 from __future__ import annotations

@@ -45,7 +45,9 @@ def known_values(edition: Edition, frames: Sequence[Seen]) -> Known:
 
 
 def fitting(edition: Edition, item: Guess, frames: Sequence[Seen], known: Known) -> tuple[str, str]:
-    """Return the type that the values of some bytes fit best, and why; two empty texts if none.
+    """Return the type that fits the values of some bytes best, and why.
+
+    Two empty texts if none fits.
 
     A known number that had the same values at the same time counts most, then the type with the
     narrowest range that holds all of the values.
@@ -109,7 +111,7 @@ def _width(type: Quantity | Enum | Flag) -> Fraction:
 
 
 def pairs(groups: Sequence[Sequence[Seen]]) -> Iterator[tuple[int, int, int]]:
-    """Yield the ids and the size of two messages of which the second repeats the first one."""
+    """Yield the ids and the size of two messages; the second one repeats the first."""
     for stored in groups:
         for reported in groups:
             if stored[0].id == reported[0].id or len(stored[0].data) != len(reported[0].data):

@@ -61,7 +61,7 @@ def _add(fields: list[Node], reader: Reader) -> str:
 def _change_one(fields: list[Node], index: int, verb: str, reader: Reader) -> str:
     field = fields[index]
     name = _name(field)
-    assert isinstance(field, Mapping), "only a mapping has a name to be found by"
+    assert isinstance(field, Mapping), "the field was found by its name, which only a mapping has"
     if verb == "remove":
         del fields[index]
         return f"{name} removed"

@@ -39,8 +39,8 @@ def build_edition(
         path: the edition's file.
         root: the folder to which file names in messages are relative.
         unsaved: texts or nodes that replace the content of files on disk, by resolved path.
-        built: editions that were built before from the same files; a base is taken from here, and
-            what is built is added. Without it, each base is built again.
+        built: editions that were built earlier from the same files. Bases are taken from here, and
+            new editions are added. Without it, each base is built again.
 
     Raises:
         SpecError: reading found problems; the error carries all of them.
@@ -95,7 +95,7 @@ def _collect(
 def _built(
     path: Path, reader: Reader, parts: Parts, problems: list[Problem], built: Built
 ) -> Edition:
-    """Return the edition of these parts; the one that was built before, if there is one."""
+    """Return the edition of these parts, or the edition that was built before."""
     known = built.get(path.resolve())
     if known is not None:
         return known

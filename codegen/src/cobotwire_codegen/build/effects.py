@@ -21,14 +21,14 @@ from cobotwire_codegen.model import State as KeptState
 from cobotwire_codegen.model.commands import named_fields
 from cobotwire_codegen.reader import Reader
 
-# The keys of each verb whose value is its subject; the others are options, but for these.
+# For each verb, the key that holds its subject. The other keys, except these, are options.
 _BESIDE = ("at", "assumed")
 
 
 def build_state(
     parts: Parts, types: Types, commands: Iterable[Command], problems: list[Problem]
 ) -> tuple[KeptState, ...]:
-    """Return what an arm keeps; what only the base's commands used is left out."""
+    """Return the state of an arm, without state that only commands of the base used."""
     used = {name for command in commands for name in states_named(command.effect)}
     return tuple(
         _state(name, stated, types, problems)
@@ -62,7 +62,10 @@ def _state(
 
 
 def build_effect(node: Node | None, command: Command, problems: list[Problem]) -> Effect | None:
-    """Return what a command does; by its role, if that says it; None if nothing is stated."""
+    """Return the effect of a command: as stated, or as its role implies.
+
+    None if neither is the case.
+    """
     said = _of_role(command)
     if node is None:
         return said
@@ -133,7 +136,7 @@ def _plain(reader: Reader, key: Key[Any], *others: type) -> object:
 def _pairs(
     node: Node, at: Iterable[str], reader: Reader, command: Command, verb: str
 ) -> tuple[tuple[str, object], ...]:
-    """Return each field with its state; of a state alone, the only field that can be meant."""
+    """Return each field with its state; if only the state is named, the only field that fits."""
     if isinstance(node, Mapping):
         values = Named(Name(LOWER), LOWER, ("empty-list", "name a state"))
         named = values.read(node, f"{verb} of {reader.what}", reader.problem)
@@ -160,8 +163,8 @@ def _pairs(
 def reported(command: Command) -> dict[str, Field | None]:
     """Return the fields of a reply that report something: no constants, counts or echoes.
 
-    If variants have a field of the same name, it is that of the first one, which is the full one.
-    A field of a text has no type.
+    If several variants have a field of that name, it is the field of the first variant, the full
+    one. A field of a text has no type.
     """
     text = command.text.fields if command.text is not None else ()
     fields = (field for variant in reversed(command.replies) for field in variant)
@@ -199,7 +202,10 @@ _MOVED = {
 
 
 def _of_role(command: Command) -> Effect | None:
-    """Return the effect that a role says; None if the role says none, or the command lacks it."""
+    """Return the effect that a role implies.
+
+    None if the role implies none, or the command has no role.
+    """
     state, part = _REPORTED.get(command.role), _MOVED.get(command.role)
     if command.role == "stop":
         return Effect(command.place, "does", "stop", by_role=True)

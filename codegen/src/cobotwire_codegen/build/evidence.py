@@ -55,7 +55,7 @@ def _fact(node: Node, problems: list[Problem]) -> ObservedFact:
     return ObservedFact(node.place, named, confirmed, why, reader.get(spec.frames))
 
 
-# What arms showed of the facts of a command, by PART/ASPECT.
+# The evidence of arms for the facts of a command, by PART/ASPECT.
 Seen = dict[str, list[tuple[Observation, ObservedFact]]]
 
 

@@ -53,7 +53,7 @@ def build_frame_format(parts: Parts, place: Place, problems: list[Problem]) -> F
 
 
 def _check_frame(frame: Reader, built: Frame, known: int) -> None:
-    """Report what a frame format cannot be; ``known`` problems are older than it."""
+    """Report what is wrong with a frame format; ``known`` problems were found before it."""
     stuffing = frame.get(language.Frame.stuffing) if frame.node(language.Frame.stuffing) else None
     for shown, limit in beyond_language(built, stuffing):
         if not any(limit.message in problem.message for problem in frame.problems[known:]):
@@ -93,7 +93,7 @@ def _address_range(frame: Reader) -> tuple[int, ...]:
 
 
 def _compare_port(transport: Reader) -> None:
-    """Report another character format than the one with which the clients open serial ports."""
+    """Report a character format other than 8N1, with which the clients open serial ports."""
     port = language.Transport
     usual: tuple[tuple[Key[Any], Any], ...] = (
         (port.data_bits, 8),

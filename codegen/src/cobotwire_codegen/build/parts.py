@@ -65,7 +65,7 @@ class Parts:
     robot: dict[str, Node] = field(default_factory=dict)
     # Why there is no geometry; it has no effect beside one.
     geometry_unknown: str = ""
-    # What the arm keeps, by name; and the names that the edition states itself, not its base.
+    # The state of the arm, by name; and the names that the edition itself states, not its base.
     state: Named = field(default_factory=dict)
     own_state: set[str] = field(default_factory=set)
     acks: Node | None = None

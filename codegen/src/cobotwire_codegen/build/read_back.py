@@ -23,7 +23,7 @@ _CONTROLLED = {"pause": True, "resume": False}
 
 
 class _Written(NamedTuple):
-    """What a command gives a state: the value of an argument, or else a fixed value."""
+    """The value that a command stores in a state: that of an argument, or a fixed one."""
 
     state: str
     argument: str = ""

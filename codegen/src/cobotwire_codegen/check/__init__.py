@@ -39,7 +39,7 @@ RULES: tuple[Rule, ...] = (
 )
 
 
-# Rules that read only names, ids and places, so that mistakes elsewhere cannot mislead them.
+# Rules that read only names, ids and places: other mistakes do not affect them.
 INDEPENDENT: tuple[Rule, ...] = (
     *names.RULES,
     *reserved.RULES,
@@ -52,8 +52,8 @@ def checked_edition(path: Path, root: Path, unsaved: Mapping[Path, str] | None =
     """Return an edition, built and checked; the arguments are those of ``build_edition``.
 
     Raises:
-        SpecError: the spec has problems. If it cannot be read completely, these are the problems
-            of reading and those that do not follow from them.
+        SpecError: the spec has problems. If it cannot be read completely, report the problems of
+            reading, and the problems that they do not cause.
     """
     try:
         edition = build_edition(path, root, unsaved)

@@ -14,7 +14,7 @@ from cobotwire_codegen.model import Command, Edition, Effect, Field, State
 ARGUMENTS = ("by", "about", "direction", "append", "from", "near")
 
 
-# What decides a motion, by the part that moves; `speed` and `keeps` may be added.
+# The keys that a motion needs, by the part that moves; `speed` and `keeps` may be added.
 _MOTIONS = {
     "joints": (("to",),),
     "joint": (("at", "to"), ("at", "by"), ("at", "until", "direction")),
@@ -22,7 +22,7 @@ _MOTIONS = {
     "gripper": (("to",),),
 }
 _LIST = ("append", "take", "clear", "report")
-# The kinds of types of one number, and the keys whose argument has such a type.
+# The kinds of types that have one number, and the keys whose argument has such a type.
 _NUMBERS = ("quantity", "enum", "flag")
 _SINGLE = ("by", "about", "direction")
 
@@ -102,7 +102,7 @@ def _wrong_keys(effect: Effect) -> Iterator[str]:
 def _wrong_sizes(
     effect: Effect, command: Command, arguments: Mapping[str, Field | None]
 ) -> Iterator[str]:
-    """Yield which arguments are rows instead of single numbers, or the other way round."""
+    """Yield the arguments that are rows but should be single numbers, or the reverse."""
     options = {key: name for key, name in effect.options if isinstance(name, str)}
     rows = [options[key] for key in ("from", "near") if key in options]
     single = [*effect.at, *(options[key] for key in _SINGLE if key in options)]

@@ -15,7 +15,7 @@ from cobotwire_codegen.publish_effects import plain
 _SWITCHES = ("powered", "connected", "free", "held")
 _JOINT_ROWS = ("angles", "planned_angles", "speeds", "held", "lowest", "highest")
 _AXIS_ROWS = ("coords", "base_coords", "planned_coords")
-# Those of them that one value can stand for: whether all are held, or a limit of all.
+# States that can have one value for all joints: whether all are held, or a limit of all.
 _AS_ONE = {"reports": ("held",), "stores": ("held", "lowest", "highest")}
 
 
@@ -38,7 +38,7 @@ def states_fit(edition: Edition) -> Iterator[Problem]:
 
 
 def wrong_value(name: str, state: State | None, value: object) -> str:
-    """Return why a state, which is built in if it is None, cannot have a value; else nothing."""
+    """Return why a state cannot have a value; empty if it can. A built-in state is None."""
     if state is not None and state.type is not None:
         try:
             plain(state.type, name, value)
@@ -94,7 +94,7 @@ REGISTERS = "registers"
 
 
 def _changed(effect: Effect) -> list[str]:
-    """Return the states that an effect gives a value; only code knows which it gives more."""
+    """Return the states that an effect sets; code may set more."""
     if effect.verb == "list":
         return [effect.what]
     values = effect.values

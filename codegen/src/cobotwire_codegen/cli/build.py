@@ -24,6 +24,7 @@ from cobotwire_codegen.emit import Target, foreign
 from cobotwire_codegen.model import Edition
 from cobotwire_codegen.render import Files, render_python, render_reference
 from cobotwire_codegen.targets.c import render_c
+from cobotwire_codegen.targets.rust import render_rust
 from cobotwire_codegen.targets.vectors import render_shared_vectors
 from cobotwire_codegen.targets.wireshark import render_wireshark
 
@@ -32,6 +33,7 @@ RENDERERS: dict[str, Callable[[Edition, Path | None], Files]] = {
     "--out": render_python,
     "--docs": render_reference,
     "--c": render_c,
+    "--rust": render_rust,
     "--wireshark": lambda edition, own: render_wireshark([edition], own),
     "--vectors": lambda edition, own: render_shared_vectors([edition]),
 }
@@ -48,6 +50,11 @@ SHARED = ("--wireshark", "--vectors")
     "--docs", type=click.Path(file_okay=False), help="Also write the reference, to this folder."
 )
 @click.option("--c", type=click.Path(file_okay=False), help="Also write C code, to this folder.")
+@click.option(
+    "--rust",
+    type=click.Path(file_okay=False),
+    help="Also write a module for the crate cobotwire, to this folder.",
+)
 @click.option(
     "--wireshark",
     type=click.Path(file_okay=False),
@@ -71,6 +78,7 @@ def build(
     out: str,
     docs: str | None,
     c: str | None,
+    rust: str | None,
     wireshark: str | None,
     vectors: str | None,
     templates: str | None,
@@ -87,6 +95,7 @@ def build(
         "--out": out,
         "--docs": docs,
         "--c": c,
+        "--rust": rust,
         "--wireshark": wireshark,
         "--vectors": vectors,
     }

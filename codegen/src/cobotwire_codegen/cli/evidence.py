@@ -1,4 +1,4 @@
-"""``cobotwire-gen evidence``: take what a real arm showed into the spec, and list what none has."""
+"""``cobotwire-gen evidence``: add what real arms showed to the spec; list what is unconfirmed."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ _edition_option = click.option(
 
 @click.group()
 def evidence() -> None:
-    """Take what a real arm showed into the spec, and list what no arm has confirmed."""
+    """Add what a real arm showed to the spec, and list what no arm has confirmed."""
 
 
 @evidence.command()

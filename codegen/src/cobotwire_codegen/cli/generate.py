@@ -13,6 +13,7 @@ from cobotwire_codegen.emit import Target, compare, write
 from cobotwire_codegen.project import (
     PRODUCTS,
     RUST_DATA,
+    RUST_EDITIONS,
     committed,
     editions,
     products,
@@ -30,7 +31,7 @@ def generate(check_only: bool, with_products: bool, rust_data: bool, root: str) 
     """Generate what is committed, the editions and their reference, and the schema for editors.
 
     With --products, also generate what is not committed: the other pages of the docs site, output
-    targets, data of the Rust tests. With --rust-data, generate only the latter.
+    targets, what the Rust crates need. With --rust-data, generate only the latter.
     """
     if rust_data and with_products:
         raise click.UsageError("--products includes the data of --rust-data: give one of them")
@@ -39,7 +40,8 @@ def generate(check_only: bool, with_products: bool, rust_data: bool, root: str) 
         found = editions(path)
         wanted = [] if rust_data else committed(path, found)
     changed = 0 if check_only else write_all(wanted)
-    folders: Iterable[str] = [RUST_DATA] if rust_data else PRODUCTS if with_products else ()
+    all_or_none: Iterable[str] = PRODUCTS if with_products else ()
+    folders = [RUST_DATA, RUST_EDITIONS] if rust_data else all_or_none
     try:
         # After the editions, because the pages of the test suite list their commands.
         others = products(path, found, folders)

@@ -11,8 +11,8 @@ import click
 def lsp() -> None:
     """Run a language server for editors, over stdin and stdout.
 
-    It shows problems while a spec is typed, explains vectors byte by byte and names on hover,
-    completes keys, words and names, and leads from a delta to what it changes in its base.
+    It shows problems while a spec is typed. On hover it explains names, and vectors byte by byte.
+    It completes keys, words and names, and jumps from a delta to the changed part of its base.
 
     It needs pygls: pip install 'cobotwire-codegen[lsp]'.
     """

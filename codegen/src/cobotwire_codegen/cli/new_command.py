@@ -220,7 +220,7 @@ def _values_of(
     frame: bytes,
     listed: str | None,
 ) -> dict[str, object]:
-    """Return a vector's values: of the captured frame, else the listed ones, else typical ones."""
+    """Return a vector's values: of the captured frame, or as listed, or typical ones."""
     if frame:
         return read(edition, command, direction, frame)
     values = typical_values(edition, command, variant)

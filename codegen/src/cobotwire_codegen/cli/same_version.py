@@ -10,7 +10,7 @@ import click
 def check() -> None:
     """Compare the versions of the two distributions.
 
-    cobotwire alone need not be installed: ``check``, ``diff`` and others do without it.
+    cobotwire itself need not be installed: ``check``, ``diff`` and others work without it.
 
     Raises:
         UsageError: cobotwire is installed, in another version.

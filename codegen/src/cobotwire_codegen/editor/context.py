@@ -97,8 +97,8 @@ Level = Mapping[str, Key[Any]] | Named
 def _descend(root: Described, path: list[str]) -> Mapping[str, Key[Any]]:
     """Return the keys of the mapping at a path.
 
-    If a place can hold one of several records, the keys of all of them are returned: the key that
-    decides may not be written yet.
+    If a place can hold one of several records, return the keys of all: the key that selects the
+    record may not be written yet.
     """
     levels: list[Level] = [*_records(root)]
     for step in path:

@@ -48,7 +48,7 @@ class Workspace:
                 return
 
     def edition(self, path: Path) -> Edition | None:
-        """Return the edition of a file, as it was when it could be built the last time."""
+        """Return the edition of a file, as built by the last attempt that succeeded."""
         for edition in self.editions_of(path):
             with suppress(SpecError):
                 self._built[edition] = build_edition(edition, self.root, self.unsaved)
@@ -57,7 +57,7 @@ class Workspace:
         return None
 
     def problems(self, path: Path) -> dict[Path, list[Problem]]:
-        """Return the problems of the editions of a file, by file; the file itself is always in."""
+        """Return the problems of a file's editions, by file; the file itself is always a key."""
         found: dict[Path, list[Problem]] = defaultdict(list)
         found[path.resolve()] = []
         built: Built = {}

@@ -96,7 +96,8 @@ def _refused(edition: Edition, fact: Reported, line: bytes | None, known: Known)
 def _shows(edition: Edition, command: Command, fact: Reported, known: Known) -> bool:
     """Return whether a frame is the message that a confirmed fact is about.
 
-    What a command does shows in the reply to a query, which is another command.
+    The effect of a command shows in the reply to a query, so its frames are those of another
+    command.
     """
     _, part, aspect = fact.fact.split("/")
     replied = part.startswith("reply") or (command.awaits_reply and command.text is None)
@@ -166,5 +167,5 @@ def _shown(fact: Reported) -> str:
 
 
 def _quoted(text: str) -> str:
-    """Return printable text as YAML; a text in double quotes of JSON is one of YAML too."""
+    """Return printable text as YAML. A JSON string is a YAML string too."""
     return json.dumps(text, ensure_ascii=False)

@@ -34,7 +34,7 @@ MOST_FRAMES = 8
 MOST_BYTES = 1000
 # The members of a survey, and the size that each may have.
 MEMBERS = {"survey.json": MOST_JSON, "recording.pcapng": MOST_RECORDING}
-# What the verdict on a test case says about the facts of its command; * stands for every field.
+# The facts of a command that the verdict on a test case decides; * stands for every field.
 CASES = {
     "query-replied": ("command/present", "command/deadline"),
     "change-replied": ("command/present", "command/deadline"),
@@ -52,6 +52,8 @@ _FACT = re.compile(
 )
 # The robot of a report, or of an owner who does not name it.
 _UNNAMED = "an arm"
+_SEAL = ("digest", "signature")
+_CHANGED = "the file was changed after it was written: its digest is another one"
 # The type of a block that holds a packet, in pcapng.
 _PACKET = 6
 _DAY = re.compile(r"(20\d\d-(0[1-9]|1[0-2])-(0[1-9]|[12]\d|3[01]))(T[\d:.+\-Z]{0,30})?", re.ASCII)
@@ -109,13 +111,30 @@ def submitted(data: bytes) -> Submitted:
     digest = sha256(data).hexdigest()
     if data.startswith(b"PK"):
         members = _members(data)
-        found = _survey(_parsed(members["survey.json"]), digest)
-        found.line = _line(members["recording.pcapng"])
+        document, recording = _parsed(members["survey.json"]), members["recording.pcapng"]
+        _check_digest(document, sha256(recording).hexdigest())
+        found = _survey(document, digest)
+        found.line = _line(recording)
         return found
     _require(
         len(data) <= MOST_REPORT, f"the report has more than {MOST_REPORT >> 20} MB, the limit"
     )
-    return _report(_parsed(data), digest)
+    document = _parsed(data)
+    _check_digest(document)
+    return _report(document, digest)
+
+
+def _check_digest(document: dict[str, Any], recording: str = "") -> None:
+    """Check the digest that a document states, as ``cobotwire.inspect.seal`` defines it.
+
+    The files of the first surveys state none. Who signed a file, ``conform verify`` checks.
+    """
+    if "digest" not in document:
+        return
+    _require(document.get("recording_digest", "") == recording, _CHANGED)
+    contents = {key: value for key, value in document.items() if key not in _SEAL}
+    text = json.dumps(contents, sort_keys=True, separators=(",", ":"))
+    _require(sha256(text.encode()).hexdigest() == document["digest"], _CHANGED)
 
 
 def _require(holds: bool, message: str) -> None:
@@ -171,7 +190,10 @@ def _of(value: Any, kind: type, name: str) -> Any:
 
 
 def _text(record: dict[str, Any], key: str, most: int = 80, least: int = 1) -> str:
-    """Return a text of one line; longer ones, and ones that a terminal would obey, are refused."""
+    """Return a text of one line.
+
+    Reject texts with control characters, and texts that are too long.
+    """
     text = " ".join(_of(record.get(key), str, key).split())
     _require(least <= len(text) <= most, f"{key} must have {least} to {most} characters")
     _require(text.isprintable(), f"{key} has characters that cannot be printed")
@@ -191,7 +213,7 @@ def _day(text: str) -> str:
 
 
 def _bytes(value: Any) -> bytes:
-    """Return the bytes of a frame; none if they are too many, or shortened."""
+    """Return the bytes of a frame; empty if there are too many, or the text was shortened."""
     text = _of(value, str, "a frame")
     return bytes.fromhex(text) if _HEX.fullmatch(text) else b""
 

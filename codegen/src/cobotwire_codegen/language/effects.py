@@ -36,8 +36,8 @@ class State(Record):
 class _Effect(Record):
     assumed = optional(
         Text(),
-        "Why no source states this effect. A simulated arm has it and the reference tells it, but "
-        "no tester judges a device by it.",
+        "Why no source states this effect. A simulated arm has it and the reference describes it, "
+        "but testers do not test it.",
     )
 
 
@@ -111,7 +111,7 @@ class Does(_AtIndex):
 
 
 class Lists(_Effect):
-    """A command works on a list of values, of which each has the state's type."""
+    """A command works on a list of values; each value has the state's type."""
 
     list = required(Name(LOWER), "The state that is the list.")
     append = optional(Name(LOWER), "The argument that is added at the end.")
@@ -142,7 +142,7 @@ class Unknown(Record):
 
 
 class Python(_Effect):
-    """Only code can say what a command does: the simulator has a function for it."""
+    """The effect of a command is implemented in code: the simulator has a function for it."""
 
     python = required(Text(), "What the command does.")
     EXAMPLE = "{python: Repeats the recorded motion.}"

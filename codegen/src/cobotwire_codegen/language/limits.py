@@ -1,4 +1,4 @@
-"""What protocols have and the language cannot say: one registry for the messages and the page.
+"""Features of protocols that the language lacks: one registry for error messages and for the page.
 
 Sources: Robotis, e-Manual, "DYNAMIXEL Protocol 2.0" (byte stuffing); RFC 1055 (SLIP); Cheshire and
 Baker, "Consistent Overhead Byte Stuffing"; Modbus over serial line V1.02 (silence ends a frame);
@@ -16,9 +16,9 @@ PAGE = "https://cobotwire.github.io/cobotwire/reference/language.html"
 
 
 class Limit(NamedTuple):
-    """One thing that a spec cannot say: its heading, examples, what it is, and what to do instead.
+    """A feature that a spec cannot state: heading, examples, description, and what to do instead.
 
-    ``keys`` are those that authors try; the language has none of them.
+    ``keys`` are keys that authors try and that the language lacks.
     """
 
     heading: str

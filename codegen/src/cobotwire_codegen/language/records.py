@@ -64,9 +64,9 @@ class Record:
 
     HEADING: ClassVar[str] = ""
     EXAMPLE: ClassVar[str] = ""
-    # Pairs of keys of which only one may be given.
+    # Pairs of keys that exclude each other.
     EXCLUSIVE: ClassVar[tuple[tuple[str, str], ...]] = ()
-    # By key: what a spec without it, or with a key that the language lacks, may try to say.
+    # What the language cannot express, by the key (known or unknown) with which a spec may try to.
     LIMITS: ClassVar[ReadOnly[str, str]] = MappingProxyType({})
 
     @classmethod
@@ -274,7 +274,7 @@ class InFile(Shape[Node | None]):
 
 
 class InFiles(Shape[Node | None]):
-    """A list of file names and contents, or instead of a list what ``alone`` describes."""
+    """A list of file names and contents. With ``alone``, a value of that shape is allowed too."""
 
     blank = None
 

@@ -25,7 +25,7 @@ _PARAMETER = re.compile(
 
 
 class _Stated(NamedTuple):
-    """What the file states: the shared methods, the classes, both by name; and the editions."""
+    """The contents of the file: shared methods and classes by name, and editions."""
 
     methods: Mapping[str, Entry]
     classes: Mapping[str, Entry]
@@ -121,7 +121,7 @@ def _edition(reader: Reader, key: Key[str], stated: _Stated) -> Edition | None:
 
 
 class _Other(NamedTuple):
-    """What another class states: its methods, which commands they call, and what it lacks."""
+    """The facts of another class: its methods, the commands that they call, and what it lacks."""
 
     methods: Mapping[str, Entry]
     calls: Mapping[str, str]
@@ -129,7 +129,7 @@ class _Other(NamedTuple):
 
 
 def _other(reader: Reader, stated: _Stated) -> _Other:
-    """Return the class whose methods the stated class takes over; nothing if it states none."""
+    """Return the class whose methods the stated class inherits; empty if it states none."""
     key = language.Class.methods_of
     name = reader.get(key)
     if not name:

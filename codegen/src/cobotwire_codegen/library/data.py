@@ -47,7 +47,7 @@ def stated(library: Library) -> list[Stated]:
 
 
 def absent_json(library: Library) -> str:
-    """Return why names have no counterpart, by class; those of all classes have the class ``*``."""
+    """Return the reasons why names have no counterpart, by class; ``*`` stands for all classes."""
     found = [("*", library.absent)] + [(each.name, each.absent) for each in library.classes]
     data = {name: dict(absent) for name, absent in found if absent}
     return json.dumps(data, indent=1) + "\n"

@@ -19,9 +19,9 @@ class Parameter:
 class Method:
     """A method of the library.
 
-    ``command`` is what it sends, by the name of our method; ``passes`` are the parameters and the
-    numbers that our method is given; ``result`` is how its result is given. ``address`` is the
-    parameter that selects the device; ``lacks`` are parameters that cannot be sent.
+    ``command`` is the name of our method that it calls; ``passes`` are the parameters and the
+    numbers that it passes; ``result`` is how our result is converted. ``address`` is the parameter
+    that selects the device; ``lacks`` are parameters that cannot be sent.
     """
 
     name: str
@@ -48,9 +48,9 @@ class Method:
 class LibraryClass:
     """A class of the library.
 
-    ``edition`` is that of ``ports``, and ``elsewhere`` that of all others, or of all if the two are
-    the same. ``like`` is the class whose methods it has; empty if none. ``orders`` says what its
-    orders return, and when. ``absent`` are its names that have no counterpart, each with why.
+    ``edition`` is the edition on ``ports``, and ``elsewhere`` the edition on all other ports; they
+    may be equal. ``like`` is the class whose methods it has; empty if none. ``orders`` says what
+    its orders return, and when. ``absent`` are its names that have no counterpart, each with why.
     """
 
     name: str

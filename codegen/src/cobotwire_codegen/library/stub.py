@@ -43,7 +43,7 @@ class Stub:
         return self._methods.get((given.name,), [])
 
     def bases(self, given: LibraryClass) -> str:
-        """Return the bases of a class: methods, helpers, what it is like, or what all share."""
+        """Return the bases: shared methods, helpers, a similar class, or the common base."""
         shared = [name for names, name in self._shared.items() if given.name in names]
         helpers = [place_of(each)[1] for each in given.helpers]
         found = [*helpers, *([given.like] if given.like else [])] or ["CompatibleClient"]

@@ -74,7 +74,7 @@ class Text:
 
 @dataclass(frozen=True, slots=True)
 class ReadBack:
-    """How to read what a command has set: the query, and what its reply then contains.
+    """How to read back what a command has set: the query, and the expected contents of its reply.
 
     It is derived from the effects of both.
 
@@ -155,7 +155,7 @@ class Command:
 
     @property
     def method_order(self) -> tuple[str, ...]:
-        """The order of the method's arguments; empty if it is that of the fields, then the text."""
+        """The order of the method's arguments; empty: the order of the fields, then the text."""
         names = (*named_fields(self.requests), *self.text_arguments)
         return () if names == self.argument_names else self.argument_names
 

@@ -32,7 +32,8 @@ class Effect:
         place: where the spec states it.
         verb: ``reports``, ``stores``, ``sets``, ``moves``, ``zeroes``, ``does``, ``list``,
             ``computes``, ``unknown``, ``python``, or ``selector`` for an effect in cases.
-        what: the part that moves, the list, what is computed or done, the reason, or the selector.
+        what: depending on the verb, the part that moves, the list, the computed value, the
+            description, the reason, or the selector.
         values: of ``reports`` and ``stores``: each field with its state; of ``sets``: each state
             with its value.
         at: the arguments that choose one index.

@@ -23,13 +23,17 @@ def exact_of(rank: int, width: int) -> Fraction:
         return -exact_of(-1 - rank, width)
     leading = 1 << _FRACTION_BITS[width]
     exponent, fraction = divmod(rank, leading)
-    # The smallest exponent has no leading one; its step is that of the next exponent.
+    # With the smallest exponent there is no leading one (subnormals), and the step is that of the
+    # next exponent.
     whole = fraction + (leading if exponent else 0)
     return whole * _step(max(exponent, 1), width)
 
 
 def nearest(value: Fraction, width: int) -> int:
-    """Return the rank of the float nearest to a value, ties to even; too large: infinity's."""
+    """Return the rank of the float nearest to a value, ties to even.
+
+    For too large values the rank of infinity.
+    """
     if value < 0:
         return -1 - nearest(-value, width)
     below = floor(value, width)

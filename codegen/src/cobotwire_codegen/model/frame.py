@@ -31,7 +31,7 @@ class Address:
 
     @property
     def attribute(self) -> str:
-        """The attribute of clients that is the client for this address."""
+        """The name of the attribute of a client that holds the client for this address."""
         return self.name.lower()
 
 
@@ -122,7 +122,7 @@ class Frame:
         return dict(zip(order, ends))
 
     def data_at(self, direction: Direction) -> int:
-        """Return where the data starts; without a command id, in its place."""
+        """Return the offset of the data; it is that of the command id if a frame has no id."""
         return self.offset("data" if self.has_command(direction) else "command")
 
     def has_command(self, direction: Direction) -> bool:

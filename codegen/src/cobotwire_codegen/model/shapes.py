@@ -27,7 +27,7 @@ class Shaped:
 
     @property
     def parts(self) -> tuple[tuple[str, Scalar], ...]:
-        """No scalars: selectors, constants and defaults have one number or a value type."""
+        """Empty: no value of these types can be a selector, a constant or a default."""
         return ()
 
     @property

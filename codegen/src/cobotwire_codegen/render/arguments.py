@@ -65,7 +65,7 @@ def overloads(command: Command) -> tuple[tuple[Argument, ...], ...]:
 
 
 def keyword_only(command: Command) -> set[str]:
-    """Return the arguments without a position: of overloads, those that one of them may lack."""
+    """Return the keyword-only arguments: those that one of several overloads lacks."""
     if not overloads(command):
         return set()
     return {parameter.name for parameter in parameters(command) if parameter.may_be_none}

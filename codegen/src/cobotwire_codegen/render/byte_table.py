@@ -36,7 +36,7 @@ def byte_rows(
 
 
 def only_fixed(rows: Iterable[Row]) -> bool:
-    """Return whether a message consists of fixed bytes alone, so that it has a single frame."""
+    """Return whether a message consists of fixed bytes only, so that it has a single frame."""
     return all(content in FIXED for _, content, _ in rows)
 
 

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator
 
 # This width fits a code block of the docs, and a terminal.
 WIDTH = 96
-# These boxes show their value, which is fixed; a field's box shows its name.
+# These boxes show their fixed value; the box of a field shows its name.
 FIXED = ("header", "LEN", "CMD", "footer")
 
 Row = tuple[str, str, str]
@@ -36,7 +36,7 @@ def byte_diagram(rows: Iterable[Row], example: bytes = b"") -> str:
 
 
 def label(content: str, value: str) -> str:
-    """Return what stands for a part of a message: its bytes if they are fixed, else its name."""
+    """Return the label of a part of a message: its bytes if they are fixed, otherwise its name."""
     return value if content in FIXED else content.replace("`", "").rpartition(" ")[2]
 
 
@@ -51,7 +51,10 @@ def _parts(rows: Iterable[Row], example: bytes) -> Iterator[str]:
 
 
 def width(position: str) -> int | None:
-    """Return how many bytes are at positions: ``4-7``, ``n+1..n+2``; None if it varies: ``4-n``."""
+    """Return the number of bytes at positions such as ``4-7`` or ``n+1..n+2``.
+
+    None if it varies, as ``4-n``.
+    """
     first, _, last = position.replace("..", "-").partition("-")
     if last.isalpha():
         return None

@@ -30,7 +30,7 @@ _BUILT_IN = {
     "highest": "the largest allowed angle of each joint",
     "starts": "how often the controller has started",
 }
-# The same of one joint or axis.
+# The same words for one joint or axis.
 _ONE = {
     "angles": "the angle",
     "coords": "the coordinate",

@@ -1,7 +1,7 @@
 """Escapes the texts of a spec for Markdown: the only place that does it.
 
-The whole model is copied with escaped texts before the templates see it, so that no template and
-no new text can forget it. The names in a model are identifiers, which Markdown takes as they are.
+The whole model is copied with escaped texts before the templates see it, so that no template can
+forget to escape. The names in a model are identifiers, which Markdown takes as they are.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from cobotwire_codegen.errors import Place
 from cobotwire_codegen.model import Text, Vector
 
 T = TypeVar("T")
-# What a template shows as code, where an escape would be seen; and what it does not show.
+# Expressions that a template shows as code, where an escape would be visible, or does not show.
 _AS_CODE: dict[type, tuple[str, ...]] = {Text: ("prefixes", "suffix"), Vector: ("text",)}
 # Signs that start a block at the start of a line: list, heading, quotation, fence, comment, label.
 _BLOCK = re.compile(r"\A([-+*=#>~:%]|\((?=[^)]*\)=)|\d+(?=[.)](\s|\Z)))")

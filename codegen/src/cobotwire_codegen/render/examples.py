@@ -44,9 +44,9 @@ def _agree(edition: Edition, command: Command, request: Vector, reply: Vector) -
 
 
 def example_frame(edition: Edition, command: Command, direction: Direction, sizes: range) -> bytes:
-    """Return the frame of an example of one variant, which has such a size; empty if none has.
+    """Return the frame of an example of one variant, of that size; empty if no example has it.
 
-    It is that of :func:`examples` if that has such a size.
+    It is the example of :func:`examples` if that has this size.
     """
     chosen = examples(edition, command).get(direction)
     every = [v for v in edition.vectors if v.command == command.name and v.direction == direction]

@@ -27,7 +27,7 @@ from cobotwire_codegen.render.words import decimal, span, units
 
 
 def robot(edition: Edition) -> str:
-    """Return the name of the edition's robot, without an article, and what its title adds to it."""
+    """Return the robot's name: the edition's title without its article and its subtitle."""
     return re.sub("^(A|An|The) ", "", edition.title.partition(":")[0])
 
 

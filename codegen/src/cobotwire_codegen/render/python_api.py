@@ -45,7 +45,7 @@ def overload_signatures(command: Command) -> list[str]:
 
 
 def signatures(command: Command) -> list[str]:
-    """Return every form in which a method can be called, on a line each; of an event its class."""
+    """Return every form of a method's call, one on each line; for an event, its class."""
     if command.event:
         return [message_class(command.name)]
     heads = overload_signatures(command) or [signature(command)]

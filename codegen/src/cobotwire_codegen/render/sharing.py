@@ -14,7 +14,7 @@ PACKAGE = "cobotwire.editions"
 
 
 class Sharing:
-    """Compares an edition with its base: which classes, messages and methods are equal in both.
+    """Finds the classes, messages and methods that are equal in an edition and its base.
 
     Without a base (``base`` is None) nothing is shared, and the package imports no other.
     """

@@ -1,7 +1,8 @@
-"""Render modules that the package has once: the plurals of units, the clients of all editions."""
+"""Render files that the package has once: the plurals of units, the clients of all editions."""
 
 from __future__ import annotations
 
+import json
 from collections.abc import Sequence
 
 from cobotwire_codegen.language.units import UNITS
@@ -9,15 +10,10 @@ from cobotwire_codegen.model import Edition
 
 
 def render_units() -> str:
-    """Return the module ``cobotwire.protocol.units``."""
-    entries = "".join(f'    "{name}": "{unit.plural}",\n' for name, unit in UNITS.items())
-    return (
-        "# GENERATED from cobotwire_codegen.language.units; not to be edited.\n"
-        '"""The plural of each unit, as it follows a number in a text."""\n\n'
-        "from __future__ import annotations\n\n"
-        "from typing import Final\n\n"
-        "PLURALS: Final[dict[str, str]] = {\n" + entries + "}\n"
-    )
+    """Return ``cobotwire/protocol/units.json``: the plural of each unit, as it follows a number."""
+    note = {"GENERATED": "from cobotwire_codegen.language.units; not to be edited"}
+    plurals = {name: unit.plural for name, unit in UNITS.items()}
+    return json.dumps(note | plurals, indent=0) + "\n"
 
 
 def render_clients(editions: Sequence[Edition]) -> str:

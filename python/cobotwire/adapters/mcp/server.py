@@ -33,8 +33,8 @@ WATCHES = "Only queries are permitted: the user starts the server with --allow-m
 class Options(NamedTuple):
     """The arm, and what a client of MCP may do with it.
 
-    Without ``allow_motion`` only queries and stop are sent. ``silence`` are the seconds without a
-    message after which a motion is stopped; ``choice`` is which tools there are.
+    Without ``allow_motion`` only queries and stop are sent. A motion is stopped after ``silence``
+    seconds without a message. ``choice`` selects the tools.
     """
 
     port: str

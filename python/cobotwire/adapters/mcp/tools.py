@@ -16,7 +16,7 @@ from cobotwire.studio.forms import Form, forms
 
 Choice = Literal["basic", "all"]
 STOP = "stop"
-# What a model needs to move an arm and to see what came of it. Models choose worse among many
+# The tools that a model needs to move an arm and to see the outcome. Models choose worse among many
 # tools, and some clients limit the number; most editions have a hundred commands.
 BASIC: tuple[Role, ...] = (
     *("joints", "coordinates", "moving", "powered", "paused", "error", "version"),

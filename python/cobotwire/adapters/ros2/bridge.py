@@ -41,8 +41,8 @@ class Bridge:
     ) -> None:
         """Publish at most ``rate`` samples a second; name the port ``url``.
 
-        A motion is stopped if its sender is gone for ``silence`` seconds; None: none is taken. No
-        joint is faster than ``speed`` percent of the fastest.
+        A motion is stopped if its sender is gone for ``silence`` seconds; None: the arm takes no
+        motions. No joint is faster than ``speed`` percent of the fastest.
 
         Raises:
             UsageError: the rate is not allowed, or the edition lacks what is needed.

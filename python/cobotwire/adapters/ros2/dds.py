@@ -21,11 +21,13 @@ from cyclonedds.util import duration
 from cobotwire.capture.export.ros_messages import Message, fields_of, serialised
 from cobotwire.protocol.errors import LinkError, UsageError
 
-# A reader that does not acknowledge delays a message by at most that; then it is dropped.
+# The longest delay of a message by a reader that does not acknowledge; then the message is dropped.
 BLOCKED_MS = 100
 # So many messages ROS 2 keeps for a slow reader, unless a topic needs more.
 DEPTH = 10
 LOOPBACK = "127.0.0.1"
+# The handle of a publisher has 64 bits.
+HANDLES = 1 << 64
 # Participants find each other only if they are configured alike. This is what ROS 2 gives Cyclone
 # DDS for the range LOCALHOST: check_create_domain in rmw_node.cpp of rmw_cyclonedds_cpp.
 _ON_THIS_COMPUTER = (
@@ -116,30 +118,37 @@ class Participant:
         return Topic(self._participant, f"rt/{topic}", struct_of(kind), qos=qos), qos
 
 
+class Received(NamedTuple):
+    """A message and who sent it; the message is None if it is damaged."""
+
+    message: Any
+    sender: int
+
+
 class Reader:
     """Receives the messages of a topic."""
 
     def __init__(self, reader: DataReader[Any]) -> None:
         self._reader = reader
 
-    @property
-    def has_writers(self) -> bool:
-        """Whether a participant publishes the topic."""
-        return bool(self._reader.get_matched_publications())
+    def publishes(self, sender: int) -> bool:
+        """Return whether the sender of a message still publishes the topic."""
+        # cyclonedds gives one and the same handle with a sign here, and without one in a message.
+        return any(each % HANDLES == sender for each in self._reader.get_matched_publications())
 
-    def take(self) -> Iterator[Any]:
-        """Yield the messages that came since the last call; None for one that is damaged."""
+    def take(self) -> Iterator[Received]:
+        """Yield the messages that came since the last call."""
         for _ in range(DEPTH):
             try:
                 found = self._reader.take(1)
             except Exception:
                 # The participant may be any program, and its bytes any bytes.
-                yield None
+                yield Received(None, 0)
                 return
             if not found:
                 return
             if not isinstance(found[0], InvalidSample):
-                yield found[0]
+                yield Received(found[0], found[0].sample_info.publication_handle % HANDLES)
 
 
 @cache

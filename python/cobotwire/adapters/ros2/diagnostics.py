@@ -15,10 +15,10 @@ from cobotwire.protocol.errors import ProtocolError, ReplyTimeout
 from cobotwire.protocol.table import Command
 
 OK, WARN, ERROR = 0, 1, 2
-# A query without a reply this often, while others have one, is sent again after a pause: firmware
-# may lack it, and waiting for it delays the joints.
+# If a query had no reply this often while others had one, it is sent again only after a pause:
+# firmware may lack it, and waiting for it delays the joints.
 UNANSWERED, PAUSE_SECONDS = 2, 60.0
-# What servos report of themselves, found by the unit of the reply.
+# Readings of the servos themselves, found by the unit of the reply.
 _HEALTH = {"degree_celsius", "volt"}
 
 

@@ -53,7 +53,7 @@ def waypoints_of(message: Any, joints: Sequence[Number]) -> list[Waypoint]:
 
 
 class Motion:
-    """Follows the newest trajectory; stops the arm if nobody publishes the topic any longer."""
+    """Follows the newest trajectory; stops the arm if its sender does not publish any longer."""
 
     def __init__(
         self,
@@ -74,16 +74,18 @@ class Motion:
         self._arm, self._reader, self._joints, self._speed = arm, reader, joints, speed
         self._silence, self._diagnostics = Silence(silence), diagnostics
         self._following: asyncio.Task[None] | None = None
+        self._sender = 0
 
     async def run(self) -> None:
         """Take trajectories until it is cancelled."""
         try:
             while True:
-                for message in self._reader.take():
+                for message, sender in self._reader.take():
                     await self._stop("another trajectory came")
+                    self._sender = sender
                     self._silence.alive(time.monotonic())
                     self._following = asyncio.create_task(self._follow(message))
-                if self._reader.has_writers:
+                if self._reader.publishes(self._sender):
                     self._silence.alive(time.monotonic())
                 elif self._silence.left(time.monotonic()) <= 0:
                     await self._stop("its sender is gone")

@@ -45,7 +45,7 @@ class DaskEngine:
             LinkError: the scheduler does not answer, or a task kills each worker that gets it.
         """
         with self._client() as client:
-            # The tasks write files, so that a second call must run them again.
+            # The tasks write files. ``pure=False`` makes Dask run them again in a second call.
             futures = client.map(function, tasks, pure=False)
             numbers = {future.key: number for number, future in enumerate(futures)}
             try:

@@ -11,14 +11,14 @@ from cobotwire.protocol.errors import LinkError
 
 
 class Stored:
-    """The bytes of an input that were there when it was found; bytes added later do not count.
+    """An input with the size that it had when it was found; bytes added later are ignored.
 
     Attributes:
         size: the number of bytes.
     """
 
     def __init__(self, input: Input) -> None:
-        """Open an input, the size of which is known.
+        """Open an input of known size.
 
         Raises:
             UsageError: it cannot be opened, or a package is missing.

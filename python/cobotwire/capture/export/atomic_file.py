@@ -112,8 +112,8 @@ class AtomicFile:
 class WritableFile(io.BufferedIOBase):
     """A file that can only be written; only its owner closes it.
 
-    After :meth:`discard` it ignores what is written: writers of formats write an end when they are
-    closed, also if their file has failed.
+    After :meth:`discard` it ignores writes: a writer of a format writes its end when it is closed,
+    even if its file has failed.
     """
 
     def __init__(self, stored: BinaryIO) -> None:

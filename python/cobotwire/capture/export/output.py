@@ -20,7 +20,7 @@ BLOCK_ROWS = 1 << 20
 BLOCK_BYTES = 64 << 20
 # All waiting rows together: then the largest block is written early.
 WAITING_BYTES = 128 << 20
-# So many files are written at the same time; the one that was not used longest is completed first.
+# The most files that are open at the same time; the least recently used one is completed first.
 OPEN_FILES = 256
 
 
@@ -85,7 +85,7 @@ class Output:
         self._plan, self._format = plan, FORMATS[plan.format]
         self._format.check_installed()
         self.layout = Layout(plan, self._format)
-        # By the path that the layout gives; the target used last is the last one.
+        # The open files by path, the most recently used last.
         self._targets: dict[Path, Target] = {}
         self._completed: list[Target] = []
 

@@ -51,7 +51,7 @@ class ExportPlan:
 
     Attributes:
         output: a folder, or the name of a single file.
-        editions: finds the editions; the edition called ``""`` is that of inputs that name none.
+        editions: finds the editions; ``""`` is the edition of inputs that name none.
         format: the format of the files.
         commands: the commands to write; empty for all.
         direction: the messages to write; also what raw bytes hold.

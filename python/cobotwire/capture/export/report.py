@@ -1,4 +1,4 @@
-"""Count what an export read and wrote, so that nothing is lost unseen."""
+"""Count what an export read, wrote and left out."""
 
 from __future__ import annotations
 

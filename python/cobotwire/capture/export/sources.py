@@ -200,6 +200,6 @@ def _incomplete(capture: CapturedColumns) -> str:
         return f"{capture.error}; everything before that is exported"
     if capture.truncated_at is not None:
         return f"it ends in the middle of a packet, after byte {capture.truncated_at}"
-    # Other programs need not write what tells that a recording is finished.
+    # Other programs need not write the statistics that mark a recording as finished.
     unfinished = capture.application.startswith(OURS) and not capture.finished
     return "the recording was not finished" if unfinished else ""

@@ -17,7 +17,7 @@ from cobotwire.capture.foreign.reader import (
 
 WHAT = "Python literals"
 _NUMBER = "(?:0x[0-9a-f]{1,2}|[0-9]{1,3})"
-# Only escapes that mean one byte: so evaluating a literal cannot fail, and warns of nothing.
+# Only escapes that stand for one byte, so that evaluating a literal causes no error and no warning.
 _ESCAPE = r"\\(?:x[0-9a-f]{2}|[0-3]?[0-7]{1,2}|[\\'\"abfnrtv])"
 _TEXT = rf"b'(?:[ -&(-\[\]-~]|{_ESCAPE})*'|b\"(?:[ !#-\[\]-~]|{_ESCAPE})*\""
 _LIST = rf"[\[(]\s*(?:{_NUMBER}\s*,\s*)*(?:{_NUMBER}\s*)?[\])]"

@@ -31,8 +31,8 @@ _SOCAT_OWN = re.compile(r"[0-9/]{10} [0-9:]{8} socat\[")
 def _socat(file: ForeignFile) -> Iterator[Chunk]:
     """Yield the blocks of ``socat -x``, with or without ``-v``, as versions 1.7 and 1.8 write them.
 
-    If a direction lacks bytes by its ``from``, what follows is a stream of its own, as it is after
-    bytes that come again. A ``from`` of 0 is that of another connection.
+    If ``from`` shows that a direction lacks bytes, or repeats some, the rest is a separate stream.
+    A ``from`` of 0 begins another connection.
 
     Version 1.7.4 prints microseconds in nine digits. Nine digits are taken for microseconds until
     there are too many of them.

@@ -53,8 +53,9 @@ def _payload(data: bytes, at: int) -> bytes:
     return data[at + 2 :] if int.from_bytes(data[at : at + 2]) in (_IPV4, _IPV6) else b""
 
 
-# For each link type: the IP packet in a frame. An IP packet states its version itself, so a
-# loopback's header, which states it in the byte order of the machine, is not needed.
+# For each link type: the IP packet in a frame. The header of a loopback packet states the IP
+# version in the byte order of the machine. It is ignored, since the IP packet states its version
+# too.
 LINKS: dict[int, Callable[[bytes], bytes]] = {
     0: lambda data: data[4:],  # NULL: loopback of BSD and macOS
     108: lambda data: data[4:],  # LOOP: loopback of OpenBSD

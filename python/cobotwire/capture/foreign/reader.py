@@ -29,7 +29,7 @@ class Chunk(NamedTuple):
         data: the bytes.
         direction: their direction, if the format has one.
         time_ns: nanoseconds since 1970 (UTC), or since another start; None if there is no time.
-        stream: what tells several lines apart: a connection, a channel, an id.
+        stream: identifies one of several lines: a connection, a channel, an id.
     """
 
     data: bytes

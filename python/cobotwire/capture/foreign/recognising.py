@@ -17,8 +17,8 @@ from cobotwire.protocol.counted import counted
 from cobotwire.protocol.errors import EmptyInput, UnreadableInput, UsageError
 from cobotwire.protocol.printable import printable
 
-# The number of bytes that decide about text. All of them are read, unless a byte comes that cannot
-# be text: so the result does not depend on how a pipe cuts the input.
+# The number of bytes that decide about text. All of them are read, up to a byte that cannot be
+# text, so that the result does not depend on the chunks that a pipe returns.
 DETECT = 512
 # The number of bytes of a pcapng file, which state the link type, and of a magic number.
 DETECT_BLOCKS, DETECT_MAGIC = 4096, 4
@@ -39,7 +39,7 @@ TEXTS = (*dumps.READERS, *literals.READERS, *logs.READERS, *analysers.READERS)
 READERS = (HEX, *TEXTS, *network.READERS)
 FORMATS = ("raw", *(reader.name for reader in READERS))
 
-# What cannot be read: how it begins, what it looks like, and what to do.
+# Formats that cannot be read: their first bytes, their name, and what to do.
 _SALEAE = "export the table of its 'Async Serial' analyser as CSV"
 UNREADABLE = (
     (
@@ -121,7 +121,7 @@ def recognise(
         name: its name, for messages.
         format: one of ``FORMATS``; None to detect it.
         ports: the TCP ports of arms; empty for the usual ones.
-        missing: gets what the file lacks, also from what yields the blocks.
+        missing: a list to which what the file lacks is appended, also by the source of the blocks.
 
     Raises:
         UsageError: there is no such format.

@@ -22,8 +22,8 @@ def recording_of(reader: Reader, file: ForeignFile) -> Iterator[bytes]:
     """Yield the blocks of a pcapng file; each stream of the chunks is an interface.
 
     If the first chunk has no time, none has, and the application of the recording ends with
-    ``UNTIMED``. If its time is before 2001, times count from some start, which in a measurement
-    with a trigger is not the first: the application ends with ``UNDATED``.
+    ``UNTIMED``. If its time is before 2001, the times count from an unknown start, such as a
+    trigger. Then the name of the application ends with ``UNDATED``.
     """
     chunks = reader.chunks(file)
     first = next(chunks, None)

@@ -11,7 +11,7 @@ from cobotwire.capture.packet import Direction
 from cobotwire.protocol.counted import counted
 from cobotwire.protocol.errors import UnreadableInput
 
-# Segments that wait for one that is missing; with more of them it counts as lost.
+# The most segments that wait for a missing one; if more come, it counts as lost.
 MOST_WAITING = 64
 MOST_CONNECTIONS = 1000
 # Ports without an arm that an error names.
@@ -72,7 +72,7 @@ class _Way:
         self.next = number
 
     def divide(self) -> None:
-        """Make what follows a stream of its own, joined by the other direction if it is divided."""
+        """Begin a new stream; the other direction joins it when it is divided, too."""
         if self._part == self._connection.parts:
             self._connection.parts += 1
         self._part = self._connection.parts
@@ -111,7 +111,7 @@ class Connections:
         if segment.flags & SYN:
             yield from self._opened(way, segment.number + 1 & _MASK)
             return
-        # What the other end acknowledges was not lost on its way, but by the capture.
+        # Bytes that the other end acknowledges were not lost on the network, but by the capture.
         while back.waiting and back.ahead(segment.acknowledged) > _first(back):
             yield from self._skip(back)
         if not segment.payload:
@@ -140,7 +140,7 @@ class Connections:
             raise UnreadableInput(self._file.name, self._nothing())
 
     def _ways(self, segment: Segment) -> tuple[_Way, _Way] | None:
-        """Return the direction of a segment and the other one; None if its ports are others."""
+        """Return the direction of a segment and the opposite direction; None for other ports."""
         _, source, source_port, target, target_port, *_, payload = segment
         if target_port in self._file.ports:
             key = target, target_port, source, source_port
@@ -171,7 +171,7 @@ class Connections:
         )
 
     def _opened(self, way: _Way, number: int) -> Iterator[Chunk]:
-        """Begin a direction at its SYN, which may be repeated or that of another connection."""
+        """Begin a direction at its SYN; the SYN may be repeated, or begin another connection."""
         if way.first is None:
             way.begin(number)
         elif way.first != number:

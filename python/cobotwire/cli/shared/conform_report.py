@@ -42,7 +42,7 @@ def exit_if_not_testable() -> Iterator[None]:
 
 @dataclass(frozen=True, slots=True)
 class ReportOptions:
-    """What the caller wants of the report, and what it states of the run.
+    """The caller's options for the report, and the facts about the run that it states.
 
     ``json``, ``html`` and ``junit`` are names of files; ``-`` is standard output. ``expected`` is
     the text of the file of known failures. ``watch`` observes the host since the verb began.

@@ -117,7 +117,7 @@ def as_object(reader: FrameReader, item: Item) -> dict[str, Any]:
 
 
 def line_texts(table: Table, file: str | None) -> LineTexts:
-    """Return the texts of the lines that the native codec writes, as :func:`as_object` has them.
+    """Return the texts for the native codec's lines, equal to those of :func:`as_object`.
 
     ``file`` is the first value of each line; None: it has none.
     """

@@ -11,7 +11,7 @@ from cobotwire.protocol.errors import did_you_mean
 
 
 class LazyGroup(click.Group):
-    """A group that knows the texts of its verbs, so that each starts without those of the others.
+    """A group of verbs with their summaries, so that ``--help`` and one verb import no other verb.
 
     The verb NAME is the function NAME in the module MODULES + NAME.
     """

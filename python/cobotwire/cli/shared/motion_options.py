@@ -15,7 +15,7 @@ Verb = Callable[..., Any]
 
 
 class MotionOptions(NamedTuple):
-    """Whether others may send more than queries, and what ends or limits that."""
+    """The options that permit, limit and end motions that others send."""
 
     allowed: bool
     limits: Limits

@@ -39,7 +39,7 @@ def started_client(command: str | None, port: str) -> Iterator[Callable[[], str 
         message = f"--command needs a program, and {PORT_WORD} where it takes the port to open"
         raise UsageError("command", command, message=message)
     with tempfile.TemporaryFile() as diagnostics:
-        # Its output would mix with ours, of which the first line is the port.
+        # Its output would mix with ours, whose first line is the port.
         process = programs.start(
             words, words[0], subprocess.DEVNULL, subprocess.DEVNULL, diagnostics
         )

@@ -48,7 +48,7 @@ NO_REPLY = "no reply: "
 
 
 class Lacking:
-    """What a simulated arm states that it does not support, as coordinates of an unknown geometry.
+    """What a simulated arm declares as unsupported, such as coordinates of an unknown geometry.
 
     ``reasons`` holds the commands with what the arm states.
     """

@@ -55,11 +55,11 @@ def _why_no_message(validator: Validator, data: bytes, of: Command | None) -> No
 
 def _rejection(validator: Validator, reason: NoiseReason, data: bytes) -> ProtocolError:
     frame, index = validator.frame, validator.indexes[0]
-    at = _refuted_at(frame, reason, data)
+    at = _rejected_at(frame, reason, data)
     return reject_frame(index.table, index.direction, reason, at, data)
 
 
-def _refuted_at(frame: FrameFormat, reason: FrameFault, data: bytes) -> int:
+def _rejected_at(frame: FrameFormat, reason: FrameFault, data: bytes) -> int:
     """Return the offset of the byte that rejects a frame at the start of ``data``."""
     if reason == "no-header":
         return next(i for i, byte in enumerate(frame.header) if data[i] != byte)

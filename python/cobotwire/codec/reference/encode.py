@@ -23,8 +23,8 @@ from cobotwire.protocol.table import Case, Command, Direction, Field, FrameForma
 
 # Types that are iterable but never meant as a row of numbers.
 NOT_SEQUENCES = (str, bytes, bytearray, dict, set, frozenset)
-# What has an index or a float value. The first two are quick to compare; the others, of objects of
-# other libraries such as NumPy, are not.
+# What has an index or a float value. The first two are quick to compare. Types of other libraries,
+# such as NumPy, are not.
 NUMBERS = (float, int, SupportsFloat, SupportsIndex)
 
 

@@ -85,7 +85,7 @@ class ReferenceFramer:
             elif verdict == "truncated" and not at_end:
                 break
             else:
-                end = start + self._refuted_size(data, start, verdict)
+                end = start + self._rejected_size(data, start, verdict)
                 if verdict == "no-header":
                     # Up to the next byte that may begin a header, nothing else is possible.
                     found = data.find(self._validator.frame.header[:1], end)
@@ -96,7 +96,7 @@ class ReferenceFramer:
         self._state = _State(data[start:], before.offset + start, counters, in_noise)
         return events
 
-    def _refuted_size(self, data: bytes, start: int, reason: NoiseReason) -> int:
+    def _rejected_size(self, data: bytes, start: int, reason: NoiseReason) -> int:
         """Return the number of bytes to skip for a rejected candidate: 1, whatever LEN it has."""
         return 1
 

@@ -65,12 +65,12 @@ class Validator:
         if not frame.header.startswith(rest[: len(frame.header)]):
             return "no-header"
         for part in frame.layout:
-            reason = self._refute_part(part, rest)
+            reason = self._reject_part(part, rest)
             if reason is not None:
                 return reason
         return self.heading_of(rest) if len(rest) >= frame.head_size else "truncated"
 
-    def _refute_part(self, part: FixedPart, rest: bytes) -> NoiseReason | None:
+    def _reject_part(self, part: FixedPart, rest: bytes) -> NoiseReason | None:
         """Return why a part, by itself, is in no frame; None if it is, or if it has not come."""
         frame, size = self.frame, len(rest)
         if part == "address":

@@ -1,7 +1,7 @@
 """The versions of the catalogue of test cases.
 
 A report names test cases also by the number of a clause. The number of a test case never changes,
-and that of a removed one is not given again: new test cases are added at the end of ``CLAUSES``.
+and is never used for another one: new test cases are added at the end of ``CLAUSES``.
 
 A test case that is added, removed, reworded or sends something else needs a new version:
 ``cobotwire-gen --check`` fails until the last entry has the digest of the catalogue. The message

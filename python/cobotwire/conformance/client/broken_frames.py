@@ -1,6 +1,6 @@
 """Put the pieces of a broken frame together, and describe it: command, LEN, bytes.
 
-A framer refutes a broken frame byte by byte, so its bytes arrive as several pieces of noise.
+A framer rejects a broken frame byte by byte, so its bytes arrive as several pieces of noise.
 """
 
 from __future__ import annotations

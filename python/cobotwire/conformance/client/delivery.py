@@ -27,19 +27,19 @@ from cobotwire.simulator.faults.kinds.messages import events_of
 # Longer than most clients wait, but shorter than the longest delay in the field notes.
 LATE_SECONDS = 0.6
 PAUSE_SECONDS = 0.05
-# A merged reply waits for the next one, however long that takes.
+# A merged reply is sent with the next one.
 A_DAY = 86400.0
 
-# A client that takes another message for its reply sends the next request before this time is over,
-# and the reply still comes in the time that a client must wait.
+# A client that takes another message for its reply sends the next request earlier. The reply still
+# comes within the time that a client must wait.
 SOON_SECONDS = 0.02
 
 
 def _late(every: int, first: int) -> tuple[Fault, ...]:
-    """Return faults that delay a reply; until the next one, ``every`` or one more come, in turns.
+    """Return faults that delay replies; between two are ``every`` other replies, or one more.
 
-    A client that sends its queries in the same order again and again would otherwise always have
-    the same one late, and wait for that one when the late reply comes.
+    A client may send its queries in a fixed order. With a fixed distance, the same query would
+    always be late, and the client would wait for that query when its late reply comes.
     """
     if every == 1:
         return (Late(every=1, first=first, seconds=LATE_SECONDS),)

@@ -23,7 +23,7 @@ class Received:
     """Something that the client sent; times are seconds since the run began.
 
     ``reply`` holds the bytes that an arm replies, without any fault. ``replied_at`` is when the
-    last of them went out; None: they have not gone out yet, or were lost.
+    last of them was sent; None: not yet, or they were lost.
     """
 
     at: float

@@ -105,7 +105,7 @@ class Referee:
         """Check what is left after the client has disconnected, and close the report."""
         self._arrival = self._now()
         self._arm.flush()
-        self._judge_noise()
+        self._check_noise()
         if self._script is not None:
             for observation in self._script.end():
                 self._observe(observation)
@@ -132,17 +132,17 @@ class Referee:
         if now.noise is not None:
             self._pieces.append(now)
         else:
-            self._judge_noise()
-            self._judge(now)
+            self._check_noise()
+            self._check(now)
         self._due += self._delivery.plan(now)
 
-    def _judge_noise(self) -> None:
+    def _check_noise(self) -> None:
         """Check the noise so far, as whole broken frames."""
         pieces, self._pieces = self._pieces, []
         for whole in joined(pieces):
-            self._judge(whole)
+            self._check(whole)
 
-    def _judge(self, now: Received) -> None:
+    def _check(self, now: Received) -> None:
         self._history.powered, self._history.released = self._power_of(now)
         for group in WITHOUT_SCRIPT:
             for observation in group.body(self._history, now):

@@ -10,10 +10,10 @@ from cobotwire.conformance.client.script import SCRIPT
 from cobotwire.conformance.suite import Group, Suite
 from cobotwire.conformance.tally import Observation
 
-# Judges something that was received by what was received before.
+# Checks a received message against those that were received before it.
 Check = Callable[[History, Received], Iterator[Observation]]
 
-# What needs no script: these bodies check everything that is received.
+# Groups that need no script: their bodies check everything that is received.
 WITHOUT_SCRIPT: tuple[Group[Check], ...] = (
     frames.FRAMES,
     frames.INTERLEAVED_WRITES,

@@ -42,7 +42,7 @@ class NotSupported(Exception):
 
 
 class Restores(dict[str, Callable[[], object]]):
-    """What restores the changes of a body, or of the run, by the name of what was changed."""
+    """The functions that undo changes of a body, or of the run, by the name of what was changed."""
 
     def run(self) -> None:
         """Restore everything, the last change first.
@@ -59,12 +59,12 @@ class Restores(dict[str, Callable[[], object]]):
 
 @dataclass(slots=True)
 class Noticed:
-    """What a run has noticed of its device, which alone writes it.
+    """What a run has observed of its device; only :class:`Device` writes it.
 
     Attributes:
         reply_seconds: the times of the valid replies, by command.
         retried: the commands that were replied to only when they were sent again.
-        acknowledged: what came after each command that may be acknowledged, when it was sent first.
+        acknowledged: the response to the first request of each command that may be acknowledged.
         changes: how often each of these was sent and checked.
         poses: the indices of the poses from which the arm has made a short motion, latest first.
     """

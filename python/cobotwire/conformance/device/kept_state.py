@@ -142,7 +142,7 @@ class KeptState:
                 yield _Kept(query, value, mark)
 
     def _mark(self, spot: Spot) -> Request[Any] | None:
-        """Give a value that the run may set another one; return the request that did it."""
+        """Change a value that the run may set; return the request that changed it."""
         command = spot.setting.command
         if command.safety != "setting" or "setting" not in self._device.permissions.classes:
             return None
@@ -181,7 +181,7 @@ class KeptState:
         return None
 
     def _set_again(self, spot: _Kept) -> bool:
-        """Give a value back what the run has set; return whether it has it."""
+        """Set a value again as the run has set it; return whether the device reports that value."""
         if spot.set is not None:
             self._device.request(spot.set)
         now = self._device.read(spot.query)
@@ -196,7 +196,8 @@ class KeptState:
 def _queries(table: Table) -> list[list[tuple[Setting | None, Request[Any]]]]:
     """Return what to read: the first joint, pin or register of each query, then the second ones.
 
-    What a motion changes is left out, and the error register: a malformed request may set it.
+    State that a motion changes is left out. So is the error register, which a malformed request may
+    set.
     """
     found: dict[Request[Any], Setting | None] = {}
     rows: dict[str, list[tuple[Setting | None, Request[Any]]]] = {}

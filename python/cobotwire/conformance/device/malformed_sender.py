@@ -68,7 +68,7 @@ class MalformedSender:
         return good.valid.message if good.only_valid and good.valid else None
 
     def _send_and_wait(self, case: TestCase, what: str, data: bytes) -> bool:
-        """Send it alone, then the good request; return whether both pass."""
+        """Send it without a query after it, then the good request; return whether both pass."""
         response = self._send_alone(what, data)
         silent = not response.replies and not response.unexpected
         self._probe.expect(case, silent, f"{what}: expected no reply; came {response.summary}")
@@ -103,7 +103,7 @@ class MalformedSender:
         """Compare one value of the state with what it was.
 
         ``again`` sends the malformed request again; ``reply`` is that to the query of the value, if
-        it has been sent. One loss in a body is enough: the others would only end it early.
+        it has been sent. One lost reply in a body is enough: more would only end the body early.
         """
         sent = Malformed(f"{what}, {self._request.command.name}", data, again)
         changed = self._kept.check(sent, reply)

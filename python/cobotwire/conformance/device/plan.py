@@ -45,7 +45,7 @@ class Plan:
 
         Args:
             earlier: the report of a run on a device.
-            resume: whether its results count; only what it did not run is run.
+            resume: whether to keep its results, and to run only what it did not run.
 
         Raises:
             UsageError: the report does not say in which steps its results were found.

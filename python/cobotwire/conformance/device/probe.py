@@ -26,7 +26,7 @@ PATIENCE = 3
 class Run:
     """What the bodies of a run share: the device, and the state before the first malformed request.
 
-    ``kept`` is written by what sends malformed requests; None: nothing is compared.
+    ``kept`` is set by the groups that send malformed requests; None: no state is compared.
     """
 
     device: Device
@@ -83,7 +83,7 @@ class Probe:
         self._tally.note(case, self._name, text)
 
     def not_timed(self, case: TestCase, reason: str) -> None:
-        """Give no verdict on a test case, unless it has failed: the right moment was missed."""
+        """Give no verdict on a test case, unless it has failed: the state was over too early."""
         if (case, self._name) in self._tally:
             self._tally.excuse(case, self._name, Cause.NOT_TIMED, reason)
 
@@ -111,7 +111,7 @@ RowBody = Callable[[Probe, Row], None]
 def for_rows(
     find: Callable[[Table, Command], Row | None], body: RowBody[Row]
 ) -> tuple[Body, Selects]:
-    """Return a body, and what selects its commands: those for which ``find`` has a row."""
+    """Return a body, and the selector of its commands: those for which ``find`` returns a row."""
 
     def run(probe: Probe) -> None:
         row = find(probe.device.table, probe.command)

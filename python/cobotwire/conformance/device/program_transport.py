@@ -11,7 +11,7 @@ from cobotwire.protocol.errors import LinkError
 from cobotwire.transport import Transport
 from cobotwire.transport.descriptor import DescriptorTransport
 
-# Bits per second that a program takes at least.
+# The slowest rate at which a program reads, in bits per second.
 SLOWEST = 9600
 # How often a read checks whether the program still runs, in seconds.
 CHECKS = 0.05

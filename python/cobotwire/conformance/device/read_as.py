@@ -19,7 +19,7 @@ def sent_last(table: Table, sent: Sequence[Exchange]) -> str:
 def unknown_ids(table: Table, data: bytes) -> str:
     """Return which unknown ids the bytes hold, in words; empty if there is none.
 
-    A request that breaks off makes a new one with the bytes that follow it.
+    A device may read an incomplete request, together with the bytes after it, as another request.
     """
     found = list(dict.fromkeys(_unknown(table, data)))
     if not found:

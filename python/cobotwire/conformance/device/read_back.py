@@ -1,4 +1,4 @@
-"""A setting and the query that reads it back: what is sent, and what must be reported."""
+"""A setting and the query that reads it back: the request to send, and the reply to expect."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from cobotwire.conformance.device.requests import (
     limits_of,
     requests,
 )
-from cobotwire.conformance.device.selection import judged, reporter, reporters
+from cobotwire.conformance.device.selection import reporter, reporters, stated_effect
 from cobotwire.conformance.mistakes import Pair, likely_mistake
 from cobotwire.conformance.places import numbers_of
 from cobotwire.conformance.samples.physical import setting_values, takes_whole
@@ -52,7 +52,7 @@ class Setting:
         given = {field.name: field for field in self.variant.fields}
         fields = self.query_variant.fields
         fields = tuple(f if f.const is not None else given[f.name] for f in fields)
-        # Of an argument that selects what is stored, only its part.
+        # If an argument selects the part to store, only that part.
         part = {name: (raw,) for name, raw in self.part}
         return requests(self.query, Variant(fields), limits={**self._limits, **part})
 
@@ -153,7 +153,7 @@ class Setting:
 
 @dataclass(frozen=True, slots=True)
 class Spot:
-    """What a query read, and the request that sets that again.
+    """The value that a query read, and the request that sets it again.
 
     ``obstacle`` says why that request cannot be sent; empty: it can.
     """
@@ -170,8 +170,8 @@ class Spot:
 
     @property
     def index(self) -> tuple[Any, ...]:
-        """What tells it from its neighbours: others with it set the same in another encoding."""
-        effect = judged(self.setting.command)
+        """The key of a setting: settings with equal keys differ only in their encoding."""
+        effect = stated_effect(self.setting.command)
         at = effect.at if isinstance(effect, Stores) else ()
         return tuple(self.old.fields[name] for name in at) or (self.query, self.setting.part)
 
@@ -235,7 +235,7 @@ def _parts(table: Table, command: Command) -> Iterator[Setting]:
 
     An argument names one number of a row, or is the selector of what is stored.
     """
-    effect, variant = judged(command), command.request[0]
+    effect, variant = stated_effect(command), command.request[0]
     if isinstance(effect, Cases):
         for raw, case in effect.cases.items():
             if not isinstance(case, Stores):

@@ -67,7 +67,7 @@ class Requester:
         self._unacknowledged: list[Response] = []
         # What the device has sent without a request, each with when it was received.
         self.events: list[tuple[float, EventReceived]] = []
-        # How long the slowest acknowledgement took, but of no motion; None: there was none.
+        # How long the slowest acknowledgement took, motions excepted; None: there was none.
         self._slowest: float | None = None
         # The commands that were not acknowledged in time.
         self._silent: set[str] = set()
@@ -196,7 +196,7 @@ class Requester:
     def _await_reply(self, response: Response, seconds: float) -> None:
         """Listen until a reply has come or ``seconds`` are over.
 
-        What comes is read even if the host itself was late, so it is never counted as late.
+        If this process is delayed, a reply that waits to be read still counts as in time.
         """
         end, left = response.sent_at + seconds, seconds
         while not response.replies and left > 0:
@@ -273,7 +273,7 @@ class Requester:
     def _can_come_from(self, address: int | None, request: EncodedRequest) -> bool:
         """Return whether a reply of an address can belong to a request.
 
-        To a request to several devices any of them may reply, if it has the joints.
+        If a request is for several devices, any of them that has the joints may reply.
         """
         device = self._devices.get(address)
         lacks = lacks_joints(self._codec.table, device, request.command)

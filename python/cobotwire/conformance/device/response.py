@@ -73,7 +73,7 @@ class Response:
 
     @property
     def damaged(self) -> list[DamagedFrame]:
-        """What begins like a frame with the request's id and is not a legal frame."""
+        """Findings that begin like a frame with the request's id, but are not a legal frame."""
         return [
             finding
             for finding in self.findings

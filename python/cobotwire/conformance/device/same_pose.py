@@ -49,8 +49,8 @@ def is_same_pose(table: Table, one: Sequence[float], other: Sequence[float]) -> 
 def _rounding(table: Table, geometry: Geometry, angles: Sequence[float]) -> tuple[float, float]:
     """Return how far rounding may move and turn the end, in millimetres and degrees.
 
-    Coordinates are rounded when they are reported, and again when they are calculated with; so are
-    the angles of each joint, which move the end by the length of its lever.
+    Coordinates are rounded when they are reported, and again in calculations. So are the angles of
+    the joints; each moves the end in proportion to its distance from the joint.
     """
     rounded = steps(table)
     widths = [2 / step if step else 0.0 for step in rounded.coords]

@@ -26,20 +26,21 @@ def has_role(*roles: Role) -> Selects:
     return lambda table, command: command.role in roles
 
 
-def judged(command: Command) -> Effect | None:
-    """Return the effect of a command; None if no source states it: no device is judged by it."""
+def stated_effect(command: Command) -> Effect | None:
+    """Return the effect of a command; None if no source states it, so that it is not tested."""
     effect = effect_of(command)
     return None if effect is None or effect.assumed else effect
 
 
 def does(kind: type[Kind], **wanted: object) -> Callable[[Table, Command], Kind | None]:
-    """Return what finds the effect of a command, if it is of a kind.
+    """Return a function that returns the effect of a command if it is of a kind; otherwise None.
 
-    ``wanted`` are attributes of the effect: with True or False, whether they are given at all.
+    ``wanted`` are values that attributes of the effect must have; True or False: whether the
+    attribute must have a value.
     """
 
     def found(table: Table, command: Command) -> Kind | None:
-        effect = judged(command)
+        effect = stated_effect(command)
         if not isinstance(effect, kind):
             return None
         given = {name: getattr(effect, name) for name in wanted}
@@ -51,20 +52,20 @@ def does(kind: type[Kind], **wanted: object) -> Callable[[Table, Command], Kind 
 
 def stored(command: Command) -> tuple[str, ...]:
     """Return the names of what a command stores."""
-    effect = judged(command)
+    effect = stated_effect(command)
     return tuple(effect.values.values()) if isinstance(effect, Stores) else ()
 
 
 def reported(command: Command) -> tuple[str, ...]:
     """Return the names of what a query reports."""
-    effect = judged(command)
+    effect = stated_effect(command)
     return tuple(effect.values.values()) if isinstance(effect, Reports) else ()
 
 
 def reporters(table: Table, state: str, *, assumed: bool = False) -> Iterator[Reporter]:
-    """Yield the queries that report a state; with ``assumed`` also those of which none says so."""
+    """Yield the queries that report a state; ``assumed``: also if no source says so."""
     for command in table.commands:
-        effect = effect_of(command) if assumed else judged(command)
+        effect = effect_of(command) if assumed else stated_effect(command)
         if isinstance(effect, Reports) and not command.event:
             for field, name in effect.values.items():
                 if name == state:

@@ -134,7 +134,7 @@ class StartedDevice:
             inner.close()
             raise
         if not named:
-            # Only the program keeps its end open: once it has ended, reads report that.
+            # Only the program has its end open, so that reads report when it has ended.
             os.close(self._ends.pop())
         return process, inner
 

@@ -30,8 +30,8 @@ from cobotwire.protocol.table import Command, Table
 
 # From this angle on, a joint shows a wrong scale, order or direction; in degrees.
 AWAY = 5.0
-# What reasons say if nothing came, or nothing but the noise of a healthy line. The evidence may go
-# on with a query that was replied to.
+# The words of a reason if nothing was received, or only the noise of a healthy line. The evidence
+# may go on with a query that was replied to.
 SILENCE = ("came nothing", "came no valid reply", "came noise ")
 
 Progress = Callable[[Step, int, int], None]
@@ -72,7 +72,8 @@ class Tester:
             address: the device's address, by number or name; left out: the edition's first one.
             statement: what the maker declares of the device; it selects test cases, and is tested.
             lacking: what the device itself states that it does not support: by command, the
-                reason. It may grow during the run. Silence of such a command is no failure.
+                reason. It may grow during the run. It is not a failure if such a command has no
+                reply.
 
         Raises:
             UsageError: the edition has no such address, or a request to it has no reply.
@@ -121,14 +122,17 @@ class Tester:
                     yield Step(group, command)
 
     def _own(self, command: Command) -> Command | None:
-        """Return a command that refers to none that the device lacks; None if it lacks this one."""
+        """Return a command without references to commands that the device lacks.
+
+        None if it lacks this one.
+        """
         return next((c for c in self.device.table.commands if c.name == command.name), None)
 
     def run(self, progress: Progress | None = None, plan: Plan | None = None) -> Report:
         """Run everything that is permitted; restore all changes, however the run ends.
 
-        What is not run, because the run ends before, is reported as such. ``plan`` takes the order,
-        and perhaps results, from an earlier report; left out: everything is run.
+        Test cases that are not run because the run ends early are reported as not run. ``plan``
+        takes the order, and perhaps results, from an earlier report; left out: everything is run.
 
         Raises:
             LinkError: the connection is lost; the report holds what was found until then.
@@ -170,7 +174,7 @@ class Tester:
                 self.report.results += self.results_without_run(step)
 
     def end(self) -> None:
-        """Restore what is still changed; then what was changed for the whole run: power and pose.
+        """Restore changes that are left, then those made for the whole run: power and pose.
 
         An interrupt also stops an arm that is on its way back.
         """
@@ -242,7 +246,7 @@ class Tester:
         finally:
             self.device.restore_after_body.run()
         found = [self._excused(result) for result in probe.results(unsupported)]
-        # What passed until the device fell silent may not have been observed to its end.
+        # A test case that had passed when the device fell silent may be incomplete.
         return [self._cut_short(result) for result in found] if self._ended else found
 
     def _excused(self, result: Result) -> Result:

@@ -56,7 +56,7 @@ def from_json(text: str) -> Report:
 
 
 def document_of(text: str) -> dict[str, Any]:
-    """Return the JSON object of a report, of which only format and version are checked.
+    """Return the JSON object of a report; only its format and version are checked.
 
     Raises:
         UsageError: the text is not JSON, or is of another format or version.

@@ -94,7 +94,7 @@ def matrix_of(report: Report) -> Iterator[Element]:
 
 
 def _row(cells: list[Result | None]) -> Iterator[Element]:
-    """Yield the cells of a row; empty ones next to each other are one cell, which is shorter."""
+    """Yield the cells of a row. Adjacent empty cells are merged, to shorten the page."""
     for empty, group in groupby(cells, key=lambda cell: cell is None):
         found = list(group)
         if empty:

@@ -192,8 +192,8 @@ def _few_rows(field: Field, numbers: tuple[Number, ...], known: Known) -> list[t
 def _varied(variant: Variant, picked: Mapping[int, int]) -> Iterator[Place]:
     """Yield the numbers that take corner values.
 
-    Of bytes, texts and groups these are the first and the last element, and of a size that varies
-    the least and the most elements: the others are read in the same way.
+    For bytes, texts and groups these are the first and the last element; for a varying size, the
+    smallest and the largest size. The others are read in the same way.
     """
     for place in places(variant, picked):
         field, [size, *_] = place.field, place.field.dimensions or (1,)

@@ -97,7 +97,7 @@ def _places(command: Command) -> Iterator[tuple[str, str, str]]:
     yield from ((command.name, "command", aspect) for aspect in of_command)
     yield from ((command.name, "reply", aspect) for aspect in of_reply)
     for part, variants in (("request", command.request), ("reply", command.reply)):
-        # The first variant in which a field is decides, as in the generator.
+        # A field counts as in the first variant that has it. The generator does the same.
         longest = sorted(variants, key=lambda variant: -len(variant.fields))
         fields = {field.name: field for variant in reversed(longest) for field in variant.fields}
         for field in fields.values():

@@ -53,9 +53,9 @@ def content_of(survey: Survey, package: str, robot: str, *, simulated: bool) -> 
 def continued(
     earlier: tuple[Mapping[str, Any], bytes], content: dict[str, Any], recording: bytes
 ) -> tuple[dict[str, Any], bytes]:
-    """Return the content and the recording of a survey that goes on with an earlier one.
+    """Return the content and the recording of a survey that continues an earlier one.
 
-    A recording may have several sections, so one follows the other.
+    The recordings are concatenated: a pcapng file may have several sections.
     """
     old, recorded = earlier
     decided = {f["fact"]: f for f in old["facts"] if f["verdict"] != "not seen"}

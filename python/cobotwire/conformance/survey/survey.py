@@ -25,7 +25,7 @@ from cobotwire.conformance.device.requests import as_row, request_of
 from cobotwire.conformance.report import Cause, Result
 from cobotwire.conformance.suite import Group
 from cobotwire.conformance.survey.facts import Facts, Frames
-from cobotwire.conformance.survey.judging import Judge
+from cobotwire.conformance.survey.interpreting import Interpreter
 from cobotwire.inspect.cross_checks import CrossChecks, Mistake
 from cobotwire.inspect.identification import other_edition
 from cobotwire.inspect.readings import Key, Row, Source, sources, target_of
@@ -39,15 +39,15 @@ SETTINGS = (settings.SETTINGS, settings.SHOWN_AMONG, references.REFERENCES)
 MOTIONS = (motion.POSES, motion.JOINTS, on_the_way.STOPPING)
 # The time that an arm has for a query by which its edition is recognised, in seconds.
 EDITION_SECONDS = 0.5
-# How far from its present pose the arm moves, the first step, and from where on that one is
-# stopped, in degrees; and the speed in percent.
+# The distance of a motion from the present pose, its first step, and the distance at which that
+# step is stopped, in degrees; and the speed in percent.
 AROUND, FIRST, TOO_FAR = 5.0, 1.0, 3.0
 SPEED = 10
 # How long a survey lasts at most, in seconds.
 LONGEST = 600.0
-# What a query reports that is nobody else's business: it is not requested.
+# Private readings, such as passwords: they are not requested.
 PRIVATE = frozenset({"ssid", "password"})
-# What names a single device: its bytes are replaced by their hash.
+# Readings that identify a single device: their bytes are replaced by a hash.
 SERIAL = frozenset({"serial", "serial_number", "mac", "uid", "uuid"})
 
 Progress = Callable[[str, int, int], None]
@@ -76,8 +76,8 @@ class Survey:
             package: the name by which ``editions.load`` finds the edition.
             settings: whether settings are stored and restored.
             motion: whether the arm makes a few small motions.
-            earlier: the content of the file of an interrupted survey: what it decided is not
-                found out again.
+            earlier: the content of the file of an interrupted survey; facts that it decided are not
+                tested again.
             sources: where the spec defines each command, by name.
             on_private: called with True before replies come that name a device, False after them.
         """
@@ -96,7 +96,7 @@ class Survey:
         self._settings, self._on_private = settings, on_private
         allowed = Permissions(frozenset({"setting"} if settings else ()))
         self._tester = Tester(connection, table, permissions=allowed, sources=sources)
-        self._judge = Judge(table, self._tester.device, self.facts)
+        self._interpreter = Interpreter(table, self._tester.device, self.facts)
         self._snapshots: list[dict[Key, Row]] = []
         self._evidence: dict[Key, list[Frames]] = {}
         self._results: list[Result] = []
@@ -113,12 +113,12 @@ class Survey:
 
     @property
     def level(self) -> int:
-        """The level: 1 queries, 2 settings, too, 3 motion, too."""
+        """The level: 1 sends queries, 2 also settings, 3 also motion."""
         return 3 if self._motion else 2 if self._settings else 1
 
     @property
     def contradicted(self) -> list[str]:
-        """What is contradicted, each reason once, after the names of the facts."""
+        """The contradicted facts: each reason once, after the names of its facts."""
         names: dict[str, list[str]] = {}
         for fact in self.facts.with_verdict("contradicted"):
             names.setdefault(fact.why, []).append(fact.fact.partition("/")[2])
@@ -126,8 +126,8 @@ class Survey:
 
     @property
     def questions(self) -> list[str]:
-        """What is neither right nor wrong about a fact, but the owner can explain."""
-        return self._judge.questions
+        """Observations that decide no fact, but that the owner may be able to explain."""
+        return self._interpreter.questions
 
     def run(self, progress: Progress = lambda name, done, count: None) -> None:
         """Run the whole survey; what was changed is restored, however it ends.
@@ -305,11 +305,13 @@ class Survey:
         self._read_firmware()
         version = self.table.find_role("version")
         firmware = self.firmware.get(version.name, "") if version else ""
-        self.mistakes = self._judge.judge_readings(self._checks, self._snapshots, self._evidence)
+        self.mistakes = self._interpreter.add_readings(
+            self._checks, self._snapshots, self._evidence
+        )
         place_known = not any(_is_place(self.table, mistake) for mistake in self.mistakes)
-        self._judge.judge_results(self._results, place_known=place_known)
-        self._judge.judge_silence(f" {firmware}" if firmware else "")
-        self._judge.judge_acknowledgements()
+        self._interpreter.add_results(self._results, place_known=place_known)
+        self._interpreter.add_silence(f" {firmware}" if firmware else "")
+        self._interpreter.add_acknowledgements()
 
     def _read_firmware(self) -> None:
         rows = dict(entry for snapshot in self._snapshots for entry in snapshot.items())

@@ -156,7 +156,7 @@ class ServoBusReader:
         return self._names.get(code, f"0x{code:02X}")
 
     def unknown(self, code: int) -> Instruction:
-        """Return an instruction of which only the name is known."""
+        """Return an instruction that is known only by its name."""
         return Instruction(self.name(code))
 
     def _status(self, servo: int, code: int) -> Status | None:

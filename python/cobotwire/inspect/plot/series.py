@@ -50,7 +50,7 @@ class Track:
 
 @dataclass
 class Series:
-    """What a recording or a stream of bytes holds, along an axis.
+    """The contents of a recording or a stream of bytes, along an axis of time or offsets.
 
     Attributes:
         axis: ``seconds`` since the first packet, or ``bytes`` for a stream without times.

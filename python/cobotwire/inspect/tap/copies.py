@@ -19,7 +19,8 @@ KINDS: tuple[Kind, ...] = ("sent", "received", "held", "note", "dropped")
 HEAD = Struct("<BdH")
 # The system takes a write of up to this size as a whole, or not at all.
 PIECE = getattr(select, "PIPE_BUF", 512) - HEAD.size
-# Where the system permits it: more than half a minute of a full line at 115,200 baud both ways.
+# The size of the pipe, if the system permits it: more than 30 s of continuous traffic at 115,200
+# baud in both directions.
 PIPE_SIZE = 1 << 20
 
 
@@ -27,7 +28,7 @@ class Copy(NamedTuple):
     """What the forwarder did.
 
     ``sent`` was written to the arm and ``received`` read from it; ``held`` was not forwarded;
-    ``note`` is a text; ``dropped`` is the number of bytes of which there is no copy.
+    ``note`` is a text; ``dropped`` is the number of bytes that were not copied.
     """
 
     kind: Kind

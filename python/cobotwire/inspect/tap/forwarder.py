@@ -16,8 +16,8 @@ from cobotwire.protocol.errors import LinkError, UsageError
 from cobotwire.simulator.peer import IDLE_SECONDS
 from cobotwire.transport.interface import OpenedTransport
 
-# Bytes that wait in each direction. Beyond that nothing more is read, as with a serial port that
-# takes no more: a program that writes too fast waits, replies that nobody reads stay in the system.
+# Bytes that wait in each direction. If more bytes wait, nothing is read, as with a full serial
+# port: a program that writes too fast waits, and replies that nobody reads stay in the system.
 MOST_WAITING = 4096
 
 

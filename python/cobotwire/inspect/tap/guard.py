@@ -19,7 +19,7 @@ class Decision(NamedTuple):
 class Guard:
     """Passes whole requests that only read, or that stop the arm; holds back all other bytes.
 
-    A request of an id that several commands share passes if each command that it can be is one of
+    If several commands share an id, a request passes only if every command that it can be is one of
     these. Bytes that are no request of the edition are held back, because the arm may make
     something else of them.
     """

@@ -77,7 +77,7 @@ class Method:
         self._lacks = [(name, places[name]) for name in self.lacks]
         self._ranges = [(name, places[name], low, high) for name, low, high in self.ranges]
         passed = [theirs for _, theirs, *_ in self.arguments if theirs]
-        # What our method is given: the argument at a place, or a number, which follows these.
+        # The arguments of our method, as indexes: numbers follow the arguments that are given.
         self._numbers = tuple(int(each) for each in passed if each not in places)
         after = iter(range(len(places), len(places) + len(self._numbers)))
         self._passes = [places[each] if each in places else next(after) for each in passed]

@@ -91,7 +91,7 @@ class CompatibleClient:
     ) -> Any:
         """Send an order once; unless ``quiet``, wait for its acknowledgement, and return 1.
 
-        ``gives`` says in which form it is returned.
+        ``gives`` converts the 1 to the result of the library's method.
         """
         if self.ORDERS != "acknowledged":
             call(*arguments)

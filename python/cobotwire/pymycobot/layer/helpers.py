@@ -17,7 +17,7 @@ HOME_SPEED = 10
 class Waiting(CompatibleClient):
     """Waits for a time, or for the end of a motion."""
 
-    # What is returned of a motion that did not end in time, if errors are returned.
+    # The result of a motion that did not end in time, if errors are returned.
     LATE: ClassVar[int] = DONE
 
     def wait(self, t: float) -> Self:

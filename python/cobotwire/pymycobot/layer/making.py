@@ -1,7 +1,7 @@
 """Makes the classes with the maker's names from what the generator states about them.
 
-A method is a function of Python's own kind with the library's parameters: it rejects wrong
-arguments with Python's messages, and ``inspect`` and ``help`` show what it takes.
+A method is a plain Python function with the library's parameters. So Python itself rejects wrong
+arguments, and ``inspect`` and ``help`` show the parameters.
 """
 
 from __future__ import annotations
@@ -97,7 +97,7 @@ def _function(
     ``named`` are parameters that are given by name only; ``returns`` annotates the result.
     """
     every = parameters + named
-    # Python has no other way to give a function parameters by their names, but to compile text.
+    # The only other way to make a function with given parameter names is to compile text.
     code = _CODES[len(every)].replace(
         co_name=name,
         co_varnames=("self", *(each for each, *_ in every)),

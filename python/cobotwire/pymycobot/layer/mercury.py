@@ -1,4 +1,4 @@
-"""What the classes of the Mercury have beyond those of other robots."""
+"""Methods of the Mercury classes that classes of other robots lack."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ BASE_COORDS = 2
 
 
 class ByPort(Reporting):
-    """An arm on a body, if its port has the name of one; else an arm that stands alone.
+    """An arm of a two-armed robot if the port has the name of one; otherwise a single arm.
 
     Only an arm on a body has coordinates from the waist, and the joints 11 to 13.
     """
@@ -44,7 +44,7 @@ class ByPort(Reporting):
         """Return a method that only the client of an arm on a body has.
 
         Raises:
-            UsageError: the arm stands alone.
+            UsageError: the robot has only one arm.
         """
         if isinstance(self.arm, self.NATIVE):
             return getattr(self.arm, name)

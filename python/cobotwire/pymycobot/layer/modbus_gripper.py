@@ -11,7 +11,7 @@ from cobotwire.pymycobot.layer.ranges import check_range
 READ, WRITE = 3, 6
 # The number of a new gripper on the bus.
 GRIPPER = 14
-# What a frame of the gripper's own kind begins with: the head, and its length.
+# The first bytes of a frame in the gripper's own format: the head, and its length.
 OWN_HEAD = bytes([0xFE, 0xFE, 8])
 
 

@@ -1,4 +1,4 @@
-"""What a program that runs on the layer cannot say itself: how calls fail, and what is open."""
+"""Settings of the layer for unchanged programs: how calls fail, and which arms are open."""
 
 from __future__ import annotations
 

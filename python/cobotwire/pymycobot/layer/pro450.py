@@ -1,4 +1,4 @@
-"""What the class of the Pro 450 has beyond those of other robots."""
+"""Methods of the Pro 450 class that classes of other robots lack."""
 
 from __future__ import annotations
 

@@ -83,7 +83,7 @@ class LibraryClass:
         return found if found.by_hand or not self.is_by_hand(method) else None
 
     def called(self, name: str) -> Call | None:
-        """Return how the library calls what our client calls by a name; None if it has no such."""
+        """Return the library's name for a method of our client; None if it has no such method."""
         return next((each for each in self.methods.values() if each.calls == name), None)
 
     def has(self, method: str) -> bool:
@@ -133,7 +133,7 @@ def _waited(kind: str, parameters: dict[str, str], *names: str, address: str = "
 def _waits(timeout: str = "15", address: str = "", mode: str = "0") -> dict[str, Call]:
     """Return the methods that wait for the end of a motion.
 
-    The default of the mode is empty if the class has none, and None if its robot has none.
+    The default of the mode is empty if the class has no default, and None if its robot has no mode.
     """
     before = {address: ""} if address else {}
     angles = {**before, "degrees": "", "speed": "", "timeout": timeout}

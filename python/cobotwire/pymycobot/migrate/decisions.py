@@ -23,7 +23,7 @@ class Decision(NamedTuple):
 
 # Notes what to decide at a node of the program.
 Decide = Callable[[cst.CSTNode, str], None]
-# By the library's method: what the program must do otherwise.
+# What the program must do differently, by the library's method.
 _PINS = "our clients drive no pins of this computer; use RPi.GPIO or gpiozero"
 NO_COUNTERPART = {
     **dict.fromkeys(["gpio_init", "gpio_output", "get_gpio_input", "base_io_to_gpio"], _PINS),
@@ -100,7 +100,7 @@ PARAMETER = (
     "`def {function}({name}: {kind})`, and run this again"
 )
 EITHER = "this may be the library's call or ours, which have their arguments in another order"
-# What methods of the layer do that no single call of ours does.
+# Methods of the layer that no single call of our client replaces.
 BY_HAND = {
     "power_on": "it waits for the motors; call power_on(), and then time.sleep(1)",
     "get_coords": "for coordinates now call get_coords(), for those of angles angles_to_coords()",

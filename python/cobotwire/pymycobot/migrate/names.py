@@ -29,7 +29,7 @@ _CONVERSIONS = {"int", "list", "map"}
 
 
 class Names:
-    """What the names of a program may be: classes of the library, arms, results of arms."""
+    """What the names in a program stand for: classes of the library, arms, results of arms."""
 
     def __init__(self, keys: Keys, found: Bindings) -> None:
         self.keys = keys

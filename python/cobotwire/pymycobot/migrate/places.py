@@ -80,7 +80,7 @@ class Places(cst.CSTVisitor):
     def visit_Attribute(self, node: cst.Attribute) -> None:
         self._visit_value(node)
         arms = self.names.arms(node.value)
-        # Of our own classes only what the library has, too: what was not rewritten.
+        # For our own classes, only methods that the library has too: calls that were not rewritten.
         if self.names.is_ours(node.value) and not library()[arms[0]].has(node.attr.value):
             arms = []
         if arms and not self._is_called(node):

@@ -53,7 +53,7 @@ class Rewriter(cst.CSTTransformer):
     def leave_SimpleStatementLine(
         self, original_node: cst.SimpleStatementLine, updated_node: cst.SimpleStatementLine
     ) -> cst.SimpleStatementLine | cst.FlattenSentinel[cst.SimpleStatementLine]:
-        # The names of the line as it was; those of classes are others by now.
+        # The names of the original line; the names of classes have been replaced since.
         [first, *others] = original_node.body
         if others or not isinstance(first, cst.ImportFrom) or not is_of_library(first):
             return updated_node

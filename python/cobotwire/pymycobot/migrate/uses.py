@@ -88,7 +88,7 @@ class Uses:
         return "list" in self._forms(node) and self._is_condition(Use(node, self._parents[node]))
 
     def may_be_arm(self, node: cst.BaseExpression, method: str) -> bool:
-        """Return whether an unknown value may be an arm, judged by the method called on it."""
+        """Return whether an unknown value may be an arm, given the method that is called on it."""
         name = node.attr if isinstance(node, cst.Attribute) else node
         like_arm = isinstance(name, cst.Name) and name.value in self._arm_names
         if self.names.kinds(node) or self._is_result(node) or self._is_device(node):

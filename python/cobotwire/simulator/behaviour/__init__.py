@@ -1,4 +1,4 @@
-"""What code says about commands: physics, and what only one robot does.
+"""Commands that the simulator implements in code: physics, and features of single robots.
 
 The behaviours of families (``registry.HOMES``) are imported when an arm of the family needs them.
 """

@@ -60,7 +60,7 @@ Value = TypeVar("Value")
 class Behaviours(dict[str, Behaviour]):
     """Behaviours by the name of their command.
 
-    A package of your own has one of its own, so that its commands cannot be mistaken for those of
+    A package of your own has its own registry, so that its commands cannot be mistaken for those of
     another protocol::
 
         behaviours = Behaviours()
@@ -116,7 +116,7 @@ HOMES = {"mercury_a1": "mercury", "mybuddy": "limbs"}
 
 
 def family(edition: str, behaviours: Behaviours) -> Behaviours:
-    """Let an edition and its deltas have behaviours before those of the 280; return these."""
+    """Return a registry for an edition and its deltas; its behaviours precede those of the 280."""
     _FAMILIES[edition] = behaviours
     return behaviours
 

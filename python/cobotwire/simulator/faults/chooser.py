@@ -58,7 +58,10 @@ def choosers(faults: tuple[Fault, ...], seed: int) -> list[Chooser]:
 
 
 def unknown_command(name: str | int, table: Table) -> str | None:
-    """Return what a command's name should be; None: the edition has it, or it is an id."""
+    """Return the correct name for an unknown command.
+
+    None if the edition has it, or it is an id.
+    """
     names = [command.name for command in table.commands]
     if isinstance(name, int) or name in names:
         return None

@@ -95,7 +95,7 @@ def enlarged(reply: Reply, at: int, data: bytes) -> Reply:
 
 
 def spread(reply: Reply, cuts: Sequence[int], pause: float) -> Reply:
-    """Return a reply with a pause before each of these bytes; it keeps the pauses that it has."""
+    """Return a reply with additional pauses before these bytes."""
     pieces: list[Piece] = []
     start = 0
     for piece in reply:

@@ -26,7 +26,7 @@ from cobotwire.simulator.faults.rules import (
 
 Only = Literal["requests", "replies", "acknowledgements", "malformed input"]
 ONLY = ("requests", "replies", "acknowledgements", "malformed input")
-"""Any legal request; one that a reply is due to; one that is acknowledged; anything else."""
+"""Any legal request; a request that needs a reply; one that is acknowledged; anything else."""
 
 COUNT = integer(1, 1_000_000)
 
@@ -68,7 +68,10 @@ class Context:
         self.connection.put(reply, seconds)
 
     def hold(self, seconds: float, reply: Reply) -> bool:
-        """Hold a reply back until the next one; False: another is held, and goes with this one."""
+        """Hold a reply back until the next one.
+
+        Return False if one is held already: it is sent with this one.
+        """
         if self.connection.outlet.holds:
             return False
         self._moved += len(joined(reply))

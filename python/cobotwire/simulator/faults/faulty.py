@@ -20,8 +20,8 @@ Chosen = list[tuple[Chooser, Context]]
 class FaultyPeer:
     """Passes requests to the other peer, and sends its replies, with the faults applied to both.
 
-    It is a peer for a pty, a socket or memory. What the other peer sends later, unrequested, counts
-    as its reply to the last request.
+    It is a peer for a pty, a socket or memory. Bytes that the other peer sends later, unrequested,
+    count as its reply to the last request.
     """
 
     def __init__(

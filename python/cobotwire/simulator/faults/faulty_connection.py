@@ -10,7 +10,7 @@ from cobotwire.simulator.faults.outlet import Outlet
 
 
 class FaultyConnection:
-    """What is still to be sent, and until when the arm is deaf or stalled, or the host is stopped.
+    """The bytes to send, and until when the arm is deaf or stalled, or the host is stopped.
 
     Times are those of the scenario's clock.
     """

@@ -94,7 +94,10 @@ def _level(levels: list[int], at: float) -> int:
 
 
 def _falling_edge(levels: list[int], start: float) -> int | None:
-    """Return where the level falls next, in bits of the sender; None: it does not fall again."""
+    """Return the time of the next falling edge, in bit times of the sender.
+
+    None if there is no other.
+    """
     for place in range(max(0, int(start)), len(levels)):
         if place >= start and not levels[place] and (place == 0 or levels[place - 1]):
             return place
@@ -109,8 +112,8 @@ class NoiseClass(NamedTuple):
 
     Attributes:
         draw: returns one piece; its draws come from the generator of random numbers.
-        weight: how often the class is drawn for a mixture, relative to the others; 0: only where
-            it is named.
+        weight: how often the class is drawn for a mixture, relative to others; 0: only if it is
+            named.
         before_frames: whether it occurs only before frames, not at any place.
     """
 

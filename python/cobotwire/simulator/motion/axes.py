@@ -24,7 +24,7 @@ class Axes:
         do.
         """
         self._lag = lag
-        # The axes as they were planned until some command came; the last one until then.
+        # Earlier plans of the axes, each with the time until which it applied.
         self._past: deque[tuple[float, Axes]] = deque()
         self._rest: Point = tuple(position)
         self._acceleration = acceleration
@@ -173,7 +173,7 @@ class Axes:
         return self._lag > 0 and not isinstance(self._leg, Hand)
 
     def _keep(self, now: float) -> None:
-        """Keep the present plan until ``now``, for as long as the axes run after it."""
+        """Keep the present plan, which applies until ``now``, for axes that lag."""
         if self._lag:
             self._past.append((now, self._without_lag()))
 
@@ -184,7 +184,7 @@ class Axes:
         return found
 
     def _before(self, now: float) -> Axes:
-        """Return the axes whose plan the lagging ones are at now."""
+        """Return the axes with the plan that applied one lag ago."""
         while self._past and self._past[0][0] <= now - self._lag:
             self._past.popleft()
         return self._past[0][1] if self._past else self._without_lag()

@@ -15,19 +15,19 @@ TimedPoint = tuple[float, Point]
 
 
 class Hand:
-    """A leg along which somebody leads the axes; it turns evenly between two points."""
+    """A part of a motion in which a person leads the joints, at constant speed between points."""
 
-    def __init__(self, points: Sequence[TimedPoint], begun: float = 0.0) -> None:
-        """``begun`` is the time, in seconds, at which the leg begins."""
-        self._points, self._begun = tuple(points), begun
+    def __init__(self, points: Sequence[TimedPoint], offset: float = 0.0) -> None:
+        """Begin at the time ``offset`` of the points, in seconds."""
+        self._points, self._offset = tuple(points), offset
         self._times = [time for time, _ in points]
-        self.duration = self._times[-1] - begun
+        self.duration = self._times[-1] - offset
         self.end = points[-1][1]
 
     def position(self, time: float) -> Point:
         """Return where the axes are."""
         (start, first), (end, last) = self._around(time)
-        share = 1.0 if end <= start else min((self._begun + time - start) / (end - start), 1.0)
+        share = 1.0 if end <= start else min((self._offset + time - start) / (end - start), 1.0)
         return tuple(a + (b - a) * share for a, b in zip(first, last))
 
     def speed(self, time: float) -> Point:
@@ -36,11 +36,11 @@ class Hand:
         return tuple((b - a) / (end - start) if end > start else 0.0 for a, b in zip(first, last))
 
     def braked(self, time: float, acceleration: float) -> Hand:
-        """Return the rest of the leg: no command stops a hand."""
-        return Hand(self._points, self._begun + time)
+        """Return the rest of the motion: no command stops the person's hand."""
+        return Hand(self._points, self._offset + time)
 
     def _around(self, time: float) -> tuple[TimedPoint, TimedPoint]:
-        after = min(max(bisect_right(self._times, self._begun + time), 1), len(self._points) - 1)
+        after = min(max(bisect_right(self._times, self._offset + time), 1), len(self._points) - 1)
         return self._points[after - 1], self._points[after]
 
 

@@ -1,7 +1,7 @@
 """Legs: the motion of axes to their next standstill, from standstill or at full speed.
 
-Each leg has a ``duration`` in seconds and an ``end``. Its methods return where the axes are and how
-fast each one is after a time, which leg follows if all axes brake, and what is left to do then.
+Each leg has a ``duration`` in seconds and an ``end``. Its methods return the positions and speeds
+of the axes after a time, the leg on which all axes brake, and the motion that remains then.
 """
 
 from __future__ import annotations

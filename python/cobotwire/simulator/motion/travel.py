@@ -44,7 +44,7 @@ class Travel:
 
 def quickest(speed: float, way: float, fastest: float, acceleration: float) -> Travel:
     """Return the travel over ``way`` that takes the least time, at ``fastest`` at most."""
-    # Where it would stop if it braked now decides in which direction it cruises.
+    # The position where it would stop if it braked now decides the direction of cruising.
     brake = speed * abs(speed) / (2 * acceleration)
     if way == brake:
         return braking(speed, acceleration)

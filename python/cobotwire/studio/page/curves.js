@@ -6,7 +6,7 @@ import { Series } from "./series.js";
 
 const MOST_POINTS = 1200;
 const EVERY_MS = 120;
-// What a curve needs at least, in pixels; the height of the legend is measured.
+// The least height of a curve, in pixels; the height of the legend is measured.
 const LEAST_HEIGHT = 40;
 const SIGNS = { degrees: "°", millimetres: "mm" };
 

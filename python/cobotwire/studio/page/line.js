@@ -180,8 +180,8 @@ export class Line {
   }
 }
 
-// The rows of the list. The queries between two other entries are one row for each command, which
-// shows the last of them: a program or this server sends the same queries again and again.
+// The rows of the list. A program or this server repeats its queries all the time. So the queries between two other
+// entries are one row for each command, which shows the last of them.
 class Rows {
   // `queries` is "group", "each" or "hide".
   constructor(queries = "group") {

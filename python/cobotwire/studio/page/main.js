@@ -193,8 +193,8 @@ function wireControls() {
   setInterval(showAge, 500);
 }
 
-// Escape stops, wherever the focus is. So does the space bar, but where it does something else; in
-// the controls of the arm it always stops.
+// Escape stops, wherever the focus is. So does the space bar, except where it has another function; in the controls of
+// the arm it always stops.
 function stopKey(event) {
   const where = (selector) => event.target.closest?.(selector);
   const space = event.key === " " && (where("#move") || !where(USES_SPACE));

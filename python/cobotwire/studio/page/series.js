@@ -34,7 +34,7 @@ export class Series {
   thin() {
     const half = this.capacity >> 1;
     const [numbers] = this.columns;
-    // Of each two rows the one that marks a gap stays.
+    // Keep every second row; if the other one marks a gap, keep that.
     const kept = Uint32Array.from({ length: half >> 1 }, (_, at) => 2 * at + Number.isNaN(numbers[2 * at + 1]));
     for (const column of [this.times, ...this.columns]) {
       kept.forEach((from, at) => (column[at] = column[from]));
@@ -84,8 +84,8 @@ export class Series {
   }
 }
 
-// Return whether so many seconds between two samples are a gap. `inspect/plot/series.py` has the
-// same rule.
+// Return whether two samples that are `seconds` apart have a gap between them.
+// `inspect/plot/series.py` has the same rule.
 export const isGap = (seconds, usual) => seconds > Math.max(1, 4 * usual);
 
 const finite = (value) => (Number.isFinite(value) ? value : null);

@@ -1,7 +1,7 @@
 // Talk to the server: where entries and samples come from, and what requests go to.
 //
-// The other modules know the methods of this class, but no address: a page may get another source.
-// The token is kept where only this origin, port included, can read it.
+// The other modules know the methods of this class, but no URLs, so that another source can replace it. The token is
+// kept where only this origin, port included, can read it.
 
 const KEY = "cobotwire-studio-token";
 const AGAIN_MS = 1000;

@@ -16,7 +16,7 @@ class Chip(NamedTuple):
     Attributes:
         usb: the ids of vendor and product, as in ``10C4:EA60``.
         name: the chip, and where it is found.
-        driver: what Windows and macOS need; empty if they bring it along.
+        driver: the driver that Windows and macOS need; empty if it is included.
         shown: how the Device Manager of Windows names the port; empty if no source says it.
     """
 

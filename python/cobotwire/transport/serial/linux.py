@@ -17,7 +17,7 @@ _BOTH = stat.S_IRGRP | stat.S_IWGRP
 
 
 def this_computer(devices: Sequence[str], device: str = "") -> Computer:
-    """Return what is known about this computer, user and login; ``device`` is what to open."""
+    """Return facts about this computer, user and login; ``device`` is the port to open."""
     number = os.getuid()
     user, group = str(number), _group_of(device) if device else _usual_group(devices)
     with suppress(KeyError):

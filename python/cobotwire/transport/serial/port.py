@@ -106,6 +106,6 @@ def _device(url: str) -> str:
 
 def keep_others_out(descriptor: int) -> None:
     """Have open() of this terminal fail, except for root, until every process has closed it."""
-    # A device without such a lock has only that of pyserial.
+    # A device without this lock has only pyserial's lock.
     with suppress(OSError):
         fcntl.ioctl(descriptor, termios.TIOCEXCL)

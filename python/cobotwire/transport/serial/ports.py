@@ -59,7 +59,7 @@ def ports() -> list[Port]:
 
 
 def this_computer(device: str = "") -> Computer:
-    """Return what is known about this computer, for what to do so that a port can be opened."""
+    """Return facts about this computer, from which the remedies for a port follow."""
     devices = [port.device for port in ports()]
     if sys.platform == "linux":
         from cobotwire.transport.serial import linux
@@ -86,7 +86,7 @@ def _program(number: int) -> str:
     return f"process {number}"
 
 
-def judge(device: str, usb: str) -> tuple[bool, str]:
+def recognise(device: str, usb: str) -> tuple[bool, str]:
     """Return whether a port probably connects to an arm, and the reason; ``usb`` are its ids."""
     if usb:
         names = [chip.name for chip in CHIPS if chip.usb == usb]
@@ -101,7 +101,7 @@ def _port(
     device: str, vendor: int | None, product: int | None, description: str, serial_number: str
 ) -> Port:
     usb = "" if vendor is None or product is None else f"{vendor:04X}:{product:04X}"
-    likely, why = judge(device, usb)
+    likely, why = recognise(device, usb)
     return Port(
         device,
         likely,

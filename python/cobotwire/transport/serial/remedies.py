@@ -1,7 +1,7 @@
 """What to do so that a port can be opened, on each system.
 
-The errors of opening a port and ``cobotwire ports --fix`` take their texts from here. Each is a
-function of facts about the computer, so those of all systems can be tested on one.
+The errors of opening a port and ``cobotwire ports --fix`` take their texts from here. Each remedy
+is a function of facts about the computer, so the remedies of all systems can be tested on one.
 """
 
 from __future__ import annotations
@@ -36,7 +36,8 @@ class Computer(NamedTuple):
         user: the name of the user.
         group: the group that may open serial ports; empty if none may.
         member: whether the user belongs to the group.
-        in_login: whether this login has the group, or is root's: one from before lacks it.
+        in_login: whether this login has the group, or is root's; a login from before the change
+            lacks it.
     """
 
     system: str
@@ -57,7 +58,10 @@ class Remedy(NamedTuple):
 
 
 def remedies(computer: Computer, busy: Sequence[tuple[str, str]] = ()) -> list[Remedy]:
-    """Return what to do on a computer; ``busy`` has ports that are in use, and by what."""
+    """Return what to do on a computer.
+
+    ``busy`` has the ports in use, and the programs that use them.
+    """
     found = [Remedy("busy", f"{name}: {in_use(computer, by)}", "needed") for name, by in busy]
     if computer.system == "linux":
         return [*found, _group(computer), _udev(), _BRLTTY]
@@ -69,7 +73,7 @@ def remedies(computer: Computer, busy: Sequence[tuple[str, str]] = ()) -> list[R
     return [*found, Remedy("device name", text), *drivers]
 
 
-# What --fix says first where no port is likely to lead to an arm.
+# The first words of --fix if no port is likely to lead to an arm.
 CABLE = Remedy(
     "cable",
     "no arm is found: check that it has power, and that its USB cable carries data, since some "
@@ -103,7 +107,10 @@ def explain(computer: Computer, device: str, number: int | None, reason: str, by
 
 
 def missing(computer: Computer, device: str = "") -> str:
-    """Return what to say about a port that does not exist; without a name, about having none."""
+    """Return the advice for a port that does not exist.
+
+    Without a name, for a computer without ports.
+    """
     if _HOST_AND_PORT.fullmatch(device):
         return f"did you mean socket://{device}?"
     check = "check its cable and power; `cobotwire ports --fix` says what else can be wrong"

@@ -1,4 +1,4 @@
-"""What else pyserial opens: ``rfc2217://``, ``loop://``, ``spy://``; and ports on Windows."""
+"""Other transports of pyserial: ``rfc2217://``, ``loop://``, ``spy://``; and ports on Windows."""
 
 from __future__ import annotations
 

@@ -4,7 +4,7 @@
 //! array. Positions are cut to the size of the block; the compiler then needs no bounds checks.
 
 use crate::check::Check;
-use crate::legal::{BELIEVED, Headings, UNKNOWN_ID};
+use crate::legal::{ACCEPTED, Headings, UNKNOWN_ID};
 use crate::reason::Reason;
 use crate::rules::Rules;
 use cobotwire_simd::{Pattern, SEEN, Window};
@@ -48,7 +48,7 @@ impl Found {
 
     /// Return whether the id is unknown.
     pub(crate) fn is_unknown(self) -> bool {
-        self.group() == Self::new(0, BELIEVED).group()
+        self.group() == Self::new(0, ACCEPTED).group()
     }
 }
 
@@ -103,8 +103,8 @@ impl<'a> Quick<'a> {
             return Look::Noise(Reason::NoHeader);
         }
         let group = self.headings[usize::from(u16::from_le_bytes([length, id]))];
-        if group > BELIEVED {
-            return Look::Noise(refutation(group));
+        if group > ACCEPTED {
+            return Look::Noise(rejection(group));
         }
         if data[start + 2 + usize::from(length)] != self.footer {
             return Look::Noise(Reason::BadCheck);
@@ -115,7 +115,7 @@ impl<'a> Quick<'a> {
 }
 
 #[inline]
-fn refutation(cell: u16) -> Reason {
+fn rejection(cell: u16) -> Reason {
     if cell == UNKNOWN_ID {
         Reason::UnknownId
     } else {

@@ -11,7 +11,7 @@ use crate::table::Table;
 /// The numbers of a frame: the index of the field, the raw and the physical value of each.
 type Numbers = Vec<(usize, i64, Value)>;
 
-/// So few frames are read one by one if one of them is not allowed.
+/// A group of at most this many frames is read one by one if one of them is not allowed.
 const FEW: usize = 8;
 
 /// The frames of a group in a block.
@@ -173,7 +173,7 @@ impl Job<'_> {
         })
     }
 
-    /// Count the frames for the variant that each of them is, by its index; `None`: for no variant.
+    /// Count the frames by the index of their variant; `None`: of no variant.
     pub(crate) fn count(&self, plan: &Plan, mut count: impl FnMut(Option<usize>, u64, u64)) {
         let fields = plan.fields.as_ref();
         if fields.is_some_and(|fields| fields.iter().all(|field| self.all_allowed(field))) {

@@ -198,8 +198,8 @@ fn next(quick: Quick<'_>, data: &Block, from: usize, end: usize) -> (usize, usiz
     (at, lengths)
 }
 
-/// Return the first position from `at` on where a frame starts, or `stop` if the search takes
-/// too long: then the lane would cost more than it saves.
+/// Return the first position from `at` on where a frame starts, or `stop` if the search takes so
+/// long that the lane would cost more than it saves.
 fn guess(quick: Quick<'_>, data: &Block, mut at: usize, stop: usize) -> usize {
     let enough = stop.min(at + GUESSING);
     while at < enough {

@@ -8,8 +8,8 @@ use crate::rules::Rules;
 /// For smaller input, an estimate costs more than it saves.
 const WORTH: usize = 1 << 20;
 /// The number of parts that are read, and their size.
-const LOOKS: usize = 16;
-const LOOK: usize = 1 << 14;
+const PARTS: usize = 16;
+const PART_SIZE: usize = 1 << 14;
 
 /// Estimate the number of frames of each group in `data`; the estimate is rarely too low.
 pub(crate) fn expected(rules: &Rules, groups: usize, data: &[u8]) -> Vec<usize> {
@@ -18,14 +18,14 @@ pub(crate) fn expected(rules: &Rules, groups: usize, data: &[u8]) -> Vec<usize> 
     }
     let mut stream = Stream::new(rules.clone());
     let mut seen = Seen(vec![0; groups]);
-    for look in data.chunks(data.len() / LOOKS) {
-        stream.feed(look.get(..LOOK).unwrap_or(look), &mut seen);
+    for part in data.chunks(data.len() / PARTS) {
+        stream.feed(part.get(..PART_SIZE).unwrap_or(part), &mut seen);
         stream.flush(&mut seen);
     }
-    let looked_at = (LOOKS * LOOK) as u64;
+    let sampled = (PARTS * PART_SIZE) as u64;
     let estimate = |count: u64| {
         // The added sixteenth makes a low estimate rare.
-        let all = (count + count / 16) * data.len() as u64 / looked_at;
+        let all = (count + count / 16) * data.len() as u64 / sampled;
         usize::try_from(all).unwrap_or_default()
     };
     seen.0.into_iter().map(estimate).collect()

@@ -3,8 +3,8 @@
 //! The physical value is the double nearest to `raw * multiply / divide`. A division computes it,
 //! but costs more than everything else. Multiplying by the double nearest to `multiply / divide` is
 //! not exact: for hundredths, the last bit is wrong for 8,779 of 65,536 raw values. A factor in two
-//! parts is exact: the high part has so few bits that its product is exact, the low part adds the
-//! rest, and only the sum is rounded. The constructor verifies this for every raw value.
+//! parts is exact: the product of the high part is exact, since it has few bits; the low part adds
+//! the rest; only the sum is rounded. The constructor verifies this for every raw value.
 
 use crate::number::Number;
 

@@ -4,7 +4,7 @@ use super::block::{BLOCK, Block, Found, LANES, MARGIN, Quick};
 use super::lanes::Lanes;
 use super::spans::{Noise, Runs};
 use crate::frame::Frame;
-use crate::legal::{BELIEVED, Heading};
+use crate::legal::{ACCEPTED, Heading};
 use crate::reason::Reason;
 use crate::rules::Rules;
 use crate::scan::{Sink, scan};
@@ -30,7 +30,7 @@ pub(crate) struct Search {
     pub(crate) space: Space,
 }
 
-/// Memory for scanning, which is made on first use. Between two calls nothing in it matters.
+/// Memory for scanning, which is made on first use. No call reads what an earlier call left in it.
 #[derive(Clone, Default)]
 pub(crate) struct Space {
     lanes: Option<Lanes>,
@@ -200,7 +200,7 @@ impl<'a> Sink<'a> for Finds<'_> {
     fn frame(&mut self, at: usize, frame: Frame<'a>) {
         let group = match self.rules.legal().wide_heading(frame.length(), frame.id()) {
             Heading::Group(group) => group,
-            _ => BELIEVED,
+            _ => ACCEPTED,
         };
         self.found.push(Found::new(at, group));
         self.tally.add_frames(frame.id(), 1);

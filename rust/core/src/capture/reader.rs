@@ -17,7 +17,7 @@ use crate::table::Table;
 const IDLE: i64 = 500_000_000;
 /// The most bytes that all streams together keep without decoding them.
 const MOST_GATHERED: usize = 4 << 20;
-/// An incomplete block of more bytes gives its memory back when it is complete.
+/// The memory of a larger incomplete block is freed when the block is complete.
 const LARGE_BLOCK: usize = 1 << 20;
 
 /// How to decode the frames of an interface.
@@ -217,7 +217,7 @@ impl CaptureReader {
         Ok(())
     }
 
-    /// Open the stream of its first packet; return its index.
+    /// Open the stream that a packet begins; return its index.
     #[cold]
     fn open(&mut self, packet: &Packet<'_>, decoders: &mut impl Decoders) -> Option<usize> {
         let listening = match packet.direction {
@@ -242,7 +242,7 @@ struct Streams {
     work: Workspace,
     /// The bytes that were gathered since all streams were decoded.
     gathered: usize,
-    /// No stream that waits got its last byte before this.
+    /// The last byte of every waiting stream came at this time or later.
     oldest: Option<i64>,
 }
 
@@ -284,7 +284,7 @@ impl Streams {
         }
     }
 
-    /// Flush the streams that wait although no byte came for [`IDLE`] before `time`.
+    /// Flush the waiting streams that have been idle for [`IDLE`] at `time`.
     #[inline]
     fn flush_idle(&mut self, time: i64) {
         if let (Some(before), Some(oldest)) = (time.checked_sub(IDLE), self.oldest)
@@ -294,7 +294,7 @@ impl Streams {
         }
     }
 
-    /// Flush the streams that wait although no byte came after `before`.
+    /// Flush the waiting streams whose last byte came at `before` or earlier.
     #[inline(never)]
     fn flush_silent(&mut self, before: i64) {
         self.oldest = None;

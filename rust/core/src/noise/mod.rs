@@ -100,7 +100,7 @@ pub(crate) struct Finding {
     pub(crate) continued: bool,
 }
 
-/// What starts at a place: its class and its end.
+/// A finding that starts at a position: its class and its end.
 type Verdict = Option<(Kind, usize)>;
 
 /// Diagnoses the noise of a stream.
@@ -116,7 +116,8 @@ pub(crate) struct Diagnosis {
     any: Rules,
     lengths: Lengths,
     bus: Arc<ServoBus>,
-    /// What can start with each byte, but plain noise: a sum of `FRAME`, `PACKET`, `NUL`, `TEXT`.
+    /// What can start with each byte, plain noise excepted: a sum of `FRAME`, `PACKET`, `NUL`,
+    /// `TEXT`.
     starts: Box<[u8; 256]>,
 }
 

@@ -42,7 +42,7 @@ impl Clusters {
         Some((std::mem::take(&mut self.spans), spilled))
     }
 
-    /// Return all noise, if it is too much to wait for its end; `open` comes after the spans.
+    /// Return all noise if there is too much to wait for its end; `open` follows the spans.
     pub(super) fn spill(&mut self, open: Option<Span>) -> Option<Vec<Span>> {
         let size = |(from, to): &Span| to - from;
         let all = self.spans.iter().chain(&open).map(size).sum::<u64>();

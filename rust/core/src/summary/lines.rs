@@ -40,7 +40,7 @@ pub(super) struct Noise<'a> {
     pub(super) continued: bool,
 }
 
-/// What a description depends on; what does not matter is 0.
+/// The values that a description depends on; the others are 0.
 #[derive(PartialEq, Eq, Hash)]
 struct Look {
     kind: Kind,
@@ -131,8 +131,8 @@ impl Writer {
         });
     }
 
-    /// Append text and facts of noise. Only servo packets and texts have so many different ones
-    /// that they are written here.
+    /// Append text and facts of noise. Only servo packets and texts have many different
+    /// descriptions, so these are written here.
     fn describe(&mut self, out: &mut Vec<u8>, noise: &Described<'_>, sink: &mut impl Sink) {
         match noise.kind {
             Kind::Text => firmware_text::append(out, noise.data),

@@ -1,4 +1,4 @@
-//! Writes what a frame or noise means as a message, or why it is none.
+//! Writes what a frame or noise means as a message, or why it is not a message.
 
 use std::sync::Arc;
 
@@ -30,7 +30,7 @@ pub(super) struct Readings {
     errors: Memo<Cause>,
 }
 
-/// What the text of an error depends on; what does not matter is `None`.
+/// The values that the text of an error depends on; the others are `None`.
 #[derive(PartialEq, Eq, Hash)]
 struct Cause {
     way: Direction,
@@ -72,7 +72,7 @@ impl Readings {
         out.len() > start
     }
 
-    /// Append the readings of any bytes. Those without the header of a frame have none.
+    /// Append the readings of any bytes. Bytes without the header of a frame have no message.
     pub(super) fn all(&mut self, out: &mut Vec<u8>, data: &[u8], sink: &mut impl Sink) {
         if !data.starts_with(&self.table.frame().header) {
             return;

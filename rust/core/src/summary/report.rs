@@ -18,7 +18,7 @@ pub(super) struct Report {
     lines: Vec<u8>,
     lines_from: u64,
     extents: [Extent; Kind::ALL.len()],
-    /// The classes of which Python has seen the first finding.
+    /// The classes whose first finding Python has described.
     known: [bool; Kind::ALL.len()],
     scratch: Scratch,
 }

@@ -28,7 +28,8 @@ pub(super) fn natural(out: &mut Vec<u8>, mut rest: u64) {
     }
 }
 
-/// Append a double: the shortest decimal number that is nearest to it, in JSON as Python writes it.
+/// Append a double as JSON, as Python writes it: the shortest decimal that reads back as the same
+/// double.
 pub(super) fn real(out: &mut Vec<u8>, real: f64) {
     let thousandths = (real * FINE).round();
     // Of the decimal numbers with up to 15 digits, only one is nearest to a double.

@@ -17,7 +17,7 @@ use crate::subjects::{self, LISTENING, Subject};
 /// After this long without a byte, a direction stops waiting.
 const IDLE: i128 = 500_000_000;
 
-/// What is found in one stream: positions with their times.
+/// The results for one stream: positions with their times.
 #[derive(Debug, Default, PartialEq)]
 struct Found {
     /// Frames, and whether they were rejected.
@@ -27,7 +27,7 @@ struct Found {
     tally: Tally,
 }
 
-/// What is found in a file: streams by interface and direction.
+/// The results for a file: streams by interface and direction.
 #[derive(Debug, PartialEq)]
 struct All {
     streams: BTreeMap<(usize, usize), Found>,

@@ -52,8 +52,8 @@ fn as_received(table: &Table, rules: &Rules, listening: Listening, frame: Frame<
     for direction in [Direction::Request, Direction::Reply] {
         let one_way = table.rules(Listening::To(direction));
         for of in [None, Some(0), Some(bytes.len())] {
-            let judged_again = decode(table, direction, bytes, of);
-            assert_eq!(read(table, one_way, frame, of), judged_again);
+            let decoded_again = decode(table, direction, bytes, of);
+            assert_eq!(read(table, one_way, frame, of), decoded_again);
         }
     }
 }

@@ -40,7 +40,7 @@ def render_c(edition: Edition, templates: Path | None = None) -> Files:
 
 
 def _enums(found: list[Message]) -> Iterator[Enum]:
-    """Return the enums in messages, each once; those of bits differ from others in their wire."""
+    """Return the enums in messages, each once. An enum of bits has another wire type."""
     seen: set[str] = set()
     for message in found:
         for member in message.members:

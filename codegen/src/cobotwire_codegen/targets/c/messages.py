@@ -36,8 +36,9 @@ DIRECTIONS: tuple[Direction, ...] = ("request", "reply")
 class Member:
     """A field in the struct of its message; ``index`` counts the raw values before it.
 
-    A constant has no place in the struct, nor has a field that counts the elements of a list: its
-    ``count`` is 0. The member ``counter`` holds the number of elements of a list if that varies.
+    A constant has no member in the struct, and neither has a field that counts the elements of a
+    list: its ``count`` is 0. The member ``counter`` holds the number of elements of a list if that
+    varies.
     """
 
     field: Field

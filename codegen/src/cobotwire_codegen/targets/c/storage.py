@@ -17,7 +17,7 @@ _UNION = {"RAW": "raw", "FLOAT": "single", "DOUBLE": "real"}
 
 @dataclass(frozen=True, slots=True)
 class Leaf:
-    """One number of an element: how it is on the wire, and where it is in the element.
+    """One number of an element: its encoding on the wire, and its offset in the element.
 
     ``access`` follows the element in C; ``place`` is a C expression for the offset in bytes.
     """

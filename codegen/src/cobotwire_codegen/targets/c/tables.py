@@ -15,7 +15,7 @@ from cobotwire_codegen.targets.c.messages import DIRECTIONS, Member, Message, me
 from cobotwire_codegen.targets.c.names import bits, integer, string
 from cobotwire_codegen.targets.c.storage import Leaf
 
-# Marks in the tables of editions that consist of integers alone; the header has no names for them.
+# Marks in the tables of editions that have only integers; the header has no names for them.
 CONSTANT = 0xFF
 NO_SELECTOR = 0xFF
 
@@ -154,7 +154,7 @@ def _choices(field: Field) -> tuple[int, ...]:
 
 
 def _not_all(choices: Sequence[int]) -> tuple[int, ...]:
-    """Return the choices; none if they are all the integers between the lowest and the highest."""
+    """Return the choices; empty if every integer between the lowest and the highest is one."""
     every = max(choices, default=0) - min(choices, default=1) + 1
     return () if len(set(choices)) == every else tuple(choices)
 

@@ -21,8 +21,8 @@ SHARES = (0.61, 0.23, 0.83, 0.37, 0.71, 0.13, 0.53)
 class Example(NamedTuple):
     """A message by its raw values, and its bytes.
 
-    ``number`` counts the variants of the command's message, as the spec has them: one of lists is
-    the same variant for every number of elements, while ``variant`` has these numbers.
+    ``number`` counts the variants of the command's message as the spec states them: a variant with
+    lists counts once for all sizes. ``variant`` has the sizes of this example.
     """
 
     what: str

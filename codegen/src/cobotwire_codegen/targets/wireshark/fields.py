@@ -32,7 +32,7 @@ _WIDTH = (
     *(f"INT{bits}" for bits in (8, 16, 24, 32)),
     *("INT64", "FLOAT", "DOUBLE"),
 )
-# Fields of these kinds cannot have the name of a number, nor of each other.
+# Fields of these kinds share no filter name with fields of another kind.
 _APART = {"STRING": "text", "BYTES": "bytes", "NONE": "group"}
 
 
@@ -142,7 +142,7 @@ def _meanings(field: Field) -> set[tuple[Any, ...]]:
 
 
 def _sort(leaf: Leaf, type: Type) -> str:
-    """Return what a leaf is, apart from its width."""
+    """Return the kind of a leaf without its width."""
     return _APART.get(leaf.kind) or lower.kind(type)
 
 

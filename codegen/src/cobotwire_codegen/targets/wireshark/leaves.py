@@ -14,8 +14,7 @@ class Leaf(NamedTuple):
     """One number, text or row of bytes.
 
     ``kind`` is a name of Wireshark's ``ftypes``; ``mask`` is that of a part of a word, or 0.
-    ``reading`` says how the dissector reads it; values that it leaves out are those of a plain
-    number.
+    ``reading`` says how the dissector reads it; omitted values are those of a plain number.
     """
 
     item: str
@@ -28,7 +27,10 @@ class Leaf(NamedTuple):
 
 
 def leaves(type: Type) -> list[Leaf]:
-    """Return the leaves of a type in the order of the wire; those of one element, of a list."""
+    """Return the leaves of a type in the order of the wire.
+
+    For a list, the leaves of one element.
+    """
     if isinstance(type, Listed):
         return leaves(type.of)
     if isinstance(type, Octets | Chars):

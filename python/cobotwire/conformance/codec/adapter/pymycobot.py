@@ -183,7 +183,7 @@ def _plain(value: Any) -> Any:
 
 
 def _by_name(variant: Variant, result: Any) -> Json:
-    """Return its result by our field names; it omits what it takes for an echo."""
+    """Return the library's result by our field names, without what it takes for an echo."""
     fields = [field for field in variant.fields if not field.echo]
     if len(fields) == 1:
         return {fields[0].name: [result] if fields[0].many and _alone(result) else result}

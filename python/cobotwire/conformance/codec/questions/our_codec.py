@@ -104,7 +104,7 @@ def encode_named(
 
 
 def value_of(field: Field, given: Any) -> Any:
-    """Return a JSON value as the codecs take it; what is no such value stays as it is."""
+    """Return a JSON value as the codecs take it; any other value is returned unchanged."""
     if field.kind == "flag" and given in (0, 1):
         return bool(given)
     if field.kind == "bytes" and isinstance(given, str):

@@ -26,7 +26,7 @@ def _arms(table: Table) -> list[Address]:
 
 
 def _one_moves(probe: Probe) -> None:
-    """Move one device after the other, as far as the run may; read all of them."""
+    """Move the devices one after another, within the permissions; read all of them."""
     device, mover, arms = probe.device, Mover(probe.device), _arms(probe.device.edition)
     driven = [arm for arm in arms if arm == device.address] or arms
     before = {arm.name: _pose(device, arm) for arm in arms}

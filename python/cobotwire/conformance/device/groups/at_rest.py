@@ -28,7 +28,7 @@ NEAR = {"millimetre": LINKS_APART, "degree": LINKS_TURNED}
 # Far from the present value, in the units of angles and of coordinates.
 FAR = {"degree": 25.0, "millimetre": 60.0}
 LIMIT_STATES = {"lowest", "highest"}
-# A wrong scale multiplies all limits by the same of these factors, within a tenth.
+# A wrong scale multiplies all limits by one of these factors, within a tenth.
 FACTORS = (0.01, 0.1, 10.0, 100.0)
 
 
@@ -69,7 +69,7 @@ def _geometry(probe: Probe, geometry: Geometry) -> None:
 
 
 def _is_reached_query(table: Table, command: Command) -> bool:
-    """Return whether a command is that query, also for a device with a single joint."""
+    """Return whether a command is a query whether the arm has reached a position or an angle."""
     one = not any(field.many for field in command.request[0].fields)
     single = one and "reached" in reported(command) and _angle(table) is not None
     return command.role == "reached" or single

@@ -56,16 +56,16 @@ def request_change(probe: Probe, request: Request[Any]) -> Response:
     command = response.request.command
     call = probe.device.requester.describe(response.request)
     if command.requires_reply:
-        _judge_reply(probe, response, call)
+        _check_reply(probe, response, call)
     elif command.ack:
-        _judge_acknowledgement(probe, response, call)
+        _check_acknowledgement(probe, response, call)
     else:
         silent = not response.replies and not response.unexpected
         probe.expect(SILENT, silent, f"{call}: expected silence; came {response.summary}")
     return response
 
 
-def _judge_reply(probe: Probe, response: Response, call: str) -> None:
+def _check_reply(probe: Probe, response: Response, call: str) -> None:
     device, deadline = probe.device, response.request.command.deadline_ms
     device.requester.listen(response, device.timing.silence)
     reason = f"{call}: expected one legal reply; came {response.summary}"
@@ -76,7 +76,7 @@ def _judge_reply(probe: Probe, response: Response, call: str) -> None:
         probe.expect(REPLIED, not response.late, reason)
 
 
-def _judge_acknowledgement(probe: Probe, response: Response, call: str) -> None:
+def _check_acknowledgement(probe: Probe, response: Response, call: str) -> None:
     device = probe.device
     if device.note_change(response) <= AWAITED:
         # A second one may come a little later.

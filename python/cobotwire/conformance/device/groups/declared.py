@@ -1,4 +1,4 @@
-"""The statement of the device is true: what it declares absent is absent, and its facts hold."""
+"""The statement of the device is true: commands declared absent are absent, and its facts hold."""
 
 from __future__ import annotations
 

@@ -34,7 +34,7 @@ class _Parts:
     """The joints or axes that a command moves one by one, and the query that reports them.
 
     ``places`` has the index of each part's number in the query's row, by the argument that names
-    the part; None: the end turns in place, so no number is its own.
+    the part. None: the end turns in place, which changes no single number.
     """
 
     def __init__(self, probe: Probe, motion: Moves) -> None:
@@ -84,8 +84,8 @@ class _Parts:
 def _nearby(probe: Probe, motion: Moves) -> None:
     """Move each part a short distance up and down.
 
-    An arm may reject what it cannot reach: a direction in which it moves from none of the poses
-    counts as out of reach. An arm that moves in no direction fails.
+    An arm may reject targets that it cannot reach. If it moves in a direction from no pose, that
+    direction counts as out of reach. An arm that moves in no direction fails.
     """
     parts = _Parts(probe, motion)
     stays = [
@@ -100,7 +100,7 @@ def _nearby(probe: Probe, motion: Moves) -> None:
 def _stays(parts: _Parts, part: int, at: int, sign: int) -> str | None:
     """Move a part one way, from pose to pose, until it moves.
 
-    Return what was sent and what came of it if it never moves; None: it moves.
+    Return what was sent and received if the arm never moves; None: it moves.
     """
     probe, motion, numbers, stayed = parts.probe, parts.motion, parts.numbers, ""
     distance = sign * DISTANCES[numbers[at].unit]
@@ -112,7 +112,8 @@ def _stays(parts: _Parts, part: int, at: int, sign: int) -> str | None:
         way = {motion.by: distance} if motion.by else {str(motion.to): target}
         request = parts.request(part, parts.mover.speed, **way)
         if probe.device.cannot_send(request):
-            # The edition does not allow it there; another pose is nearer to the middle.
+            # The edition does not allow the step from this pose; another pose is nearer to the
+            # middle.
             continue
         request_change(probe, request)
         parts.mover.wait()
@@ -158,7 +159,7 @@ def _jog(parts: _Parts, part: int, at: int | None, direction: int) -> list[float
         before, began = parts.where(), device.connection.now
         way = {parts.motion.direction: direction}
         request_change(probe, parts.request(part, min(SLOW, mover.speed), **way))
-        # What shows clearly, but not for long: it may be out of reach.
+        # A distance that shows clearly, but is short, since the target may be out of reach.
         clear = partial(parts.apart, before, often=SHOWS)
         device.poll(parts.where, clear, 4 * UNDER_WAY, POLL)
         after = _stopped(parts, device.connection.now - began)

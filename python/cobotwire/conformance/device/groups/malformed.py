@@ -26,7 +26,8 @@ from cobotwire.protocol.table import Command, FrameFormat, Table, Variant
 from cobotwire.session.request import EncodedRequest
 from cobotwire.simulator.faults.noise import NOISE
 
-# How often a request is sent in pieces; and how many times too long a pause of the host may be.
+# How often a request is sent in pieces, and the longest pause of the host as a multiple of the
+# planned one.
 ATTEMPTS, LATE = 3, 2
 MALFORMED = frozenset({"malformed"})
 # Classes of the simulator's catalogue: packets of the servo bus, text, and bytes of a header.
@@ -63,7 +64,7 @@ def _sample(probe: Probe) -> EncodedRequest:
 
 
 def _damages(frame: FrameFormat, data: bytes) -> Iterator[tuple[TestCase, str, bytes]]:
-    """Yield a request damaged in each way: the test case, what it is, its bytes."""
+    """Yield a request damaged in each way: the test case, the description, the bytes."""
     length = frame.read_length(data)
     longer = frame.with_length(data, length + 1)
     yield WRONG_LENGTH, "LEN one too large", longer
@@ -149,7 +150,7 @@ def _is_replied_to(probe: Probe) -> bool:
 
 
 def _in_pieces(probe: Probe, request: EncodedRequest) -> None:
-    """Send one byte at a time; again if the host was late, so that a device may give up."""
+    """Send one byte at a time. Repeat it if the host was so late that a device may give up."""
     device, frame, longest = probe.device, request.frame, LATE * probe.device.timing.pause
     for _ in range(ATTEMPTS):
         start = device.connection.mark

@@ -36,7 +36,7 @@ NEAR = {"millimetre": 1.5, "tick": 1.0, "percent": 1.0}
 # After this time, in seconds, an arm on its way reports that it moves.
 UNDER_WAY = 0.1
 ARRIVED = "The arm had arrived before it could be observed on the way."
-# How often, and for how long, it is observed whether the arm reports that it moves, in seconds.
+# The period and the duration of the queries whether the arm moves, in seconds.
 LOOK, OBSERVED = 0.01, 2.0
 # Where the limit and the target are, as shares of the joint's range in the workspace; and how far
 # beyond the limit a joint may come to rest, in degrees.
@@ -86,7 +86,7 @@ def is_replayed(table: Table, command: Command) -> bool:
 
 
 def _replays(probe: Probe) -> None:
-    """Send what was read at another pose: the arm returns there, and reads the same."""
+    """Send values that were read at another pose: the arm returns there, and reports them again."""
     mover = Mover(probe.device)
     motions = settings_of(probe.device.table, probe.command)
     # Everything is read at each pose once: going there takes the most time.
@@ -131,7 +131,7 @@ def resume(probe: Probe) -> None:
 
 
 class Motion(NamedTuple):
-    """A motion that has just been requested: what reads its place, where from and where to.
+    """A motion that has just been requested: the query of the position, the start and the target.
 
     ``place`` returns None if the reply is not legal; ``near`` is how far from a place its readings
     may be.

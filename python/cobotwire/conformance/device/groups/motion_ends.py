@@ -24,15 +24,15 @@ ENDS = TestCase(
 
 # In percent of the fastest, so that the arm can be observed on its way.
 SLOW = 20
-# How often the angles are read, and how long after the last change of theirs, in seconds.
-LOOK, RESTS = 0.01, 0.7
+# Seconds between two readings of the angles, and seconds without a change until the arm is at rest.
+PERIOD, RESTS = 0.01, 0.7
 # The name of the mode in which motions are interpolated: the end of others is not reported.
 INTERPOLATED = ("INTERPOLATION", "QUEUE")
 # The field of the query that reports whether the arm reports ends.
 SWITCH = "motion_ends"
 
 
-class _Look(NamedTuple):
+class _Reading(NamedTuple):
     """A pose that was read; ``sent_at`` is when its query was sent."""
 
     sent_at: float
@@ -50,7 +50,7 @@ def _ends(probe: Probe) -> None:
     _interpolate(probe)
     poses = mover.pose(0), mover.pose(1)
     mover.go(poses[0])
-    _looks(mover)
+    _readings(mover)
     slow = min(SLOW, mover.speed)
     for target in reversed(poses):
         _expect_end(probe, mover, target, slow)
@@ -101,12 +101,12 @@ def _expect_end(
         if not under_way(probe, mover, target, ENDS):
             return
         probe.device.request(stop.request_type())
-    looks, events = _looks(mover), list(requester.events)
+    readings, events = _readings(mover), list(requester.events)
     call = f"{stop.name if stop else probe.command.name}: expected one {event.name}"
     came = ", ".join(f"{_status(each)} at {at:.3f} s" for at, each in events) or "none"
     probe.expect(ENDS, len(events) == 1, f"{call} at the end of the motion; came {came}")
     for at, each in events[:1]:
-        later = [look for look in looks if look.sent_at > at]
+        later = [reading for reading in readings if reading.sent_at > at]
         moved = off_by(later[0].pose, later[-1].pose, mover.tolerance, "ends at") if later else []
         reason = f"{call}, when the arm is at rest; at {at:.3f} s it was on its way"
         probe.expect(ENDS, not moved, f"{reason}: {'; '.join(moved)}")
@@ -115,17 +115,17 @@ def _expect_end(
         probe.expect(ENDS, right, f"{call} {way}; came {_status(each)}")
 
 
-def _looks(mover: Mover) -> list[_Look]:
+def _readings(mover: Mover) -> list[_Reading]:
     """Read the angles until they have not changed for some time."""
     connection = mover.device.connection
-    looks = [_Look(connection.now, mover.angles())]
-    last, still_since = looks[0].pose, connection.now
-    while looks[-1].sent_at - still_since < RESTS:
-        mover.rest(LOOK)
-        looks.append(_Look(connection.now, mover.angles()))
-        if off_by(looks[-1].pose, last, mover.tolerance):
-            last, still_since = looks[-1].pose, connection.now
-    return looks
+    readings = [_Reading(connection.now, mover.angles())]
+    last, still_since = readings[0].pose, connection.now
+    while readings[-1].sent_at - still_since < RESTS:
+        mover.rest(PERIOD)
+        readings.append(_Reading(connection.now, mover.angles()))
+        if off_by(readings[-1].pose, last, mover.tolerance):
+            last, still_since = readings[-1].pose, connection.now
+    return readings
 
 
 def _status(event: EventReceived) -> str:

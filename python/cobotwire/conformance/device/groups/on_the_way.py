@@ -48,8 +48,9 @@ TIMED, LONGEST, SOON = 0.5, 20.0, 0.005
 # direction, both in degrees.
 QUEUED, NEWEST = "INTERPOLATION", "REFRESH"
 WAY, SHOWN = 8.0, 1.0
-# Slow enough to be seen on the way up, in percent of the fastest, and the longest time between two
-# readings in which the arm cannot go up and down, in seconds.
+# The speed of the motion upwards, in percent of the fastest: it is slow enough to be read on the
+# way. Then the longest time between two readings, in seconds: the arm cannot go up and down again
+# in it.
 UPWARDS, UNSEEN = 20, 0.1
 STEPS, TURNS = "step_per_second", "revolution_per_minute"
 # One revolution per minute, in degrees per second.
@@ -58,7 +59,7 @@ TURN = 6.0
 BESIDE = 0.1
 # A joint is checked if it turns at least this far between the readings of its angle, in degrees.
 LEAST = 0.4
-# How many times too large or too small a speed may be: an arm speeds up and slows down.
+# The factor by which a speed may be too large or too small: an arm speeds up and slows down.
 APART = 3.0
 # The speed of a joint at rest may be this share of the fastest one on the way: sensors have noise.
 AT_REST = 0.1
@@ -86,7 +87,10 @@ def _set_off(mover: Mover) -> Motion:
 
 
 def _stays_on_the_way(probe: Probe, mover: Mover, case: TestCase) -> bool:
-    """Send the command on the way: the arm stays there; return whether that was observed."""
+    """Send the command during a motion: the arm stops and stays.
+
+    Return whether that was observed.
+    """
     mover.rest(UNDER_WAY)
     if not under_way(probe, mover, mover.pose(1), case):
         return False
@@ -156,7 +160,7 @@ def _faster(probe: Probe) -> None:
 
 
 class _Left(NamedTuple):
-    """How far a joint has gone, in degrees, and between which times since it was sent off."""
+    """How far a joint has moved, in degrees, and the least and most seconds since its command."""
 
     way: float
     least: float
@@ -219,7 +223,10 @@ def _speeds(table: Table, command: Command) -> _Speeds | None:
 
 
 def _reported(probe: Probe, speeds: _Speeds) -> None:
-    """Move some joints after others: each takes part in other motions, so none is mistaken."""
+    """Move several sets of joints in turn.
+
+    Each joint is in a different combination of sets, so that a wrong joint shows.
+    """
     mover = Mover(probe.device)
     start, other = mover.pose(0), mover.pose(1)
     here = start

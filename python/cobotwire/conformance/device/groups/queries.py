@@ -19,7 +19,7 @@ from cobotwire.protocol.table import Command, Field, Table
 UNKNOWN_ROW = "the device does not report the position that the query takes"
 # Between two requests a value with a unit may move by this share of its range.
 DRIFT = 0.02
-# How long an arm that has been switched on may take until what it reports is steady, in seconds.
+# The time after power on until the readings of an arm must be steady, in seconds.
 SETTLES = 1.0
 # So many replies in a row with NULs are no accident.
 NOISY = 10
@@ -63,9 +63,9 @@ def _query(probe: Probe) -> None:
     command, every = probe.command, _every(probe)
     for query in every:
         first = probe.device.request(query)
-        _judge(probe, first)
+        _check(probe, first)
     again = probe.device.request(every[-1])
-    _judge(probe, again)
+    _check(probe, again)
     if _has_nuls(first) and _has_nuls(again):
         noisy = all(_has_nuls(probe.device.request(every[-1])) for _ in range(NOISY))
         reason = f"{command.name}: expected the reply alone; each time came {again.summary}"
@@ -112,7 +112,7 @@ def _is_powered_query(table: Table, command: Command) -> bool:
 
 
 def _query_with_power(probe: Probe) -> None:
-    """Request twice after the arm has got power: what was true before it shows in one reply."""
+    """Send the query twice after power on: the first reply may still show the state before."""
     device = probe.device
     was_off = POWER not in device.restore_at_end
     give_power(device)
@@ -151,7 +151,7 @@ def _has_part(probe: Probe, query: Request[Any]) -> bool:
     return not fewer or query.fields.get("joint", 1) <= device.joints
 
 
-def _judge(probe: Probe, response: Response) -> None:
+def _check(probe: Probe, response: Response) -> None:
     command = response.request.command
     call = probe.device.requester.describe(response.request)
     for damaged in response.damaged:

@@ -1,7 +1,7 @@
 """Values that are listed one by one: they are counted, and read in the order of recording.
 
-Reading a value removes it. Nothing moves. A list that no query counts is emptied before, so that
-what it held may be lost.
+Reading a value removes it. Nothing moves. If no query counts a list, the test empties it first, and
+its old values may be lost.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ CLEARED = TestCase("list-cleared", "A list that was cleared holds nothing.")
 
 # How many points are added; how many of the device's own are kept at most, to be added again.
 ADDED, MOST_KEPT = 3, 50
-# So many zeros in a row are read from an empty list, if nothing else reports that it is empty.
+# If nothing else reports that a list is empty, this many zeros in a row mean that it is.
 ZEROS = 3
 
 
@@ -60,7 +60,7 @@ class _List(NamedTuple):
 
 
 def _list(table: Table, state: str) -> _List | None:
-    """Return the commands of a list to which numbers can be appended; None: nothing shows them."""
+    """Return the commands of a list to which numbers can be appended; None: nothing reports it."""
     wanted = ({"append": True}, {"take": "first"}, {"report": "count"}, {"report": "empty"})
     add, take, counter, empty = (first(table, does(Lists, state=state, **each)) for each in wanted)
     appends = None if add is None else does(Lists)(table, add)
@@ -73,7 +73,7 @@ def _list(table: Table, state: str) -> _List | None:
 
 
 def _of(**wanted: object) -> Callable[[Table, Command], _List | None]:
-    """Return what finds the list of a command that does what is wanted with it."""
+    """Return a function that returns the list on which a command has the wanted effect."""
 
     def found(table: Table, command: Command) -> _List | None:
         effect = does(Lists, **wanted)(table, command)

@@ -27,7 +27,8 @@ Vector = tuple[float, float, float]
 # How far the reference is set from zero, and by how much the shift may be wrong, in millimetres.
 SHIFT, NEAR = 40.0, 2.0
 AXES = "xyz"
-# What stores a reference, and the setting by which the coordinates show it: its second choice.
+# The command that stores a reference, and the setting with whose second choice the coordinates show
+# it.
 CHOSEN_BY = {"tool": "end_type", "world": "reference_frame"}
 
 
@@ -59,7 +60,7 @@ def _shifts(probe: Probe, reference: _Reference) -> None:
     device.request(request_of(chooser.command, choices[0]))
     if all(math.hypot(*shift) <= NEAR for shift in shifts):
         raise NotSupported("no setting makes the coordinates show the reference")
-    _judge(probe, shifts, "tool" in stored(probe.command))
+    _check(probe, shifts, "tool" in stored(probe.command))
 
 
 def _shift(probe: Probe, chooser: Command, choices: Sequence[int], axis: int) -> Vector:
@@ -75,7 +76,7 @@ def _shift(probe: Probe, chooser: Command, choices: Sequence[int], axis: int) ->
     return x, y, z
 
 
-def _judge(probe: Probe, shifts: list[Vector], tool: bool) -> None:
+def _check(probe: Probe, shifts: list[Vector], tool: bool) -> None:
     """Compare lengths and directions: those of a tool are turned with the end."""
     name = probe.command.name
     for axis, shift in zip(AXES, shifts):

@@ -1,4 +1,7 @@
-"""What is set is read back, and changes nothing else; what is not allowed changes nothing."""
+"""A value that is set is read back, and nothing else changes.
+
+A value that is not allowed changes nothing.
+"""
 
 from __future__ import annotations
 
@@ -51,7 +54,8 @@ def _set_and_read(probe: Probe) -> None:
     """Back up, set several values for each joint, pin or register, read all, restore."""
     device, may_lose = probe.device, "irreversible" in probe.device.permissions.classes
     settings = settings_of(device.table, probe.command)
-    # The parts of a row are neighbours; variants set the same.
+    # The parts of one row are tested together as neighbours. Variants set the same value, so that
+    # each is tested by itself.
     sets = [settings] if settings[0].part else [[setting] for setting in settings]
     for together in sets:
         spots = [
@@ -86,7 +90,7 @@ def _try(probe: Probe, spot: Spot, spots: list[Spot]) -> None:
         reason = f"{spot} reports failure, but {wanted} is read back"
         probe.expect(REPLIED, not failed, reason)
         for other in spots if index == 0 else ():
-            # What cannot be restored no longer has its old value.
+            # A setting that cannot be restored was changed before and has lost its old value.
             if other.index != spot.index and not other.obstacle:
                 _expect(probe, NEIGHBOURS, other, other.old, f"after {spot}: ")
     if not spot.obstacle:
@@ -109,7 +113,7 @@ def _takes_forbidden_values(table: Table, command: Command) -> bool:
 def _forbidden(probe: Probe) -> None:
     """Set two values in turn; after each, send wrong values, and read that nothing changes.
 
-    With two values, what a device takes a wrong value for differs from one of them.
+    With two values, the result of a wrong value differs from at least one of them.
     """
     device = probe.device
     for setting in settings_of(device.table, probe.command):

@@ -1,4 +1,4 @@
-"""Commands whose effect is fixed, such as power on: the query reports it, of the right part."""
+"""Commands with a fixed effect, such as power on: the query reports it, for the right part."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ from cobotwire.conformance.device.requests import (
     harmless,
     requests,
 )
-from cobotwire.conformance.device.selection import judged, reporters
+from cobotwire.conformance.device.selection import reporters, stated_effect
 from cobotwire.conformance.suite import Group, TestCase
 from cobotwire.protocol.effects import Cases, Sets
 from cobotwire.protocol.messages import Request
@@ -127,10 +127,11 @@ def _read(device: Device, fixed: Fixed, query: Request[Any]) -> int | None:
 
 def _part_of(table: Table, command: Command) -> Fixed | None:
     """Return the query that reports what a command gives one part, and the value."""
-    effect = judged(command)
+    effect = stated_effect(command)
     if isinstance(effect, Sets) and effect.at and command.safety == "power":
         for state, value in effect.values.items():
-            # Also an assumed query: otherwise nothing would show which part a command switches.
+            # An assumed query is used too: without it nothing would show which part a command
+            # switches.
             for found in reporters(table, state, assumed=True):
                 if found.at == effect.at and len(harmless(command)) > 1:
                     return Fixed(found.query, found.field, int(value))
@@ -208,8 +209,8 @@ def _set_off(probe: Probe, mover: Mover, query: Command) -> None:
 
 
 def choices(table: Table, command: Command) -> list[tuple[Request[Any], Fixed]]:
-    """Return what an argument can choose that queries report, such as OPEN: a request of each."""
-    effect = judged(command)
+    """Return a request for each choice of an argument that queries report, such as OPEN."""
+    effect = stated_effect(command)
     if not isinstance(effect, Cases) or command.safety not in ("setting", "persistent write"):
         return []
     given = gentle_values(command.request[0])
@@ -225,7 +226,10 @@ def choices(table: Table, command: Command) -> list[tuple[Request[Any], Fixed]]:
 
 
 def _choose(probe: Probe, rows: list[tuple[Request[Any], Fixed]]) -> None:
-    """Choose each in turn, twice, so that each follows another one; then restore the old ones."""
+    """Send each choice twice, one after another, so that each follows a different one.
+
+    Then restore the old state.
+    """
     device = probe.device
     for query, fixed in {fixed.for_part(request): fixed for request, fixed in rows}.items():
         old = fixed.read(device, query)

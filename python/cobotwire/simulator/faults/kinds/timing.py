@@ -100,13 +100,13 @@ class Merged(Fault):
     """The reply is held back until the next one, and comes before it, in one piece with it.
 
     Attributes:
-        at_most_seconds: after this time it comes alone.
+        at_most_seconds: after this time it is sent without another reply.
     """
 
     at_most_seconds: float = ruled(SECONDS, 1.0)
 
     def change_reply(self, reply: Reply, context: Context) -> Reply:
-        """Hold the reply back, unless another one is held: that one goes with this one."""
+        """Hold the reply back, unless another one is held: then send both."""
         if not context.hold(self.at_most_seconds, reply):
             return reply
         context.report("held back for the next reply")

@@ -38,8 +38,8 @@ class FlowControl(Damage):
     """XON/XOFF was left on: the bytes 11 and 13 are swallowed, and a 13 stops the host.
 
     Attributes:
-        seconds: for how long a 13 in a reply stops the host, unless a 11 follows it. What the host
-            sends meanwhile arrives afterwards.
+        seconds: how long the byte 13 (XOFF) in a reply stops the host, unless 11 (XON) follows it.
+            What the host sends meanwhile arrives afterwards.
     """
 
     seconds: float = ruled(SECONDS, 1.0)

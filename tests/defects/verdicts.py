@@ -1,4 +1,4 @@
-"""Judge by a fixed rule whether the messages of a run name the cause of a planted defect."""
+"""Decide by a fixed rule whether the messages of a run name the cause of a planted defect."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ class Message(NamedTuple):
         return f"{f'{self.case} {self.command}'.rstrip()}: {self.text}"
 
 
-class Judgement(NamedTuple):
+class DefectVerdict(NamedTuple):
     """What a run found of a defect. ``named`` is the message that names it, or None."""
 
     defect: Defect
@@ -43,10 +43,10 @@ def messages_of(report: Report) -> list[Message]:
     return found + ([Message("run ended", "", report.stopped)] if report.stopped else [])
 
 
-def judge(defect: Defect, messages: Sequence[Message]) -> Judgement:
-    """Judge the messages of a run: one of them must name a command and have every pattern."""
+def verdict_on(defect: Defect, messages: Sequence[Message]) -> DefectVerdict:
+    """Return the verdict: one of the messages must name a command and match every pattern."""
     named = next((message for message in messages if _names(defect, message)), None)
-    return Judgement(defect, tuple(messages), named)
+    return DefectVerdict(defect, tuple(messages), named)
 
 
 def _names(defect: Defect, message: Message) -> bool:

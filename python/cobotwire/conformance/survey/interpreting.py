@@ -32,30 +32,30 @@ SHOWN = {
     ),
     "agrees": (("reply", "agreement"),),
 }
-# The test cases that judge by where the arm is.
+# The test cases that depend on the reported position of the arm.
 BY_PLACE = ("reached", "arrives", "stops", "moving", "agrees")
-# Text of this length in a reply's place is what a device says instead.
+# Text of at least this length instead of a reply counts as an error message of the device.
 WORDS = 8
-# How many relations that do not hold a reason lists.
+# A reason lists at most this many relations that do not hold.
 MOST_SHOWN = 3
-# If at least this many silent commands share an argument, the argument is what is wrong.
+# If at least this many commands without a reply share an argument, its value is what is wrong.
 SEVERAL = 2
 
 
-class Judge:
-    """Fills the facts from what a survey has seen."""
+class Interpreter:
+    """Turns what a survey has seen into facts."""
 
     def __init__(self, table: Table, device: Device, facts: Facts) -> None:
         self._table, self._device, self.facts = table, device, facts
         self._silent: dict[str, list[Frames]] = {}
-        # What no fact is right or wrong about, but a person should know.
+        # Observations that decide no fact, but that a person should read.
         self.questions: list[str] = []
 
-    def judge_results(self, results: Sequence[Result], *, place_known: bool) -> None:
-        """Note what the verdicts show.
+    def add_results(self, results: Sequence[Result], *, place_known: bool) -> None:
+        """Add what the verdicts show.
 
-        ``place_known`` is whether what the arm reports of its place is right: otherwise no command
-        is judged by it.
+        ``place_known`` is whether the position that the arm reports is right. Otherwise verdicts
+        that depend on it are left out.
         """
         for result in results:
             frames = frames_of(result.evidence)
@@ -64,9 +64,9 @@ class Judge:
                 for part, aspect in SHOWN.get(result.case, ()):
                     self._note(result.command, part, aspect, "confirmed", result.reason, frames)
             elif result.verdict is Verdict.FAIL and not by_place:
-                self._judge_failure(result, frames)
+                self._add_failure(result, frames)
 
-    def _judge_failure(self, result: Result, frames: list[Frames]) -> None:
+    def _add_failure(self, result: Result, frames: list[Frames]) -> None:
         command = self._table.command(result.command)
         part, aspect = SHOWN.get(result.case, (("", ""),))[0]
         if result.case == "query-replied":
@@ -105,8 +105,8 @@ class Judge:
         framer = codecs.load(self._table).framer(direction)
         return {e.command for e in (*framer.feed(data), *framer.flush()) if isinstance(e, Frame)}
 
-    def judge_silence(self, firmware: str) -> None:
-        """Note which commands have no reply, and what they have in common."""
+    def add_silence(self, firmware: str) -> None:
+        """Add which commands have no reply, and the argument that they have in common."""
         replied = self._device.noticed.reply_seconds
         silent = [self._table.command(name) for name in self._silent]
         for argument in dict.fromkeys(f.name for c in silent for f in c.request[0].fields):
@@ -137,8 +137,8 @@ class Judge:
             )
             self._note(name, "command", "present", "contradicted", why, frames)
 
-    def judge_acknowledgements(self) -> None:
-        """Note acknowledgements that came in time, and those that came later."""
+    def add_acknowledgements(self) -> None:
+        """Add which acknowledgements came in time, and which came late."""
         for name, response in self._device.noticed.acknowledged.items():
             command = response.request.command
             if not response.replies or command.safety == "motion":
@@ -149,7 +149,7 @@ class Judge:
             frames = [Frames(response.request.frame, response.replies[0].data)]
             self._note(name, "command", "deadline", verdict, why, frames)
 
-    def judge_readings(
+    def add_readings(
         self,
         checks: CrossChecks,
         snapshots: Sequence[Snapshot],

@@ -1,4 +1,5 @@
-"""Each column counts what it says: broken clients show up in theirs, and a correct one in none."""
+"""Each column counts what its title says: each broken client shows in one column, and a correct
+client in none."""
 
 from __future__ import annotations
 

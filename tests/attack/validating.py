@@ -38,8 +38,8 @@ class Scene(NamedTuple):
     stalls: list[list[tuple[float, float]]]
 
 
-class Judge:
-    """Judges one run."""
+class Validator:
+    """Validates one run."""
 
     def __init__(self, scene: Scene) -> None:
         self.tally = Tally(scene.setting.plan.profile.name)
@@ -65,15 +65,15 @@ class Judge:
         )
         self._fails = 0
 
-    def judge(self) -> Tally:
+    def validate(self) -> Tally:
         """Return the counts of the run, and its failures in words."""
         for call in sorted(self._calls, key=lambda call: call.ended):
             self.tally.counts["calls"] += 1
-            self._judge_call(call)
-        self._judge_frames()
+            self._validate_call(call)
+        self._validate_frames()
         return self.tally
 
-    def _judge_call(self, call: Call) -> None:
+    def _validate_call(self, call: Call) -> None:
         counts = self.tally.counts
         if call.ending == "lost":
             counts["lost"] += 1
@@ -89,8 +89,8 @@ class Judge:
         elif self._is_right(call):
             counts["right"] += 1
         else:
-            self._judge_wrong(call)
-        self._judge_time(call)
+            self._validate_wrong(call)
+        self._validate_time(call)
 
     def _is_right(self, call: Call) -> bool:
         """Return whether the arm made the value for the same request, during the call."""
@@ -107,7 +107,7 @@ class Judge:
         place = bisect_left(times, call.began)
         return place < len(times) and times[place] <= call.ended
 
-    def _judge_wrong(self, call: Call) -> None:
+    def _validate_wrong(self, call: Call) -> None:
         limit = self._evidence.limit_of(call, self._plan.restores)
         if limit:
             self.tally.limits[limit] += 1
@@ -116,7 +116,7 @@ class Judge:
         self.tally.counts["wrong"] += 1
         self._fail(call, "silently wrong", *self._evidence.explain(call))
 
-    def _judge_time(self, call: Call) -> None:
+    def _validate_time(self, call: Call) -> None:
         due, deadline = self._due(call), self._plan.deadline
         if deadline is not None:
             due = min(due, call.began + deadline + LATE_SECONDS)
@@ -134,8 +134,8 @@ class Judge:
         """Return when a call must have ended; from its writing, where that is certain."""
         handed = self._evidence.handed_at(call)
         alike = self._of_request[call.request]
-        alone = sum(c.began <= call.ended and call.began <= c.ended for c in alike) == 1
-        if handed is None or not alone:
+        uncontended = sum(c.began <= call.ended and call.began <= c.ended for c in alike) == 1
+        if handed is None or not uncontended:
             return call.began + self._scene.setting.longest
         written = self._evidence.written_at(call, handed)
         if written is None:
@@ -143,7 +143,7 @@ class Judge:
         wait = self._plan.timeout if call.query else call.ack_within or DRAIN_SECONDS
         return written + wait + LATE_SECONDS
 
-    def _judge_frames(self) -> None:
+    def _validate_frames(self) -> None:
         """Compare the requests that arrived with those that users called for."""
         legal = [frame for _, frame in self._scene.line.frames if self._is_legal(frame)]
         arrived = Counter(legal)

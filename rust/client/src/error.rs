@@ -1,0 +1,84 @@
+//! The errors: one kind for each party that can be at fault.
+
+use std::fmt::{Display, Formatter};
+use std::time::Duration;
+
+use cobotwire_core::exchange::WaitedFor;
+
+/// Why a call failed. Its text says what happened, to what, and what to do.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum Error {
+    /// An error of the caller, detected before a byte was sent.
+    UsageError {
+        /// The text.
+        message: String,
+    },
+    /// An error of the peer: bytes that the protocol does not allow.
+    ProtocolError {
+        /// The text.
+        message: String,
+        /// The rejected bytes.
+        data: Vec<u8>,
+    },
+    /// The device replied that it does not carry out a request.
+    RequestRefused {
+        /// The text.
+        message: String,
+    },
+    /// An error of the port: it could not be opened, or it disappeared.
+    LinkError {
+        /// The text.
+        message: String,
+        /// How many bytes of the request were written; `None`: that is not known.
+        written: Option<usize>,
+    },
+    /// The reply, or the requested acknowledgement, did not arrive in time.
+    ReplyTimeout {
+        /// The text.
+        message: String,
+        /// Since the request was sent; since the call, if its deadline passed.
+        waited: Duration,
+        /// How often the request was sent; 0: it was not, and never will be.
+        attempts: usize,
+        /// What the call waited for when its deadline passed; `None`: the arm's time was over.
+        waited_for: Option<WaitedFor>,
+    },
+}
+
+impl Error {
+    pub(crate) fn usage(message: impl Into<String>) -> Self {
+        let message = message.into();
+        Self::UsageError { message }
+    }
+
+    pub(crate) fn link(url: &str, detail: &str, written: Option<usize>) -> Self {
+        let message = cobotwire_table::link_error(url, detail);
+        Self::LinkError { message, written }
+    }
+
+    /// Return the name of its kind, for example `ReplyTimeout`.
+    #[must_use]
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::UsageError { .. } => "UsageError",
+            Self::ProtocolError { .. } => "ProtocolError",
+            Self::RequestRefused { .. } => "RequestRefused",
+            Self::LinkError { .. } => "LinkError",
+            Self::ReplyTimeout { .. } => "ReplyTimeout",
+        }
+    }
+}
+
+impl Display for Error {
+    fn fmt(&self, f: &mut Formatter<'_>) -> std::fmt::Result {
+        let (Self::UsageError { message }
+        | Self::ProtocolError { message, .. }
+        | Self::RequestRefused { message }
+        | Self::LinkError { message, .. }
+        | Self::ReplyTimeout { message, .. }) = self;
+        f.write_str(message)
+    }
+}
+
+impl std::error::Error for Error {}

@@ -1,0 +1,286 @@
+//! Limits for those who move an arm from afar: a highest speed, and a box for the end of the arm.
+
+use std::collections::HashMap;
+use std::sync::Arc;
+
+use cobotwire_core::exchange::{Request, Safety};
+use cobotwire_core::{Table, Variant};
+use cobotwire_table::{Command, Edition, Link, Shown, bad_argument, general};
+
+use crate::Error;
+use crate::encoder::Encoder;
+use crate::typed::{self, Typed};
+
+/// The lowest and the highest value that is allowed.
+pub type Range = (f64, f64);
+
+const AXES: [&str; 3] = ["x", "y", "z"];
+/// States that decide what coordinates mean.
+const FRAMES: [&str; 4] = ["tool", "world", "reference_frame", "end_type"];
+
+/// How fast an arm may be sent, and where. What could exceed a limit is refused before a byte is
+/// sent, and so are writes that stay. Nothing limits `stop`.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Limits {
+    /// The highest speed in percent, 1..100.
+    pub speed: Option<f64>,
+    /// Ranges for x, y and z in millimetres: where the end may be sent, also by angles of joints.
+    /// The path to a target is not checked.
+    pub workspace: Option<[Option<Range>; 3]>,
+}
+
+impl Limits {
+    /// Return the edition with the ranges of these limits.
+    pub(crate) fn applied(&self, edition: typed::Table) -> Result<typed::Table, Error> {
+        self.check()?;
+        if *self == Self::default() {
+            return Ok(edition);
+        }
+        let mut edition = Arc::unwrap_or_clone(edition);
+        if self.workspace.is_some() && !has_axes(&edition) {
+            return Err(Error::usage(
+                "a workspace needs the coordinates x, y, z; this edition does not have them",
+            ));
+        }
+        let table = &edition.protocol.table;
+        let mut commands = table.commands().to_vec();
+        for (command, record) in commands.iter_mut().zip(&edition.commands) {
+            for (index, variant) in command.request.iter_mut().enumerate() {
+                *variant = self.narrowed(record, index, variant);
+            }
+        }
+        let frame = table.frame().clone();
+        edition.protocol.table = Table::new(frame, commands)
+            .map_err(|_| Error::usage("the limits leave nothing of a range of this edition"))?;
+        Ok(Arc::new(edition))
+    }
+
+    fn check(&self) -> Result<(), Error> {
+        if let Some(speed) = self.speed.filter(|speed| !(1.0..=100.0).contains(speed)) {
+            let text = bad_argument(
+                "limits.speed",
+                &Shown::Real(speed),
+                "a number 1..100 percent",
+            );
+            return Err(Error::usage(text));
+        }
+        for (axis, range) in self.workspace.iter().flatten().enumerate() {
+            if let Some((low, high)) =
+                range.filter(|(low, high)| !(low <= high && (high - low).is_finite()))
+            {
+                let given = Shown::Tuple(vec![Shown::Real(low), Shown::Real(high)]);
+                let argument = format!("limits.workspace[{axis}]");
+                return Err(Error::usage(bad_argument(
+                    &argument,
+                    &given,
+                    "a pair (lowest, highest), or None",
+                )));
+            }
+        }
+        Ok(())
+    }
+
+    /// Return a variant of a request with narrower ranges.
+    fn narrowed(&self, command: &Command, index: usize, variant: &Variant) -> Variant {
+        let mut fields = variant.fields().to_vec();
+        let names = command.request.get(index).into_iter().flatten();
+        for (field, named) in fields.iter_mut().zip(names) {
+            for (case, numbers) in field.cases.iter_mut().enumerate() {
+                for (at, number) in numbers.numbers.iter_mut().enumerate() {
+                    let Some(known) = named.number(case, at) else {
+                        continue;
+                    };
+                    let axis = AXES.iter().position(|axis| *axis == known.name);
+                    let range = match (self.speed, axis, &self.workspace) {
+                        (Some(speed), _, _) if named.name == "speed" && known.unit == "percent" => {
+                            Some((0.0, speed))
+                        }
+                        (_, Some(axis), Some(all)) if command.role == "coordinate targets" => {
+                            all.get(axis).copied().flatten()
+                        }
+                        _ => None,
+                    };
+                    if let Some((low, high)) = range {
+                        let scale = number.divide as f64 / number.multiply as f64;
+                        let (low, high) = ((low * scale).ceil(), (high * scale).floor());
+                        number.minimum = number.minimum.max(low as i64);
+                        number.maximum = number.maximum.min(high as i64);
+                    }
+                }
+            }
+        }
+        Variant::new(fields)
+    }
+
+    /// Return what checks the end of the arm, if the workspace is limited.
+    pub(crate) fn workspace_of(&self, edition: &Edition) -> Option<Workspace> {
+        let (ranges, links) = (self.workspace?, edition.geometry.clone()?);
+        Some(Workspace { ranges, links })
+    }
+}
+
+fn has_axes(edition: &Edition) -> bool {
+    let target = edition
+        .commands
+        .iter()
+        .find(|each| each.role == "coordinate targets");
+    let fields = target
+        .and_then(|target| target.request.first())
+        .into_iter()
+        .flatten();
+    let names: Vec<&str> = fields
+        .flat_map(|field| field.cases.iter().flatten())
+        .map(|number| &*number.name)
+        .collect();
+    AXES.iter().all(|axis| names.contains(axis))
+}
+
+/// Return the commands that are not sent within limits, each with the reason.
+pub(crate) fn refusals(edition: &Edition, limits: &Limits) -> HashMap<usize, String> {
+    let why = |command: &Command| {
+        if *limits == Limits::default() || matches!(&*command.role, "stop" | "halt") {
+            return None;
+        }
+        if command.safety == Safety::Persistent {
+            return Some(
+                "its effect stays, and limits.speed or limits.workspace is set".to_owned(),
+            );
+        }
+        let moves = moves_arm(edition, command);
+        let leaves = limits
+            .workspace
+            .and_then(|_| leaves_workspace(edition, command, moves));
+        let is_speed = |field: &cobotwire_table::Field| {
+            field.name == "speed"
+                && field
+                    .cases
+                    .iter()
+                    .flatten()
+                    .all(|number| number.unit == "percent")
+        };
+        let capped = command
+            .request
+            .iter()
+            .all(|variant| variant.iter().any(is_speed));
+        let fast = limits.speed.is_some() && moves && !capped;
+        leaves.or(fast.then(|| "limits.speed is set, and it takes no speed in percent".to_owned()))
+    };
+    let commands = edition.commands.iter().enumerate();
+    let refused = commands.filter_map(|(index, command)| {
+        Some((
+            index,
+            format!("{}() is refused: {}", command.name, why(command)?),
+        ))
+    });
+    refused.collect()
+}
+
+fn leaves_workspace(edition: &Edition, command: &Command, moves: bool) -> Option<String> {
+    if command
+        .stores
+        .iter()
+        .any(|state| FRAMES.contains(&&**state))
+    {
+        return Some("it changes what coordinates mean, and limits.workspace is set".to_owned());
+    }
+    match &*command.role {
+        _ if !moves => None,
+        "coordinate targets" => None,
+        "joint targets" => edition.geometry.is_none().then(|| {
+            format!(
+                "limits.workspace is set, and edition {} states no geometry",
+                edition.name
+            )
+        }),
+        _ => Some(
+            "limits.workspace is set, and where the end would go is not known before".to_owned(),
+        ),
+    }
+}
+
+/// Return whether a command may set joints in motion; one for the gripper does not.
+fn moves_arm(edition: &Edition, command: &Command) -> bool {
+    let find = |name: &str| edition.commands.iter().find(|each| each.name == name);
+    let resumes = command
+        .read_by
+        .as_deref()
+        .and_then(find)
+        .is_some_and(|query| query.role == "paused");
+    let gripper = edition.commands.iter().find(|each| each.role == "gripper");
+    let of_gripper = gripper.is_some_and(|gripper| gripper.family == command.family)
+        || command
+            .request
+            .iter()
+            .flatten()
+            .any(|field| field.name == "gripper_id");
+    let starts = command.safety == Safety::Motion && !matches!(&*command.role, "stop" | "halt");
+    starts && !resumes && !of_gripper
+}
+
+/// The box that the end of the arm may be sent to by angles of joints.
+#[derive(Debug)]
+pub(crate) struct Workspace {
+    ranges: [Option<Range>; 3],
+    links: Vec<Link>,
+}
+
+impl Workspace {
+    /// Check where the arm would be with its joints at the angles of a request.
+    pub fn check(&self, encoder: &Encoder, request: &Request) -> Result<(), Error> {
+        let edition = &encoder.edition;
+        let Some(command) = edition
+            .commands
+            .get(request.command)
+            .filter(|each| each.role == "joint targets")
+        else {
+            return Ok(());
+        };
+        let (fields, _) = encoder.arguments(request);
+        let mut rows = fields
+            .into_iter()
+            .filter_map(|(_, value)| Typed::from_value(value));
+        let angles: Vec<f64> = rows.next().unwrap_or_default();
+        for ((axis, at), range) in AXES
+            .iter()
+            .zip(end_of(&self.links, &angles))
+            .zip(self.ranges)
+        {
+            if let Some((low, high)) = range.filter(|(low, high)| !(*low..=*high).contains(&at)) {
+                let (low, high) = (general(low, 6), general(high, 6));
+                let angles = Shown::Tuple(angles.iter().copied().map(Shown::Real).collect());
+                return Err(Error::usage(format!(
+                    "{}() to {angles} would move the end to {axis} {at:.1} mm; limits.workspace allows {axis} {low}..{high} mm",
+                    command.name
+                )));
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Return x, y and z of the end in the frame of the base, for angles in degrees.
+fn end_of(links: &[Link], angles: &[f64]) -> [f64; 3] {
+    let (mut x, mut y, mut z) = ([1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]);
+    let mut end = [0.0; 3];
+    let sum = |a: [f64; 3], p: f64, b: [f64; 3], q: f64| {
+        let [[a0, a1, a2], [b0, b1, b2]] = [a, b];
+        [a0 * p + b0 * q, a1 * p + b1 * q, a2 * p + b2 * q]
+    };
+    let angle = |joint: usize| angles.get(joint).copied().unwrap_or_default();
+    for (index, link) in links.iter().enumerate() {
+        let turned = match &link.turned_by {
+            None => angle(index),
+            Some(shares) => shares
+                .iter()
+                .map(|(joint, share)| angle(*joint) * share)
+                .sum(),
+        };
+        let (sin, cos) = (turned + link.offset).to_radians().sin_cos();
+        let (twist, flat) = link.alpha.to_radians().sin_cos();
+        let (along, across) = (sum(x, cos, y, sin), sum(y, cos, x, -sin));
+        end = sum(sum(along, link.a, z, link.d), 1.0, end, 1.0);
+        x = along;
+        (y, z) = (sum(across, flat, z, twist), sum(z, flat, across, -twist));
+    }
+    end
+}

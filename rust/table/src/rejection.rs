@@ -1,0 +1,406 @@
+//! The texts of the errors of the codec: values, raw values and frames that are not allowed.
+
+use alloc::format;
+use alloc::string::{String, ToString};
+use alloc::vec::Vec;
+
+use cobotwire_core::{
+    Algorithm, BadRaw, BadValue, Check, DecodeError, Direction, EncodeError, Encoding,
+    Field as Wire, Given, Number as WireNumber, Reason, Shape, Value, ValueFault, VariantId,
+};
+
+use crate::shown::{join, printable, shortest};
+use crate::texts::{bad_argument, either, entry, hex, protocol_error, text};
+use crate::{Command, Edition, Field, Number, Quote, Shown, general};
+
+// A link to a file of the Python package; a package of this crate contains the file.
+const UNITS: &str = include_str!("../units.json");
+
+/// A field with its names, in one of its cases.
+pub(crate) struct Part<'a> {
+    pub(crate) name: &'a Field,
+    wire: &'a Wire,
+    numbers: &'a [WireNumber],
+    case: usize,
+}
+
+impl Edition {
+    /// Return the text of the error of values that were not encoded. `count` is their number.
+    pub fn encode_error<V: Given + Quote>(
+        &self,
+        (command, direction): (usize, Direction),
+        error: &EncodeError<V>,
+        count: usize,
+        address: Option<u8>,
+    ) -> String {
+        match error {
+            EncodeError::Address => self.no_address(address),
+            EncodeError::VariantId => self.bad_variant(command, direction, count),
+            EncodeError::Value(bad) => {
+                let variant = VariantId {
+                    direction,
+                    command,
+                    variant: bad.variant,
+                };
+                let part = self.part(variant, bad.field, bad.case);
+                part.map_or(String::new(), |part| part.bad_value(bad))
+            }
+            // It has a text of its own.
+            EncodeError::Foreign(_) => String::new(),
+        }
+    }
+
+    /// Return the text of the error of bytes that were not decoded.
+    #[must_use]
+    pub fn decode_error(&self, direction: Direction, error: DecodeError, data: &[u8]) -> String {
+        match error {
+            DecodeError::Frame { reason, offset } => {
+                protocol_error(&self.bad_frame(direction, reason, data), offset, data)
+            }
+            DecodeError::Raw(bad) => {
+                protocol_error(&self.bad_raw(&bad).unwrap_or_default(), bad.offset, data)
+            }
+        }
+    }
+
+    pub(crate) fn part(&self, id: VariantId, field: usize, case: usize) -> Option<Part<'_>> {
+        let wire = self.protocol.table.variant(id)?.fields().get(field)?;
+        let command = self.commands.get(id.command)?;
+        let name = variants(command, id.direction)
+            .get(id.variant)?
+            .get(field)?;
+        let numbers = &wire.cases.get(case)?.numbers;
+        Some(Part {
+            name,
+            wire,
+            numbers,
+            case,
+        })
+    }
+
+    fn bad_variant(&self, command: usize, direction: Direction, count: usize) -> String {
+        let Some(command) = self.commands.get(command) else {
+            return String::new();
+        };
+        let (name, variants, direction) =
+            (&command.name, variants(command, direction), word(direction));
+        if variants.is_empty() {
+            return text!("no-message"; command = name, direction);
+        }
+        let allowed = either(variants.iter().map(|fields| {
+            let names = fields.iter().map(|field| field.name.clone());
+            format!("({})", join(names, ", "))
+        }));
+        let kind = if count == 1 {
+            "value-count"
+        } else {
+            "values-count"
+        };
+        printable(&text!(kind; count, message = format!("{name} {direction}"), allowed))
+    }
+
+    fn bad_raw(&self, bad: &BadRaw) -> Option<String> {
+        let (part, at) = (self.part(bad.variant, bad.field, bad.case)?, bad.element);
+        let (command, name) = (
+            &self.commands.get(bad.variant.command)?.name,
+            &part.name.name,
+        );
+        if let Shape::Text(encoding, _) = part.wire.shape {
+            let (raw, encoding) = (format!("{:02X}", bad.raw), words(encoding).1);
+            return Some(text!("bad-byte"; command, at, name, raw, encoding));
+        }
+        let number = part.numbers.get(at)?;
+        let whole = part.wire.each == 0 && number.bits.is_none();
+        let name = if whole {
+            name.clone()
+        } else {
+            part.element(at)
+        };
+        let (value, allowed) = (Shown::from(number.physical(bad.raw)), part.allowed(at));
+        Some(text!("bad-value"; command, name, value, allowed))
+    }
+
+    fn bad_frame(&self, direction: Direction, reason: Reason, data: &[u8]) -> String {
+        let frame = self.protocol.table.frame();
+        let layout = frame.layout;
+        let counted = layout.length.read(data);
+        let length = digits(counted.unwrap_or_default(), layout.length.wide);
+        match reason {
+            Reason::NoHeader => text!("no-header"; header = hex(&frame.header, " ")),
+            Reason::BadAddress => {
+                let address = layout.address_at.and_then(|at| data.get(at..=at));
+                let address = hex(address.unwrap_or_default(), "");
+                text!("bad-address"; address, allowed = runs(&frame.addresses))
+            }
+            Reason::Truncated => {
+                let Some(counted) = counted else {
+                    return text!("no-len");
+                };
+                let size = usize::from(counted) + layout.overhead;
+                let missing = size.saturating_sub(data.len());
+                text!(if missing == 1 { "truncated-by-one" } else { "truncated" }; length, missing)
+            }
+            Reason::BadLength => self.bad_length(direction, &length, data),
+            Reason::UnknownId => {
+                let id = digits(layout.id.read(data).unwrap_or_default(), layout.id.wide);
+                text!("unknown-id"; edition = self.name, direction = word(direction), id)
+            }
+            Reason::BadCheck => match &frame.check {
+                Check::Footer(footer) => text!("no-footer"; footer = hex(&[*footer], "")),
+                Check::Computed(check) => match check.algorithm {
+                    None => text!("no-footer"; footer = hex(&check.footer, "")),
+                    Some(Algorithm::Crc(_)) => text!("bad-crc"),
+                    Some(Algorithm::Sum) => text!("bad-sum"),
+                    Some(_) => text!("bad-check"),
+                },
+            },
+            Reason::Trailing => text!("trailing"; length),
+        }
+    }
+
+    fn bad_length(&self, direction: Direction, length: &str, data: &[u8]) -> String {
+        let frame = self.protocol.table.frame();
+        let (layout, has_id) = (frame.layout, frame.has_id(direction));
+        let id = layout.length.read(data).and(layout.id.read(data));
+        let (mut legal, mut names) = (Vec::new(), Vec::new());
+        for (wire, command) in self.protocol.table.commands().iter().zip(&self.commands) {
+            let variants = wire.variants(direction);
+            if variants.is_empty() || id.is_none_or(|id| has_id && wire.id != id) {
+                continue;
+            }
+            legal.extend(
+                variants
+                    .iter()
+                    .map(|each| frame.length(each.size(), direction)),
+            );
+            names.push(command.name.clone());
+        }
+        legal.sort_unstable();
+        legal.dedup();
+        let direction = word(direction);
+        if legal.is_empty() {
+            return text!("no-length"; direction, edition = self.name, length);
+        }
+        let message = match id {
+            // Commands that share an id are all named: the frame does not tell which was called.
+            Some(id) if has_id => {
+                let (id, names) = (digits(id, layout.id.wide), either(names.into_iter()));
+                text!("identified"; direction, id, names)
+            }
+            _ => direction.into(),
+        };
+        let legal = legal
+            .into_iter()
+            .filter_map(|length| u16::try_from(length).ok());
+        let allowed = either(legal.map(|length| digits(length, layout.length.wide)));
+        text!("bad-length"; message, length, allowed)
+    }
+}
+
+impl Part<'_> {
+    fn bad_value<V: Quote>(&self, bad: &BadValue<V>) -> String {
+        let (name, each, fault) = (&self.name.name, self.wire.each, bad.fault);
+        let value = bad.picked.map_or_else(|| bad.value.quote(), Shown::Integer);
+        let size = if each > 0 { each } else { self.numbers.len() };
+        let listed = self.name.sizes.is_some() || each > 0;
+        let encoding = match self.wire.shape {
+            Shape::Text(encoding, _) => Some(encoding),
+            _ => None,
+        };
+        let is_bytes = self.wire.shape == Shape::Bytes;
+        let count = Shown::Integer(value.count(encoding) as i64);
+        let length = format!("len({name})");
+        let indexed = format!("{name}[{}]", bad.element.unwrap_or(0) / size.max(1));
+        let (argument, value, allowed) = match (bad.element, fault) {
+            (None, ValueFault::Count) if listed || is_bytes => (length, count, self.sizes()),
+            (Some(_), _) if encoding.is_some() => (indexed, value, self.text(size)),
+            (None, _) if encoding.is_some() && each > 0 => (name.clone(), value, text!("texts")),
+            (None, _) if encoding.is_some() => (name.clone(), value, self.text(size)),
+            (_, ValueFault::Choice) if self.name.counts.is_some() => {
+                let counted = self.name.counts.as_deref().unwrap_or_default();
+                (format!("len({counted})"), value, self.sizes())
+            }
+            (_, ValueFault::ElementCount) => match value {
+                Shown::List(all) => (indexed, Shown::Tuple(all), self.row(each)),
+                value => (indexed, value, self.row(each)),
+            },
+            (_, ValueFault::ElementType) => (indexed, value, self.row(each)),
+            (None, _) if is_bytes => (name.clone(), value, text!("bytes")),
+            (None, _) if each > 0 => (name.clone(), value, text!("list"; sizes = self.sizes())),
+            // The elements may all be legal; only their number is wrong.
+            (None, ValueFault::Count) => (length, count, self.row(size)),
+            (None, _) if self.wire.many => (name.clone(), value, self.row(size)),
+            (None, _) => (name.clone(), value, self.allowed(0)),
+            (Some(at), _) => (self.element(at), value, self.allowed(at)),
+        };
+        bad_argument(&argument, &value, &allowed)
+    }
+
+    fn named(&self, at: usize) -> Option<&Number> {
+        self.name.number(self.case, at)
+    }
+
+    /// Return the name of a number of the field.
+    fn element(&self, at: usize) -> String {
+        let field = &self.name.name;
+        let number = self.named(at).map_or("", |number| &number.name);
+        match at.checked_div(self.wire.each) {
+            _ if !self.wire.many => field.clone(),
+            Some(index) => format!("{field}[{index}].{number}"),
+            None if number.is_empty() => format!("{field}[{at}]"),
+            None => format!("{field}.{number}"),
+        }
+    }
+
+    /// Return how many elements a list may have.
+    fn sizes(&self) -> String {
+        match self.name.sizes {
+            None => (self.numbers.len() / self.wire.each.max(1)).to_string(),
+            Some((low, high)) if low < high => text!("range"; low, high),
+            Some((_, most)) => most.to_string(),
+        }
+    }
+
+    /// Return what a text may be.
+    fn text(&self, size: usize) -> String {
+        let Shape::Text(encoding, padding) = self.wire.shape else {
+            return String::new();
+        };
+        let encoding = words(encoding).0;
+        match (self.name.sizes, padding) {
+            (Some((low, high)), _) if self.wire.each == 0 => {
+                text!("text-of-sizes"; encoding, sizes = text!("range"; low, high))
+            }
+            (_, None) => text!("text"; encoding, size),
+            (_, Some(byte)) => text!("padded-text"; encoding, size, padding = hex(&[byte], "")),
+        }
+    }
+
+    /// Return what a row of the first numbers is.
+    fn row(&self, count: usize) -> String {
+        let names = (0..count).filter_map(|at| self.named(at));
+        let names: Vec<&str> = names.map(|number| &*number.name).collect();
+        let all = names.iter().all(|name| !name.is_empty());
+        let names = names.join(", ");
+        text!(if all { "named-row" } else { "row" }; count, names)
+    }
+
+    /// Return what a number of the field may be.
+    fn allowed(&self, at: usize) -> String {
+        let Some((number, names)) = self.numbers.get(at).zip(self.named(at)) else {
+            return String::new();
+        };
+        let (labels, choices) = match names.labels.is_empty() {
+            true => (&self.name.labels, &self.wire.choices),
+            false => (&names.labels, &number.choices),
+        };
+        let choice = [&self.wire.choices, &number.choices]
+            .into_iter()
+            .find(|all| !all.is_empty());
+        if self.wire.flag || number.flag {
+            text!("flag")
+        } else if !labels.is_empty() {
+            let pairs = labels.iter().zip(choices);
+            join(pairs.map(|(label, raw)| text!("label"; label, raw)), ", ")
+        } else if let Some(choices) = choice {
+            join(choices.iter().map(i64::to_string), ", ")
+        } else {
+            range(number, &names.unit)
+        }
+    }
+
+    /// Return a status as a person reads it: `NO_POWER (3)`, or `3 (the arm has no power)`.
+    pub(crate) fn status(&self, value: Value) -> String {
+        let Value::Integer(raw) = value else {
+            return Shown::from(value).to_string();
+        };
+        let at = self.wire.choices.iter().position(|choice| *choice == raw);
+        if let Some(label) = at.and_then(|at| self.name.labels.get(at)) {
+            return text!("label"; label, raw);
+        }
+        let mut meanings = self.name.meanings.iter();
+        match meanings.find(|(low, high, _)| (*low..=*high).contains(&raw)) {
+            Some((_, _, meaning)) => {
+                let meaning = meaning.replace("{number}", &raw.to_string());
+                text!("label"; label = raw, raw = meaning)
+            }
+            None => raw.to_string(),
+        }
+    }
+}
+
+/// Return what a number without choices may be.
+fn range(number: &WireNumber, unit: &str) -> String {
+    let infinity = if number.width == 4 {
+        0x7F80_0000
+    } else {
+        0x7FF0_0000_0000_0000
+    };
+    let kind = match number.float {
+        true if number.maximum >= infinity => "any-float",
+        true if (number.minimum, number.maximum) == (-infinity, infinity - 1) => "finite",
+        float if float || number.scaled() => "real",
+        _ => "whole",
+    };
+    let unit = entry(UNITS, unit).unwrap_or(unit);
+    let kind = if unit.is_empty() {
+        kind.into()
+    } else {
+        format!("{kind}-with-unit")
+    };
+    let (low, high) = (bound(number, number.minimum), bound(number, number.maximum));
+    text!(&kind; low, high, width = number.width, unit)
+}
+
+fn bound(number: &WireNumber, raw: i64) -> String {
+    let scaled = i128::from(raw) * i128::from(number.multiply);
+    let divide = i128::from(number.divide);
+    match number.physical(raw) {
+        // The nearest float to a decimal has more digits than anyone wrote; -0.0 is written as 0.
+        Value::Real(real) if number.float => {
+            general(real + 0.0, if number.width == 4 { 6 } else { 15 })
+        }
+        Value::Real(real) if scaled.checked_rem(divide) != Some(0) => shortest(real),
+        Value::Real(_) => (scaled / divide).to_string(),
+        _ => raw.to_string(),
+    }
+}
+
+fn variants(command: &Command, direction: Direction) -> &[Vec<Field>] {
+    match direction {
+        Direction::Request => &command.request,
+        Direction::Reply => &command.reply,
+    }
+}
+
+fn word(direction: Direction) -> &'static str {
+    match direction {
+        Direction::Request => "request",
+        Direction::Reply => "reply",
+    }
+}
+
+/// Return the name of an encoding in a sentence, and in the table.
+fn words(encoding: Encoding) -> (&'static str, &'static str) {
+    match encoding {
+        Encoding::Ascii => ("ASCII", "ascii"),
+        Encoding::Utf8 => ("UTF-8", "utf-8"),
+        Encoding::Latin1 => ("Latin-1", "latin-1"),
+    }
+}
+
+fn digits(number: u16, wide: bool) -> String {
+    format!("{number:0width$X}", width = if wide { 4 } else { 2 })
+}
+
+/// Return runs of consecutive numbers as their ends; short runs stay apart.
+fn runs(numbers: &[u8]) -> String {
+    let runs = numbers.chunk_by(|one, next| one.checked_add(1) == Some(*next));
+    let shown = runs.map(|run| match run {
+        [first, _, _, .., last] => {
+            text!("range"; low = hex(&[*first], ""), high = hex(&[*last], ""))
+        }
+        _ => hex(run, ", "),
+    });
+    join(shown, ", ")
+}

@@ -1,0 +1,164 @@
+//! Values as Python writes them, for the texts of errors.
+
+use alloc::format;
+use alloc::string::{String, ToString};
+use alloc::vec::Vec;
+use core::fmt::{Display, Formatter, Result};
+
+use cobotwire_core::{Encoding, Value};
+
+/// A longer value is cut.
+const MOST: usize = 80;
+
+/// A value as a text shows it.
+#[derive(Clone, Debug, PartialEq)]
+#[allow(missing_docs)] // the names are those of JSON and Rust
+pub enum Shown {
+    Flag(bool),
+    Integer(i64),
+    Real(f64),
+    Text(String),
+    Bytes(Vec<u8>),
+    /// Values in square brackets.
+    List(Vec<Shown>),
+    /// Values in parentheses.
+    Tuple(Vec<Shown>),
+    /// Anything else, as it is to be written.
+    Other(String),
+}
+
+/// A value of a caller that an error can be about.
+pub trait Quote {
+    /// Return it as a text shows it.
+    fn quote(&self) -> Shown;
+}
+
+impl From<Value> for Shown {
+    fn from(value: Value) -> Self {
+        match value {
+            Value::Real(real) => Self::Real(real),
+            Value::Integer(raw) => Self::Integer(raw),
+            _ => Self::Tuple(Vec::new()),
+        }
+    }
+}
+
+impl Shown {
+    /// Return its length: of a text, in bytes of an encoding.
+    pub(crate) fn count(&self, encoding: Option<Encoding>) -> usize {
+        match self {
+            Self::List(all) | Self::Tuple(all) => all.len(),
+            Self::Bytes(bytes) => bytes.len(),
+            Self::Text(text) if encoding == Some(Encoding::Utf8) => text.len(),
+            Self::Text(text) => text.chars().count(),
+            _ => 0,
+        }
+    }
+
+    /// Return it, cut if it is long.
+    pub(crate) fn short(&self) -> String {
+        let text = self.to_string();
+        match text.char_indices().nth(MOST) {
+            None => text,
+            Some(_) => text.chars().take(MOST - 3).chain("...".chars()).collect(),
+        }
+    }
+}
+
+impl Display for Shown {
+    fn fmt(&self, out: &mut Formatter<'_>) -> Result {
+        let joined = |all: &[Self]| join(all.iter().map(Self::to_string), ", ");
+        match self {
+            Self::Flag(flag) => out.write_str(if *flag { "True" } else { "False" }),
+            Self::Integer(integer) => integer.fmt(out),
+            Self::Real(real) => out.write_str(&shortest(*real)),
+            Self::Text(text) => out.write_str(&quoted(text, is_printable)),
+            Self::Bytes(bytes) => {
+                let text: String = bytes.iter().copied().map(char::from).collect();
+                write!(
+                    out,
+                    "b{}",
+                    quoted(&text, |char| (' '..='~').contains(&char))
+                )
+            }
+            Self::List(all) => write!(out, "[{}]", joined(all)),
+            Self::Tuple(all) if all.len() == 1 => write!(out, "({},)", joined(all)),
+            Self::Tuple(all) => write!(out, "({})", joined(all)),
+            Self::Other(text) => out.write_str(text),
+        }
+    }
+}
+
+pub(crate) fn join(all: impl Iterator<Item = String>, between: &str) -> String {
+    all.collect::<Vec<_>>().join(between)
+}
+
+/// Return the shortest decimal that reads back as the same double.
+pub(crate) fn shortest(real: f64) -> String {
+    let text = format!("{real:?}");
+    match text.split_once('e') {
+        Some((mantissa, exponent)) => with_exponent(mantissa, exponent),
+        None if real.is_nan() => "nan".into(),
+        None => text,
+    }
+}
+
+/// Return a real number with that many digits, without trailing zeros: `{:g}` in Python.
+#[must_use]
+pub fn general(real: f64, digits: usize) -> String {
+    let text = format!("{real:.*e}", digits.saturating_sub(1));
+    let Some((mantissa, exponent)) = text.split_once('e') else {
+        return shortest(real);
+    };
+    let trimmed = |text: &str| match text.contains('.') {
+        true => text.trim_end_matches('0').trim_end_matches('.').into(),
+        false => String::from(text),
+    };
+    let size: i64 = exponent.parse().unwrap_or_default();
+    match usize::try_from(digits as i64 - 1 - size) {
+        Ok(places) if size >= -4 => trimmed(&format!("{real:.places$}")),
+        _ => with_exponent(&trimmed(mantissa), exponent),
+    }
+}
+
+/// Return an exponent with its sign and at least two digits.
+fn with_exponent(mantissa: &str, exponent: &str) -> String {
+    let digits = exponent.trim_start_matches('-');
+    let sign = if digits == exponent { '+' } else { '-' };
+    format!("{mantissa}e{sign}{digits:0>2}")
+}
+
+/// Return a text in quotes, with an escape for each character that is not `kept`.
+pub(crate) fn quoted(text: &str, kept: impl Fn(char) -> bool) -> String {
+    let double = text.contains('\'') && !text.contains('"');
+    let quote = if double { '"' } else { '\'' };
+    let inner = text.chars().map(|char| match char {
+        '\\' => "\\\\".into(),
+        _ if char == quote => format!("\\{char}"),
+        _ => escaped(char, kept(char)),
+    });
+    format!("{quote}{}{quote}", inner.collect::<String>())
+}
+
+/// Return a text with an escape for each character that is not printable.
+pub(crate) fn printable(text: &str) -> String {
+    let all = text.chars();
+    all.map(|char| escaped(char, is_printable(char))).collect()
+}
+
+/// Return whether a character is printable. The standard library escapes the others where it shows
+/// a text; of the first character it escapes more.
+pub(crate) fn is_printable(char: char) -> bool {
+    let text: String = ['a', char].iter().collect();
+    matches!(char, '\'' | '"' | '\\') || text.escape_debug().nth(1) == Some(char)
+}
+
+fn escaped(char: char, kept: bool) -> String {
+    match (char, u32::from(char)) {
+        _ if kept => char.into(),
+        ('\n' | '\r' | '\t', _) => char.escape_default().collect(),
+        (_, code @ ..0x100) => format!("\\x{code:02x}"),
+        (_, code @ ..0x1_0000) => format!("\\u{code:04x}"),
+        (_, code) => format!("\\U{code:08x}"),
+    }
+}
