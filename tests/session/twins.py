@@ -15,6 +15,7 @@ from typing import Any, NamedTuple, Self
 from unittest.mock import patch
 
 from cobotwire.codec.interface import Codec, DecodedMessage, Frame, Noise
+from cobotwire.protocol.error_texts import error_text
 from cobotwire.protocol.errors import LinkError, ProtocolError, ReplyTimeout, RequestRefused
 from cobotwire.protocol.table import _word
 from cobotwire.session import (
@@ -36,7 +37,6 @@ from cobotwire.session import (
     text,
 )
 from cobotwire.session.alignment import Alignment
-from cobotwire.session.exchange import NOT_SENT
 from cobotwire.session.outstanding import PersistedState
 
 METHODS = (
@@ -334,7 +334,7 @@ class Recorder:
             "frame": "frame",
         }
         if kind == "unread":
-            return NOT_SENT
+            return error_text("too-much")
         return f"{what[kind]} {bytes.fromhex(shown).hex(' ').upper()}{rest}"
 
 
