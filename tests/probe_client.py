@@ -7,8 +7,11 @@ number; the answer has the same number, and the times at which the Rust client b
 from __future__ import annotations
 
 import json
+import os
+import signal
 import subprocess
 import threading
+import time
 from collections.abc import Callable, Sequence
 from concurrent.futures import CancelledError, Future
 from importlib import import_module
@@ -86,10 +89,6 @@ class ProbeClient:
         """Close the client; calls in other threads end with an error."""
         self._control(close=True)
 
-    def hold(self, held: bool) -> None:
-        """Let no write begin; return when none is under way."""
-        self._control(hold=held)
-
     def cancelled_after(self, seconds: float, name: str) -> Callable[..., Any]:
         """Return a method whose task is cancelled after some seconds."""
 
@@ -160,17 +159,27 @@ class ProbeClient:
             answer.set_exception(RuntimeError("the probe's process ended"))
 
 
-class Held:
-    """Hold the writes of a client back while a ``with`` block runs."""
+class Stopped:
+    """Stops a process while a ``with`` block runs, so that it writes nothing.
 
-    def __init__(self, client: ProbeClient) -> None:
-        self._client = client
+    Attributes:
+        times: when it ran again, and for how many seconds it had been stopped.
+    """
+
+    def __init__(self, process: int) -> None:
+        self.times: list[tuple[float, float]] = []
+        self._process = process
+        self._began = 0.0
 
     def __enter__(self) -> None:
-        self._client.hold(True)
+        self._began = time.monotonic()
+        os.kill(self._process, signal.SIGSTOP)
+        os.waitid(os.P_PID, self._process, os.WSTOPPED)
 
     def __exit__(self, *raised: object) -> None:
-        self._client.hold(False)
+        os.kill(self._process, signal.SIGCONT)
+        now = time.monotonic()
+        self.times.append((now, now - self._began))
 
 
 def _raise_error(answer: JSON) -> None:
@@ -184,5 +193,4 @@ def _raise_error(answer: JSON) -> None:
     # Our constructors take the data of an error; the answer has its text.
     error = kind.__new__(kind)
     error.args = (answer["text"],)
-    error.attempts, error.written = answer.get("attempts"), answer.get("written")
     raise error

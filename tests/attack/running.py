@@ -53,7 +53,7 @@ def attack(chosen: Plan, change: Callable[[Any], Any] | None = None) -> Tally:
         # Its calls are not known; at least one of them was lost.
         counts = Counter(calls=1, lost=1)
         return Tally(chosen.profile.name, counts, failures=[f"{chosen}\n{failed}"])
-    stalls = [meter.late, ptys.late, line.stalls, *machine.stops.values()]
+    stalls = [meter.late, ptys.late, line.stalls, setting.stops, *machine.stops.values()]
     return Validator(Scene(setting, line, peer, stalls)).validate()
 
 

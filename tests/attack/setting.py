@@ -15,7 +15,7 @@ from cobotwire import LinkError, ProtocolError, ReplyTimeout, RetryPolicy
 from cobotwire import codec as codecs
 from cobotwire.protocol.table import Table
 from cobotwire.transport.descriptor import WRITE_SECONDS
-from probe_client import Held, ProbeClient
+from probe_client import ProbeClient, Stopped
 
 CLASSES = {
     ("mycobot280", "blocking"): "MyCobot280",
@@ -36,6 +36,7 @@ class Setting:
         longest: seconds that a call can take by its rules, the wait for its turn included.
         options: the arguments of the clients.
         processes: where the ids of the processes that clients start are written down.
+        stops: when the run had stopped such a process, and for how many seconds.
     """
 
     def __init__(self, plan: Plan, url: str) -> None:
@@ -46,11 +47,10 @@ class Setting:
         self.flooding = False
         self.flood = ""
         self.processes: list[str] = []
+        self.stops: list[tuple[float, float]] = []
         edition = import_module(f"cobotwire.editions.{plan.edition}")
         self.client: Any = (
-            self._open_probe
-            if plan.rust
-            else getattr(edition, CLASSES[plan.edition, plan.client])
+            self._open_probe if plan.rust else getattr(edition, CLASSES[plan.edition, plan.client])
         )
         self.table = table_of(plan)
         self.baudrate = self.table.baudrate
@@ -70,7 +70,6 @@ class Setting:
 
     def _open_probe(self) -> ProbeClient:
         """Start a Rust client in a process, whose writes and times are recorded."""
-        policy = {name: getattr(self.retry, name) for name in ("attempts", "shortest_attempt", "grace")}
         client = ProbeClient(
             self.url,
             self.plan.edition,
@@ -80,10 +79,13 @@ class Setting:
             small=self.plan.profile.stalls,
             timeout=self.plan.timeout,
             deadline=self.plan.deadline,
-            **policy,
+            attempts=self.plan.attempts,
+            shortest_attempt=self.retry.shortest_attempt,
+            grace=self.plan.grace,
         )
         self.processes.append(str(client.process.pid))
-        self.record.filling = Held(client)
+        stopped = self.record.filling = Stopped(client.process.pid)
+        self.stops = stopped.times
         return client
 
     def draw(self, random: Random) -> Drawn:

@@ -11,8 +11,8 @@ from typing import Any, NamedTuple
 from both_ways import InLoop
 from cobotwire import CobotwireError
 from cobotwire.editions.mycobot280 import AsyncMyCobot280, MyCobot280
-from probe_client import ProbeClient
 from field_notes.case import DONE, Call, Case
+from probe_client import ProbeClient
 
 RIGHT, WRONG = "right", "wrong, silently"
 

@@ -6,5 +6,5 @@ fn main() -> Result<(), cobotwire::Error> {
     arm.power_on()?;
     arm.send_angles([0.0, -20.0, 30.0, 0.0, 10.0, 0.0], 80)?; // degrees, percent
     println!("{:?}", arm.get_angles()?);
-    Ok(arm.close())
+    arm.close()
 }

@@ -57,6 +57,5 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let (floor, call) = (middle(&floors), middle(&calls));
     let ratio = call.as_secs_f64() / floor.as_secs_f64();
     println!("bare {floor:?}, call {call:?}, ratio {ratio:.2}");
-    arm.close();
-    Ok(())
+    Ok(arm.close()?)
 }

@@ -11,7 +11,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let arm = AsyncMyCobot280::open(&port).await?;
         let mut samples = arm.poll(GetAngles {}, 20.0)?;
         for _ in 0..5 {
-            println!("{:?}", samples.next().await?.value);
+            println!(
+                "{:?}",
+                samples.next().await.transpose()?.map(|sample| sample.value)
+            );
         }
         println!("{} missed", samples.missed());
         arm.close().await;

@@ -12,12 +12,12 @@ use tokio::net::TcpStream;
 use tokio::sync::mpsc::{UnboundedReceiver, UnboundedSender, unbounded_channel};
 use tokio::sync::{Notify, oneshot};
 
-use crate::encoder::{Handle, Named, Outcome, Polling, Prepared, handle_methods, result};
+use crate::encoder::{Handle, Named, Outcome, Prepared, client_methods, result};
 use crate::options::{Settings, nanos};
 use crate::port::{CONNECT, socket_of};
 use crate::session::{Outgoing, Queue, Session};
 use crate::typed::{DeviceEvent, Request, Table};
-use crate::{Address, Error, Options, Sample, Value, lock};
+use crate::{Error, Events, Options, Polls, Sample, Value, lock};
 
 /// A stream of bytes to a device.
 pub trait ByteStream: AsyncRead + AsyncWrite + Send + Unpin + 'static {}
@@ -54,13 +54,10 @@ struct Shared {
     begun: Instant,
 }
 
-handle_methods!(AsyncClient);
+client_methods!(AsyncClient [async] [.await]);
 
 impl AsyncClient {
     /// Connect to `socket://host:port`.
-    ///
-    /// # Errors
-    /// The address or an option is not allowed, or nobody listens there.
     pub async fn open(edition: Table, port: &str, options: Options) -> Result<Self, Error> {
         let Some(address) = socket_of(port) else {
             let text = format!("{port} is not socket://host:port; pass other streams to over()");
@@ -75,9 +72,6 @@ impl AsyncClient {
     }
 
     /// Drive an arm over an open stream of bytes; a task of the present runtime serves it.
-    ///
-    /// # Errors
-    /// An option is not allowed, or no runtime is entered.
     pub fn over(edition: Table, stream: impl ByteStream, options: Options) -> Result<Self, Error> {
         let name = options.port_name.clone();
         Self::with(edition, stream, name.as_deref(), options)
@@ -128,60 +122,8 @@ impl AsyncClient {
         let _ = closed.await;
     }
 
-    /// Send a request; return the result of its reply, if it has one.
-    ///
-    /// # Errors
-    /// An argument is not allowed, the stream is lost, or the reply is illegal or missing.
-    pub async fn call<R: Request>(&self, request: R) -> Result<R::Reply, Error> {
-        let prepared = self.handle.prepare(request)?;
-        self.handle
-            .result::<R>(&prepared, self.perform(&prepared).await?)
-    }
-
-    /// Send a request by the name of its command; return the fields of its reply.
-    ///
-    /// # Errors
-    /// As [`Self::call`].
-    pub async fn call_named(
-        &self,
-        command: &str,
-        arguments: &[(&str, Value)],
-    ) -> Result<Named, Error> {
-        let prepared = self.handle.prepare_named(command, arguments)?;
-        Ok(self
-            .handle
-            .encoder
-            .fields(&prepared, self.perform(&prepared).await?))
-    }
-
-    /// Return a source of samples of a query, `rate` times a second; see `Client::poll`.
-    ///
-    /// # Errors
-    /// The request is no query, an argument is not allowed, or the rate is not above 0 and up to
-    /// 1000.
-    pub fn poll<R: Request>(&self, request: R, rate: f64) -> Result<AsyncPolls<R>, Error> {
-        let polling = self.handle.polling(request, rate)?;
-        let mut client = self.clone();
-        client.handle.settings.retry.attempts = 1;
-        Ok(AsyncPolls {
-            client,
-            polling,
-            reply: PhantomData,
-        })
-    }
-
-    /// Return a source of the events of a type that come from now on.
-    ///
-    /// # Errors
-    /// The edition has no such event.
-    pub fn events<E: DeviceEvent>(&self) -> Result<AsyncEvents<E>, Error> {
-        let queue = Queue::new(self.handle.encoder.command(E::COMMAND)?);
+    fn subscribe(&self, queue: &Arc<Mutex<Queue>>) {
         let _ = self.shared.orders.send(Order::Subscribe(queue.clone()));
-        Ok(AsyncEvents {
-            client: self.clone(),
-            queue,
-            event: PhantomData,
-        })
     }
 
     async fn perform(&self, prepared: &Prepared) -> Outcome {
@@ -214,65 +156,30 @@ impl Drop for Call<'_> {
     }
 }
 
-/// The samples of a query; see [`AsyncClient::poll`].
-pub struct AsyncPolls<R> {
-    client: AsyncClient,
-    polling: Polling,
-    reply: PhantomData<fn() -> R>,
-}
-
-impl<R: Request> AsyncPolls<R> {
-    /// Return how many periods have had no sample.
-    #[must_use]
-    pub fn missed(&self) -> u64 {
-        self.polling.missed
-    }
-
-    /// Wait for the next sample.
-    ///
-    /// # Errors
-    /// The stream is lost.
-    pub async fn next(&mut self) -> Result<Sample<R::Reply>, Error> {
-        loop {
+impl<R: Request> Polls<R, AsyncClient> {
+    /// Wait for the next sample; after an error there is none.
+    pub async fn next(&mut self) -> Option<Result<Sample<R::Reply>, Error>> {
+        while !self.polling.ended {
             let at = self.polling.tick();
             tokio::time::sleep_until(at.into()).await;
-            let requested_at = Instant::now();
-            let prepared = &self.polling.prepared;
-            let answer = self.client.perform(prepared).await;
-            match answer.and_then(|each| self.client.handle.result::<R>(prepared, each)) {
-                Ok(value) => {
-                    return Ok(Sample {
-                        value,
-                        requested_at,
-                        replied_at: Instant::now(),
-                    });
-                }
-                Err(error @ Error::LinkError { .. }) => return Err(error),
-                Err(_) => self.polling.missed += 1,
+            let answer = self.client.perform(&self.polling.prepared).await;
+            let sample = self.polling.sample::<R>(&self.client.handle, answer);
+            if sample.is_some() {
+                return sample;
             }
         }
+        None
     }
 }
 
-/// Events of one type; see [`AsyncClient::events`].
-pub struct AsyncEvents<E> {
-    client: AsyncClient,
-    queue: Arc<Mutex<Queue>>,
-    event: PhantomData<fn() -> E>,
-}
-
-impl<E: DeviceEvent> AsyncEvents<E> {
-    /// Return how many events were dropped because too many waited: always the oldest.
-    #[must_use]
-    pub fn lost(&self) -> u64 {
-        lock(&self.queue).lost
+impl<E: DeviceEvent> Events<E, AsyncClient> {
+    /// Wait for the next event; there is none if the time is over.
+    pub async fn next(&mut self) -> Option<Result<E, Error>> {
+        let longest = self.timeout.unwrap_or(crate::FOREVER);
+        tokio::time::timeout(longest, self.received()).await.ok()
     }
 
-    /// Wait for the next event.
-    ///
-    /// # Errors
-    /// The stream is lost, and no event waits.
-    pub async fn next(&mut self) -> Result<E, Error> {
+    async fn received(&self) -> Result<E, Error> {
         loop {
             // Before the queue is read, so that no event is overlooked.
             let arrived = self.client.shared.arrived.notified();

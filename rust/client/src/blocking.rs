@@ -8,11 +8,11 @@ use std::time::{Duration, Instant};
 
 use cobotwire_core::exchange::{Answer, Ticket};
 
-use crate::encoder::{Handle, Named, Outcome, Polling, Prepared, handle_methods, result};
+use crate::encoder::{Handle, Named, Outcome, Polling, Prepared, client_methods, result};
 use crate::port::{self, Port};
 use crate::session::{Outgoing, Queue, Session};
 use crate::typed::{DeviceEvent, Request, Table};
-use crate::{Address, Error, Options, Sample, Value, lock};
+use crate::{Error, Options, Sample, Value, lock};
 
 /// The longest that a thread reads before it checks whether others have something to do.
 const SLICE: Duration = Duration::from_millis(20);
@@ -37,22 +37,16 @@ struct Shared {
     waiting: AtomicUsize,
 }
 
-handle_methods!(Client);
+client_methods!(Client [] []);
 
 impl Client {
     /// Open a port: that of a serial line, or `socket://host:port`.
-    ///
-    /// # Errors
-    /// The port or an option is not allowed, or the port cannot be opened.
     pub fn open(edition: Table, port: &str, options: Options) -> Result<Self, Error> {
         let opened = port::open(port, options.baudrate.unwrap_or(edition.baudrate))?;
         Self::with(edition, opened, Some(port), options)
     }
 
     /// Drive an arm over an open port.
-    ///
-    /// # Errors
-    /// An option is not allowed.
     pub fn over(
         edition: Table,
         port: impl Port + 'static,
@@ -73,6 +67,7 @@ impl Client {
             session: Session::new(handle.encoder.clone(), url, options.on_drop),
             port: Some(port),
             limit: None,
+            writing: false,
             buffer: vec![0; 4096],
         });
         let waiting = AtomicUsize::new(0);
@@ -85,69 +80,27 @@ impl Client {
         })
     }
 
-    /// Close the port. Nothing is sent to the arm; calls of other threads end with a `LinkError`.
-    pub fn close(&self) {
+    /// Close the port when what was written is sent. Nothing more is sent to the arm; calls of other
+    /// threads end with a `LinkError`. Closing twice is harmless.
+    pub fn close(&self) -> Result<(), Error> {
         let mut connection = self.connection();
-        connection.port = None;
+        let flushed = connection
+            .port
+            .take()
+            .map_or(Ok(()), |mut port| port.flush());
+        while connection.writing {
+            connection = self.leave(connection);
+        }
         connection.session.close();
-    }
-
-    /// Send a request; return the result of its reply, if it has one.
-    ///
-    /// # Errors
-    /// An argument is not allowed, the port is lost, or the reply is illegal or missing.
-    pub fn call<R: Request>(&self, request: R) -> Result<R::Reply, Error> {
-        let prepared = self.handle.prepare(request)?;
-        self.handle.result::<R>(&prepared, self.perform(&prepared)?)
-    }
-
-    /// Send a request by the name of its command; return the fields of its reply.
-    ///
-    /// # Errors
-    /// As [`Self::call`].
-    pub fn call_named(&self, command: &str, arguments: &[(&str, Value)]) -> Result<Named, Error> {
-        let prepared = self.handle.prepare_named(command, arguments)?;
-        Ok(self
-            .handle
-            .encoder
-            .fields(&prepared, self.perform(&prepared)?))
-    }
-
-    /// Return an iterator that samples a query `rate` times a second.
-    ///
-    /// A request is sent only when the loop wants a sample, and not again within its period. A
-    /// period without a reply has no sample; [`Polls::missed`] counts such periods, and those for
-    /// which the loop came too late.
-    ///
-    /// # Errors
-    /// The request is no query, an argument is not allowed, or the rate is not above 0 and up to
-    /// 1000.
-    pub fn poll<R: Request>(&self, request: R, rate: f64) -> Result<Polls<R>, Error> {
-        let polling = self.handle.polling(request, rate)?;
-        let mut client = self.clone();
-        client.handle.settings.retry.attempts = 1;
-        Ok(Polls {
-            client,
-            polling,
-            ended: false,
-            reply: PhantomData,
+        flushed.map_err(|error| {
+            connection
+                .session
+                .lose(&format!("cannot be written: {error}"))
         })
     }
 
-    /// Return an iterator over the events of a type that come from now on. It ends if none comes
-    /// within `timeout`.
-    ///
-    /// # Errors
-    /// The edition has no such event.
-    pub fn events<E: DeviceEvent>(&self, timeout: Option<Duration>) -> Result<Events<E>, Error> {
-        let queue = Queue::new(self.handle.encoder.command(E::COMMAND)?);
-        self.connection().session.subscribe(&queue);
-        Ok(Events {
-            client: self.clone(),
-            queue,
-            timeout,
-            event: PhantomData,
-        })
+    fn subscribe(&self, queue: &Arc<Mutex<Queue>>) {
+        self.connection().session.subscribe(queue);
     }
 
     /// Return the connection as soon as no other thread has it.
@@ -166,16 +119,19 @@ impl Client {
             crate::options::nanos(called.saturating_duration_since(connection.session.begun));
         if prepared.awaits_reply {
             let ticket = connection.session.enqueue(prepared, settings, called_at);
-            let sent = connection.turn(Duration::ZERO);
+            let (connection, sent) = self.turn(connection, Duration::ZERO);
             return self.wait(connection, ticket, prepared, sent).map(Some);
         }
-        while connection.session.has_time(settings, called_at) && !connection.has_room() {
-            drop(connection);
-            std::thread::sleep(TURN);
-            connection = self.connection();
+        loop {
+            let has_time = connection.session.has_time(settings, called_at);
+            let waits_for_writer = connection.writing && (has_time || settings.deadline.is_none());
+            if !waits_for_writer && (!has_time || connection.has_room()) {
+                break;
+            }
+            connection = self.leave(connection);
         }
         let (outgoing, ticket) = connection.session.one_way(prepared, settings, called_at)?;
-        let written = connection.write(&outgoing);
+        let (mut connection, written) = self.write(connection, &outgoing);
         if let Some(ticket) = ticket {
             return self.wait(connection, ticket, prepared, written).map(Some);
         }
@@ -201,14 +157,58 @@ impl Client {
                 return Err(error);
             }
             if self.shared.waiting.load(Ordering::SeqCst) > 0 {
-                drop(connection);
-                std::thread::sleep(TURN);
-                connection = self.connection();
+                connection = self.leave(connection);
                 last = Ok(());
                 continue;
             }
-            last = connection.turn(SLICE);
+            (connection, last) = self.turn(connection, SLICE);
         }
+    }
+
+    /// Leave the connection to other threads for a moment.
+    fn leave<'a>(&'a self, connection: MutexGuard<'a, Connection>) -> MutexGuard<'a, Connection> {
+        drop(connection);
+        std::thread::sleep(TURN);
+        self.connection()
+    }
+
+    /// Read once, let time pass, and send the request that is next.
+    fn turn<'a>(
+        &'a self,
+        mut connection: MutexGuard<'a, Connection>,
+        longest: Duration,
+    ) -> (MutexGuard<'a, Connection>, Result<(), Error>) {
+        match connection.turn(longest) {
+            Ok(Some(outgoing)) => self.write(connection, &outgoing),
+            Ok(None) => (connection, Ok(())),
+            Err(error) => (connection, Err(error)),
+        }
+    }
+
+    /// Write a request whole, within its time. Other threads read while the line takes no bytes.
+    fn write<'a>(
+        &'a self,
+        mut connection: MutexGuard<'a, Connection>,
+        outgoing: &Outgoing,
+    ) -> (MutexGuard<'a, Connection>, Result<(), Error>) {
+        let bytes = outgoing.bytes();
+        let (mut taken, mut fault) = (0, None);
+        connection.writing = true;
+        while let Some(rest) = bytes.get(taken..).filter(|rest| !rest.is_empty()) {
+            let port = connection.port(Duration::ZERO);
+            match port.and_then(|port| port.write(rest)) {
+                Ok(size) if size > 0 => taken += size,
+                Err(error) if !is_wait(&error) => {
+                    fault = Some(error);
+                    break;
+                }
+                _ if Instant::now() >= outgoing.until => break,
+                _ => connection = self.leave(connection),
+            }
+        }
+        connection.writing = false;
+        let written = connection.session.wrote(outgoing, taken, fault.as_ref());
+        (connection, written)
     }
 
     /// Read what comes without a request for some time, or until `done`.
@@ -216,8 +216,7 @@ impl Client {
         let until = Instant::now() + longest;
         while !done() && Instant::now() < until {
             let left = until.saturating_duration_since(Instant::now());
-            let outcome = self.connection().turn(left.min(SLICE));
-            outcome?;
+            self.turn(self.connection(), left.min(SLICE)).1?;
             if self.shared.waiting.load(Ordering::SeqCst) > 0 {
                 std::thread::sleep(TURN);
             }
@@ -227,14 +226,13 @@ impl Client {
 }
 
 /// The samples of a query; see [`Client::poll`].
-pub struct Polls<R> {
-    client: Client,
-    polling: Polling,
-    ended: bool,
-    reply: PhantomData<fn() -> R>,
+pub struct Polls<R, C = Client> {
+    pub(crate) client: C,
+    pub(crate) polling: Polling,
+    pub(crate) reply: PhantomData<fn() -> R>,
 }
 
-impl<R> Polls<R> {
+impl<R, C> Polls<R, C> {
     /// Return how many periods have had no sample.
     #[must_use]
     pub fn missed(&self) -> u64 {
@@ -246,26 +244,13 @@ impl<R: Request> Iterator for Polls<R> {
     type Item = Result<Sample<R::Reply>, Error>;
 
     fn next(&mut self) -> Option<Self::Item> {
-        while !self.ended {
+        while !self.polling.ended {
             let at = self.polling.tick();
             std::thread::sleep(at.saturating_duration_since(Instant::now()));
-            let requested_at = Instant::now();
-            let prepared = &self.polling.prepared;
-            let answer = self.client.perform(prepared);
-            let value = answer.and_then(|each| self.client.handle.result::<R>(prepared, each));
-            match value {
-                Ok(value) => {
-                    return Some(Ok(Sample {
-                        value,
-                        requested_at,
-                        replied_at: Instant::now(),
-                    }));
-                }
-                Err(error @ Error::LinkError { .. }) => {
-                    self.ended = true;
-                    return Some(Err(error));
-                }
-                Err(_) => self.polling.missed += 1,
+            let answer = self.client.perform(&self.polling.prepared);
+            let sample = self.polling.sample::<R>(&self.client.handle, answer);
+            if sample.is_some() {
+                return sample;
             }
         }
         None
@@ -273,14 +258,14 @@ impl<R: Request> Iterator for Polls<R> {
 }
 
 /// Events of one type; see [`Client::events`].
-pub struct Events<E> {
-    client: Client,
-    queue: Arc<Mutex<Queue>>,
-    timeout: Option<Duration>,
-    event: PhantomData<fn() -> E>,
+pub struct Events<E, C = Client> {
+    pub(crate) client: C,
+    pub(crate) queue: Arc<Mutex<Queue>>,
+    pub(crate) timeout: Option<Duration>,
+    pub(crate) event: PhantomData<fn() -> E>,
 }
 
-impl<E> Events<E> {
+impl<E, C> Events<E, C> {
     /// Return how many events were dropped because too many waited: always the oldest.
     #[must_use]
     pub fn lost(&self) -> u64 {
@@ -292,19 +277,12 @@ impl<E: DeviceEvent> Iterator for Events<E> {
     type Item = Result<E, Error>;
 
     fn next(&mut self) -> Option<Self::Item> {
-        let longest = self.timeout.unwrap_or(Duration::from_secs(3600));
-        loop {
-            let listened = self
-                .client
-                .listen(longest, || !lock(&self.queue).events.is_empty());
-            let event = lock(&self.queue).events.pop_front();
-            match (event, listened) {
-                (Some(fields), _) => return Some(result(fields, (E::FIELDS, false), &[])),
-                (None, Err(error)) => return Some(Err(error)),
-                (None, Ok(())) if self.timeout.is_some() => return None,
-                (None, Ok(())) => {}
-            }
-        }
+        let longest = self.timeout.unwrap_or(crate::FOREVER);
+        let waits = || !lock(&self.queue).events.is_empty();
+        let listened = self.client.listen(longest, waits);
+        let event = lock(&self.queue).events.pop_front();
+        let event = event.map(|fields| result(fields, (E::FIELDS, false), &[]));
+        event.or_else(|| listened.err().map(Err))
     }
 }
 
@@ -315,25 +293,26 @@ struct Connection {
     port: Option<Box<dyn Port>>,
     /// The limit that the port has.
     limit: Option<Duration>,
+    /// Whether a thread is writing; it leaves the connection to others while the line is full.
+    writing: bool,
     buffer: Vec<u8>,
 }
 
 impl Connection {
-    /// Read once, let time pass, and send the request that is next.
-    fn turn(&mut self, longest: Duration) -> Result<(), Error> {
+    /// Read once, and let time pass; return the request that is to be sent.
+    fn turn(&mut self, longest: Duration) -> Result<Option<Outgoing>, Error> {
         let idle = self.session.idle().unwrap_or(longest);
         let size = self.read(longest.min(idle))?;
         let data = self.buffer.get(..size).unwrap_or_default();
         if self.session.advance(data) {
-            let full = self.session.has_deadline() && !self.has_room();
+            let full = self.writing || self.session.has_deadline() && !self.has_room();
             self.session.exchange.note_full(full);
-            if full {
-                std::thread::sleep(TURN);
-            } else if let Some(outgoing) = self.session.next(size == 0) {
-                self.write(&outgoing)?;
+            if !full {
+                return Ok(self.session.next(size == 0));
             }
+            std::thread::sleep(TURN);
         }
-        Ok(())
+        Ok(None)
     }
 
     /// Read received bytes, so that no buffer overflows while only one-way requests are sent.
@@ -378,24 +357,6 @@ impl Connection {
             Err(error) if is_wait(&error) => Ok(0),
             Err(error) => Err(self.session.lose(&format!("cannot be read: {error}"))),
         }
-    }
-
-    /// Write a request whole, within its time.
-    fn write(&mut self, outgoing: &Outgoing) -> Result<(), Error> {
-        let bytes = outgoing.bytes();
-        let (mut taken, mut fault) = (0, None);
-        while let Some(rest) = bytes.get(taken..).filter(|rest| !rest.is_empty()) {
-            match self.port(Duration::ZERO).and_then(|port| port.write(rest)) {
-                Ok(size) if size > 0 => taken += size,
-                Err(error) if !is_wait(&error) => {
-                    fault = Some(error);
-                    break;
-                }
-                _ if Instant::now() >= outgoing.until => break,
-                _ => std::thread::sleep(TURN),
-            }
-        }
-        self.session.wrote(outgoing, taken, fault.as_ref())
     }
 }
 

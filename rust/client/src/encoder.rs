@@ -8,10 +8,10 @@ use cobotwire_core::exchange::{Answer, Failure, Replier, Request as Encoded, Saf
 use cobotwire_core::{Decoded, Direction, decode};
 use cobotwire_table::{Quote, Shown, as_call, bad_argument};
 
-use crate::limits::{Limits, Workspace, refusals};
-use crate::options::Settings;
+use crate::limits::{Limits, refusals};
+use crate::options::{Settings, find_address};
 use crate::typed::{Request, Table, Typed, plain};
-use crate::{Address, Error, Options, Value};
+use crate::{Error, Options, Sample, Value};
 
 /// The values of a message with their names.
 pub(crate) type Named = Vec<(String, Value)>;
@@ -34,7 +34,6 @@ pub(crate) struct Encoder {
     commands: HashMap<String, usize>,
     /// The commands that could exceed the limits whatever their arguments are, and why.
     refused: HashMap<usize, String>,
-    workspace: Option<Workspace>,
 }
 
 impl Encoder {
@@ -46,7 +45,6 @@ impl Encoder {
                 .map(|(index, each)| (each.name.clone(), index))
                 .collect(),
             refused: refusals(&edition, limits),
-            workspace: limits.workspace_of(&edition),
             edition,
         })
     }
@@ -94,9 +92,6 @@ impl Encoder {
             let given = (count, &*texts, address);
             Error::usage(self.edition.request_error(command, &error, given))
         })?;
-        if let Some(workspace) = &self.workspace {
-            workspace.check(self, &request)?;
-        }
         let awaits_reply = facts.is_some_and(|each| each.requires_reply() || each.text.is_some());
         Ok(Prepared {
             request,
@@ -225,8 +220,8 @@ impl Handle {
         Ok(Self { encoder, settings })
     }
 
-    pub fn at(mut self, address: Address) -> Result<Self, Error> {
-        self.settings.address = Some(address.find(&self.encoder.edition)?);
+    pub fn at(mut self, address: &str) -> Result<Self, Error> {
+        self.settings.address = Some(find_address(&self.encoder.edition, address)?);
         Ok(self)
     }
 
@@ -283,6 +278,7 @@ impl Handle {
             period,
             next: None,
             missed: 0,
+            ended: false,
         })
     }
 }
@@ -293,9 +289,32 @@ pub(crate) struct Polling {
     period: Duration,
     next: Option<Instant>,
     pub missed: u64,
+    pub ended: bool,
 }
 
 impl Polling {
+    /// Return the sample of a period, or the error that ends the stream; a period may have neither.
+    pub fn sample<R: Request>(
+        &mut self,
+        handle: &Handle,
+        answer: Outcome,
+    ) -> Option<Result<Sample<R::Reply>, Error>> {
+        let times = answer.as_ref().ok().and_then(Option::as_ref);
+        let times = times.map_or((0, 0), |answer| (answer.requested_at, answer.replied_at));
+        let value = answer.and_then(|answer| handle.result::<R>(&self.prepared, answer));
+        self.ended = matches!(value, Err(Error::LinkError { .. }));
+        if value.is_err() && !self.ended {
+            self.missed += 1;
+            return None;
+        }
+        let (requested_at, replied_at) = times;
+        Some(value.map(|value| Sample {
+            value,
+            requested_at,
+            replied_at,
+        }))
+    }
+
     /// Return when the next period begins; those that have passed are missed.
     pub fn tick(&mut self) -> Instant {
         let now = Instant::now();
@@ -308,9 +327,10 @@ impl Polling {
     }
 }
 
-/// Makes the methods that do not wait, of a client with the fields `handle` and `shared`.
-macro_rules! handle_methods {
-    ($client:ident) => {
+/// Makes the methods of a client with the fields `handle` and `shared`, and with private methods
+/// `perform` and `subscribe`.
+macro_rules! client_methods {
+    ($client:ident [$($async:tt)*] [$($await:tt)*]) => {
         impl std::fmt::Debug for $client {
             fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
                 write!(f, "{}({})", stringify!($client), self.edition().name)
@@ -325,15 +345,9 @@ macro_rules! handle_methods {
             }
 
             /// Return this client for another address, by its name or number.
-            ///
-            /// # Errors
-            /// The edition has no such address.
-            pub fn at(&self, address: impl Into<Address>) -> Result<Self, Error> {
-                let handle = self.handle.clone().at(address.into())?;
-                Ok(Self {
-                    handle,
-                    shared: self.shared.clone(),
-                })
+            pub fn at(&self, address: &str) -> Result<Self, Error> {
+                let handle = self.handle.clone().at(address)?;
+                Ok(Self { handle, shared: self.shared.clone() })
             }
 
             /// Return this client so that requests without a reply wait for their acknowledgement.
@@ -343,7 +357,48 @@ macro_rules! handle_methods {
                 other.handle.settings.ack_within = Some(crate::options::nanos(within));
                 other
             }
+
+            /// Send a request; return the result of its reply, if it has one.
+            pub $($async)* fn call<R: Request>(&self, request: R) -> Result<R::Reply, Error> {
+                let prepared = self.handle.prepare(request)?;
+                let answer = self.perform(&prepared) $($await)* ?;
+                self.handle.result::<R>(&prepared, answer)
+            }
+
+            /// Send a request by the name of its command; return the fields of its reply.
+            pub $($async)* fn call_named(
+                &self,
+                command: &str,
+                arguments: &[(&str, Value)],
+            ) -> Result<Named, Error> {
+                let prepared = self.handle.prepare_named(command, arguments)?;
+                let answer = self.perform(&prepared) $($await)* ?;
+                Ok(self.handle.encoder.fields(&prepared, answer))
+            }
+
+            /// Sample a query `rate` times a second, above 0 and up to 1000.
+            ///
+            /// A request is sent only when the loop wants a sample, and not again within its period.
+            /// A period without a reply has no sample; [`Polls::missed`] counts such periods, and
+            /// those for which the loop came too late.
+            pub fn poll<R: Request>(&self, request: R, rate: f64) -> Result<Polls<R, Self>, Error> {
+                let polling = self.handle.polling(request, rate)?;
+                let mut client = self.clone();
+                client.handle.settings.retry.attempts = 1;
+                Ok(Polls { client, polling, reply: PhantomData })
+            }
+
+            /// Receive the events of a type that come from now on, until none comes within
+            /// `timeout`.
+            pub fn events<E: DeviceEvent>(
+                &self,
+                timeout: Option<Duration>,
+            ) -> Result<Events<E, Self>, Error> {
+                let queue = Queue::new(self.handle.encoder.command(E::COMMAND)?);
+                self.subscribe(&queue);
+                Ok(Events { client: self.clone(), queue, timeout, event: PhantomData })
+            }
         }
     };
 }
-pub(crate) use handle_methods;
+pub(crate) use client_methods;

@@ -9,8 +9,7 @@
 //! let arm = MyCobot280::open("socket://127.0.0.1:9000")?;
 //! println!("{:?}", arm.get_angles()?);
 //! arm.send_angles([0.0; 6], 30)?;
-//! arm.close();
-//! # Ok(())
+//! arm.close()
 //! # }
 //! # #[cfg(not(feature = "mycobot280"))]
 //! # fn main() {}
@@ -19,6 +18,10 @@
 //! Each edition of the protocol has a feature of its name. `serial` adds serial ports, `tokio` the
 //! asynchronous client. `cobotwire-gen build mine.yaml --out PACKAGE --rust FOLDER` writes the
 //! module of a protocol of your own.
+//!
+//! Every method that sends a request fails with a [`Error::UsageError`] before a byte is sent if an
+//! argument is not allowed, with a `LinkError` if the port is lost, and, if it waits for a reply, with
+//! a `ReplyTimeout`, `ProtocolError` or `RequestRefused`.
 //!
 //! A client that is dropped without `close()` stops an arm that it has set in motion: see
 //! [`OnDrop`].
@@ -50,35 +53,34 @@ mod value;
 pub mod editions;
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
-use std::time::Instant;
 
 use cobotwire_table::Edition;
 
 #[cfg(feature = "tokio")]
-pub use asynchronous::{AsyncClient, AsyncEvents, AsyncPolls, ByteStream};
+pub use asynchronous::{AsyncClient, ByteStream};
 pub use blocking::{Client, Events, Polls};
-pub use cobotwire_core::exchange::WaitedFor;
+pub use cobotwire_core::exchange::{Nanos, RetryPolicy, WaitedFor};
 pub use error::Error;
 pub use limits::{Limits, Range};
-pub use options::{Address, OnDrop, Options, RetryPolicy};
+pub use options::{OnDrop, Options};
 pub use port::Port;
 pub use value::Value;
+
+/// How long a wait without a limit lasts.
+pub(crate) const FOREVER: std::time::Duration = std::time::Duration::from_secs(1 << 30);
 
 /// The result of a query at a time.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sample<T> {
     /// The result.
     pub value: T,
-    /// When its request was made.
-    pub requested_at: Instant,
-    /// When its reply was read.
-    pub replied_at: Instant,
+    /// When its request was sent, since the client was opened.
+    pub requested_at: Nanos,
+    /// When its reply was read, likewise.
+    pub replied_at: Nanos,
 }
 
 /// Read the table of a protocol: the text of an `edition.json`, which may come from a stranger.
-///
-/// # Errors
-/// The text is not such a table.
 pub fn read_table(json: &[u8]) -> Result<typed::Table, Error> {
     let read = Edition::read(json).map_err(|error| Error::usage(error.to_string()));
     read.map(Arc::new)

@@ -3,13 +3,12 @@
 use std::collections::HashMap;
 use std::sync::Arc;
 
-use cobotwire_core::exchange::{Request, Safety};
+use cobotwire_core::exchange::Safety;
 use cobotwire_core::{Table, Variant};
-use cobotwire_table::{Command, Edition, Link, Shown, bad_argument, general};
+use cobotwire_table::{Command, Edition, Shown, bad_argument};
 
 use crate::Error;
-use crate::encoder::Encoder;
-use crate::typed::{self, Typed};
+use crate::typed;
 
 /// The lowest and the highest value that is allowed.
 pub type Range = (f64, f64);
@@ -24,8 +23,8 @@ const FRAMES: [&str; 4] = ["tool", "world", "reference_frame", "end_type"];
 pub struct Limits {
     /// The highest speed in percent, 1..100.
     pub speed: Option<f64>,
-    /// Ranges for x, y and z in millimetres: where the end may be sent, also by angles of joints.
-    /// The path to a target is not checked.
+    /// Ranges for x, y and z in millimetres: where the end may be sent by coordinates. Motions by
+    /// angles of joints are refused then. The path to a target is not checked.
     pub workspace: Option<[Option<Range>; 3]>,
 }
 
@@ -111,12 +110,6 @@ impl Limits {
         }
         Variant::new(fields)
     }
-
-    /// Return what checks the end of the arm, if the workspace is limited.
-    pub(crate) fn workspace_of(&self, edition: &Edition) -> Option<Workspace> {
-        let (ranges, links) = (self.workspace?, edition.geometry.clone()?);
-        Some(Workspace { ranges, links })
-    }
 }
 
 fn has_axes(edition: &Edition) -> bool {
@@ -149,7 +142,7 @@ pub(crate) fn refusals(edition: &Edition, limits: &Limits) -> HashMap<usize, Str
         let moves = moves_arm(edition, command);
         let leaves = limits
             .workspace
-            .and_then(|_| leaves_workspace(edition, command, moves));
+            .and_then(|_| leaves_workspace(command, moves));
         let is_speed = |field: &cobotwire_table::Field| {
             field.name == "speed"
                 && field
@@ -175,7 +168,7 @@ pub(crate) fn refusals(edition: &Edition, limits: &Limits) -> HashMap<usize, Str
     refused.collect()
 }
 
-fn leaves_workspace(edition: &Edition, command: &Command, moves: bool) -> Option<String> {
+fn leaves_workspace(command: &Command, moves: bool) -> Option<String> {
     if command
         .stores
         .iter()
@@ -186,12 +179,6 @@ fn leaves_workspace(edition: &Edition, command: &Command, moves: bool) -> Option
     match &*command.role {
         _ if !moves => None,
         "coordinate targets" => None,
-        "joint targets" => edition.geometry.is_none().then(|| {
-            format!(
-                "limits.workspace is set, and edition {} states no geometry",
-                edition.name
-            )
-        }),
         _ => Some(
             "limits.workspace is set, and where the end would go is not known before".to_owned(),
         ),
@@ -215,72 +202,4 @@ fn moves_arm(edition: &Edition, command: &Command) -> bool {
             .any(|field| field.name == "gripper_id");
     let starts = command.safety == Safety::Motion && !matches!(&*command.role, "stop" | "halt");
     starts && !resumes && !of_gripper
-}
-
-/// The box that the end of the arm may be sent to by angles of joints.
-#[derive(Debug)]
-pub(crate) struct Workspace {
-    ranges: [Option<Range>; 3],
-    links: Vec<Link>,
-}
-
-impl Workspace {
-    /// Check where the arm would be with its joints at the angles of a request.
-    pub fn check(&self, encoder: &Encoder, request: &Request) -> Result<(), Error> {
-        let edition = &encoder.edition;
-        let Some(command) = edition
-            .commands
-            .get(request.command)
-            .filter(|each| each.role == "joint targets")
-        else {
-            return Ok(());
-        };
-        let (fields, _) = encoder.arguments(request);
-        let mut rows = fields
-            .into_iter()
-            .filter_map(|(_, value)| Typed::from_value(value));
-        let angles: Vec<f64> = rows.next().unwrap_or_default();
-        for ((axis, at), range) in AXES
-            .iter()
-            .zip(end_of(&self.links, &angles))
-            .zip(self.ranges)
-        {
-            if let Some((low, high)) = range.filter(|(low, high)| !(*low..=*high).contains(&at)) {
-                let (low, high) = (general(low, 6), general(high, 6));
-                let angles = Shown::Tuple(angles.iter().copied().map(Shown::Real).collect());
-                return Err(Error::usage(format!(
-                    "{}() to {angles} would move the end to {axis} {at:.1} mm; limits.workspace allows {axis} {low}..{high} mm",
-                    command.name
-                )));
-            }
-        }
-        Ok(())
-    }
-}
-
-/// Return x, y and z of the end in the frame of the base, for angles in degrees.
-fn end_of(links: &[Link], angles: &[f64]) -> [f64; 3] {
-    let (mut x, mut y, mut z) = ([1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]);
-    let mut end = [0.0; 3];
-    let sum = |a: [f64; 3], p: f64, b: [f64; 3], q: f64| {
-        let [[a0, a1, a2], [b0, b1, b2]] = [a, b];
-        [a0 * p + b0 * q, a1 * p + b1 * q, a2 * p + b2 * q]
-    };
-    let angle = |joint: usize| angles.get(joint).copied().unwrap_or_default();
-    for (index, link) in links.iter().enumerate() {
-        let turned = match &link.turned_by {
-            None => angle(index),
-            Some(shares) => shares
-                .iter()
-                .map(|(joint, share)| angle(*joint) * share)
-                .sum(),
-        };
-        let (sin, cos) = (turned + link.offset).to_radians().sin_cos();
-        let (twist, flat) = link.alpha.to_radians().sin_cos();
-        let (along, across) = (sum(x, cos, y, sin), sum(y, cos, x, -sin));
-        end = sum(sum(along, link.a, z, link.d), 1.0, end, 1.0);
-        x = along;
-        (y, z) = (sum(across, flat, z, twist), sum(z, flat, across, -twist));
-    }
-    end
 }

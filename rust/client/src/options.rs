@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use cobotwire_core::exchange::{Nanos, RetryPolicy as Policy};
+use cobotwire_core::exchange::{Nanos, RetryPolicy};
 use cobotwire_table::{Edition, Shown, bad_argument};
 
 use crate::{Error, Limits};
@@ -15,10 +15,10 @@ pub struct Options {
     /// How long a call may take from its beginning, waiting for its turn included; default: any
     /// time.
     pub deadline: Option<Duration>,
-    /// How often queries are sent within their timeout.
+    /// How often queries are sent within their timeout; its times are in nanoseconds.
     pub retry: RetryPolicy,
-    /// The device that requests go to; default: the edition's first address, if it has any.
-    pub address: Option<Address>,
+    /// The device that requests go to, by its name or number; default: the edition's first address, if it has any.
+    pub address: Option<String>,
     /// The name of the port that is passed to `over()`. A client knows which late replies to an
     /// earlier client of this process may still come, if both were opened at a port of this name.
     pub port_name: Option<String>,
@@ -41,92 +41,26 @@ pub enum OnDrop {
     Leave,
 }
 
-/// Splits the timeout of a query into attempts. Only queries are ever sent again.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct RetryPolicy {
-    /// How often a query is sent at most, 1..100.
-    pub attempts: u8,
-    /// What each attempt gets at least; a short timeout has fewer attempts.
-    pub shortest_attempt: Duration,
-    /// For how long after an attempt its late reply is still expected. A later request with a reply
-    /// that would look the same is held until then.
-    pub grace: Duration,
-}
-
-impl Default for RetryPolicy {
-    fn default() -> Self {
-        let usual = Policy::default();
-        Self {
-            attempts: usual.attempts,
-            shortest_attempt: Duration::from_nanos(usual.shortest_attempt),
-            grace: Duration::from_nanos(usual.grace),
-        }
-    }
-}
-
-impl RetryPolicy {
-    fn checked(&self) -> Result<Policy, Error> {
-        if !(1..=100).contains(&self.attempts) {
-            let given = Shown::Integer(i64::from(self.attempts));
-            let text = bad_argument("retry.attempts", &given, "a whole number 1..100");
-            return Err(Error::usage(text));
-        }
-        Ok(Policy {
-            attempts: self.attempts,
-            shortest_attempt: nanos(self.shortest_attempt).max(1),
-            grace: nanos(self.grace),
-        })
-    }
-}
-
-/// The address of a device, by its number or its name in the edition.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Address {
-    /// The byte.
-    Number(u8),
-    /// The name.
-    Name(String),
-}
-
-impl From<u8> for Address {
-    fn from(number: u8) -> Self {
-        Self::Number(number)
-    }
-}
-
-impl From<&str> for Address {
-    fn from(name: &str) -> Self {
-        Self::Name(name.to_owned())
-    }
-}
-
-impl Address {
-    pub(crate) fn find(&self, edition: &Edition) -> Result<u8, Error> {
-        let (found, given) = match self {
-            Self::Number(number) => {
-                let known = &edition.protocol.table.frame().addresses;
-                (
-                    known.contains(number).then_some(*number),
-                    Shown::Integer((*number).into()),
-                )
-            }
-            Self::Name(name) => {
-                let mut known = edition.addresses.iter();
-                let found = known.find(|known| known.name.eq_ignore_ascii_case(name));
-                (found.map(|known| known.value), Shown::Text(name.clone()))
-            }
-        };
-        found.ok_or_else(|| {
-            let known = edition.addresses.iter();
-            let names = known.map(|known| format!("{} ({})", known.name, known.value));
+/// Return the byte of an address, given by its name or number.
+pub(crate) fn find_address(edition: &Edition, given: &str) -> Result<u8, Error> {
+    let mut known = edition.addresses.iter();
+    let named = known.find(|known| known.name.eq_ignore_ascii_case(given));
+    let number = given.parse().ok();
+    let all = &edition.protocol.table.frame().addresses;
+    let numbered = number.filter(|number| all.contains(number));
+    let found = named.map(|known| known.value).or(numbered);
+    found.ok_or_else(|| match edition.addresses.is_empty() || number.is_some() {
+        true => Error::usage(edition.no_address(number)),
+        false => {
+            let names = edition.addresses.iter().map(|known| &*known.name);
             let names = names.collect::<Vec<_>>().join(", ");
-            match (self, names.is_empty()) {
-                (Self::Number(number), _) => Error::usage(edition.no_address(Some(*number))),
-                (_, true) => Error::usage(edition.no_address(None)),
-                _ => Error::usage(bad_argument("address", &given, &names)),
-            }
-        })
-    }
+            Error::usage(bad_argument(
+                "address",
+                &Shown::Text(given.to_owned()),
+                &names,
+            ))
+        }
+    })
 }
 
 /// What a handle of a client sends each request with.
@@ -136,18 +70,21 @@ pub(crate) struct Settings {
     pub timeout: Option<Nanos>,
     pub deadline: Option<Nanos>,
     pub ack_within: Option<Nanos>,
-    pub retry: Policy,
+    pub retry: RetryPolicy,
 }
 
 impl Settings {
     pub fn new(edition: &Edition, options: &Options) -> Result<Self, Error> {
-        let address = options.address.as_ref();
+        let address = options
+            .address
+            .as_ref()
+            .map(|given| find_address(edition, given));
         Ok(Self {
-            address: address.map(|address| address.find(edition)).transpose()?,
+            address: address.transpose()?,
             timeout: options.timeout.map(nanos),
             deadline: options.deadline.map(nanos),
             ack_within: None,
-            retry: options.retry.checked()?,
+            retry: options.retry,
         })
     }
 }

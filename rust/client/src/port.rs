@@ -14,9 +14,6 @@ pub(crate) const CONNECT: Duration = Duration::from_secs(5);
 /// `ErrorKind::TimedOut`. A `read` of 0 bytes says that the peer has closed the stream.
 pub trait Port: Read + Write + Send {
     /// Limit each `read` and `write` from now on; zero: they return at once.
-    ///
-    /// # Errors
-    /// The port cannot do that, or is lost.
     fn wait_at_most(&mut self, longest: Duration) -> std::io::Result<()>;
 
     /// Return whether the port takes bytes now. The default says that it does, so that a call with

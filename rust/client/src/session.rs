@@ -225,9 +225,6 @@ impl Session {
     }
 
     /// Note how writing has ended: all bytes were taken, or `taken` of them, for a reason.
-    ///
-    /// # Errors
-    /// A one-way request was not written whole. The callers of other requests get that error.
     pub fn wrote(
         &mut self,
         outgoing: &Outgoing,

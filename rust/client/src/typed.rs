@@ -14,9 +14,6 @@ pub type Table = Arc<Edition>;
 pub type Once = OnceLock<Result<Table, Error>>;
 
 /// Return a table; it is read on first use.
-///
-/// # Errors
-/// The table is wrong.
 pub fn read(once: &Once, text: &str) -> Result<Table, Error> {
     once.get_or_init(|| crate::read_table(text.as_bytes()))
         .clone()
@@ -63,9 +60,6 @@ macro_rules! client {
             $(-> $reply:ty = $($result:ident)+)? $(, in radians $($radians:ident)+)?;)*
     ) => {
         /// Return the edition's table; it is read on first use.
-        ///
-        /// # Errors
-        /// The table is wrong, which only that of a protocol of your own can be.
         pub fn edition() -> ::std::result::Result<$crate::typed::Table, $crate::Error> {
             static READ: $crate::typed::Once = $crate::typed::Once::new();
             $crate::typed::read(&READ, $table)
@@ -160,9 +154,6 @@ macro_rules! client_type {
             $crate::openers! { $inner; $($kind)+ }
 
             /// Drive an arm over an open port; an asynchronous one is served by the present runtime.
-            ///
-            /// # Errors
-            /// An option is not allowed.
             pub fn over(
                 port: impl $port + 'static,
                 options: $crate::Options,
@@ -171,13 +162,7 @@ macro_rules! client_type {
             }
 
             /// Return this client for another address, by its name or number.
-            ///
-            /// # Errors
-            /// The edition has no such address.
-            pub fn at(
-                &self,
-                address: impl ::std::convert::Into<$crate::Address>,
-            ) -> ::std::result::Result<Self, $crate::Error> {
+            pub fn at(&self, address: &str) -> ::std::result::Result<Self, $crate::Error> {
                 self.0.at(address).map(Self)
             }
 
@@ -198,17 +183,11 @@ macro_rules! openers {
     ($inner:ty; async await) => { $crate::openers! { $inner; [async] [.await] } };
     ($inner:ty; [$($async:tt)*] [$($await:tt)*]) => {
         /// Open an arm at `socket://host:port`; a blocking client also at a serial port.
-        ///
-        /// # Errors
-        /// The port is not allowed, or cannot be opened.
         pub $($async)* fn open(port: &str) -> ::std::result::Result<Self, $crate::Error> {
             Self::open_with(port, $crate::Options::default()) $($await)*
         }
 
         /// Open an arm with other options.
-        ///
-        /// # Errors
-        /// As [`Self::open`]; or an option is not allowed.
         pub $($async)* fn open_with(
             port: &str,
             options: $crate::Options,
@@ -241,9 +220,6 @@ macro_rules! method {
     ([$($async:tt)*] [$($await:tt)*] [$(#[$about:meta])*] $message:ident $method:ident
         ($($argument:ident: $type:ty),*) [$($reply:ty)?]) => {
         $(#[$about])*
-        ///
-        /// # Errors
-        /// An argument is not allowed, the port is lost, or the reply is illegal or missing.
         pub $($async)* fn $method(
             &self,
             $($argument: impl ::std::convert::Into<$type>),*

@@ -133,7 +133,7 @@ fn dropped_client_stops_moving_arm_once_unless_it_was_closed() {
         arm.set_fresh_mode(FreshMode::Refresh).unwrap();
         arm.send_angles([0.0; 6], 50).unwrap();
         if closed {
-            arm.close();
+            arm.close().unwrap();
         }
         let second = arm.clone();
         drop(arm);
@@ -206,12 +206,12 @@ fn limits_refuse_speed_place_and_lasting_writes() {
     );
     let texts = [
         (
-            arm.send_angles([0.0; 6], 51),
+            arm.send_coords([100.0, 0.0, 300.0, 0.0, 0.0, 0.0], 51, None),
             "speed is 51; allowed: a whole number 1..50 percent",
         ),
         (
             arm.send_angles([0.0, 90.0, 0.0, 0.0, 0.0, 0.0], 50),
-            "would move the end to z ",
+            "where the end would go is not known before",
         ),
         (
             arm.send_coords([100.0, 0.0, 50.0, 0.0, 0.0, 0.0], 50, None),
@@ -234,7 +234,6 @@ fn limits_refuse_speed_place_and_lasting_writes() {
         assert!(message.contains(text), "{message}");
     }
     assert!(port.written().is_empty());
-    arm.send_angles([0.0; 6], 50).unwrap();
     arm.stop().unwrap();
 }
 
