@@ -21,7 +21,7 @@ from cobotwire_codegen.targets.vectors.document import document
 from command_line import run_program
 from probe import Probe, needed, path
 from random_editions import editions
-from strategies import TABLES, codec_of
+from strategies import codec_of
 from targets.vectors.comparison import read
 from vectors import ROOT
 
@@ -45,7 +45,7 @@ def test_codec_in_rust_passes_every_question(name: str) -> None:
 
 
 # Each document makes thousands of questions; `make every-edition` asks those of all.
-@pytest.mark.parametrize("name", sorted(TABLES) if EVERY else FEW)
+@pytest.mark.parametrize("name", vectors.sampled() if EVERY else FEW)
 def test_vectors_of_an_edition_have_the_answers_that_python_gives(name: str) -> None:
     rust = Probe("codec", str(ROOT / "python" / "cobotwire" / "editions" / name / "edition.json"))
     python = OurCodec(codec_of(name, "native"))
