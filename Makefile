@@ -191,8 +191,8 @@ defects: .venv/.tools .venv/.native ## test independent subjects with planted de
 attack: .venv/.tools .venv/.native ## attack the clients for ATTACK_SECONDS (180) with a hostile peer; CLIENT=rust: those in Rust
 	PYTHONPATH=tests $(BIN)/python -m attack --seconds $(ATTACK_SECONDS) $(if $(CLIENT),--client $(CLIENT)) $(ATTACK)
 
-explore: .venv/.tools .venv/.native ## explore every order of events of an exchange until STATES (1000000) were seen
-	PYTHONPATH=python:tests $(BIN)/python -m session.exploring $(STATES)
+explore: .venv/.tools .venv/.native ## explore every order of events of an exchange until STATES (1000000) were seen; RUST=1: in Rust too
+	PYTHONPATH=python:tests $(BIN)/python -m session.exploring $(STATES) $(if $(RUST),rust)
 
 nightly: .venv/.tools .venv/.native ## run the long searches one after another, and print one table: make nightly SEARCHES="fuzz attack"
 	$(BIN)/python tools/nightly.py $(SEARCHES)

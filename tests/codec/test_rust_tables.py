@@ -21,6 +21,8 @@ from cobotwire_codegen.targets.vectors.document import document
 from command_line import run_program
 from probe import Probe, needed, path
 from random_editions import editions
+from strategies import codec_of
+from targets.vectors.comparison import read
 from vectors import ROOT
 
 Record = dict[str, Any]
@@ -40,6 +42,18 @@ def test_codec_in_rust_passes_every_question(name: str) -> None:
     assert done.returncode == 0, done.stdout
     assert "pass" in done.stdout.splitlines()[-1]
     assert "not supported" not in done.stdout
+
+
+# Each document makes thousands of questions; `make every-edition` asks those of all.
+@pytest.mark.parametrize("name", vectors.sampled() if EVERY else FEW)
+def test_vectors_of_an_edition_have_the_answers_that_python_gives(name: str) -> None:
+    rust = Probe("codec", str(ROOT / "python" / "cobotwire" / "editions" / name / "edition.json"))
+    python = OurCodec(codec_of(name, "native"))
+    asked = [*_questions(read(name), python)]
+    assert len(asked) > 1500
+    wrong = [each for each in asked if _compared(rust.ask(each)) != _compared(python.ask(each))]
+    assert wrong == []
+    rust.close()
 
 
 # Shrinking would take minutes.

@@ -36,8 +36,9 @@ def run(folder: Path, *words: str) -> Ended:
 
 
 def test_build_writes_package_reference_and_c_and_finds_them_fresh(folder: Path) -> None:
-    words = ("build", "lamp.yaml", "--out", "lamp", "--docs", "docs", "--c", "c")
+    words = ("build", "lamp.yaml", "--out", "lamp", "--docs", "docs", "--c", "c", "--rust", "rs")
     assert run(folder, *words).returncode == 0
+    assert sorted(path.name for path in (folder / "rs").iterdir()) == ["lamp.json", "lamp.rs"]
     assert (folder / "lamp" / "py.typed").is_file()
     assert sorted(path.name for path in (folder / "c").iterdir()) == ["lamp.c", "lamp.h"]
     again = run(folder, *words, "--check")
@@ -71,7 +72,9 @@ def test_output_is_the_same_in_every_folder(tmp_path: Path) -> None:
         (own / "own.yaml").write_text(OWN)
         (own.parent / "more.yaml").write_text(MORE)
         at = own.relative_to(tmp_path / folder / start).as_posix()
-        options = (f"--{name}={at}/{name}" for name in ("out", "docs", "c", "wireshark", "vectors"))
+        options = (
+            f"--{name}={at}/{name}" for name in ("out", "docs", "c", "rust", "wireshark", "vectors")
+        )
         ended = run(tmp_path / folder / start, "build", f"{at}/own.yaml", *options)
         assert ended.returncode == 0, ended.stderr
         run(tmp_path / folder / start, "model", f"{at}/own.yaml", "--out", f"{at}/model.json")

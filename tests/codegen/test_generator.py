@@ -120,15 +120,16 @@ def test_products_are_written_only_with_their_option(generated: Path) -> None:
     assert run(generated, "--products", "--check").returncode == 1
 
 
-def test_data_of_the_rust_tests_is_written_alone(generated: Path) -> None:
+def test_what_rust_crates_need_is_written_alone(generated: Path) -> None:
     stale = generated / GENERATED[0] / "values.py"
     stale.write_text("")
     assert run(generated, "--rust-data", "--check").returncode == 1
-    assert "2 file(s) changed" in run(generated, "--rust-data").stdout
+    assert "7 file(s) changed" in run(generated, "--rust-data").stdout
     assert run(generated, "--rust-data", "--check").stdout == "fresh\n"
     data = generated / "rust/core/tests/data"
     for name in EDITIONS:
         assert data.joinpath(f"{name}.json").read_text() == vectors_json(vectors.edition(name))
+        assert (generated / f"rust/client/src/editions/{name}.rs").exists()
     assert not (generated / "targets").exists()
     assert stale.read_text() == ""
     assert run(generated, "--rust-data", "--products").returncode == 2

@@ -11,7 +11,7 @@ from cobotwire.protocol.addresses import addresses_of
 from cobotwire.protocol.errors import LinkError, UsageError
 from cobotwire.protocol.fields import Field, RawRows, Variant
 from cobotwire.protocol.numbers import Number
-from cobotwire.protocol.table import Command, Direction
+from cobotwire.protocol.table import Command
 from cobotwire.session import EncodedRequest, Exchange, Pending, PendingRequest, RetryPolicy
 from cobotwire.session.request import RequestEncoder
 
@@ -100,6 +100,10 @@ class Talk:
 
     def _turn(self) -> None:
         drained = self._dice.random() < 0.8
+        if not drained:
+            # Unread bytes keep a request for 50 ms: not for 25 ticks, but for 26.
+            self._write(self.exchange.outgoing(self.now, drained))
+            self.now += self._dice.choice([0, 25, 26]) * TICK
         self._write(self.exchange.outgoing(self.now, drained))
 
     def _write(self, request: bytes) -> None:
@@ -159,15 +163,15 @@ class Talk:
         elif how == 1:
             data = data[: dice.randrange(len(data) + 1)] + dice.choice([b"", self._bytes()])
         elif how == 2 and data:
-            data = bytearray(data)
-            data[dice.randrange(len(data))] = dice.randrange(256)
+            at = dice.randrange(len(data))
+            data = data[:at] + dice.randbytes(1) + data[at + 1 :]
         elif how == 3:
             data = dice.randbytes(dice.randrange(4)) + data + self._bytes()
         cut = dice.choice([0, 0, dice.randrange(len(data) + 1)])
         if cut:
-            self.exchange.receive(bytes(data[:cut]), self.now)
+            self.exchange.receive(data[:cut], self.now)
             self.now += dice.choice([0.0, self._span()])
-        self.exchange.advance(bytes(data[cut:]), self.now)
+        self.exchange.advance(data[cut:], self.now)
 
     def _bytes(self) -> bytes:
         dice = self._dice
@@ -190,7 +194,7 @@ class Talk:
         if not command.reply:
             return dice.randbytes(3)
         variant = dice.choice(command.reply)
-        rows = self._rows(variant)
+        rows: RawRows = self._rows(variant)
         address = dice.choice([*frame.addresses, None])
         if request is not None and dice.random() < 0.8:
             message = self._codec.decode("request", request.frame, of=command.name)

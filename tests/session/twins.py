@@ -15,6 +15,7 @@ from typing import Any, NamedTuple, Self
 from unittest.mock import patch
 
 from cobotwire.codec.interface import Codec, DecodedMessage, Frame, Noise
+from cobotwire.protocol.error_texts import error_text
 from cobotwire.protocol.errors import LinkError, ProtocolError, ReplyTimeout, RequestRefused
 from cobotwire.protocol.table import _word
 from cobotwire.session import (
@@ -36,7 +37,6 @@ from cobotwire.session import (
     text,
 )
 from cobotwire.session.alignment import Alignment
-from cobotwire.session.exchange import NOT_SENT
 from cobotwire.session.outstanding import PersistedState
 
 METHODS = (
@@ -184,7 +184,7 @@ class Recorder:
             if name == "give_up":
                 # It has ended without an outcome, unless the outcome was seen before.
                 twin.open.discard(ticket)
-            twin.now = (twin.now, *arguments)[-1] if name == "written" else twin.now
+            twin.now = arguments[1] if name == "written" else twin.now
         elif name == "restore":
             sent = [_persisted(*arguments)]
         elif name == "cut":
@@ -193,7 +193,7 @@ class Recorder:
         elif name == "note_full":
             sent = [*arguments]
         elif name == "outgoing":
-            twin.now, drained = (*arguments, *named.values())
+            twin.now, drained = [*arguments, *dict(named).values()]
             sent, result = [drained], result.hex()
         elif name in ("advance", "receive"):
             data, twin.now = arguments
@@ -334,7 +334,7 @@ class Recorder:
             "frame": "frame",
         }
         if kind == "unread":
-            return NOT_SENT
+            return error_text("too-much")
         return f"{what[kind]} {bytes.fromhex(shown).hex(' ').upper()}{rest}"
 
 
@@ -354,8 +354,6 @@ def plain_fields(fields: dict[str, Any]) -> dict[Any, Any]:
     if fields and all(isinstance(value, str) for value in fields.values()):
         return dict(enumerate(fields.values()))
     return {name: plain(value) for name, value in fields.items()}
-
-
 
 
 def _persisted(state: PersistedState) -> list[Any]:

@@ -33,6 +33,9 @@ EFFECTS = (
     (r"clear_(recv_)?queue", r"Discards", "does forget"),
     (r"clear_(error_information|robot_err)", r"Clears the", "sets error=0"),
     (r"init_gripper", r"Initializes the gripper", "sets opening=100 assumed"),
+    (r"init_electric_gripper", r"Initializes", "sets gripper_initialized=True"),
+    (r"set_pro_gripper_pause", r"Pauses", "sets bus_paused=True at gripper_id"),
+    (r"set_pro_gripper_resume", r"Continues", "sets bus_paused=False at gripper_id"),
     (r"angles_to_coords", r"Calculates the", "computes coords from=angles"),
     (r"solve_\w+", r"Calculates .*angles", "computes angles from=coords near=angles"),
 )
@@ -83,6 +86,8 @@ ABOUT = (
     (r"get_robot_power_status", "powered"),
     (r"(release|focus)_(all_)?servos?", "held"),
     (r"get_encoder", "angles"),
+    (r"[sg]et_joints?_min(_angle)?", "lowest"),
+    (r"[sg]et_joints?_max(_angle)?", "highest"),
     (r"[sg]et_digital_(out|in)put", "pins end_pins"),
     (r"get_base_io_input", "base_pins"),
     (r"[sg]et_assist_\w+", "assist_pins"),
@@ -124,9 +129,11 @@ def named(edition: Edition) -> Iterator[str]:
             kept = [value for _, value in each.values]
             if each.verb in ("reports", "stores") and 1 < len({*kept}) < len(kept):
                 yield f"{command.name} {each.verb} one state for two of its fields"
-            single = "joint" in {f.name for variant in command.requests for f in variant}
-            if single and "all" not in command.name and kept and "joint" not in each.at:
-                yield f"{command.name} {each.verb} the same for every joint"
+            fields = (f for variant in command.requests for f in variant)
+            given = {f.name for f in fields if f.const is None}
+            missing = {"joint", "address", "parameter"} & given - {*each.at}
+            if missing and "all" not in command.name and kept:
+                yield f"{command.name} {each.verb} the same for every {missing}"
             for field, value in each.values if each.verb in ("reports", "stores", "sets") else ():
                 state = str(value if each.verb != "sets" else field)
                 several = each.verb != "sets" and (len(each.values) > 1 or label)
@@ -187,8 +194,9 @@ def effects(edition: Edition) -> Iterator[str]:
 # Queries report these for more or fewer joints than the edition counts, or setters narrow them.
 UNLIKE = {
     *("calibrated", "collision_threshold", "torque_compensation", "model_direction", "run_errors"),
-    *("zero_encoders", "down_encoders", "written_registers", "hand_enabled", "servo_faults"),
-    "servo_currents",
+    *("zero_encoders", "down_encoders", "written_registers", "hand_enabled"),
+    *("mercury_b1 servo_faults", "mercury_x1 servo_faults"),
+    *("mercury_b1 servo_currents", "mercury_x1 servo_currents"),
 }
 
 
@@ -214,7 +222,8 @@ def states(edition: Edition) -> Iterator[str]:
             if [found[at].name for at in effect.at] != list(state.each[: len(effect.at)]):
                 yield f"{name} has other indices than {command.name}"
             left = [types.get(each) for each in state.each[len(effect.at) :]]
-            if not _alike(state.type, widest, left) and name not in UNLIKE:
+            unlike = {name, f"{edition.name} {name}"} & UNLIKE
+            if not unlike and not _alike(state.type, widest, left):
                 yield f"{name} is unlike {field} of {command.name}"
 
 

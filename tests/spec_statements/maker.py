@@ -205,4 +205,25 @@ def commands(edition: Edition) -> Iterator[str]:
                 yield f"the library's class has no {command.name}"
 
 
-RULES = (transport, defaults, limits, joints, commands)
+# An earlier version of the library describes it: "Atom 7.0 Delete this interface".
+GONE = {("mycobot280", "jog_stop"): Fraction(7)}
+
+
+def firmware(edition: Edition) -> Iterator[str]:
+    """Report commands that need other firmware than the descriptions of the library say."""
+    robot = CLASSES.get(edition.name)
+    if robot is None or edition.name == "mycobot":  # the document is older than the class
+        return
+    for command in edition.commands:
+        doc = getattr(library(robot.peer), command.name, None).__doc__ or ""
+        newer = re.search(r"firmware version must be greater than (\d+\.\d+)", doc)
+        wanted = {"since": Fraction(newer[1])} if newer else {}
+        if gone := GONE.get((edition.name, command.name)):
+            wanted["until"] = gone
+        stated = {} if command.firmware is None else dict(command.firmware.versions)
+        stated.pop("reply_since", None)  # only the changelog states it
+        if stated != wanted:
+            yield f"{command.name} depends on firmware {stated}; the library says {wanted}"
+
+
+RULES = (transport, defaults, limits, joints, commands, firmware)

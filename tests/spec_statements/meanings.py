@@ -213,12 +213,21 @@ def agreement(edition: Edition) -> Iterator[str]:
             yield f"{command.name} agrees with {command.agrees_with}, but its name says {wanted}"
 
 
+# What a request asks about, which its reply repeats.
+ABOUT = {"joint", "pin", "servo", "register", "address", "gripper", "gripper_id"}
+
+
 def echoes(edition: Edition) -> Iterator[str]:
-    """Report fields that a reply repeats from its request, but not as an echo."""
+    """Report fields that a reply repeats from its request, but not as an echo.
+
+    A later layout stands beside one without the field, so the field is not optional in it.
+    """
     for command in edition.commands:
         given = {field.name for variant in command.requests for field in variant}
+        first = {field for variant in command.replies[:1] for field in variant}
         for field in (field for variant in command.replies for field in variant):
-            if field.name in given and field.name in ("joint", "pin") and not field.echo:
+            echoed = field.echo == "required" or (field.echo and field in first)
+            if field.name in ABOUT & given and field.const is None and not echoed:
                 yield f"{command.name}: {field.name} of the reply repeats the request's"
 
 

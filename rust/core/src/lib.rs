@@ -4,6 +4,8 @@
 //! a [`Framer`] cuts frames out of a stream. This crate knows no command by name, does no I/O,
 //! reads no clock and writes no error texts: an error is a kind and a place. The Python reference in
 //! `python/cobotwire/codec/reference` is the specification; this crate returns the same results.
+//! An [`exchange::Exchange`] matches requests and replies on a line; `python/cobotwire/session` is
+//! its specification.
 //!
 //! Without the feature `std`, which is on by default, it needs only `alloc`. Then it has one thread,
 //! in which a [`Table`] stays, and does not read in bulk, read captures or summarize.

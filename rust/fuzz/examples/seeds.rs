@@ -34,6 +34,7 @@ fn main() -> io::Result<()> {
     }
     write(&folder.join("tables"), &dice())?;
     write(&folder.join("captures"), &dice())?;
+    write(&folder.join("exchange"), &dice())?;
     println!("{} seeds", all.len());
     Ok(())
 }

@@ -1,17 +1,23 @@
-"""Explore all topics until a number of states was seen: ``make explore STATES=1000000``."""
+"""Explore all topics until a number of states was seen: ``make explore STATES=1000000``.
+
+With ``RUST=1`` the exchange of the Rust core repeats each sequence, and must have the same states.
+"""
 
 from __future__ import annotations
 
 import sys
 from collections import Counter
+from collections.abc import Callable
+from pathlib import Path
+from tempfile import TemporaryDirectory
 
 from session.exploring.explorer import Search
-from session.exploring.topics import TOPICS
+from session.exploring.topics import TOPICS, Topic
 
 
-def main(most: int) -> int:
+def main(most: int, search_of: Callable[[Topic], Search] = Search) -> int:
     """Deepen the smallest search until ``most`` states were seen; return 1 if a promise breaks."""
-    searches = {name: Search(topic) for name, topic in TOPICS.items()}
+    searches = {name: search_of(topic) for name, topic in TOPICS.items()}
 
     def states() -> int:
         return sum(len(search.seen) for search in searches.values())
@@ -37,5 +43,16 @@ def main(most: int) -> int:
     return 1 if found else 0
 
 
+def main_twins(most: int) -> int:
+    """Explore both exchanges alike."""
+    from probe import Probe
+    from session.twin_search import TwinSearch, edition
+
+    probe = Probe("exchange")
+    with TemporaryDirectory() as folder:
+        path = edition(Path(folder))
+        return main(most, lambda topic: TwinSearch(topic, path, probe.ask))
+
+
 if __name__ == "__main__":
-    sys.exit(main(int(sys.argv[1])))
+    sys.exit((main_twins if "rust" in sys.argv else main)(int(sys.argv[1])))

@@ -42,78 +42,49 @@ pub enum ReplyError {
 
 /// What received bytes are, or what time has ended. `command` is an index in the table.
 #[derive(Clone, Debug, PartialEq)]
+#[allow(missing_docs)] // of fields, whose names say what they are
 pub enum Event {
     /// Bytes that belong to no frame, all rejected for the same reason.
     Noise {
-        /// The position of the first one in the stream.
         offset: u64,
-        /// Why they were rejected.
         reason: Reason,
-        /// The bytes.
         data: Vec<u8>,
     },
     /// The reply that was waited for.
     Matched {
-        /// The command.
         command: usize,
-        /// Its message; `None`: it was text outside any frame.
         decoded: Option<Decoded>,
-        /// The fields of a text.
         texts: Vec<String>,
-        /// The frame; `None`: an earlier event has reported the bytes, as noise or as an echo.
         frame: Option<SeenFrame>,
     },
     /// The reply that was waited for, with values that the protocol does not allow.
     Rejected {
-        /// The command.
         command: usize,
-        /// What is wrong.
         error: ReplyError,
-        /// The frame; `None`: earlier events have reported the bytes, as noise.
         frame: Option<SeenFrame>,
     },
     /// The reply to a request that was given up, or to an earlier attempt of one that has ended.
-    Late {
-        /// The command.
-        command: usize,
-        /// The frame.
-        frame: SeenFrame,
-    },
+    Late { command: usize, frame: SeenFrame },
     /// The acknowledgement of a one-way request.
     Ack {
-        /// The command.
         command: usize,
-        /// Its message.
         decoded: Decoded,
-        /// The frame.
         frame: SeenFrame,
     },
     /// A message that the device sends without a request.
     DeviceEvent {
-        /// The command.
         command: usize,
-        /// The message.
         decoded: Decoded,
-        /// The frame.
         frame: SeenFrame,
     },
     /// A legal frame that replies to nothing.
-    Unexpected {
-        /// The frame.
-        frame: SeenFrame,
-    },
+    Unexpected { frame: SeenFrame },
     /// The request's own bytes: an echo, or a reply that looks the same.
-    Echo {
-        /// The frame.
-        frame: SeenFrame,
-    },
+    Echo { frame: SeenFrame },
     /// The deadline of a request that was sent has passed.
     Expired {
-        /// The command.
         command: usize,
-        /// When it was first sent.
         requested_at: Nanos,
-        /// How often it was sent.
         attempts: usize,
     },
 }

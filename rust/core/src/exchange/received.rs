@@ -11,24 +11,17 @@ const SHOWN: usize = 24;
 
 /// What an item is. `command` is an index in the table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[allow(missing_docs)] // of fields, whose names say what they are
 pub enum Kind {
     /// Bytes of no frame; the first was rejected for this reason.
     Noise(Reason),
     /// A late reply.
-    Late {
-        /// The command.
-        command: usize,
-    },
+    Late { command: usize },
     /// A message that the device sent by itself.
-    DeviceEvent {
-        /// The command.
-        command: usize,
-    },
+    DeviceEvent { command: usize },
     /// An acknowledgement.
     Ack {
-        /// The command.
         command: usize,
-        /// Whether it has the id of the request, of which an earlier one may have caused it.
         perhaps_earlier: bool,
     },
     /// The bytes of a request.

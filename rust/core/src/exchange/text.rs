@@ -12,23 +12,18 @@ const SHOWN: usize = 64;
 
 /// What is wrong with a text that was received.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[allow(missing_docs)] // of fields, whose names say what they are
 pub enum TextError {
     /// The byte at `offset` is not ASCII.
-    NotAscii {
-        /// Its index.
-        offset: usize,
-    },
+    NotAscii { offset: usize },
     /// It does not start with the first prefix.
     Start,
     /// It does not end with the suffix.
     End,
     /// A prefix stands in the rest of the text some times, not once.
     Prefix {
-        /// The index of the prefix.
         index: usize,
-        /// How often it stands there.
         times: usize,
-        /// Where the rest begins.
         offset: usize,
     },
     /// It is longer than 4096 bytes.
