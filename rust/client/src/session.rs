@@ -37,6 +37,8 @@ pub(crate) struct Outgoing {
     data: Vec<u8>,
     /// The request whose caller waits; `None`: it is a one-way request.
     ticket: Option<Ticket>,
+    /// The device that it stops, if it does.
+    stops: Option<Option<u8>>,
     at: Nanos,
     /// Until when the write may take.
     pub until: Instant,
@@ -55,6 +57,8 @@ pub(crate) struct Session {
     pub url: String,
     /// What happened to the transport last.
     pub fault: Error,
+    /// Why writing a request has failed, by its ticket.
+    faults: HashMap<Ticket, Error>,
     pub begun: Instant,
     queues: Vec<Weak<Mutex<Queue>>>,
     /// Until when the callers wait, by their tickets.
@@ -79,6 +83,7 @@ impl Session {
             encoder,
             url: url.to_owned(),
             fault: Error::link(url, "is lost", None),
+            faults: HashMap::new(),
             begun,
             names,
             queues: Vec::new(),
@@ -183,7 +188,10 @@ impl Session {
             .deadline
             .map(|longest| called_at.saturating_add(longest));
         if ends_by.is_some_and(|ends_by| ends_by <= now) {
-            return Err(self.failure(prepared, &Failure::unsent(now - called_at)));
+            let unsent = Failure::unsent(now - called_at);
+            return Err(self
+                .encoder
+                .failure(&prepared.request, &unsent, &self.fault));
         }
         self.note_motion(prepared);
         let request = prepared.request.clone();
@@ -191,7 +199,9 @@ impl Session {
             .exchange
             .send_one_way(request, now, settings.ack_within, ends_by);
         let until = ends_by.unwrap_or(now + LONGEST_WRITE);
-        Ok((self.outgoing(data, None, now, until), ticket))
+        let mut outgoing = self.outgoing(data, None, now, until);
+        outgoing.stops = self.is_stop(prepared).then_some(prepared.address);
+        Ok((outgoing, ticket))
     }
 
     /// Return the request that is to be sent now; `drained`: nothing that has come is unread.
@@ -219,6 +229,7 @@ impl Session {
             align,
             data,
             ticket,
+            stops: None,
             at,
             until,
         }
@@ -249,7 +260,12 @@ impl Session {
             None if taken < all => format!(
                 "cannot be written: only {taken} of {all} bytes were taken in {seconds:.3} s"
             ),
-            None => return Ok(()),
+            None => {
+                if let Some(stopped) = outgoing.stops {
+                    self.moved.retain(|address| *address != stopped);
+                }
+                return Ok(());
+            }
         };
         let fault = Error::link(&self.url, &detail, written);
         if outgoing.ticket.is_none() {
@@ -257,7 +273,8 @@ impl Session {
         }
         // The line is only full if a repeated query is not taken; its first attempt was.
         if error.is_some() || outgoing.until > self.instant(outgoing.at) {
-            self.fault = fault;
+            self.faults
+                .extend(outgoing.ticket.map(|ticket| (ticket, fault)));
             self.exchange.fail_waiting();
         }
         Ok(())
@@ -276,36 +293,40 @@ impl Session {
     pub fn take(&mut self, ticket: Ticket, prepared: &Prepared) -> Option<Result<Answer, Error>> {
         let outcome = self.exchange.take(ticket)?;
         self.ends.remove(&ticket);
-        Some(outcome.map_err(|failure| self.failure(prepared, &failure)))
+        let fault = self.faults.remove(&ticket);
+        Some(outcome.map_err(|failure| {
+            let fault = fault.as_ref().unwrap_or(&self.fault);
+            self.encoder.failure(&prepared.request, &failure, fault)
+        }))
     }
 
     /// End a request whose caller waits no longer.
     pub fn give_up(&mut self, ticket: Ticket) {
         self.ends.remove(&ticket);
+        self.faults.remove(&ticket);
         self.exchange.give_up(ticket);
     }
 
-    fn failure(&self, prepared: &Prepared, failure: &Failure) -> Error {
-        self.encoder
-            .failure(&prepared.request, failure, &self.fault)
-    }
-
+    /// Note that a motion may begin; only a stop that was written whole ends it for sure.
     fn note_motion(&mut self, prepared: &Prepared) {
         let command = self.encoder.edition.commands.get(prepared.request.command);
-        let Some(command) = command.filter(|command| command.safety == Safety::Motion) else {
-            return;
-        };
-        self.moved.retain(|address| *address != prepared.address);
-        if !matches!(&*command.role, "stop" | "halt") {
+        let moves = command.is_some_and(|command| command.safety == Safety::Motion);
+        if moves && !self.is_stop(prepared) && !self.moved.contains(&prepared.address) {
             self.moved.push(prepared.address);
         }
+    }
+
+    fn is_stop(&self, prepared: &Prepared) -> bool {
+        let command = self.encoder.edition.commands.get(prepared.request.command);
+        command.is_some_and(|command| command.role == "stop")
     }
 
     /// End every request: the client was closed, and sends nothing to the arm any more.
     pub fn close(&mut self) {
         self.moved.clear();
-        self.lose("is closed");
+        // The transport is whole until now, so no request is cut.
         self.leave();
+        self.lose("is closed");
     }
 
     /// Leave what the next session on this port must know.
