@@ -5,13 +5,6 @@
 //! `python/cobotwire/session` is its specification: both decide alike on the same bytes and times.
 //! `docs/contribute/exchange.md` shows its states and what it promises.
 //!
-//! ```text
-//! queued ──outgoing()──▶ waiting ──reply, error or deadline──▶ done
-//!    │                      │ ▲
-//!    │                      └─┘ outgoing(), for another attempt
-//!    └───────────────── give_up(), fail() ───────────────────▶ done
-//! ```
-//!
 //! Only one request waits at a time, since the protocol has no sequence numbers. The others queue in
 //! the order of submission; one that is held for an outstanding reply is overtaken. One-way requests
 //! are sent at once, and only once, also while another request waits. Times are nanoseconds of a
