@@ -7,7 +7,7 @@ use core::fmt;
 const EXACT: u64 = 1 << 53;
 
 /// Which byte of a number comes first.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(
     feature = "serde",
     derive(serde::Deserialize),
@@ -15,6 +15,7 @@ const EXACT: u64 = 1 << 53;
 )]
 pub enum Order {
     /// The most significant.
+    #[default]
     Big,
     /// The least significant.
     Little,
@@ -39,7 +40,7 @@ pub struct Bits {
 /// With `float` the bytes are an IEEE float of 4 or 8 bytes, without a scale or a sign rule. Its raw
 /// value is the integer of its bits, with the bits after a set sign inverted, so that raw values
 /// have the order of the floats.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
 #[allow(missing_docs)] // the doc above explains each field
 pub struct Number {
     pub width: usize,

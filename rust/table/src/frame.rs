@@ -7,14 +7,11 @@ use alloc::vec::Vec;
 use core::ops::RangeInclusive;
 
 use cobotwire_core::exchange::Replier;
-use cobotwire_core::{
-    Algorithm, Check, Computed, Crc, CrcParameters, FrameFormat, Layout, Order, Part,
-};
-
+use cobotwire_core::{Algorithm, Check, Computed, Crc, CrcParameters, FrameFormat, Layout, Part};
 use serde::Deserialize;
 
 use crate::json::Record;
-use crate::{Address, BadEdition, Outcome, Within};
+use crate::{Address, BadEdition, Outcome};
 
 /// The most data bytes: the longest LEN of two bytes that the core supports.
 pub(crate) const LONGEST: usize = 0x4000;
@@ -67,7 +64,7 @@ impl Sizes {
         Ok(Part {
             at: self.offset(part),
             wide: self.of(part) == 2,
-            order: number.or("order", Order::Big)?,
+            order: number.any("order")?,
         })
     }
 }
@@ -87,8 +84,8 @@ pub(crate) fn frame_format(record: Record<'_>, json: &[u8]) -> Outcome<FrameForm
         sizes: [
             (Header, header.len()),
             (Address, usize::from(!addresses.is_empty())),
-            (Length, width(length).within("length", "")?),
-            (Command, width(id).within("command", "")?),
+            (Length, length.size("width", 1..=2)?),
+            (Command, id.size("width", 1..=2)?),
             (Data, 0),
             (CheckBytes, check_width),
             (Footer, footer.len()),
@@ -117,7 +114,7 @@ pub(crate) fn frame_format(record: Record<'_>, json: &[u8]) -> Outcome<FrameForm
         }
         (Some(algorithm), _) => Check::Computed(Box::new(Computed {
             width: check_width,
-            order: record.or("check_order", Order::Big)?,
+            order: record.any("check_order")?,
             from: check_from(record, &sizes, reply_has_id)?,
             algorithm: Some(algorithm),
             footer,
@@ -143,13 +140,6 @@ fn hex(record: Record<'_>, key: &str, sizes: RangeInclusive<usize>) -> Outcome<V
     match bytes.collect::<Option<Vec<u8>>>() {
         Some(bytes) if sizes.contains(&bytes.len()) => Ok(bytes),
         _ => BadEdition::because(format!("{key} must be {sizes:?} bytes, as pairs of digits")),
-    }
-}
-
-fn width(number: Record<'_>) -> Outcome<usize> {
-    match number.some("width") {
-        Some(_) => number.within("width", 1..=2),
-        None => Ok(1),
     }
 }
 

@@ -55,6 +55,14 @@ impl<'a> Record<'a> {
         BadEdition::because(format_args!("{key} is {found}; allowed: {low}..{high}"))
     }
 
+    /// Return a size in a range; 1 if it is missing.
+    pub(crate) fn size(self, key: &str, range: RangeInclusive<usize>) -> Outcome<usize> {
+        match self.some(key) {
+            Some(_) => self.within(key, range),
+            None => Ok(1),
+        }
+    }
+
     /// Return the items of a list; none if it is missing.
     pub(crate) fn items(self) -> Outcome<Vec<Self>> {
         match self.0 {

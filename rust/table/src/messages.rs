@@ -2,7 +2,6 @@
 //! may have.
 
 use alloc::collections::BTreeSet;
-use alloc::format;
 use alloc::string::String;
 use alloc::vec;
 use alloc::vec::Vec;
@@ -95,10 +94,9 @@ impl<'a> Messages<'a> {
 
     /// Return a field as a list that varies, if it is one.
     fn list(&self, record: Record<'a>) -> Outcome<Option<Varying<'a>>> {
-        if record.some("type").is_none() {
+        let Some(of) = self.of(record)? else {
             return Ok(None);
-        }
-        let of = self.types.get(record, "type")?;
+        };
         let (least, most) = bounds(of)?;
         if least >= most {
             return Ok(None);
@@ -107,13 +105,12 @@ impl<'a> Messages<'a> {
         if each == 0 {
             return BadEdition::because("its elements have no bytes");
         }
-        let (name, count) = (record.name()?, least);
         Ok(Some(Varying {
-            name,
+            name: record.name()?,
             least,
             most,
             each,
-            count,
+            count: least,
         }))
     }
 
@@ -152,16 +149,16 @@ impl<'a> Messages<'a> {
             text.counts = Some(counted.into());
             return Ok((field, text));
         }
-        if record.some("type").is_some() {
-            let of = self.types.get(record, "type")?;
-            if matches!(
-                kind(of)?,
-                Kind::Bits | Kind::Bytes | Kind::Text | Kind::List
-            ) {
-                return self.repeated(of, list(record.name()?));
-            }
+        match self.of(record)? {
+            Some(of) if kind(of)?.repeats() => self.repeated(of, list(record.name()?)),
+            _ => self.plain(record, records, record.get("const")?),
         }
-        self.plain(record, records, record.get("const")?)
+    }
+
+    /// Return the type of a field; `None` if it has cases.
+    fn of(&self, record: Record<'a>) -> Outcome<Option<Record<'a>>> {
+        let found = record.some("type").map(|_| self.types.get(record, "type"));
+        found.transpose()
     }
 
     /// Return a field of bits, bytes, a text or a list, with as many elements as the list has.
@@ -188,7 +185,7 @@ impl<'a> Messages<'a> {
 
     /// Return such a field without its numbers, and the numbers of one element.
     fn shaped(&self, of: Record<'a>) -> Outcome<(wire::Field, Numbers, Field)> {
-        let (mut field, mut text) = (empty(), Field::default());
+        let (mut field, mut text) = (wire::Field::default(), Field::default());
         (field.many, text.kind) = (true, "number");
         let numbers = match kind(of)? {
             Kind::Bits => bits(of)?,
@@ -203,17 +200,15 @@ impl<'a> Messages<'a> {
             _ => {
                 let of = self.types.get(of, "of")?;
                 let kind = kind(of)?;
-                text.kind = word(kind);
+                text.kind = kind.word();
                 if kind == Kind::Text {
                     field.each = bounds(of)?.0;
                     letters(of, field.each, &mut field)?
                 } else {
                     let numbers = self.types.numbers(of)?;
-                    field.each = if kind == Kind::Value {
-                        numbers.wire.len()
-                    } else {
-                        0
-                    };
+                    if kind == Kind::Value {
+                        field.each = numbers.wire.len();
+                    }
                     (field.flag, field.choices) = (kind == Kind::Flag, all_choices(of)?);
                     text.labels = labels(of)?;
                     numbers
@@ -234,7 +229,7 @@ impl<'a> Messages<'a> {
         if cases.is_empty() {
             cases.push(record);
         }
-        let (mut field, mut text) = (empty(), Field::default());
+        let (mut field, mut text) = (wire::Field::default(), Field::default());
         for case in &cases {
             let numbers = self.types.numbers(self.types.get(*case, "type")?)?;
             field.cases.push(wire::Case {
@@ -246,7 +241,7 @@ impl<'a> Messages<'a> {
         let first = self.types.get(*cases.first().unwrap_or(&record), "type")?;
         let kind = kind(first)?;
         (field.flag, field.many) = (kind == Kind::Flag, kind == Kind::Value);
-        field.selector = selector(record.any("selector")?, records)?;
+        field.selector = selector(record.get("selector")?, records)?;
         field.choices = match fixed {
             Some(fixed) => vec![fixed],
             // Each case of a selected quantity has its own choices, in its number.
@@ -256,7 +251,7 @@ impl<'a> Messages<'a> {
         for number in field.cases.iter().flat_map(|case| &case.numbers) {
             fitting(number, &field.choices)?;
         }
-        text.kind = word(kind);
+        text.kind = kind.word();
         if fixed.is_none() {
             text.labels = labels(first)?;
         }
@@ -267,19 +262,6 @@ impl<'a> Messages<'a> {
             text.meanings.push(meaning);
         }
         Ok((field, text))
-    }
-}
-
-fn empty() -> wire::Field {
-    wire::Field {
-        flag: false,
-        many: false,
-        choices: Vec::new(),
-        selector: None,
-        cases: Vec::new(),
-        shape: Shape::Numbers,
-        each: 0,
-        varies: false,
     }
 }
 
@@ -319,31 +301,20 @@ fn lengthen(lists: &mut [Varying<'_>], room: usize) -> bool {
 
 /// Return the least and the most elements of a type.
 fn bounds(of: Record<'_>) -> Outcome<(usize, usize)> {
-    let (least, most) = (of.or("least", 1)?, of.or("most", 1)?);
-    if least.max(most) > LONGEST {
-        return BadEdition::because(format!(
-            "it may have {most} elements; allowed: 0..{LONGEST}"
-        ));
-    }
-    Ok((least, most))
+    Ok((
+        of.size("least", 0..=LONGEST)?,
+        of.size("most", 0..=LONGEST)?,
+    ))
 }
 
-/// Return what texts call a kind.
-fn word(kind: Kind) -> &'static str {
-    match kind {
-        Kind::Flag => "flag",
-        Kind::Enum => "enum",
-        Kind::Text => "text",
-        _ => "number",
+fn selector(name: Option<&str>, records: &[Record<'_>]) -> Outcome<Option<usize>> {
+    let Some(name) = name else {
+        return Ok(None);
+    };
+    match records.iter().position(|each| each.name() == Ok(name)) {
+        None => BadEdition::because("selector is not the name of a field of the message"),
+        index => Ok(index),
     }
-}
-
-fn selector(name: &str, records: &[Record<'_>]) -> Outcome<Option<usize>> {
-    let index = records.iter().position(|each| each.name() == Ok(name));
-    if index.is_none() && !name.is_empty() {
-        return BadEdition::because("selector is not the name of a field of the message");
-    }
-    Ok(index.filter(|_| !name.is_empty()))
 }
 
 /// Return the value of an argument that is left out, in physical units.

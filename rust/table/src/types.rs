@@ -5,7 +5,7 @@ use alloc::vec;
 use alloc::vec::Vec;
 
 use cobotwire_core as core_table;
-use cobotwire_core::{Bits, Order};
+use cobotwire_core::Bits;
 use serde::Deserialize;
 
 use crate::json::Record;
@@ -38,6 +38,23 @@ enum Encoding {
     Float,
 }
 
+impl Kind {
+    /// Return whether it consists of elements, besides rows.
+    pub(crate) fn repeats(self) -> bool {
+        matches!(self, Self::Bits | Self::Bytes | Self::Text | Self::List)
+    }
+
+    /// Return what texts call it.
+    pub(crate) fn word(self) -> &'static str {
+        match self {
+            Self::Flag => "flag",
+            Self::Enum => "enum",
+            Self::Text => "text",
+            _ => "number",
+        }
+    }
+}
+
 /// The numbers of a type in the order of the wire, and what texts need of each.
 #[derive(Clone, Default)]
 pub(crate) struct Numbers {
@@ -50,16 +67,11 @@ impl Numbers {
     pub(crate) fn bytes(count: usize, most: i64) -> Self {
         let byte = core_table::Number {
             width: 1,
-            order: Order::Big,
             signed_at: 255,
             multiply: 1,
             divide: 1,
-            minimum: 0,
             maximum: most,
-            float: false,
-            choices: Vec::new(),
-            flag: false,
-            bits: None,
+            ..core_table::Number::default()
         };
         Self {
             wire: vec![byte; count],
@@ -123,30 +135,11 @@ impl<'a> Types<'a> {
 
     fn number(&self, of: Record<'a>) -> Outcome<core_table::Number> {
         let wire = referred(&self.wires, of.at("wire")).within("wire", "")?;
-        let all = all_choices(of)?;
-        let (multiply, divide) = match of.some("scale") {
+        let scale = match of.some("scale") {
             Some(_) => of.rational("scale")?,
             None => (1, 1),
         };
-        let mut number = core_table::Number {
-            width: wire.within("width", 0..=8)?,
-            order: wire.get("order")?,
-            signed_at: wire.get("signed_at")?,
-            multiply,
-            divide,
-            minimum: 0,
-            maximum: 0,
-            float: wire.any::<Encoding>("encoding")? == Encoding::Float,
-            choices: of.any("choices")?,
-            flag: false,
-            bits: None,
-        };
-        let (low, high) = natural_range(&number);
-        (number.minimum, number.maximum) = match (all.iter().min(), all.iter().max()) {
-            (Some(low), Some(high)) => (*low, *high),
-            _ => (of.or("minimum", low)?, of.or("maximum", high)?),
-        };
-        checked(number)
+        number(wire, of, scale, &all_choices(of)?)
     }
 }
 
@@ -164,7 +157,7 @@ pub(crate) fn bits(of: Record<'_>) -> Outcome<Numbers> {
     let mut numbers = Numbers::default();
     for part in of.records("numbers")? {
         let name = part.name()?;
-        let number = number_of(part).and_then(checked).within("bits", name)?;
+        let number = part_of_word(part).within("bits", name)?;
         numbers.push(number, name, part)?;
     }
     // Codecs read and write parts of the same bytes together.
@@ -180,27 +173,41 @@ pub(crate) fn bits(of: Record<'_>) -> Outcome<Numbers> {
     Ok(numbers)
 }
 
-fn number_of(part: Record<'_>) -> Outcome<core_table::Number> {
+fn part_of_word(part: Record<'_>) -> Outcome<core_table::Number> {
+    let scale = (part.get("multiply")?, part.get("divide")?);
     Ok(core_table::Number {
-        width: part.within("width", 0..=4)?,
-        order: part.get("order")?,
-        signed_at: part.get("signed_at")?,
-        multiply: part.get("multiply")?,
-        divide: part.get("divide")?,
-        minimum: part.get("minimum")?,
-        maximum: part.get("maximum")?,
-        float: part.any::<Encoding>("encoding")? == Encoding::Float,
-        choices: part.any("choices")?,
         flag: part.any::<&str>("kind")? == "flag",
         bits: Some(Bits {
             shift: part.within("shift", 0..=31)?,
             count: part.within("bits", 1..=32)?,
             more: part.any("more")?,
         }),
+        ..number(part, part, scale, &[])?
     })
 }
 
-fn checked(number: core_table::Number) -> Outcome<core_table::Number> {
+/// Return a number with the bytes of a wire, and the limits of a type unless it has choices.
+fn number(
+    wire: Record<'_>,
+    of: Record<'_>,
+    (multiply, divide): (i64, i64),
+    all: &[i64],
+) -> Outcome<core_table::Number> {
+    let mut number = core_table::Number {
+        width: wire.within("width", 0..=8)?,
+        order: wire.get("order")?,
+        signed_at: wire.get("signed_at")?,
+        multiply,
+        divide,
+        float: wire.any::<Encoding>("encoding")? == Encoding::Float,
+        choices: of.any("choices")?,
+        ..core_table::Number::default()
+    };
+    let (low, high) = natural_range(&number);
+    (number.minimum, number.maximum) = match (all.iter().min(), all.iter().max()) {
+        (Some(low), Some(high)) => (*low, *high),
+        _ => (of.or("minimum", low)?, of.or("maximum", high)?),
+    };
     let ends = [number.minimum, number.maximum];
     fitting(&number, ends.iter().chain(&number.choices))?;
     Ok(number)
