@@ -33,7 +33,7 @@ pub enum Shape {
 }
 
 /// One argument of a request or one part of a reply.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Field {
     /// Whether it is a flag; only flags accept a bool as a number.
     pub flag: bool,

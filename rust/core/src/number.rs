@@ -1,14 +1,21 @@
 //! Numbers on the wire: their bytes, raw values and physical values.
 
 use alloc::vec::Vec;
+use core::fmt;
 
 /// Up to this number a double holds every integer.
 const EXACT: u64 = 1 << 53;
 
 /// Which byte of a number comes first.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Deserialize),
+    serde(rename_all = "lowercase")
+)]
 pub enum Order {
     /// The most significant.
+    #[default]
     Big,
     /// The least significant.
     Little,
@@ -33,7 +40,7 @@ pub struct Bits {
 /// With `float` the bytes are an IEEE float of 4 or 8 bytes, without a scale or a sign rule. Its raw
 /// value is the integer of its bits, with the bits after a set sign inverted, so that raw values
 /// have the order of the floats.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
 #[allow(missing_docs)] // the doc above explains each field
 pub struct Number {
     pub width: usize,
@@ -71,12 +78,19 @@ pub enum Value {
 
 /// How a text is encoded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Deserialize),
+    serde(rename_all = "lowercase")
+)]
 pub enum Encoding {
     /// Bytes below 128.
     Ascii,
     /// UTF-8.
+    #[cfg_attr(feature = "serde", serde(rename = "utf-8"))]
     Utf8,
     /// Each byte is the Unicode character of that number.
+    #[cfg_attr(feature = "serde", serde(rename = "latin-1"))]
     Latin1,
 }
 
@@ -95,6 +109,23 @@ pub enum Misfit {
     Selector,
     /// A variant is longer than LEN can express.
     Length,
+}
+
+impl fmt::Display for Misfit {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        out.write_str(match self {
+            Self::Width => "an integer must have one to four bytes, a float four or eight",
+            Self::Scale => "a scale is zero, or too fine for an exact double",
+            Self::Bounds => "a bound is an integer that a double cannot represent exactly",
+            Self::Cases => {
+                "all cases of a field must have one size, and one number unless it has many"
+            }
+            Self::Selector => "a selector must be the index of a field with one number",
+            Self::Length => {
+                "a variant is longer than LEN can express, or a reply without an id is shorter than an id"
+            }
+        })
+    }
 }
 
 impl Number {

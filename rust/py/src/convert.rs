@@ -2,7 +2,7 @@
 
 use cobotwire_core::{
     Algorithm, Bits, Case, Check, Command, Computed, Crc, CrcParameters, Encoding, Field,
-    FrameFormat, Layout, Misfit, Number, Order, Part, Shape, Table, Variant,
+    FrameFormat, Layout, Number, Order, Part, Shape, Table, Variant,
 };
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -111,7 +111,7 @@ pub fn table(given: &Bound<'_, PyAny>) -> PyResult<(Table, Vec<String>)> {
     let commands = commands.into_iter().map(command).collect();
     let table = Table::new(frame_format(frame)?, commands).map_err(|error| {
         let name = names.get(error.command).map_or("", String::as_str);
-        PyValueError::new_err(format!("table: {name}: {}", misfit(error.misfit)))
+        PyValueError::new_err(format!("table: {name}: {}", error.misfit))
     })?;
     Ok((table, names))
 }
@@ -269,20 +269,5 @@ fn number(record: NumberRecord) -> Number {
             count: record.bits,
             more: record.more,
         }),
-    }
-}
-
-fn misfit(misfit: Misfit) -> &'static str {
-    match misfit {
-        Misfit::Width => "an integer must have one to four bytes, a float four or eight",
-        Misfit::Scale => "a scale is zero, or too fine for an exact double",
-        Misfit::Bounds => "a bound is an integer that a double cannot represent exactly",
-        Misfit::Cases => {
-            "all cases of a field must have one size, and one number unless it has many"
-        }
-        Misfit::Selector => "a selector must be the index of a field with one number",
-        Misfit::Length => {
-            "a variant is longer than LEN can express, or a reply without an id is shorter than an id"
-        }
     }
 }

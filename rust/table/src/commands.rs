@@ -1,17 +1,19 @@
-//! Reads the commands of a file.
+//! Turns the commands of a file into those of a table.
 
-use alloc::vec;
+use alloc::boxed::Box;
+use alloc::collections::BTreeMap;
+use alloc::string::String;
 use alloc::vec::Vec;
 
 use cobotwire_core as wire;
-use cobotwire_core::exchange::{Facts, Named, Nanos, Safety, TextForm};
+use cobotwire_core::exchange::{Facts, Named, Nanos, TextForm};
 
-use crate::Command;
-use crate::json::{BadEdition, Node, Outcome, Record, Within};
+use crate::json::Record;
 use crate::messages::{Messages, Variant};
+use crate::{BadEdition, Command, Outcome, Within};
 
 /// The longest time of a file, in milliseconds: a day.
-const LONGEST_MS: i64 = 24 * 3600 * 1000;
+const LONGEST_MS: Nanos = 24 * 3600 * 1000;
 
 /// A command as the table, the exchange, and texts and clients need it.
 pub(crate) type Parts = (wire::Command, Facts, Command);
@@ -20,59 +22,48 @@ pub(crate) type Parts = (wire::Command, Facts, Command);
 pub(crate) fn command<'a>(
     record: Record<'a>,
     messages: &mut Messages<'a>,
-    last: i64,
+    last: u16,
 ) -> Outcome<Parts> {
-    let event = record.is("event")?;
-    let mut requests = lists(record, "request")?;
-    if record.get("request").is_none() && !event {
-        requests.push(Vec::new());
+    let event: bool = record.any("event")?;
+    let mut lists = record.records("request")?;
+    if record.some("request").is_none() && !event {
+        lists.push(record.at("request"));
     }
-    let request = messages.variants(requests).within("request", "")?;
-    let replies = lists(record, "reply")?;
-    let reply = messages.variants(replies).within("reply", "")?;
+    let request = messages.variants(lists).within("request", "")?;
+    let reply = messages
+        .variants(record.records("reply")?)
+        .within("reply", "")?;
     let facts = Facts {
-        safety: safety(record.need("safety")?)?,
-        deadline: millis(record.need("deadline_ms")?)?,
-        ack: record.is("ack")?,
+        safety: record.get("safety")?,
+        deadline: record.within("deadline_ms", 0..=LONGEST_MS)? * 1_000_000,
+        ack: record.any("ack")?,
         event,
-        text: record
-            .get("text")
-            .map(text)
-            .transpose()
-            .within("text", "")?,
-        request_text: record
-            .get("request_text")
-            .map(text)
-            .transpose()
-            .within("request_text", "")?,
+        text: text(record, "text")?,
+        request_text: text(record, "request_text")?,
         request: request.iter().map(named).collect(),
         reply: reply.iter().map(named).collect(),
-        accepted: record.integers("accepted")?,
+        accepted: record.any("accepted")?,
         statuses: reply.iter().map(statuses).collect(),
     };
     let (in_request, request) = parted(request);
     let (in_reply, reply) = parted(reply);
-    let id = u16::try_from(record.within("id", 0..=last)?).unwrap_or_default();
+    let id = record.within("id", 0..=last)?;
+    let stores: BTreeMap<String, String> = record.at("effect").any("stores")?;
     let command = Command {
         id,
-        name: record.name()?.into(),
-        family: record.text("family")?.into(),
+        name: record.get("name")?,
+        family: record.any("family")?,
         safety: facts.safety,
-        role: record.text("role")?.into(),
-        arguments: record.texts("arguments")?,
-        read_by: match record.get("read_by") {
-            Some(back) => Some(back.record()?.need("query")?.string()?),
+        role: record.any("role")?,
+        read_by: match record.some("read_by") {
+            Some(back) => back.get("query")?,
             None => None,
         },
-        stores: stores(record)?,
+        stores: stores.into_values().collect(),
         request: in_request,
         reply: in_reply,
     };
     Ok((wire::Command { id, request, reply }, facts, command))
-}
-
-fn lists<'a>(record: Record<'a>, key: &'a str) -> Outcome<Vec<Vec<Record<'a>>>> {
-    record.list(key)?.map(Node::records).collect()
 }
 
 fn parted(variants: Vec<Variant>) -> (Vec<Vec<crate::Field>>, Vec<wire::Variant>) {
@@ -98,49 +89,23 @@ fn statuses(variant: &Variant) -> Vec<usize> {
     own.map(|(index, _)| index).collect()
 }
 
-fn safety(word: Node<'_>) -> Outcome<Safety> {
-    Ok(match word.text()? {
-        "query" => Safety::Query,
-        "setting" => Safety::Setting,
-        "motion" => Safety::Motion,
-        "power" => Safety::Power,
-        "persistent write" => Safety::Persistent,
-        _ => return Err(word.unknown("query, setting, motion, power, persistent write")),
-    })
-}
-
-fn millis(node: Node<'_>) -> Outcome<Nanos> {
-    let millis = Nanos::try_from(node.within(0..=LONGEST_MS)?).unwrap_or_default();
-    Ok(millis * 1_000_000)
-}
-
-fn text(node: Node<'_>) -> Outcome<TextForm> {
-    let record = node.record()?;
-    let (mut prefixes, mut fields) = (vec![], vec![]);
-    for prefix in record.list("prefixes")? {
-        prefixes.push(prefix.text()?.into());
-    }
-    for field in record.records("fields")? {
-        fields.push(field.name()?.into());
-    }
-    if prefixes.len() != fields.len() {
-        return Err(BadEdition::new("prefixes must be as many as fields"));
-    }
-    Ok(TextForm {
-        prefixes,
-        fields,
-        suffix: record.text("suffix")?.into(),
-        silence: record.get("silence_ms").map_or(Ok(0), millis)?,
-    })
-}
-
-/// Return the states that a command stores.
-fn stores(record: Record<'_>) -> Outcome<Vec<alloc::string::String>> {
-    let Some(effect) = record.get("effect") else {
-        return Ok(Vec::new());
+fn text(record: Record<'_>, key: &str) -> Outcome<Option<TextForm>> {
+    let Some(record) = record.some(key) else {
+        return Ok(None);
     };
-    let Some(stores) = effect.record()?.get("stores") else {
-        return Ok(Vec::new());
+    let fields = record.records("fields")?.into_iter();
+    let fields = fields.map(|each| each.name().map(Box::from));
+    let form = TextForm {
+        prefixes: record.any("prefixes")?,
+        fields: fields.collect::<Outcome<_>>()?,
+        suffix: record.any("suffix")?,
+        silence: match record.some("silence_ms") {
+            Some(_) => record.within("silence_ms", 0..=LONGEST_MS)? * 1_000_000,
+            None => 0,
+        },
     };
-    stores.record()?.values()
+    if form.prefixes.len() != form.fields.len() {
+        return BadEdition::because("prefixes must be as many as fields").within(key, "");
+    }
+    Ok(Some(form))
 }

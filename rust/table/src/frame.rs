@@ -4,19 +4,30 @@ use alloc::boxed::Box;
 use alloc::format;
 use alloc::vec;
 use alloc::vec::Vec;
+use core::ops::RangeInclusive;
 
-use cobotwire_core::exchange::{Addressee, Replier};
-use cobotwire_core::{
-    Algorithm, Check, Computed, Crc, CrcParameters, FrameFormat, Layout, Order, Part,
-};
+use cobotwire_core::exchange::Replier;
+use cobotwire_core::{Algorithm, Check, Computed, Crc, CrcParameters, FrameFormat, Layout, Part};
 use serde::Deserialize;
 
-use crate::Address;
-use crate::json::{BadEdition, Node, Outcome, Record};
-use crate::types::order;
+use crate::json::Record;
+use crate::{Address, BadEdition, Outcome};
 
 /// The most data bytes: the longest LEN of two bytes that the core supports.
-pub(crate) const LONGEST: i64 = 0x4000;
+pub(crate) const LONGEST: usize = 0x4000;
+
+/// A part of a frame.
+#[derive(Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "lowercase")]
+enum Place {
+    Header,
+    Address,
+    Length,
+    Command,
+    Data,
+    Check,
+    Footer,
+}
 
 /// The numbers of a CRC, which can have more bits than a generic number of JSON.
 #[derive(Deserialize)]
@@ -26,108 +37,84 @@ struct Wide {
 
 #[derive(Deserialize)]
 struct WideFrame {
-    crc: Option<WideCrc>,
+    crc: Option<CrcParameters>,
 }
 
-#[derive(Deserialize)]
-struct WideCrc {
-    width: u32,
-    poly: u128,
-    init: u128,
-    refin: bool,
-    refout: bool,
-    xorout: u128,
+/// The sizes of a frame's parts, and the order of those between header and data.
+struct Sizes {
+    sizes: [(Place, usize); 7],
+    layout: Vec<Place>,
 }
 
-/// The sizes of a frame's parts.
-struct Sizes<'a> {
-    header: usize,
-    address: usize,
-    length: usize,
-    command: usize,
-    check: usize,
-    footer: usize,
-    layout: Vec<&'a str>,
-}
-
-impl Sizes<'_> {
-    fn of(&self, part: &str) -> Option<usize> {
-        Some(match part {
-            "header" => self.header,
-            "address" => self.address,
-            "length" => self.length,
-            "command" => self.command,
-            "data" => 0,
-            "check" => self.check,
-            "footer" => self.footer,
-            _ => return None,
-        })
+impl Sizes {
+    fn of(&self, part: Place) -> usize {
+        let found = self.sizes.iter().find(|(each, _)| *each == part);
+        found.map_or(0, |(_, size)| *size)
     }
 
     /// Return the offset of a part, which is the header, a fixed part, or the data.
-    fn offset(&self, part: &str) -> usize {
-        let parts = ["header"].into_iter().chain(self.layout.iter().copied());
-        let before = parts.take_while(|each| *each != part);
-        before.filter_map(|each| self.of(each)).sum()
+    fn offset(&self, part: Place) -> usize {
+        let parts = [&Place::Header].into_iter().chain(&self.layout);
+        let before = parts.take_while(|each| **each != part);
+        before.map(|each| self.of(*each)).sum()
+    }
+
+    /// Return an unsigned number of the frame: LEN or the command id.
+    fn part(&self, part: Place, number: Record<'_>) -> Outcome<Part> {
+        Ok(Part {
+            at: self.offset(part),
+            wide: self.of(part) == 2,
+            order: number.any("order")?,
+        })
     }
 }
 
 /// Return the frame format; `json` are the bytes of the whole file.
 pub(crate) fn frame_format(record: Record<'_>, json: &[u8]) -> Outcome<FrameFormat> {
-    let header = record.need("header")?.bytes(4)?;
-    let footer = record
-        .get("footer")
-        .map_or(Ok(Vec::new()), |footer| footer.bytes(2))?;
-    if header.is_empty() {
-        return Err(BadEdition::new(
-            "header is empty; allowed: one to four bytes",
-        ));
-    }
-    let (length, id) = (unsigned(record, "length")?, unsigned(record, "command")?);
+    use Place::{Address, Check as CheckBytes, Command, Data, Footer, Header, Length};
+    let (header, footer) = (hex(record, "header", 1..=4)?, hex(record, "footer", 0..=2)?);
     let addresses = address_bytes(record)?;
     let algorithm = algorithm(record, json)?;
     let check_width = match algorithm {
-        Some(_) => record.size("check_width", 16)?,
+        Some(_) => record.get("check_width")?,
         None => 0,
     };
+    let (length, id) = (record.at("length"), record.at("command"));
     let sizes = Sizes {
-        header: header.len(),
-        address: usize::from(!addresses.is_empty()),
-        length: if length.wide { 2 } else { 1 },
-        command: if id.wide { 2 } else { 1 },
-        check: check_width,
-        footer: footer.len(),
-        layout: words(record, "layout", &["address", "length", "command"])?,
+        sizes: [
+            (Header, header.len()),
+            (Address, usize::from(!addresses.is_empty())),
+            (Length, length.size("width", 1..=2)?),
+            (Command, id.size("width", 1..=2)?),
+            (Data, 0),
+            (CheckBytes, check_width),
+            (Footer, footer.len()),
+        ],
+        layout: record.or("layout", vec![Address, Length, Command])?,
     };
-    let reply_has_id = !record.is("replies_without_id")?;
-    let counted = words(record, "counted", &["command", "data", "check", "footer"])?;
+    let reply_has_id = !record.any::<bool>("replies_without_id")?;
+    let counted = record.or("counted", vec![Command, Data, CheckBytes, Footer])?;
     check_layout(&sizes, &counted, reply_has_id)?;
-    let parts = ["header", "address", "length", "command", "check", "footer"];
-    let uncounted = parts.iter().filter(|part| !counted.contains(part));
+    let uncounted = sizes
+        .sizes
+        .iter()
+        .filter(|(part, _)| !counted.contains(part));
     let layout = Layout {
-        address_at: (!addresses.is_empty()).then(|| sizes.offset("address")),
-        length: Part {
-            at: sizes.offset("length"),
-            ..length
-        },
-        id: Part {
-            at: sizes.offset("command"),
-            ..id
-        },
-        data_at: sizes.offset("data"),
-        overhead: uncounted.filter_map(|part| sizes.of(part)).sum(),
+        address_at: (!addresses.is_empty()).then(|| sizes.offset(Address)),
+        length: sizes.part(Length, length)?,
+        id: sizes.part(Command, id)?,
+        data_at: sizes.offset(Data),
+        overhead: uncounted.map(|(_, size)| size).sum(),
         reply_has_id,
     };
-    let check = match (algorithm, footer.as_slice()) {
+    let check = match (algorithm, &*footer) {
         (None, &[footer]) => Check::Footer(footer),
         (None, _) => {
-            return Err(BadEdition::new(
-                "footer must have one byte, since check is footer",
-            ));
+            return BadEdition::because("footer must have one byte, since check is footer");
         }
         (Some(algorithm), _) => Check::Computed(Box::new(Computed {
             width: check_width,
-            order: record.get("check_order").map_or(Ok(Order::Big), order)?,
+            order: record.any("check_order")?,
             from: check_from(record, &sizes, reply_has_id)?,
             algorithm: Some(algorithm),
             footer,
@@ -137,73 +124,68 @@ pub(crate) fn frame_format(record: Record<'_>, json: &[u8]) -> Outcome<FrameForm
         header,
         addresses,
         check,
-        maximum_length: record.within("maximum_length", 0..=LONGEST)?,
+        maximum_length: record.within("maximum_length", 0..=LONGEST as i64)?,
         layout,
     })
 }
 
-fn words<'a>(record: Record<'a>, key: &'a str, usual: &[&'a str]) -> Outcome<Vec<&'a str>> {
-    let given: Vec<&str> = record.list(key)?.map(Node::text).collect::<Outcome<_>>()?;
-    Ok(if given.is_empty() {
-        usual.to_vec()
-    } else {
-        given
+/// Return bytes, which are pairs of hexadecimal digits.
+fn hex(record: Record<'_>, key: &str, sizes: RangeInclusive<usize>) -> Outcome<Vec<u8>> {
+    let text: &str = record.any(key)?;
+    let digits: Vec<char> = text.chars().filter(|char| *char != ' ').collect();
+    let bytes = digits.chunks(2).map(|pair| match pair {
+        [high, low] => u8::try_from(high.to_digit(16)? << 4 | low.to_digit(16)?).ok(),
+        _ => None,
+    });
+    match bytes.collect::<Option<Vec<u8>>>() {
+        Some(bytes) if sizes.contains(&bytes.len()) => Ok(bytes),
+        _ => BadEdition::because(format!("{key} must be {sizes:?} bytes, as pairs of digits")),
+    }
+}
+
+fn check_layout(sizes: &Sizes, counted: &[Place], reply_has_id: bool) -> Outcome<()> {
+    let times = |parts: &[Place], part| parts.iter().filter(|each| **each == part).count();
+    let (layout, no_id) = (&*sizes.layout, !reply_has_id);
+    let addresses = times(layout, Place::Address);
+    let both = times(layout, Place::Length) == 1 && times(layout, Place::Command) == 1;
+    let all = both && addresses <= 1 && layout.len() == 2 + addresses;
+    let once = counted.iter().all(|part| times(counted, *part) == 1);
+    let counts = |part| times(counted, part) == 1;
+    BadEdition::because(match layout.last() {
+        _ if !all || addresses < sizes.of(Place::Address) => {
+            "layout must have length, command, and an address if frames have it, each once"
+        }
+        Some(Place::Address) => "layout must end with length or command",
+        Some(Place::Length) if no_id => "layout must end with command, since replies have none",
+        _ if !once || !counts(Place::Data) => {
+            "counted must have data and other parts of a frame, each once"
+        }
+        _ if no_id && !counts(Place::Command) => {
+            "counted must have command, since replies have data in its place"
+        }
+        _ => return Ok(()),
     })
 }
 
-fn check_layout(sizes: &Sizes<'_>, counted: &[&str], reply_has_id: bool) -> Outcome<()> {
-    fn times(parts: &[&str], part: &str) -> usize {
-        parts.iter().filter(|each| **each == part).count()
-    }
-    let layout = sizes.layout.as_slice();
-    let addresses = times(layout, "address");
-    let all = times(layout, "length") == 1 && times(layout, "command") == 1 && addresses <= 1;
-    if !all || layout.len() != 2 + addresses || addresses < sizes.address {
-        return Err(BadEdition::new(
-            "layout must have length, command, and an address if frames have it, each once",
-        ));
-    }
-    match (layout.last(), reply_has_id) {
-        (Some(&"address"), _) => {
-            return Err(BadEdition::new("layout must end with length or command"));
-        }
-        (Some(&"length"), false) => {
-            return Err(BadEdition::new(
-                "layout must end with command, since replies have none",
-            ));
-        }
-        _ => {}
-    }
-    let once = |part: &&str| sizes.of(part).is_some() && times(counted, part) == 1;
-    if !counted.iter().all(once) || !counted.contains(&"data") {
-        return Err(BadEdition::new(
-            "counted must have data and other parts of a frame, each once",
-        ));
-    }
-    if !reply_has_id && !counted.contains(&"command") {
-        return Err(BadEdition::new(
-            "counted must have command, since replies have data in its place",
-        ));
-    }
-    Ok(())
-}
-
-fn check_from(record: Record<'_>, sizes: &Sizes<'_>, reply_has_id: bool) -> Outcome<usize> {
-    let word = record.need("check_from")?;
-    let part = word.text()?;
-    let stands = sizes.layout.contains(&part) && sizes.of(part) != Some(0);
-    if part == "header" || stands || (part == "data" && reply_has_id) {
+fn check_from(record: Record<'_>, sizes: &Sizes, reply_has_id: bool) -> Outcome<usize> {
+    let part = record.get("check_from")?;
+    let stands = match part {
+        Place::Header => true,
+        Place::Data => reply_has_id,
+        _ => sizes.layout.contains(&part) && sizes.of(part) > 0,
+    };
+    if stands {
         return Ok(sizes.offset(part));
     }
-    Err(word.unknown("a part before the check that all frames have"))
+    BadEdition::because("check_from must be a part before the check that all frames have")
 }
 
 fn algorithm(record: Record<'_>, json: &[u8]) -> Outcome<Option<Algorithm>> {
-    let word = record.need("check")?;
-    if record.get("crc").is_some() && word.text()? != "footer" {
-        return crc(json, record.size("check_width", 16)?).map(Some);
+    let word: &str = record.get("check")?;
+    if record.some("crc").is_some() && word != "footer" {
+        return crc(json, record.get("check_width")?).map(Some);
     }
-    let (algorithm, widths): (_, &[usize]) = match word.text()? {
+    let (algorithm, widths): (_, &[usize]) = match word {
         "footer" => return Ok(None),
         "sum" => (Algorithm::Sum, &[1, 2, 4]),
         "inverted-sum" => (Algorithm::InvertedSum, &[1, 2, 4]),
@@ -212,107 +194,65 @@ fn algorithm(record: Record<'_>, json: &[u8]) -> Outcome<Option<Algorithm>> {
         "fletcher" => (Algorithm::Fletcher(256), &[2]),
         "fletcher-16" => (Algorithm::Fletcher(255), &[2]),
         _ => {
-            return Err(word.unknown(
-                "footer, sum, inverted-sum, negated-sum, xor, fletcher, fletcher-16, or a CRC",
-            ));
+            return BadEdition::because(
+                "check must be footer, sum, inverted-sum, negated-sum, xor, fletcher, fletcher-16, or a CRC",
+            );
         }
     };
-    if !widths.contains(&record.size("check_width", 16)?) {
-        return Err(record.need("check_width")?.unknown(&format!("{widths:?}")));
+    if !widths.contains(&record.get("check_width")?) {
+        return BadEdition::because(format!("check_width must be one of {widths:?}"));
     }
     Ok(Some(algorithm))
 }
 
 fn crc(json: &[u8], size: usize) -> Outcome<Algorithm> {
-    let found = serde_json::from_slice(json).map(|wide: Wide| wide.frame.crc);
-    let crc = found.map_err(|error| BadEdition::new(format!("crc: {error}")))?;
-    let crc = crc.and_then(|crc| {
-        let WideCrc {
-            width,
-            poly,
-            init,
-            refin,
-            refout,
-            xorout,
-        } = crc;
-        let fits = |number: u128| number.checked_shr(width).unwrap_or_default() == 0;
-        let parameters = CrcParameters {
-            width,
-            poly,
-            init,
-            refin,
-            refout,
-            xorout,
-        };
-        let all = fits(poly) && fits(init) && fits(xorout);
-        Crc::new(parameters).filter(|crc| all && crc.size() == size)
+    let wide: Wide = serde_json::from_slice(json).or_else(BadEdition::because)?;
+    let crc = wide.frame.crc.and_then(|crc| {
+        let fits = |number: u128| number.checked_shr(crc.width).unwrap_or_default() == 0;
+        let all = [crc.poly, crc.init, crc.xorout].into_iter().all(fits);
+        Crc::new(crc).filter(|crc| all && crc.size() == size)
     });
-    let text = "crc must have 1 to 120 bits, numbers of that many bits, and check_width its bytes";
-    crc.map(Algorithm::Crc).ok_or_else(|| BadEdition::new(text))
-}
-
-/// Return an unsigned number of the frame: LEN or the command id; its offset is not known yet.
-fn unsigned<'a>(record: Record<'a>, key: &'a str) -> Outcome<Part> {
-    let Some(node) = record.get(key) else {
-        return Ok(Part::byte(0));
-    };
-    let number = node.record()?;
-    Ok(Part {
-        at: 0,
-        wide: number
-            .get("width")
-            .map_or(Ok(1), |width| width.within(1..=2))?
-            == 2,
-        order: number.get("order").map_or(Ok(Order::Big), order)?,
-    })
+    match crc {
+        Some(crc) => Ok(Algorithm::Crc(crc)),
+        None => BadEdition::because(
+            "crc must have 1 to 120 bits, numbers of that many bits, and check_width its bytes",
+        ),
+    }
 }
 
 fn address_bytes(record: Record<'_>) -> Outcome<Vec<u8>> {
-    let mut bytes = vec![];
-    for address in record.records("addresses")? {
-        bytes.push(address.need("value")?.byte()?);
-    }
-    let named = bytes.len();
-    if let Some(range) = record.get("address_range") {
-        let range = range.record()?;
-        let (first, last) = (range.need("first")?.byte()?, range.need("last")?.byte()?);
-        let others = (first..=last).filter(|each| !bytes.iter().take(named).any(|one| one == each));
-        let others: Vec<u8> = others.collect();
+    let named = record.records("addresses")?.into_iter();
+    let mut bytes = named
+        .map(|each| each.get("value"))
+        .collect::<Outcome<Vec<u8>>>()?;
+    if let Some(range) = record.some("address_range") {
+        let all = range.get::<u8>("first")?..=range.get("last")?;
+        let others: Vec<u8> = all.filter(|each| !bytes.contains(each)).collect();
         bytes.extend(others);
     }
     Ok(bytes)
 }
 
 /// Return the addresses that the file names.
-pub(crate) fn addresses(record: Record<'_>) -> Outcome<(Vec<Address>, Vec<Addressee>)> {
-    let mut found = (Vec::new(), Vec::new());
-    for address in record.records("addresses")? {
-        let value = address.need("value")?.byte()?;
-        let replier = match address.get("replies") {
-            None => Replier::Address(value),
-            Some(word) => match word.text()? {
+pub(crate) fn addresses(record: Record<'_>) -> Outcome<Vec<Address>> {
+    let address = |record: Record<'_>| {
+        let value = record.get("value")?;
+        Ok(Address {
+            name: record.get("name")?,
+            value,
+            replier: match record.or("replies", "own")? {
                 "own" => Replier::Address(value),
                 "any" => Replier::Anybody,
                 "one" => Replier::Somebody,
                 "none" => Replier::Nobody,
-                _ => return Err(word.unknown("own, any, one, none")),
+                _ => return BadEdition::because("replies must be own, any, one, none"),
             },
-        };
-        let joints = address
-            .get("joints")
-            .map_or(Ok(0), |node| node.within(0..=255))?;
-        let joints = usize::try_from(joints).unwrap_or_default();
-        found.0.push(Address {
-            name: address.name()?.into(),
-            value,
-            replier,
-            joints,
-        });
-        found.1.push(Addressee {
-            value,
-            replier,
-            joints,
-        });
-    }
-    Ok(found)
+            joints: record.any::<u8>("joints")?.into(),
+        })
+    };
+    record
+        .records("addresses")?
+        .into_iter()
+        .map(address)
+        .collect()
 }

@@ -21,17 +21,17 @@ mod types;
 
 use alloc::collections::BTreeSet;
 use alloc::format;
-use alloc::string::String;
+use alloc::string::{String, ToString};
 use alloc::vec::Vec;
+use core::fmt;
 
-use cobotwire_core::exchange::{Protocol, Replier, Safety};
-use cobotwire_core::{Misfit, Table, TableError};
+use cobotwire_core::Table;
+use cobotwire_core::exchange::{Addressee, Protocol, Replier, Safety};
 use serde_json::Value;
 
-use crate::json::{Node, Within};
+use crate::json::Record;
 use crate::messages::Messages;
 
-pub use crate::json::BadEdition;
 pub use crate::named::Filled;
 pub use crate::robot::Link;
 pub use crate::shown::{Quote, Shown, general};
@@ -39,8 +39,6 @@ pub use crate::texts::{as_call, bad_argument, error_text, link_error};
 
 /// The version of the format.
 const VERSION: i64 = 3;
-/// The highest rate of a serial port.
-const LARGEST_RATE: i64 = 100_000_000;
 /// The largest file. A value of JSON takes up to 32 times its text in memory.
 const LARGEST: usize = 4 << 20;
 
@@ -49,8 +47,6 @@ const LARGEST: usize = 4 << 20;
 pub struct Edition {
     /// Its name, for example `mycobot280`.
     pub name: String,
-    /// What a person calls it.
-    pub title: String,
     /// How many joints its arm has.
     pub joints: usize,
     /// The rate of its serial port.
@@ -61,12 +57,8 @@ pub struct Edition {
     pub commands: Vec<Command>,
     /// Its named addresses.
     pub addresses: Vec<Address>,
-    /// The lowest and the highest angle of each joint, in degrees; empty: not stated.
-    pub joint_limits: Vec<(f64, f64)>,
     /// The links of the arm, from the base on, if they are known.
     pub geometry: Option<Vec<Link>>,
-    /// Why the links are not known, if the file says so.
-    pub geometry_unknown: String,
 }
 
 /// What texts and clients need of a command.
@@ -82,8 +74,6 @@ pub struct Command {
     pub safety: Safety,
     /// The role in which clients use it; empty: none.
     pub role: String,
-    /// The order of its arguments; empty: that of the wire.
-    pub arguments: Vec<String>,
     /// The query that reads back what it sets.
     pub read_by: Option<String>,
     /// The states that it stores arguments in.
@@ -160,86 +150,107 @@ impl Edition {
     /// It is not the table of a protocol; the error says where and why.
     pub fn read(json: &[u8]) -> Result<Self, BadEdition> {
         if json.len() > LARGEST {
-            return Err(BadEdition::new(format!(
-                "the file has more than {LARGEST} bytes"
-            )));
+            return BadEdition::because(format!("the file has more than {LARGEST} bytes"));
         }
         let document: Value = serde_json::from_slice(json)
-            .map_err(|error| BadEdition::new(format!("the file is not JSON: {error}")))?;
-        let root = Node::root(&document).record()?;
-        let version = root.need("version")?.integer()?;
+            .or_else(BadEdition::because)
+            .within("the file is not JSON", "")?;
+        let root = Record(&document);
+        let version: i64 = root.get("version")?;
         if version != VERSION {
-            let text = format!("the file has version {version} of the format, not {VERSION}");
-            return Err(BadEdition::new(text));
+            return BadEdition::because(format!(
+                "the file has version {version} of the format, not {VERSION}"
+            ));
         }
-        let frame = root.need("frame")?.record()?;
-        let described = root.need("edition")?.record()?;
+        let (frame, described) = (root.at("frame"), root.at("edition"));
         let format = frame::frame_format(frame, json).within("frame", "")?;
-        let (addresses, addressees) = frame::addresses(frame).within("frame", "")?;
-        let most = frame
-            .size("maximum_data", frame::LONGEST)
-            .within("frame", "")?;
+        let addresses = frame::addresses(frame).within("frame", "")?;
         let last = if format.layout.id.wide { 0xFFFF } else { 0xFF };
         let (mut wire, mut facts, mut commands) = (Vec::new(), Vec::new(), Vec::new());
-        let mut messages = Messages::new(root, most)?;
+        let mut messages = Messages::new(root)?;
         let mut names = BTreeSet::new();
         for record in root.records("commands")? {
             let name = record.name().within("a command", "")?;
             if !names.insert(name) {
-                return Err(BadEdition::new("the file has it twice")).within("command", name);
+                return BadEdition::because("the file has it twice").within("command", name);
             }
             let parts = commands::command(record, &mut messages, last).within("command", name)?;
             wire.push(parts.0);
             facts.push(parts.1);
             commands.push(parts.2);
         }
-        let table = Table::new(format, wire).map_err(|error| rejected(error, &commands))?;
-        let joints = described.size("joints", 255).within("edition", "")?;
+        let table = Table::new(format, wire).map_err(|error| {
+            let at = commands.get(error.command);
+            let name = at.map_or("", |command: &Command| &command.name);
+            BadEdition(format!("command {}: {}", short(name), error.misfit))
+        })?;
+        let addressees = addresses.iter().map(|each| Addressee {
+            value: each.value,
+            replier: each.replier,
+            joints: each.joints,
+        });
+        let joints = described.get::<u8>("joints")?.into();
+        let links = described.some("geometry").map(|each| each.records("links"));
+        let links = links
+            .transpose()?
+            .map(|all| all.into_iter().map(robot::link).collect());
+        let mut roles = commands.iter().map(|command| &*command.role);
         let protocol = Protocol {
             table,
             facts,
-            reports_ends: commands
-                .iter()
-                .any(|command| command.role == "motion ended"),
-            addresses: addressees,
+            reports_ends: roles.any(|role| role == "motion ended"),
+            addresses: addressees.collect(),
             joints,
         };
         Ok(Self {
-            name: described.name()?.into(),
-            title: described.text("title")?.into(),
+            name: described.get("name")?,
             joints,
-            baudrate: u32::try_from(frame.within("baudrate", 1..=LARGEST_RATE)?)
-                .unwrap_or_default(),
+            baudrate: frame.within("baudrate", 1..=100_000_000)?,
             protocol,
             commands,
             addresses,
-            joint_limits: robot::joint_limits(described).within("edition", "")?,
-            geometry: robot::geometry(described).within("geometry", "")?,
-            geometry_unknown: described.text("geometry_unknown")?.into(),
+            geometry: links.transpose().within("geometry", "")?,
         })
     }
 }
 
-/// Return the error of a command that the core cannot interpret.
-fn rejected(error: TableError, commands: &[Command]) -> BadEdition {
-    let name = commands
-        .get(error.command)
-        .map_or("", |command| &command.name);
-    BadEdition::new(format!("command {name}: {}", why(error.misfit)))
+/// Why a file is not the table of a protocol, as a sentence that says where it is wrong.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct BadEdition(String);
+
+impl BadEdition {
+    /// Return the error of that sentence, as an outcome.
+    pub(crate) fn because<T>(sentence: impl ToString) -> Outcome<T> {
+        Err(Self(short(&sentence.to_string())))
+    }
 }
 
-/// Return the sentence of a mistake that the core found.
-fn why(misfit: Misfit) -> &'static str {
-    match misfit {
-        Misfit::Width => "an integer must have one to four bytes, a float four or eight",
-        Misfit::Scale => "a scale is zero, or too fine for an exact double",
-        Misfit::Bounds => "a bound is an integer that a double cannot represent exactly",
-        Misfit::Cases => {
-            "all cases of a field must have one size, and one number unless it has many"
-        }
-        Misfit::Selector => "a selector must be the index of a field with one number",
-        Misfit::Length => {
-            "a variant is longer than LEN can express, or a reply without an id is shorter than an id"
-        }
+impl fmt::Display for BadEdition {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        out.write_str(&self.0)
     }
+}
+
+impl core::error::Error for BadEdition {}
+
+/// What was made, or why it could not be.
+pub(crate) type Outcome<T> = Result<T, BadEdition>;
+
+/// Says in an error where the mistake is.
+pub(crate) trait Within {
+    /// Put the name of a place before the sentence of an error.
+    fn within(self, what: &str, name: &str) -> Self;
+}
+
+impl<T> Within for Outcome<T> {
+    fn within(self, what: &str, name: &str) -> Self {
+        let space = if name.is_empty() { "" } else { " " };
+        self.map_err(|error| BadEdition(format!("{what}{space}{}: {error}", short(name))))
+    }
+}
+
+/// Return a text of the file for an error: short, and without control characters.
+pub(crate) fn short(text: &str) -> String {
+    let text = text.chars().filter(|char| !char.is_control());
+    text.take(200).collect()
 }

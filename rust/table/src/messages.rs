@@ -1,7 +1,7 @@
 //! Turns the fields of a message into its variants: one for each number of elements that its lists
 //! may have.
 
-use alloc::format;
+use alloc::collections::BTreeSet;
 use alloc::string::String;
 use alloc::vec;
 use alloc::vec::Vec;
@@ -9,10 +9,10 @@ use alloc::vec::Vec;
 use cobotwire_core as wire;
 use cobotwire_core::Shape;
 
-use crate::Field;
 use crate::frame::LONGEST;
-use crate::json::{BadEdition, Node, Outcome, Record, Within};
-use crate::types::{Numbers, Types, all_choices, encoding, fits, kind, labels};
+use crate::json::Record;
+use crate::types::{Kind, Numbers, Types, all_choices, bits, fitting, kind};
+use crate::{BadEdition, Field, Outcome, Within};
 
 /// The most memory of all fields together, in bytes. A message has as many variants as the product
 /// of the sizes of its lists, so a short file could fill the memory.
@@ -45,40 +45,31 @@ struct Varying<'a> {
     count: usize,
 }
 
-/// What a shaped field consists of.
-struct Elements {
-    kind: &'static str,
-    shape: Shape,
-    each: usize,
-    /// The numbers of one element.
-    numbers: Numbers,
-    choices: Vec<i64>,
-    labels: Vec<String>,
-}
-
 impl<'a> Messages<'a> {
-    pub(crate) fn new(root: Record<'a>, most: usize) -> Outcome<Self> {
-        let (types, left) = (Types::new(root)?, MOST_MEMORY);
+    pub(crate) fn new(file: Record<'a>) -> Outcome<Self> {
+        let most = file.at("frame").within("maximum_data", 0..=LONGEST)?;
+        let (types, left) = (Types::new(file)?, MOST_MEMORY);
         Ok(Self { types, most, left })
     }
 
     /// Return the variants of a message; the file has one or more lists of fields for it.
-    pub(crate) fn variants(&mut self, lists: Vec<Vec<Record<'a>>>) -> Outcome<Vec<Variant>> {
+    pub(crate) fn variants(&mut self, lists: Vec<Record<'a>>) -> Outcome<Vec<Variant>> {
         let mut made = Vec::new();
-        for records in lists {
-            let mut varying = self.varying(&records)?;
+        for list in lists {
+            let records = &*list.items()?;
+            let mut varying = self.varying(records)?;
             if varying.is_empty() {
-                made.push(self.variant(&records, &varying)?);
+                made.push(self.variant(records, &varying)?);
                 continue;
             }
             // The lists are as short as they can be.
-            let shortest = self.variant(&records, &varying)?;
+            let shortest = self.variant(records, &varying)?;
             let size = wire::Variant::new(shortest.fields).size();
             let Some(room) = self.most.checked_sub(size) else {
                 continue;
             };
             loop {
-                made.push(self.variant(&records, &varying)?);
+                made.push(self.variant(records, &varying)?);
                 if !lengthen(&mut varying, room) {
                     break;
                 }
@@ -89,54 +80,52 @@ impl<'a> Messages<'a> {
 
     /// Return the lists of a message that vary.
     fn varying(&self, records: &[Record<'a>]) -> Outcome<Vec<Varying<'a>>> {
-        let mut found = Vec::new();
-        for (index, record) in records.iter().enumerate() {
+        let (mut found, mut names) = (Vec::new(), BTreeSet::new());
+        for record in records {
             let name = record.name()?;
-            let others = records.iter().take(index);
-            for other in others {
-                if other.name()? == name {
-                    return Err(BadEdition::new(format!("two fields are called {name}")));
-                }
+            if !names.insert(name) {
+                return BadEdition::because("the message has it twice").within("field", name);
             }
-            let Some((least, most)) = self.sizes(*record).within("field", name)? else {
-                continue;
-            };
-            let elements = self.elements(self.types.record(record.need("type")?)?);
-            let each = elements.within("field", name)?.numbers.size();
-            if each == 0 {
-                return Err(BadEdition::new("its elements have no bytes")).within("field", name);
-            }
-            let count = least;
-            found.push(Varying {
-                name,
-                least,
-                most,
-                each,
-                count,
-            });
+            let list = self.list(*record).within("field", name)?;
+            found.extend(list);
         }
         Ok(found)
     }
 
-    /// Return the least and the most elements of a field, if they differ.
-    fn sizes(&self, record: Record<'a>) -> Outcome<Option<(usize, usize)>> {
-        let Some(reference) = record.get("type") else {
+    /// Return a field as a list that varies, if it is one.
+    fn list(&self, record: Record<'a>) -> Outcome<Option<Varying<'a>>> {
+        let Some(of) = self.of(record)? else {
             return Ok(None);
         };
-        let (least, most) = bounds(self.types.record(reference)?)?;
-        Ok((least < most).then_some((least, most)))
+        let (least, most) = bounds(of)?;
+        if least >= most {
+            return Ok(None);
+        }
+        let each = self.shaped(of)?.1.size();
+        if each == 0 {
+            return BadEdition::because("its elements have no bytes");
+        }
+        Ok(Some(Varying {
+            name: record.name()?,
+            least,
+            most,
+            each,
+            count: least,
+        }))
     }
 
-    fn variant(&mut self, records: &[Record<'a>], lists: &[Varying<'a>]) -> Outcome<Variant> {
+    fn variant(&mut self, records: &[Record<'a>], lists: &[Varying<'_>]) -> Outcome<Variant> {
         let (mut fields, mut texts) = (Vec::new(), Vec::new());
         for record in records {
             let name = record.name()?;
             let (field, mut text) = self.field(*record, records, lists).within("field", name)?;
-            text.echo = record.get("echo").is_some();
-            let taken = memory(&field, &text);
-            self.left = self.left.checked_sub(taken).ok_or_else(|| {
-                BadEdition::new("the variants of all messages together take too much memory")
-            })?;
+            (text.name, text.echo) = (name.into(), record.some("echo").is_some());
+            let Some(left) = self.left.checked_sub(memory(&field, &text)) else {
+                return BadEdition::because(
+                    "the variants of all messages together take too much memory",
+                );
+            };
+            self.left = left;
             fields.push(field);
             texts.push(text);
         }
@@ -147,134 +136,86 @@ impl<'a> Messages<'a> {
         &self,
         record: Record<'a>,
         records: &[Record<'a>],
-        lists: &[Varying<'a>],
+        lists: &[Varying<'_>],
     ) -> Outcome<(wire::Field, Field)> {
-        let name = record.name()?;
-        if let Some(counts) = record.get("counts") {
-            let list = lists
-                .iter()
-                .find(|list| Some(list.name) == counts.if_text());
-            let list = list.ok_or_else(|| counts.unknown("a list of the message that varies"))?;
-            let count = i64::try_from(list.count).unwrap_or_default();
-            let (mut field, mut text) = self.plain(record, records, Some(count))?;
+        let list = |name: &str| lists.iter().find(|list| list.name == name);
+        if let Some(counted) = record.get::<Option<&str>>("counts")? {
+            let Some(list) = list(counted) else {
+                return BadEdition::because("counts must name a list of the message that varies");
+            };
+            let (mut field, mut text) = self.plain(record, records, Some(list.count as i64))?;
             field.varies = true;
             text.sizes = Some((list.least, list.most));
-            text.counts = Some(list.name.into());
+            text.counts = Some(counted.into());
             return Ok((field, text));
         }
-        if let Some(reference) = record.get("type") {
-            let of = self.types.record(reference)?;
-            if matches!(kind(of)?, "bits" | "bytes" | "text" | "list") {
-                let list = lists.iter().find(|list| list.name == name);
-                return self.shaped(name, of, list);
-            }
+        match self.of(record)? {
+            Some(of) if kind(of)?.repeats() => self.repeated(of, list(record.name()?)),
+            _ => self.plain(record, records, record.get("const")?),
         }
-        let fixed = record.get("const").map(Node::integer).transpose()?;
-        self.plain(record, records, fixed)
     }
 
-    /// Return a field of bits, bytes, a text or a list.
-    fn shaped(
+    /// Return the type of a field; `None` if it has cases.
+    fn of(&self, record: Record<'a>) -> Outcome<Option<Record<'a>>> {
+        let found = record.some("type").map(|_| self.types.get(record, "type"));
+        found.transpose()
+    }
+
+    /// Return a field of bits, bytes, a text or a list, with as many elements as the list has.
+    fn repeated(
         &self,
-        name: &str,
         of: Record<'a>,
-        list: Option<&Varying<'a>>,
+        list: Option<&Varying<'_>>,
     ) -> Outcome<(wire::Field, Field)> {
-        let Elements {
-            kind,
-            shape,
-            each,
-            numbers,
-            choices,
-            labels,
-        } = self.elements(of)?;
+        let (mut field, numbers, mut text) = self.shaped(of)?;
         let count = list.map_or(bounds(of)?.0, |list| list.count);
         let size = numbers.wire.len().saturating_mul(count);
         if size > self.left / size_of::<wire::Number>() {
-            return Err(BadEdition::new("it has too many numbers"));
+            return BadEdition::because("it has too many numbers");
         }
-        let all = numbers.wire.iter().cycle().take(size).cloned().collect();
-        let field = wire::Field {
-            flag: kind == "flag",
-            many: true,
-            choices,
-            selector: None,
-            cases: vec![wire::Case {
-                when: Vec::new(),
-                numbers: all,
-            }],
-            shape,
-            each,
-            varies: list.is_some(),
-        };
-        let text = Field {
-            name: name.into(),
-            kind,
-            labels,
-            cases: vec![numbers.texts],
-            sizes: list.map(|list| (list.least, list.most)),
-            ..Field::default()
-        };
+        field.cases = vec![wire::Case {
+            when: Vec::new(),
+            numbers: numbers.wire.iter().cycle().take(size).cloned().collect(),
+        }];
+        field.varies = list.is_some();
+        text.cases = vec![numbers.texts];
+        text.sizes = list.map(|list| (list.least, list.most));
         Ok((field, text))
     }
 
-    fn elements(&self, of: Record<'a>) -> Outcome<Elements> {
-        let numbers = |numbers| Elements {
-            kind: "number",
-            shape: Shape::Numbers,
-            each: 0,
-            numbers,
-            choices: Vec::new(),
-            labels: Vec::new(),
-        };
-        let text = |of, count| {
-            let (encoding, padding) = encoding(of)?;
-            let most = if encoding == wire::Encoding::Ascii {
-                127
-            } else {
-                255
-            };
-            let (kind, shape) = ("text", Shape::Text(encoding, padding));
-            Ok(Elements {
-                kind,
-                shape,
-                ..numbers(Numbers::bytes(count, most))
-            })
-        };
-        match kind(of)? {
-            "bits" => self.types.bits(of).map(numbers),
-            "bytes" => {
-                let (kind, shape) = ("bytes", Shape::Bytes);
-                Ok(Elements {
-                    kind,
-                    shape,
-                    ..numbers(Numbers::bytes(1, 255))
-                })
+    /// Return such a field without its numbers, and the numbers of one element.
+    fn shaped(&self, of: Record<'a>) -> Outcome<(wire::Field, Numbers, Field)> {
+        let (mut field, mut text) = (wire::Field::default(), Field::default());
+        (field.many, text.kind) = (true, "number");
+        let numbers = match kind(of)? {
+            Kind::Bits => bits(of)?,
+            Kind::Bytes => {
+                (field.shape, text.kind) = (Shape::Bytes, "bytes");
+                Numbers::bytes(1, 255)
             }
-            "text" => text(of, 1),
+            Kind::Text => {
+                text.kind = "text";
+                letters(of, 1, &mut field)?
+            }
             _ => {
-                let of = self.types.record(of.need("of")?)?;
-                let kind = plain_kind(kind(of)?);
-                if kind == "text" {
-                    let each = bounds(of)?.0;
-                    return Ok(Elements {
-                        each,
-                        ..text(of, each)?
-                    });
+                let of = self.types.get(of, "of")?;
+                let kind = kind(of)?;
+                text.kind = kind.word();
+                if kind == Kind::Text {
+                    field.each = bounds(of)?.0;
+                    letters(of, field.each, &mut field)?
+                } else {
+                    let numbers = self.types.numbers(of)?;
+                    if kind == Kind::Value {
+                        field.each = numbers.wire.len();
+                    }
+                    (field.flag, field.choices) = (kind == Kind::Flag, all_choices(of)?);
+                    text.labels = labels(of)?;
+                    numbers
                 }
-                let found = self.types.numbers(of)?;
-                let each = if kind == "value" { found.wire.len() } else { 0 };
-                let kind = if kind == "value" { "number" } else { kind };
-                let (choices, labels) = (all_choices(of)?, labels(of)?);
-                Ok(Elements {
-                    kind,
-                    each,
-                    choices,
-                    labels,
-                    ..numbers(found)
-                })
             }
-        }
+        };
+        Ok((field, numbers, text))
     }
 
     /// Return a field of one number, or of a row of named numbers.
@@ -284,68 +225,57 @@ impl<'a> Messages<'a> {
         records: &[Record<'a>],
         fixed: Option<i64>,
     ) -> Outcome<(wire::Field, Field)> {
-        let name = record.name()?;
-        let selector = record.text("selector")?;
-        let mut all = record.records("cases")?;
-        if all.is_empty() {
-            all.push(record);
+        let mut cases = record.records("cases")?;
+        if cases.is_empty() {
+            cases.push(record);
         }
-        let (mut cases, mut texts, mut first) = (Vec::new(), Vec::new(), None);
-        for case in all {
-            let of = self.types.record(case.need("type")?)?;
-            first = first.or(Some(of));
-            let numbers = self.types.numbers(of)?;
-            let when = case.integers("when")?;
-            cases.push(wire::Case {
-                when,
+        let (mut field, mut text) = (wire::Field::default(), Field::default());
+        for case in &cases {
+            let numbers = self.types.numbers(self.types.get(*case, "type")?)?;
+            field.cases.push(wire::Case {
+                when: case.any("when")?,
                 numbers: numbers.wire,
             });
-            texts.push(numbers.texts);
+            text.cases.push(numbers.texts);
         }
-        let first = first.ok_or_else(|| BadEdition::new("it has no type"))?;
+        let first = self.types.get(*cases.first().unwrap_or(&record), "type")?;
         let kind = kind(first)?;
-        let choices = match (fixed, selector, kind) {
-            (Some(fixed), ..) => vec![fixed],
+        (field.flag, field.many) = (kind == Kind::Flag, kind == Kind::Value);
+        field.selector = selector(record.get("selector")?, records)?;
+        field.choices = match fixed {
+            Some(fixed) => vec![fixed],
             // Each case of a selected quantity has its own choices, in its number.
-            (None, selector, "quantity") if !selector.is_empty() => Vec::new(),
-            _ => all_choices(first)?,
+            None if field.selector.is_some() && kind == Kind::Quantity => Vec::new(),
+            None => all_choices(first)?,
         };
-        let field = wire::Field {
-            flag: kind == "flag",
-            many: kind == "value",
-            choices,
-            selector: selector_of(selector, records)?,
-            cases,
-            shape: Shape::Numbers,
-            each: 0,
-            varies: false,
-        };
-        let text = Field {
-            name: name.into(),
-            kind: match plain_kind(kind) {
-                "flag" => "flag",
-                "enum" => "enum",
-                _ => "number",
-            },
-            labels: if fixed.is_some() {
-                Vec::new()
-            } else {
-                labels(first)?
-            },
-            default: default(record, &field)?,
-            cases: texts,
-            constant: fixed,
-            meanings: meanings(first)?,
-            ..Field::default()
-        };
-        let numbers = field.cases.iter().flat_map(|case| &case.numbers);
-        let mut raws =
-            numbers.flat_map(|number| field.choices.iter().map(move |raw| (number, raw)));
-        match raws.find(|(number, raw)| !fits(number, **raw)) {
-            None => Ok((field, text)),
-            Some((_, raw)) => Err(BadEdition::new(format!("its bytes cannot hold {raw}"))),
+        for number in field.cases.iter().flat_map(|case| &case.numbers) {
+            fitting(number, &field.choices)?;
         }
+        text.kind = kind.word();
+        if fixed.is_none() {
+            text.labels = labels(first)?;
+        }
+        text.default = default(record, &field)?;
+        text.constant = fixed;
+        for each in first.records("meanings")? {
+            let meaning = (each.get("first")?, each.get("last")?, each.get("says")?);
+            text.meanings.push(meaning);
+        }
+        Ok((field, text))
     }
+}
+
+/// Return the bytes of a text, and note its encoding in its field.
+fn letters(of: Record<'_>, count: usize, field: &mut wire::Field) -> Outcome<Numbers> {
+    let encoding = of.get("encoding")?;
+    field.shape = Shape::Text(encoding, of.get("padding")?);
+    let ascii = encoding == wire::Encoding::Ascii;
+    Ok(Numbers::bytes(count, if ascii { 127 } else { 255 }))
+}
+
+fn labels(of: Record<'_>) -> Outcome<Vec<String>> {
+    let members = of.records("members")?.into_iter();
+    members.map(|member| member.get("name")).collect()
 }
 
 /// Set the next numbers of elements; the last list changes first. All lists together may take that
@@ -371,64 +301,40 @@ fn lengthen(lists: &mut [Varying<'_>], room: usize) -> bool {
 
 /// Return the least and the most elements of a type.
 fn bounds(of: Record<'_>) -> Outcome<(usize, usize)> {
-    let size = |node: Option<Node<'_>>| node.map_or(Ok(1), |node| node.within(0..=LONGEST));
-    let (least, most) = (size(of.get("least"))?, size(of.get("most"))?);
-    let size = |size| usize::try_from(size).unwrap_or_default();
-    Ok((size(least), size(most)))
+    Ok((
+        of.size("least", 0..=LONGEST)?,
+        of.size("most", 0..=LONGEST)?,
+    ))
 }
 
-/// Return a kind as a constant.
-fn plain_kind(kind: &str) -> &'static str {
-    let known = ["flag", "enum", "value", "text"];
-    known
-        .into_iter()
-        .find(|word| *word == kind)
-        .unwrap_or("number")
-}
-
-fn selector_of(name: &str, records: &[Record<'_>]) -> Outcome<Option<usize>> {
-    if name.is_empty() {
+fn selector(name: Option<&str>, records: &[Record<'_>]) -> Outcome<Option<usize>> {
+    let Some(name) = name else {
         return Ok(None);
+    };
+    match records.iter().position(|each| each.name() == Ok(name)) {
+        None => BadEdition::because("selector is not the name of a field of the message"),
+        index => Ok(index),
     }
-    let index = records
-        .iter()
-        .position(|each| each.name().is_ok_and(|each| each == name));
-    let missing = || BadEdition::new("selector is not the name of a field of the message");
-    index.map(Some).ok_or_else(missing)
 }
 
 /// Return the value of an argument that is left out, in physical units.
 fn default(record: Record<'_>, field: &wire::Field) -> Outcome<Option<Vec<f64>>> {
-    if record.get("default").is_none() {
+    let Some(raws) = record.get::<Option<Vec<i64>>>("default")? else {
         return Ok(None);
-    }
-    let raws = record.integers("default")?;
-    let numbers = field.cases.first().map_or(&[][..], |case| &case.numbers);
-    let fit = numbers
-        .iter()
-        .zip(&raws)
-        .all(|(number, raw)| fits(number, *raw));
-    if !fit || numbers.len() != raws.len() {
-        return Err(BadEdition::new(
-            "default is not a raw value for each number",
-        ));
-    }
-    let values = numbers
-        .iter()
-        .zip(raws)
-        .map(|(number, raw)| match number.physical(raw) {
-            wire::Value::Real(real) => real,
-            _ => raw as f64,
-        });
-    Ok(Some(values.collect()))
-}
-
-fn meanings(of: Record<'_>) -> Outcome<Vec<(i64, i64, String)>> {
-    let meaning = |each: Record<'_>| {
-        let end = |name| each.need(name)?.integer();
-        Ok((end("first")?, end("last")?, each.need("says")?.string()?))
     };
-    of.records("meanings")?.into_iter().map(meaning).collect()
+    let numbers = field.cases.first().map_or(&[][..], |case| &case.numbers);
+    if numbers.len() != raws.len() {
+        return BadEdition::because("default is not a raw value for each number");
+    }
+    let mut values = Vec::with_capacity(raws.len());
+    for (number, raw) in numbers.iter().zip(&raws) {
+        fitting(number, [raw]).within("default", "")?;
+        values.push(match number.physical(*raw) {
+            wire::Value::Real(real) => real,
+            _ => *raw as f64,
+        });
+    }
+    Ok(Some(values))
 }
 
 /// Return about how many bytes a field takes.

@@ -2,7 +2,8 @@
 
 use alloc::vec::Vec;
 
-use crate::json::{Node, Outcome, Record};
+use crate::Outcome;
+use crate::json::Record;
 
 /// One link of an arm, by standard Denavit-Hartenberg parameters.
 #[derive(Clone, Debug, PartialEq)]
@@ -20,41 +21,19 @@ pub struct Link {
     pub turned_by: Option<Vec<(usize, f64)>>,
 }
 
-/// Return the lowest and the highest angle of each joint.
-pub(crate) fn joint_limits(edition: Record<'_>) -> Outcome<Vec<(f64, f64)>> {
-    let limits = edition.records("joint_limits")?.into_iter();
-    let pair = |each: Record<'_>| Ok((each.need("low")?.real()?, each.need("high")?.real()?));
-    limits.map(pair).collect()
-}
-
-/// Return the links of the arm; `None`: the file does not state them.
-pub(crate) fn geometry(edition: Record<'_>) -> Outcome<Option<Vec<Link>>> {
-    let Some(geometry) = edition.get("geometry") else {
-        return Ok(None);
-    };
-    let links = geometry.record()?.records("links")?.into_iter();
-    links.map(link).collect::<Outcome<_>>().map(Some)
-}
-
-fn link(record: Record<'_>) -> Outcome<Link> {
-    let real = |name| record.need(name)?.real();
+/// Return a link of the arm.
+pub(crate) fn link(record: Record<'_>) -> Outcome<Link> {
     let share = |each: Record<'_>| {
-        let joint = usize::try_from(each.within("joint", 1..=255)?).unwrap_or(1);
-        Ok((joint - 1, each.need("share")?.real()?))
+        let joint: usize = each.within("joint", 1..=255)?;
+        Ok((joint - 1, each.real("share")?))
     };
+    let shares = record.some("turned_by").map(Record::items).transpose()?;
+    let shares = shares.map(|all| all.into_iter().map(share).collect());
     Ok(Link {
-        offset: real("offset")?,
-        alpha: real("alpha")?,
-        a: real("a")?,
-        d: real("d")?,
-        turned_by: match record.get("turned_by") {
-            Some(shares) => Some(
-                Node::records(shares)?
-                    .into_iter()
-                    .map(share)
-                    .collect::<Outcome<_>>()?,
-            ),
-            None => None,
-        },
+        offset: record.real("offset")?,
+        alpha: record.real("alpha")?,
+        a: record.real("a")?,
+        d: record.real("d")?,
+        turned_by: shares.transpose()?,
     })
 }

@@ -97,7 +97,7 @@ fn a_mistake_is_named_with_its_place() {
         (
             "\"deadline_ms\": 500, \"reply\"",
             "\"deadline_ms\": \"x\", \"reply\"",
-            "command is_power_on: deadline_ms is \"x\"; allowed: an integer",
+            "command is_power_on: deadline_ms: invalid type: string \"x\", expected u64",
         ),
     ] {
         let error = Edition::read(file.replacen(old, new, 1).as_bytes()).unwrap_err();
