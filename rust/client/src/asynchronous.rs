@@ -276,6 +276,10 @@ impl<S: ByteStream> Server<S> {
     /// Read what has come, let time pass, and send the request that is next.
     async fn step(&mut self) {
         while self.open {
+            if self.session.exchange.has_next(self.session.now()) {
+                // The runtime notices only now that bytes have come.
+                tokio::task::yield_now().await;
+            }
             let size = tokio::select! {
                 biased;
                 size = self.reader.read(&mut self.buffer) => Some(size),
@@ -289,8 +293,7 @@ impl<S: ByteStream> Server<S> {
             self.session.exchange.note_full(false);
             match self.session.next(drained) {
                 Some(outgoing) => drop(self.write(&outgoing).await),
-                None if drained => return,
-                None => {}
+                None => return,
             }
         }
     }
@@ -317,10 +320,9 @@ impl<S: ByteStream> Server<S> {
                 () = tokio::time::sleep_until(outgoing.until.into()) => break,
                 // A full line must not delay the calls that wait for something else.
                 size = self.reader.read(&mut self.buffer) => self.take(size),
-                () = tokio::time::sleep(idle) => {}
+                () = tokio::time::sleep(idle) => drop(self.session.advance(&[])),
             }
             if taken < bytes.len() {
-                self.session.advance(&[]);
                 self.finish();
             }
         }

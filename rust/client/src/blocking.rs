@@ -157,8 +157,9 @@ impl Client {
                 return Err(error);
             }
             if self.shared.waiting.load(Ordering::SeqCst) > 0 {
+                // A turn nevertheless, or threads could leave it to each other for ever.
                 connection = self.leave(connection);
-                last = Ok(());
+                (connection, last) = self.turn(connection, Duration::ZERO);
                 continue;
             }
             (connection, last) = self.turn(connection, SLICE);
