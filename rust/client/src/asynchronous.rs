@@ -131,13 +131,22 @@ impl AsyncClient {
         let called_at = nanos(self.shared.begun.elapsed());
         let settings = self.handle.settings.clone();
         let order = Order::Call(prepared.clone(), settings, called_at, sender);
-        let _ = self.shared.orders.send(order);
+        if self.shared.orders.send(order).is_err() {
+            return Err(self.shared.closed.clone());
+        }
         let mut call = Call {
             orders: &self.shared.orders,
             receiver,
         };
         let outcome = (&mut call.receiver).await;
-        outcome.unwrap_or_else(|_| Err(self.shared.closed.clone()))
+        outcome.unwrap_or_else(|_| {
+            let mut closed = self.shared.closed.clone();
+            if let Error::LinkError { written, .. } = &mut closed {
+                // The task had the request, and may have written it.
+                *written = None;
+            }
+            Err(closed)
+        })
     }
 }
 
@@ -218,6 +227,8 @@ impl<S: ByteStream> Server<S> {
                 size = self.reader.read(&mut self.buffer) => self.take(size),
                 () = tokio::time::sleep(idle) => {}
             }
+            // Requests that were given up must not be sent.
+            self.finish();
             self.step().await;
             self.finish();
         }
@@ -324,6 +335,13 @@ impl<S: ByteStream> Server<S> {
             }
             if taken < bytes.len() {
                 self.finish();
+            }
+        }
+        if taken == bytes.len() {
+            // A stream with a buffer keeps the bytes until then.
+            let until = Instant::now().max(outgoing.until).into();
+            if let Ok(Err(error)) = tokio::time::timeout_at(until, self.writer.flush()).await {
+                fault = Some(error);
             }
         }
         self.session.wrote(outgoing, taken, fault.as_ref())
