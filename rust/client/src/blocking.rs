@@ -374,7 +374,8 @@ impl Drop for Connection {
         if let Some(port) = self.port.as_mut().filter(|_| !bytes.is_empty()) {
             // Nobody is left who could handle an error.
             let _ = port.wait_at_most(Duration::from_secs(1));
-            let _ = port.write_all(&bytes).and_then(|()| port.flush());
+            // No flush: it would wait for a stuck line without limit.
+            let _ = port.write_all(&bytes);
         }
     }
 }
