@@ -96,6 +96,8 @@ impl AsyncClient {
             writer,
             arrived: arrived.clone(),
             callers: Vec::new(),
+            writing: None,
+            taken: 0,
             buffer: vec![0; 4096],
             open: true,
         };
@@ -131,13 +133,22 @@ impl AsyncClient {
         let called_at = nanos(self.shared.begun.elapsed());
         let settings = self.handle.settings.clone();
         let order = Order::Call(prepared.clone(), settings, called_at, sender);
-        let _ = self.shared.orders.send(order);
+        if self.shared.orders.send(order).is_err() {
+            return Err(self.shared.closed.clone());
+        }
         let mut call = Call {
             orders: &self.shared.orders,
             receiver,
         };
         let outcome = (&mut call.receiver).await;
-        outcome.unwrap_or_else(|_| Err(self.shared.closed.clone()))
+        outcome.unwrap_or_else(|_| {
+            let mut closed = self.shared.closed.clone();
+            if let Error::LinkError { written, .. } = &mut closed {
+                // The task had the request, and may have written it.
+                *written = None;
+            }
+            Err(closed)
+        })
     }
 }
 
@@ -202,6 +213,9 @@ struct Server<S: ByteStream> {
     writer: WriteHalf<S>,
     arrived: Arc<Notify>,
     callers: Vec<(Ticket, Prepared, oneshot::Sender<Outcome>)>,
+    /// What is being written, and how much of it was taken.
+    writing: Option<Outgoing>,
+    taken: usize,
     buffer: Vec<u8>,
     open: bool,
 }
@@ -218,8 +232,20 @@ impl<S: ByteStream> Server<S> {
                 size = self.reader.read(&mut self.buffer) => self.take(size),
                 () = tokio::time::sleep(idle) => {}
             }
+            // Requests that were given up must not be sent.
+            self.finish();
             self.step().await;
             self.finish();
+        }
+        let bytes = self.session.stops();
+        if self.open && !bytes.is_empty() {
+            let writer = &mut self.writer;
+            let stopped = async {
+                writer.write_all(&bytes).await?;
+                writer.flush().await
+            };
+            // Nobody is left who could handle an error.
+            let _ = tokio::time::timeout(Duration::from_secs(1), stopped).await;
         }
         // Events wake their consumers, which find the channel closed.
         orders.close();
@@ -245,7 +271,7 @@ impl<S: ByteStream> Server<S> {
             Order::Call(prepared, settings, called_at, caller) => {
                 match self.session.one_way(&prepared, &settings, called_at) {
                     Err(error) => drop(caller.send(Err(error))),
-                    Ok((outgoing, ticket)) => match (self.write(&outgoing).await, ticket) {
+                    Ok((outgoing, ticket)) => match (self.write(outgoing).await, ticket) {
                         (Err(error), ticket) => {
                             ticket
                                 .into_iter()
@@ -292,41 +318,51 @@ impl<S: ByteStream> Server<S> {
             }
             self.session.exchange.note_full(false);
             match self.session.next(drained) {
-                Some(outgoing) => drop(self.write(&outgoing).await),
+                Some(outgoing) => drop(self.write(outgoing).await),
                 None => return,
             }
         }
     }
 
     /// Write a request whole, within its time.
-    async fn write(&mut self, outgoing: &Outgoing) -> Result<(), Error> {
-        let bytes = outgoing.bytes();
-        let (mut taken, mut fault) = (0, None);
+    async fn write(&mut self, outgoing: Outgoing) -> Result<(), Error> {
+        let (bytes, until, mut fault) = (outgoing.bytes(), outgoing.until, None);
+        (self.writing, self.taken) = (Some(outgoing), 0);
         while let Some(rest) = bytes
-            .get(taken..)
+            .get(self.taken..)
             .filter(|rest| !rest.is_empty() && self.open)
         {
             let idle = self.session.idle().unwrap_or(LONGEST);
             tokio::select! {
                 biased;
                 size = self.writer.write(rest) => match size {
-                    Ok(size) if size > 0 => taken += size,
+                    Ok(size) if size > 0 => self.taken += size,
                     Ok(_) => break,
                     Err(error) => {
                         fault = Some(error);
                         break;
                     }
                 },
-                () = tokio::time::sleep_until(outgoing.until.into()) => break,
+                () = tokio::time::sleep_until(until.into()) => break,
                 // A full line must not delay the calls that wait for something else.
                 size = self.reader.read(&mut self.buffer) => self.take(size),
                 () = tokio::time::sleep(idle) => drop(self.session.advance(&[])),
             }
-            if taken < bytes.len() {
+            if self.taken < bytes.len() {
                 self.finish();
             }
         }
-        self.session.wrote(outgoing, taken, fault.as_ref())
+        if self.taken == bytes.len() {
+            // A stream with a buffer keeps the bytes until then.
+            let until = Instant::now().max(until).into();
+            if let Ok(Err(error)) = tokio::time::timeout_at(until, self.writer.flush()).await {
+                fault = Some(error);
+            }
+        }
+        let written = self.writing.take();
+        written.map_or(Ok(()), |outgoing| {
+            self.session.wrote(&outgoing, self.taken, fault.as_ref())
+        })
     }
 
     fn lose(&mut self, detail: &str) {
@@ -355,6 +391,10 @@ impl<S: ByteStream> Server<S> {
 
 impl<S: ByteStream> Drop for Server<S> {
     fn drop(&mut self) {
+        // The stop must follow what ends a request that was cut.
+        if let Some(outgoing) = self.writing.take() {
+            let _ = self.session.wrote(&outgoing, self.taken, None);
+        }
         let bytes = self.session.stops();
         if self.open && !bytes.is_empty() {
             // The runtime may be at its end, so nothing can be waited for.

@@ -214,9 +214,9 @@ impl Client {
 
     /// Read what comes without a request for some time, or until `done`.
     fn listen(&self, longest: Duration, done: impl Fn() -> bool) -> Result<(), Error> {
-        let until = Instant::now() + longest;
-        while !done() && Instant::now() < until {
-            let left = until.saturating_duration_since(Instant::now());
+        let begun = Instant::now();
+        while !done() && begun.elapsed() < longest {
+            let left = longest.saturating_sub(begun.elapsed());
             self.turn(self.connection(), left.min(SLICE)).1?;
             if self.shared.waiting.load(Ordering::SeqCst) > 0 {
                 std::thread::sleep(TURN);
@@ -374,7 +374,8 @@ impl Drop for Connection {
         if let Some(port) = self.port.as_mut().filter(|_| !bytes.is_empty()) {
             // Nobody is left who could handle an error.
             let _ = port.wait_at_most(Duration::from_secs(1));
-            let _ = port.write_all(&bytes).and_then(|()| port.flush());
+            // No flush: it would wait for a stuck line without limit.
+            let _ = port.write_all(&bytes);
         }
     }
 }

@@ -74,18 +74,36 @@ impl Encoder {
         let protocol = &self.edition.protocol;
         let facts = protocol.facts.get(command);
         let form = facts.and_then(|facts| facts.request_text.as_ref());
-        let mut texts = vec![""; form.map_or(0, |form| form.fields.len())];
+        let mut texts = vec![None; form.map_or(0, |form| form.fields.len())];
         let mut others = Vec::with_capacity(given.len());
-        for (name, value) in given.iter().filter(|(_, value)| *value != Value::Absent) {
+        let given = given.iter().filter(|(_, value)| *value != Value::Absent);
+        for (at, (argument, _)) in given.clone().enumerate() {
+            if given.clone().take(at).any(|(other, _)| other == argument) {
+                let text = format!("{name}() is given its argument {argument} twice");
+                return Err(Error::usage(text));
+            }
+        }
+        for (name, value) in given {
             let at =
                 form.and_then(|form| form.fields.iter().position(|each| **each == *plain(name)));
             match (at.and_then(|at| texts.get_mut(at)), value) {
-                (Some(place), Value::Text(text)) => *place = text,
+                (Some(place), Value::Text(text)) => *place = Some(&**text),
                 _ => others.push((plain(name), value.clone())),
             }
         }
         let arranged = self.edition.arrange(command, &others, Value::from);
         let (row, variant) = arranged.map_err(Error::usage)?;
+        for (field, _) in form
+            .into_iter()
+            .flat_map(|form| form.fields.iter().zip(&texts))
+            .filter(|(_, text)| text.is_none())
+        {
+            let places: [(&str, &dyn std::fmt::Display); 3] =
+                [("call", &name), ("name", field), ("allowed", field)];
+            let text = cobotwire_table::error_text("missing-argument", &places);
+            return Err(Error::usage(text));
+        }
+        let texts: Vec<&str> = texts.into_iter().flatten().collect();
         let (count, row) = (row.len(), Value::Row(row));
         let request = Encoded::encode::<Value>(protocol, command, &row, &texts, address, variant)
             .map_err(|error| {

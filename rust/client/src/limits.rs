@@ -4,7 +4,7 @@ use std::collections::HashMap;
 use std::sync::Arc;
 
 use cobotwire_core::exchange::Safety;
-use cobotwire_core::{Table, Variant};
+use cobotwire_core::{Number, Table, Variant};
 use cobotwire_table::{Command, Edition, Shown, bad_argument};
 
 use crate::Error;
@@ -45,7 +45,7 @@ impl Limits {
         let mut commands = table.commands().to_vec();
         for (command, record) in commands.iter_mut().zip(&edition.commands) {
             for (index, variant) in command.request.iter_mut().enumerate() {
-                *variant = self.narrowed(record, index, variant);
+                *variant = self.narrowed(record, index, variant)?;
             }
         }
         let frame = table.frame().clone();
@@ -80,7 +80,12 @@ impl Limits {
     }
 
     /// Return a variant of a request with narrower ranges.
-    fn narrowed(&self, command: &Command, index: usize, variant: &Variant) -> Variant {
+    fn narrowed(
+        &self,
+        command: &Command,
+        index: usize,
+        variant: &Variant,
+    ) -> Result<Variant, Error> {
         let mut fields = variant.fields().to_vec();
         let names = command.request.get(index).into_iter().flatten();
         for (field, named) in fields.iter_mut().zip(names) {
@@ -100,16 +105,61 @@ impl Limits {
                         _ => None,
                     };
                     if let Some((low, high)) = range {
-                        let scale = number.divide as f64 / number.multiply as f64;
-                        let (low, high) = ((low * scale).ceil(), (high * scale).floor());
-                        number.minimum = number.minimum.max(low as i64);
-                        number.maximum = number.maximum.min(high as i64);
+                        let (lowest, highest) = raw_range(number, (low, high));
+                        let lowest = number.minimum.max(lowest);
+                        let highest = number.maximum.min(highest);
+                        if lowest > highest {
+                            return Err(empty(axis, (low, high), number, &known.unit));
+                        }
+                        (number.minimum, number.maximum) = (lowest, highest);
                     }
                 }
             }
         }
-        Variant::new(fields)
+        Ok(Variant::new(fields))
     }
+}
+
+/// Return a range as raw values, rounded inwards; 0.1 is one tenth, not the float next to it.
+fn raw_range(number: &Number, (low, high): Range) -> (i64, i64) {
+    if number.float {
+        // A lower limit of zero includes -0.0.
+        let low = if low == 0.0 { -0.0 } else { low };
+        let raw = |end| number.raw(end).unwrap_or_default();
+        return (raw(low), raw(high + 0.0));
+    }
+    let (multiply, divide) = (number.multiply as f64, number.divide as f64);
+    let raw = |end: f64| {
+        (end * divide / multiply)
+            .round_ties_even()
+            .clamp(-9e15, 9e15)
+    };
+    let physical = |raw: f64| raw * multiply / divide;
+    let (mut lowest, mut highest) = (raw(low), raw(high));
+    if physical(lowest) < low {
+        lowest += 1.0;
+    }
+    if physical(highest) > high {
+        highest -= 1.0;
+    }
+    (lowest as i64, highest as i64)
+}
+
+/// Return why a range leaves nothing of that of a number.
+fn empty(axis: Option<usize>, (low, high): Range, number: &Number, unit: &str) -> Error {
+    let argument = axis.map_or("limits.speed".to_owned(), |axis| {
+        format!("limits.workspace[{axis}]")
+    });
+    let end = |raw| match number.physical(raw) {
+        cobotwire_core::Value::Real(real) => real,
+        _ => raw as f64,
+    };
+    let (lowest, highest) = (end(number.minimum), end(number.maximum));
+    let places: [(&str, &dyn std::fmt::Display); 3] =
+        [("low", &lowest), ("high", &highest), ("unit", &unit)];
+    let given = Shown::Tuple(vec![Shown::Real(low), Shown::Real(high)]);
+    let allowed = cobotwire_table::error_text("workspace", &places);
+    Error::usage(bad_argument(&argument, &given, &allowed))
 }
 
 fn has_axes(edition: &Edition) -> bool {

@@ -79,6 +79,7 @@ impl Settings {
             .address
             .as_ref()
             .map(|given| find_address(edition, given));
+        check_times(options)?;
         Ok(Self {
             address: address.transpose()?,
             timeout: options.timeout.map(nanos),
@@ -87,6 +88,30 @@ impl Settings {
             retry: options.retry,
         })
     }
+}
+
+/// Check what Python checks, with the same texts.
+fn check_times(options: &Options) -> Result<(), Error> {
+    const HOUR: Nanos = 3_600_000_000_000;
+    let (retry, above) = (options.retry, "seconds above 0 and below 3600");
+    let from = "seconds from 0 to below 3600";
+    let times = [
+        ("timeout", options.timeout.map_or(1, nanos), 1, above),
+        ("retry.shortest_attempt", retry.shortest_attempt, 1, above),
+        ("retry.grace", retry.grace, 0, from),
+    ];
+    for (argument, time, least, allowed) in times {
+        if !(least..HOUR).contains(&time) {
+            let given = Shown::Real(Duration::from_nanos(time).as_secs_f64());
+            return Err(Error::usage(bad_argument(argument, &given, allowed)));
+        }
+    }
+    if !(1..=100).contains(&retry.attempts) {
+        let given = Shown::Integer(retry.attempts.into());
+        let text = bad_argument("retry.attempts", &given, "a whole number 1..100");
+        return Err(Error::usage(text));
+    }
+    Ok(())
 }
 
 pub(crate) fn nanos(time: Duration) -> Nanos {

@@ -101,7 +101,52 @@ impl Port for Tcp {
 #[cfg(feature = "serial")]
 impl Port for Box<dyn serialport::SerialPort> {
     fn wait_at_most(&mut self, longest: Duration) -> std::io::Result<()> {
-        Ok(self.set_timeout(longest)?)
+        // On Windows, no time at all means any time.
+        let shortest = Duration::from_millis(u64::from(cfg!(windows)));
+        Ok(self.set_timeout(longest.max(shortest))?)
+    }
+}
+
+/// The most bytes that are written at once: a driver that is ready takes so many without a wait.
+#[cfg(feature = "serial")]
+const PIECE: usize = 32;
+
+/// A serial port that neither writes nor flushes without limit.
+#[cfg(feature = "serial")]
+struct Serial(Box<dyn serialport::SerialPort>);
+
+#[cfg(feature = "serial")]
+impl Read for Serial {
+    fn read(&mut self, buffer: &mut [u8]) -> std::io::Result<usize> {
+        self.0.read(buffer)
+    }
+}
+
+#[cfg(feature = "serial")]
+impl Write for Serial {
+    fn write(&mut self, data: &[u8]) -> std::io::Result<usize> {
+        // It waits within its limit until the line takes bytes, then for all of them.
+        self.0.write(data.get(..PIECE).unwrap_or(data))
+    }
+
+    fn flush(&mut self) -> std::io::Result<()> {
+        let begun = std::time::Instant::now();
+        while self.0.bytes_to_write()? > 0 {
+            if begun.elapsed() > Duration::from_secs(1) {
+                // Or the system would wait for the line when the port is closed.
+                self.0.clear(serialport::ClearBuffer::Output)?;
+                return Err(std::io::ErrorKind::TimedOut.into());
+            }
+            std::thread::sleep(Duration::from_millis(1));
+        }
+        Ok(())
+    }
+}
+
+#[cfg(feature = "serial")]
+impl Port for Serial {
+    fn wait_at_most(&mut self, longest: Duration) -> std::io::Result<()> {
+        self.0.wait_at_most(longest)
     }
 }
 
@@ -151,7 +196,7 @@ fn open_serial(url: &str, baudrate: u32) -> Result<Box<dyn Port>, Error> {
     let opened = serialport::new(url, baudrate).open();
     let port =
         opened.map_err(|error| Error::link(url, &format!("cannot be opened: {error}"), Some(0)))?;
-    Ok(Box::new(port))
+    Ok(Box::new(Serial(port)))
 }
 
 #[cfg(not(feature = "serial"))]

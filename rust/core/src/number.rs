@@ -255,7 +255,8 @@ impl Number {
     /// The arithmetic is IEEE double, step by step as in the reference, so that the bytes are the
     /// same.
     #[inline]
-    pub(crate) fn raw(&self, physical: f64) -> Option<i64> {
+    #[must_use]
+    pub fn raw(&self, physical: f64) -> Option<i64> {
         if self.float {
             return Some(raw_of_float(physical, self.width));
         }

@@ -55,6 +55,10 @@ impl Edition {
             .map(|field| &*field.name)
             .collect::<Vec<_>>()
             .join(", ");
+        let allowed = match &*allowed {
+            "" => error_text("no-arguments", &[]),
+            _ => allowed,
+        };
         let places: [(&str, &dyn Display); 3] = [
             ("call", &record.name),
             ("name", &name),
