@@ -93,11 +93,11 @@ impl Encoder {
         }
         let arranged = self.edition.arrange(command, &others, Value::from);
         let (row, variant) = arranged.map_err(Error::usage)?;
-        for (field, _) in form
+        let missing = form
             .into_iter()
             .flat_map(|form| form.fields.iter().zip(&texts))
-            .filter(|(_, text)| text.is_none())
-        {
+            .find(|(_, text)| text.is_none());
+        if let Some((field, _)) = missing {
             let places: [(&str, &dyn std::fmt::Display); 3] =
                 [("call", &name), ("name", field), ("allowed", field)];
             let text = cobotwire_table::error_text("missing-argument", &places);
