@@ -41,7 +41,8 @@ def test_version_is_stated_once_and_is_that_of_all_distributions() -> None:
     assert cobotwire.__version__ == stated
     crates = tomllib.loads((ROOT / "Cargo.lock").read_text())["package"]
     ours = [crate["version"] for crate in crates if crate["name"].startswith("cobotwire-")]
-    assert ours == [stated] * 3
+    assert len(ours) > 3
+    assert {*ours} == {stated}
 
 
 def test_stub_names_what_the_package_has() -> None:

@@ -37,7 +37,9 @@ else:
 
 AS_NOBODY = """
 import os
+from cobotwire.protocol.error_texts import stored_texts
 from cobotwire.transport.serial import linux, port, ports
+stored_texts("error_texts.json")
 os.setgroups([])
 os.setgid(65534)
 os.setuid(65534)

@@ -135,6 +135,7 @@ def test_it():
         "cobotwire.editions",
         "cobotwire.editions.clients",
         "cobotwire.protocol",
+        "cobotwire.protocol.error_texts",
         "cobotwire.protocol.errors",
         "cobotwire.protocol.lazy",
         "cobotwire.protocol.printable",
