@@ -80,7 +80,7 @@ def request_shape(
 def reply_shape(variants: tuple[Variant, ...], text: tuple[str, ...], is_ack: bool) -> MessageShape:
     """Return the shape of a reply; an acknowledgement has no result."""
     fields = {name: found for name, found in named_fields(variants).items() if not found[0].echo}
-    # The result has the fields that all variants have. If there are none, it has every field.
+    # The result has the fields that all variants have. If no field is in all, it has every field.
     common = [name for name, found in fields.items() if len(found) == len(variants)]
     results = () if is_ack else tuple(common or fields)
     return _shape(variants, named_fields(variants), text, (*fields, *text))._replace(

@@ -168,7 +168,7 @@ impl Drop for Call<'_> {
 }
 
 impl<R: Request> Polls<R, AsyncClient> {
-    /// Wait for the next sample; after an error there is none.
+    /// Wait for the next sample; the samples end with an error.
     pub async fn next(&mut self) -> Option<Result<Sample<R::Reply>, Error>> {
         while !self.polling.ended {
             let at = self.polling.tick();
@@ -184,7 +184,7 @@ impl<R: Request> Polls<R, AsyncClient> {
 }
 
 impl<E: DeviceEvent> Events<E, AsyncClient> {
-    /// Wait for the next event; there is none if the time is over.
+    /// Wait for the next event; return `None` if the time is over.
     pub async fn next(&mut self) -> Option<Result<E, Error>> {
         let longest = self.timeout.unwrap_or(crate::FOREVER);
         tokio::time::timeout(longest, self.received()).await.ok()

@@ -256,8 +256,8 @@ impl Handle {
     pub fn prepare_named(&self, name: &str, given: &[(&str, Value)]) -> Result<Prepared, Error> {
         let prepared = self.encoder.prepare(name, given, self.settings.address)?;
         if self.settings.ack_within.is_some() && prepared.request.replier == Replier::Nobody {
-            let why = "cannot be waited for: nobody replies to its address";
-            return Err(Error::usage(format!("{name}() {why}")));
+            let text = cobotwire_table::error_text("unacknowledged", &[("command", &name)]);
+            return Err(Error::usage(text));
         }
         Ok(prepared)
     }

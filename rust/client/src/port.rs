@@ -107,7 +107,7 @@ impl Port for Box<dyn serialport::SerialPort> {
     }
 }
 
-/// The most bytes that are written at once: a driver that is ready takes so many without a wait.
+/// The most bytes that are written at once. A driver that is ready takes them without a wait.
 #[cfg(feature = "serial")]
 const PIECE: usize = 32;
 

@@ -335,8 +335,8 @@ impl Session {
         names.leave(self.exchange.persist(self.now()), self.begun);
     }
 
-    /// Return the bytes that stop every device in motion, as the policy says; there are none if
-    /// nothing moves.
+    /// Return the bytes that stop every device in motion, as the policy says. They are empty
+    /// if nothing moves.
     pub fn stops(&mut self) -> Vec<u8> {
         let moved = std::mem::take(&mut self.moved);
         let edition = &self.encoder.edition;

@@ -29,7 +29,7 @@ impl Quote for Sample {
 pub struct Texts(Option<Edition>);
 
 impl Texts {
-    /// Answer one line with the text of its error; with null, if there is none.
+    /// Answer one line with the text of its error, or with null.
     pub fn answer(&mut self, line: &str) -> String {
         let question: &Json = &serde_json::from_str(line).unwrap_or_default();
         let direction = match question["direction"].as_str() {

@@ -16,7 +16,7 @@ use crate::{BadEdition, Field, Outcome, Within};
 
 /// The most memory of all fields together, in bytes. A message has as many variants as the product
 /// of the sizes of its lists, so a short file could fill the memory.
-const MOST_MEMORY: usize = 1 << 27;
+pub(crate) const MOST_MEMORY: usize = 1 << 27;
 
 /// One variant of a message.
 pub(crate) struct Variant {
@@ -170,7 +170,7 @@ impl<'a> Messages<'a> {
         let (mut field, numbers, mut text) = self.shaped(of)?;
         let count = list.map_or(bounds(of)?.0, |list| list.count);
         let size = numbers.wire.len().saturating_mul(count);
-        if size > self.left / size_of::<wire::Number>() {
+        if numbers.weight().saturating_mul(count) > self.left {
             return BadEdition::because("it has too many numbers");
         }
         field.cases = vec![wire::Case {

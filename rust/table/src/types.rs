@@ -1,20 +1,26 @@
 //! Turns the types of a file into the numbers of a table.
 
 use alloc::collections::BTreeMap;
+use alloc::string::String;
 use alloc::vec;
 use alloc::vec::Vec;
+use core::cell::Cell;
 
 use cobotwire_core as core_table;
 use cobotwire_core::Bits;
 use serde::Deserialize;
+use serde_json::Value;
 
 use crate::json::Record;
+use crate::messages::MOST_MEMORY;
 use crate::{BadEdition, Number, Outcome, Within};
 
 /// The types of a file, by their names.
 pub(crate) struct Types<'a> {
     wires: BTreeMap<&'a str, Record<'a>>,
     types: BTreeMap<&'a str, Record<'a>>,
+    /// How many bytes more their numbers may take.
+    left: Cell<usize>,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, Deserialize)]
@@ -79,6 +85,12 @@ impl Numbers {
         }
     }
 
+    /// Return about how many bytes of memory they take.
+    pub(crate) fn weight(&self) -> usize {
+        let weights = self.wire.iter().map(|number| weight(number.choices.len()));
+        weights.sum()
+    }
+
     /// Return the number of their bytes.
     pub(crate) fn size(&self) -> usize {
         let steps = self.wire.iter().map(|number| match number.bits {
@@ -108,6 +120,7 @@ impl<'a> Types<'a> {
         Ok(Self {
             wires: by_name("wires")?,
             types: by_name("types")?,
+            left: Cell::new(MOST_MEMORY),
         })
     }
 
@@ -139,8 +152,22 @@ impl<'a> Types<'a> {
             Some(_) => of.rational("scale")?,
             None => (1, 1),
         };
-        number(wire, of, scale, &all_choices(of)?)
+        let all = all_choices(of)?;
+        let labels =
+            of.0.get("labels")
+                .and_then(Value::as_array)
+                .map_or(0, Vec::len);
+        let taken = weight(all.len()) + labels * size_of::<String>();
+        let left = self.left.get().checked_sub(taken);
+        // Each number repeats the choices of its type, so a short file could fill the memory.
+        let too_much = || BadEdition::because("the numbers of all types take too much memory");
+        self.left.set(left.map_or_else(too_much, Ok)?);
+        number(wire, of, scale, &all)
     }
+}
+
+fn weight(choices: usize) -> usize {
+    size_of::<core_table::Number>() + choices * size_of::<i64>()
 }
 
 fn referred<'a>(known: &BTreeMap<&str, Record<'a>>, reference: Record<'a>) -> Outcome<Record<'a>> {
@@ -231,7 +258,7 @@ pub(crate) fn kind(of: Record<'_>) -> Outcome<Kind> {
     of.get("kind")
 }
 
-/// Return all legal raw values of a type; none if it has a range.
+/// Return all legal raw values of a type; empty if it has a range.
 pub(crate) fn all_choices(of: Record<'_>) -> Outcome<Vec<i64>> {
     if kind(of)? == Kind::Flag {
         return Ok(vec![0, 1]);
@@ -255,7 +282,7 @@ fn natural_range(number: &core_table::Number) -> (i64, i64) {
             let low = number.signed_at.saturating_sub(top);
             (if signed { low } else { 0 }, number.signed_at)
         }
-        // The core takes no integer of so many bytes.
+        // The core takes integers of at most four bytes.
         _ => (0, i64::MAX),
     }
 }

@@ -110,3 +110,19 @@ fn a_mistake_is_named_with_its_place() {
         "{error}"
     );
 }
+
+#[test]
+fn short_file_cannot_fill_the_memory() {
+    let mut file: serde_json::Value =
+        serde_json::from_slice(&files().swap_remove(MYCOBOT)).unwrap();
+    // Each of 3,000 numbers repeats 100,000 choices: 2.4 GB.
+    let wide = serde_json::json!({"name": "wide", "kind": "quantity", "wire": "byte", "choices": vec![1; 100_000]});
+    let items = vec![serde_json::json!({"name": "x", "type": "wide"}); 3000];
+    let row = serde_json::json!({"name": "row", "kind": "value", "items": items});
+    file["types"].as_array_mut().unwrap().extend([wide, row]);
+    file["commands"][0]["reply"] = serde_json::json!([[{"name": "row", "type": "row"}]]);
+    let json = serde_json::to_vec(&file).unwrap();
+    assert!(json.len() < 1 << 20);
+    let error = Edition::read(&json).unwrap_err().to_string();
+    assert!(error.ends_with("the numbers of all types take too much memory"), "{error}");
+}

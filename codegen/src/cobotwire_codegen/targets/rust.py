@@ -32,7 +32,7 @@ from cobotwire_codegen.render.arguments import arguments
 from cobotwire_codegen.render.escape_markdown import escaped
 from cobotwire_codegen.render.parameters import Parameter, parameters, reply_parameters, results
 
-# Keywords that the check of names allows, because they are none in Python.
+# Keywords of Rust that the check of names allows, because Python does not have them.
 _WORDS = """
     abstract become box const do dyn enum extern final fn gen impl let loop macro match mod move mut
     override priv pub ref static struct trait type typeof unsafe unsized use virtual where
@@ -205,7 +205,7 @@ def _one(found: Iterable[str]) -> str:
         return types[0]
     if all(each.startswith("[") for each in types):
         return "Vec<f64>" if any("f64" in each for each in types) else "Vec<i64>"
-    # An enum is a number too, and a flag is none.
+    # An enum counts as a number here; a flag does not.
     if any(each.startswith(("[", "Vec", "String", "bool")) for each in types):
         return "Value"
     return "f64" if "f64" in types else "i64"

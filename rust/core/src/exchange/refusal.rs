@@ -56,6 +56,11 @@ pub(super) fn refusal(protocol: &Protocol, reply: &Decoded) -> Option<Failure> {
         let (named, value) = (names.get(*at)?, value(&names.get(*at)?.name)?);
         let counts = !named.echo && !variant.fields().get(*at)?.many;
         let zero = counts && same(value, &[Value::Integer(0)]);
-        if zero { refused(*at, value) } else { None }
+        // It is reported as the integer, whatever the scale of the field is.
+        if zero {
+            refused(*at, &[Value::Integer(0)])
+        } else {
+            None
+        }
     })
 }
