@@ -17,7 +17,7 @@ from stalls import unstalled
 ALLOWED_STALL = 0.1
 
 
-def tested_on_time(client: str, line: Line) -> tuple[Report, list[str]]:
+def report_on_time(client: str, line: Line) -> tuple[Report, list[str]]:
     """Run the session; run it again if the machine or its ptys stalled long enough to matter."""
     return unstalled(partial(checked, client, line), ALLOWED_STALL, PtyMeter)
 
@@ -30,14 +30,14 @@ RUST = [("cobotwire rust", "merged"), ("cobotwire rust async tcp", "noise")]
 @pytest.mark.parametrize("client", OURS)
 @pytest.mark.parametrize("line", ["good", "no-acks"])
 def test_our_client_passes_on_a_good_line(client: str, line: str) -> None:
-    report, failures = tested_on_time(client, LINES[line])
+    report, failures = report_on_time(client, LINES[line])
     assert report.failures == []
     assert (report.conforms, failures) == (True, [])
 
 
 @pytest.mark.parametrize("line", ["lost", "late", "merged", "noise", "split"])
 def test_our_client_passes_on_a_bad_line(line: str) -> None:
-    report, failures = tested_on_time("cobotwire", LINES[line])
+    report, failures = report_on_time("cobotwire", LINES[line])
     assert report.failures == []
     assert (report.conforms, failures) == (True, [])
 
@@ -45,7 +45,7 @@ def test_our_client_passes_on_a_bad_line(line: str) -> None:
 @probe.needed
 @pytest.mark.parametrize(("client", "line"), RUST)
 def test_rust_client_passes(client: str, line: str) -> None:
-    report, failures = tested_on_time(client, LINES[line])
+    report, failures = report_on_time(client, LINES[line])
     assert report.failures == []
     assert (report.conforms, failures) == (True, [])
 
