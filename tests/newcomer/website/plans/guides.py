@@ -142,6 +142,7 @@ SEARCHES = Plan(
             "make fuzz FUZZ_SECONDS=600",
             "make attack",
             "make attack ATTACK_SECONDS=600",
+            "make attack CLIENT=rust",
             'make attack ATTACK="--profile late --seed 7"',
             "make figures-page",
             "make bench",
