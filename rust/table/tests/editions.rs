@@ -124,5 +124,8 @@ fn short_file_cannot_fill_the_memory() {
     let json = serde_json::to_vec(&file).unwrap();
     assert!(json.len() < 1 << 20);
     let error = Edition::read(&json).unwrap_err().to_string();
-    assert!(error.ends_with("the numbers of all types take too much memory"), "{error}");
+    assert!(
+        error.ends_with("the numbers of all types take too much memory"),
+        "{error}"
+    );
 }
