@@ -29,6 +29,7 @@ from cobotwire.protocol.table import (
 from json_tables import sample
 from random_formats import frame_formats
 
+WAYS: tuple[Direction, ...] = ("request", "reply")
 SCALES = st.sampled_from(
     [(1, 1), (1, 10), (-1, 10), (1, -10), (-1, 1), (3, -20), (-7, 100), (-1, -1), (1, 3)]
 )
@@ -196,7 +197,8 @@ def tables(draw: st.DrawFn) -> Table:
 def frames(draw: st.DrawFn, table: Table, *, unknown: bool = True) -> bytes:
     """Draw a frame of the table with any data bytes; with ``unknown`` also of any id and size."""
     command = draw(st.sampled_from(table.commands))
-    ways: list[Direction] = ["request", "reply"] if command.reply else ["request"]
+    # An event has no request, and some requests have no reply.
+    ways: list[Direction] = [way for way in WAYS if command.variants(way)]
     direction = draw(st.sampled_from(ways))
     variant = draw(st.sampled_from(command.variants(direction)))
     id, size = command.id, variant.size

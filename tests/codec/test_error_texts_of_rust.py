@@ -17,12 +17,11 @@ from cobotwire import codec as codecs
 from cobotwire import editions
 from cobotwire.protocol.errors import CobotwireError
 from cobotwire.protocol.loading import table_of
-from cobotwire.protocol.table import Direction, Table, Variant
+from cobotwire.protocol.table import Table, Variant
 from cobotwire_codegen.publish import edition_json
 from random_editions import sensors
 
 pytestmark = probe.needed
-WAYS: tuple[Direction, ...] = ("request", "reply")
 Answer = Callable[[dict[str, Any]], str | None]
 
 
@@ -85,7 +84,7 @@ def given_values(draw: st.DrawFn, variants: tuple[Variant, ...]) -> list[Any]:
 def check_one(data: st.DataObject, answer: Answer, table: Table) -> None:
     """Compare the errors of one message and of one frame."""
     command = data.draw(st.sampled_from(table.commands))
-    direction = data.draw(st.sampled_from(WAYS))
+    direction = data.draw(st.sampled_from(random_tables.WAYS))
     codec = codecs.load(table, "reference")
     values = data.draw(given_values(command.variants(direction)))
     question = {"command": command.name, "direction": direction, "values": as_json(values)}
