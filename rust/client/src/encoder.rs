@@ -5,8 +5,8 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use cobotwire_core::exchange::{Answer, Failure, Replier, Request as Encoded, Safety};
-use cobotwire_core::{Decoded, Direction, decode};
-use cobotwire_table::{Quote, Shown, as_call, bad_argument};
+use cobotwire_core::{Decoded, Direction};
+use cobotwire_table::{Shown, bad_argument};
 
 use crate::limits::{Limits, refusals};
 use crate::options::{Settings, find_address};
@@ -151,30 +151,9 @@ impl Encoder {
         named.collect()
     }
 
-    /// Return the values of a request by name, as a reply would show them; and its address.
-    pub fn arguments(&self, request: &Encoded) -> (Named, Option<u8>) {
-        let table = &self.edition.protocol.table;
-        let own = decode(
-            table,
-            Direction::Request,
-            &request.frame,
-            Some(request.command),
-        );
-        own.map_or((Vec::new(), None), |own| {
-            let address = own.address;
-            (self.named(own), address)
-        })
-    }
-
     /// Return why a request has no answer; `fault` is what the transport reported.
     pub fn failure(&self, request: &Encoded, failure: &Failure, fault: &Error) -> Error {
-        let (fields, address) = self.arguments(request);
-        let address = address.map(|address| self.edition.address_name(address));
-        let shown = fields.iter().map(|(name, value)| (&**name, value.quote()));
-        let command = self.edition.commands.get(request.command);
-        let name = command.map_or("", |command| &command.name);
-        let call = as_call(name, shown, address.as_deref());
-        let Some(message) = self.edition.failure(&call, request, failure) else {
+        let Some(message) = self.edition.failure(request, failure) else {
             return fault.clone();
         };
         match failure {

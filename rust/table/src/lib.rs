@@ -35,7 +35,7 @@ use crate::messages::Messages;
 pub use crate::named::Filled;
 pub use crate::robot::Link;
 pub use crate::shown::{Quote, Shown, general};
-pub use crate::texts::{as_call, bad_argument, error_text, link_error};
+pub use crate::texts::{bad_argument, error_text, link_error};
 
 /// The version of the format.
 const VERSION: i64 = 3;

@@ -366,7 +366,7 @@ fn bound(number: &WireNumber, raw: i64) -> String {
     }
 }
 
-fn variants(command: &Command, direction: Direction) -> &[Vec<Field>] {
+pub(crate) fn variants(command: &Command, direction: Direction) -> &[Vec<Field>] {
     match direction {
         Direction::Request => &command.request,
         Direction::Reply => &command.reply,

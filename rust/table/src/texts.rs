@@ -8,8 +8,9 @@ use cobotwire_core::exchange::{
     Failure, Kind, Received, ReplyError, Request, RequestError, TextError, TextFault, TextForm,
     WaitedFor,
 };
-use cobotwire_core::{Direction, EncodeError, Given};
+use cobotwire_core::{Decoded, Direction, EncodeError, Given, decode};
 
+use crate::rejection::variants;
 use crate::shown::{is_printable, join, printable, quoted};
 use crate::{Edition, Quote, Shown};
 
@@ -63,20 +64,6 @@ pub fn bad_argument(argument: &str, value: &Shown, allowed: &str) -> String {
 #[must_use]
 pub fn link_error(url: &str, detail: &str) -> String {
     printable(&text!("link"; url, detail))
-}
-
-/// Return a request as a person writes it: `get_encoder(joint=1)`, `stop() to LEFT`.
-pub fn as_call<'a>(
-    command: &str,
-    arguments: impl Iterator<Item = (&'a str, Shown)>,
-    address: Option<&str>,
-) -> String {
-    let arguments = arguments.map(|(name, value)| match value {
-        Shown::Text(text) => format!("{name}={text}"),
-        value => format!("{name}={value}"),
-    });
-    let to = address.map_or(String::new(), |address| format!(" to {address}"));
-    format!("{command}({}){to}", join(arguments, ", "))
 }
 
 pub(crate) fn protocol_error(detail: &str, offset: usize, data: &[u8]) -> String {
@@ -154,10 +141,42 @@ impl Edition {
         known.map_or(value.to_string(), |known| known.name.clone())
     }
 
-    /// Return the text of the error that ended a request, which is `call` for people. `None`: that
-    /// of the transport did, which has a text of its own.
+    /// Return the fields of a message as texts show them.
     #[must_use]
-    pub fn failure(&self, call: &str, request: &Request, failure: &Failure) -> Option<String> {
+    pub fn fields(&self, message: &Decoded) -> String {
+        let id = message.variant;
+        let command = self.commands.get(id.command);
+        let variants = command.map(|command| variants(command, id.direction));
+        let fields = variants.and_then(|variants| variants.get(id.variant));
+        let mut values = message.values.iter().copied();
+        let shown = fields.into_iter().flatten().map_while(|field| {
+            let value = match Shown::nested(&mut values)? {
+                Shown::Text(text) => text,
+                value => value.to_string(),
+            };
+            Some(format!("{}={value}", field.name))
+        });
+        join(shown, ", ")
+    }
+
+    /// Return a message as a person writes it: `get_encoder(joint=1)`, `stop() to LEFT`.
+    #[must_use]
+    pub fn message(&self, message: &Decoded) -> String {
+        let command = self.commands.get(message.variant.command);
+        let name = command.map_or("", |command| &command.name);
+        let to = message
+            .address
+            .map(|address| format!(" to {}", self.address_name(address)));
+        format!("{name}({}){}", self.fields(message), to.unwrap_or_default())
+    }
+
+    /// Return the text of the error that ended a request. `None`: that of the transport did, which
+    /// has a text of its own.
+    #[must_use]
+    pub fn failure(&self, request: &Request, failure: &Failure) -> Option<String> {
+        let (table, command) = (&self.protocol.table, request.command);
+        let own = decode(table, Direction::Request, &request.frame, Some(command));
+        let call = &own.map_or_else(|_| String::new(), |own| self.message(&own));
         Some(match failure {
             Failure::Link => return None,
             Failure::Timeout {
