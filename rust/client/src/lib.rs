@@ -32,13 +32,17 @@ extern crate self as cobotwire;
 #[cfg(feature = "tokio")]
 mod asynchronous;
 mod blocking;
+mod connection;
+#[doc(hidden)]
 mod encoder;
 mod error;
 mod limits;
 mod notes;
 mod options;
 mod port;
+#[doc(hidden)]
 mod session;
+mod streams;
 pub mod typed;
 mod value;
 
@@ -58,13 +62,22 @@ use cobotwire_table::Edition;
 
 #[cfg(feature = "tokio")]
 pub use asynchronous::{AsyncClient, ByteStream};
-pub use blocking::{Client, Events, Polls};
+pub use blocking::Client;
 pub use cobotwire_core::exchange::{Nanos, RetryPolicy, WaitedFor};
 pub use error::Error;
 pub use limits::{Limits, Range};
 pub use options::{OnDrop, Options};
 pub use port::Port;
+pub use streams::{Events, Polls};
 pub use value::Value;
+
+/// A client without a port and a clock, for transports of other kinds.
+#[doc(hidden)]
+pub mod machine {
+    pub use crate::encoder::{Encoder, Handle, Named, Outcome, Prepared};
+    pub use crate::session::{CallId, Queue, Session, Settings};
+    pub use cobotwire_core::exchange::PersistedState;
+}
 
 /// How long a wait without a limit lasts.
 pub(crate) const FOREVER: std::time::Duration = std::time::Duration::from_secs(1 << 30);

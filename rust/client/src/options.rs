@@ -5,6 +5,7 @@ use std::time::Duration;
 use cobotwire_core::exchange::{Nanos, RetryPolicy};
 use cobotwire_table::{Edition, Shown, bad_argument};
 
+use crate::session::Settings;
 use crate::{Error, Limits};
 
 /// How a client sends requests, and what it does with the arm at its end.
@@ -63,29 +64,18 @@ pub(crate) fn find_address(edition: &Edition, given: &str) -> Result<u8, Error> 
     })
 }
 
-/// What a handle of a client sends each request with.
-#[derive(Clone, Debug)]
-pub(crate) struct Settings {
-    pub address: Option<u8>,
-    pub timeout: Option<Nanos>,
-    pub deadline: Option<Nanos>,
-    pub ack_within: Option<Nanos>,
-    pub retry: RetryPolicy,
-}
-
-impl Settings {
-    pub fn new(edition: &Edition, options: &Options) -> Result<Self, Error> {
-        let address = options
-            .address
-            .as_ref()
-            .map(|given| find_address(edition, given));
-        check_times(options)?;
-        Ok(Self {
+impl Options {
+    /// Return what each request is sent with.
+    pub(crate) fn settings(&self, edition: &Edition) -> Result<Settings, Error> {
+        check_times(self)?;
+        let address = self.address.as_ref();
+        let address = address.map(|given| find_address(edition, given));
+        Ok(Settings {
             address: address.transpose()?,
-            timeout: options.timeout.map(nanos),
-            deadline: options.deadline.map(nanos),
+            timeout: self.timeout.map(nanos),
+            deadline: self.deadline.map(nanos),
             ack_within: None,
-            retry: options.retry,
+            retry: self.retry,
         })
     }
 }

@@ -182,8 +182,12 @@ impl<P: Port> Port for Observed<P> {
         self.0.wait_at_most(longest)
     }
 
-    fn has_room(&mut self) -> bool {
-        self.0.has_room()
+    fn write_some(&mut self, data: &[u8]) -> io::Result<usize> {
+        self.observe(data, |port| port.write_some(data))
+    }
+
+    fn finish(&mut self) -> io::Result<()> {
+        self.0.finish()
     }
 }
 
