@@ -11,11 +11,17 @@ from pathlib import Path
 
 import pytest
 
+from cobotwire import codec as codecs
+from cobotwire import editions
 from cobotwire.editions import clients
 from cobotwire.editions.mycobot280 import TABLE
+from cobotwire.protocol.addresses import find_address
+from cobotwire.protocol.errors import LinkError, UsageError
+from cobotwire.session.request import RequestEncoder
 from cobotwire.simulator import SimulatedArm, TcpServer
 from cobotwire_codegen.targets.rust import camel, identifier, rustdoc
 from probe import needed
+from probe_client import ProbeClient
 
 ROOT = Path(__file__).parent.parent.parent
 CRATE = ROOT / "rust/client"
@@ -53,6 +59,42 @@ def test_first_program_names_port_that_cannot_be_opened() -> None:
     assert f'LinkError {{ message: "{url}: cannot be opened: Connection refused' in done.stderr
 
 
+WRONG_ADDRESSES = [
+    ("mybuddy", "HEAD"),
+    ("mybuddy", 7),
+    ("mybuddy", 300),
+    ("mybuddy", ""),
+    ("mycobot280", "LEFT"),
+    ("mycobot280", 7),
+]
+
+
+@needed
+@pytest.mark.parametrize(("edition", "given"), WRONG_ADDRESSES)
+def test_wrong_address_is_refused_in_the_words_of_python(edition: str, given: int | str) -> None:
+    table = editions.load(edition).TABLE
+    with pytest.raises(UsageError) as expected:
+        find_address(table, given)
+    with TcpServer(SimulatedArm(table).connect) as server, pytest.raises(LinkError) as refused:
+        ProbeClient(server.url, edition, address=str(given))
+    assert str(refused.value) == str(expected.value)
+
+
+@needed
+def test_request_that_device_lacks_is_refused_in_the_words_of_python() -> None:
+    table = editions.load("mybuddy").TABLE
+    encoder = RequestEncoder(codecs.load(table), find_address(table, "WAIST"))
+    with pytest.raises(UsageError) as expected:
+        encoder.encode("get_angles", ())
+    with (
+        TcpServer(SimulatedArm(table).connect) as server,
+        ProbeClient(server.url, "mybuddy", address="waist") as client,
+        pytest.raises(UsageError) as refused,
+    ):
+        client.get_angles()
+    assert str(refused.value) == str(expected.value)
+
+
 @pytest.mark.parametrize("page", ["README.md", "docs/rust.md"])
 def test_page_shows_first_program(page: str) -> None:
     program = (CRATE / "examples/first.rs").read_text().partition("\n\n")[2]
@@ -63,9 +105,7 @@ def test_page_shows_first_program(page: str) -> None:
 def test_crate_has_feature_for_each_edition() -> None:
     features = tomllib.loads((CRATE / "Cargo.toml").read_text())["features"]
     names = {path.parent.name for path in Path(clients.__file__).parent.glob("*/edition.json")}
-    assert features.keys() - {"serial", "tokio"} == names
-    in_lib = re.findall(r'feature = "(\w+)"', (CRATE / "src/lib.rs").read_text())
-    assert names <= {*in_lib}
+    assert features.keys() - {"serial", "tokio", "editions"} == names
 
 
 def test_text_of_spec_does_not_leave_its_comment() -> None:

@@ -47,13 +47,7 @@ pub mod typed;
 mod value;
 
 #[rustfmt::skip]
-#[cfg(any(
-    feature = "mecharm270", feature = "mercury_a1", feature = "mercury_b1", feature = "mercury_x1",
-    feature = "myarm300", feature = "myarm_c650", feature = "myarm_m750", feature = "mybuddy",
-    feature = "mycobot", feature = "mycobot280", feature = "mycobot280_rdkx5",
-    feature = "mycobot320", feature = "mypalletizer260", feature = "pro400", feature = "pro450",
-    feature = "pro630",
-))]
+#[cfg(feature = "editions")]
 pub mod editions;
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};

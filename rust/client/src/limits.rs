@@ -63,7 +63,9 @@ impl Limits {
             return Err(Error::usage(text));
         }
         for (axis, range) in self.workspace.iter().flatten().enumerate() {
-            if let Some(range) = range.filter(|(low, high)| !(low <= high && (high - low).is_finite())) {
+            if let Some(range) =
+                range.filter(|(low, high)| !(low <= high && (high - low).is_finite()))
+            {
                 return Err(bad_range(axis, range, &error_text("pair", &[])));
             }
         }
@@ -72,8 +74,16 @@ impl Limits {
         let cases = fields.into_iter().flatten().flat_map(|field| &field.cases);
         let names: Vec<&str> = cases.flatten().map(|number| &*number.name).collect();
         if self.workspace.is_some() && !AXES.iter().all(|axis| names.contains(axis)) {
-            let names = Shown::List(names.iter().map(|name| Shown::Text((*name).into())).collect());
-            return Err(Error::usage(error_text("no-coordinates", &[("names", &names)])));
+            let names = Shown::List(
+                names
+                    .iter()
+                    .map(|name| Shown::Text((*name).into()))
+                    .collect(),
+            );
+            return Err(Error::usage(error_text(
+                "no-coordinates",
+                &[("names", &names)],
+            )));
         }
         Ok(())
     }
@@ -94,7 +104,9 @@ impl Limits {
         }
         let axis = AXES.iter().position(|axis| *axis == known.name);
         let axis = axis.filter(|_| command.role == "coordinate targets");
-        let found = axis.zip(self.workspace).and_then(|(axis, all)| Some((axis, (*all.get(axis)?)?)));
+        let found = axis
+            .zip(self.workspace)
+            .and_then(|(axis, all)| Some((axis, (*all.get(axis)?)?)));
         let Some((axis, range)) = found else {
             return Ok(());
         };
@@ -158,11 +170,18 @@ fn raw_range(number: &Number, (low, high): Range) -> (i64, i64) {
         return (raw(low), raw(high + 0.0));
     }
     let (multiply, divide) = (number.multiply as f64, number.divide as f64);
-    let raw = |end: f64| (end * divide / multiply).round_ties_even().clamp(-9e15, 9e15);
+    let raw = |end: f64| {
+        (end * divide / multiply)
+            .round_ties_even()
+            .clamp(-9e15, 9e15)
+    };
     let physical = |raw: f64| raw * multiply / divide;
     let (lowest, highest) = (raw(low), raw(high));
     let (inside, below) = (physical(lowest) < low, physical(highest) > high);
-    (lowest as i64 + i64::from(inside), highest as i64 - i64::from(below))
+    (
+        lowest as i64 + i64::from(inside),
+        highest as i64 - i64::from(below),
+    )
 }
 
 fn find(edition: &Edition, is: impl Fn(&Command) -> bool) -> Option<&Command> {

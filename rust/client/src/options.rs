@@ -46,22 +46,13 @@ pub enum OnDrop {
 pub(crate) fn find_address(edition: &Edition, given: &str) -> Result<u8, Error> {
     let mut known = edition.addresses.iter();
     let named = known.find(|known| known.name.eq_ignore_ascii_case(given));
-    let number = given.parse().ok();
+    let number: Result<i64, _> = given.parse();
     let all = &edition.protocol.table.frame().addresses;
-    let numbered = number.filter(|number| all.contains(number));
+    let mut numbered = all.iter().copied();
+    let numbered = numbered.find(|raw| number == Ok(i64::from(*raw)));
     let found = named.map(|known| known.value).or(numbered);
-    found.ok_or_else(|| match edition.addresses.is_empty() || number.is_some() {
-        true => Error::usage(edition.no_address(number)),
-        false => {
-            let names = edition.addresses.iter().map(|known| &*known.name);
-            let names = names.collect::<Vec<_>>().join(", ");
-            Error::usage(bad_argument(
-                "address",
-                &Shown::Text(given.to_owned()),
-                &names,
-            ))
-        }
-    })
+    let shown = number.map_or_else(|_| Shown::Text(given.to_owned()), Shown::Integer);
+    found.ok_or_else(|| Error::usage(edition.no_address(&shown)))
 }
 
 impl Options {
@@ -82,24 +73,42 @@ impl Options {
 
 /// Check what Python checks, with the same texts.
 fn check_times(options: &Options) -> Result<(), Error> {
-    const HOUR: Nanos = 3_600_000_000_000;
+    const HOUR: f64 = 3600.0;
     let (retry, above) = (options.retry, "seconds above 0 and below 3600");
-    let from = "seconds from 0 to below 3600";
-    let times = [
-        ("timeout", options.timeout.map_or(1, nanos), 1, above),
-        ("retry.shortest_attempt", retry.shortest_attempt, 1, above),
-        ("retry.grace", retry.grace, 0, from),
-    ];
-    for (argument, time, least, allowed) in times {
-        if !(least..HOUR).contains(&time) {
-            let given = Shown::Real(Duration::from_nanos(time).as_secs_f64());
-            return Err(Error::usage(bad_argument(argument, &given, allowed)));
+    let seconds = |nanos| Duration::from_nanos(nanos).as_secs_f64();
+    let (shortest, grace) = (seconds(retry.shortest_attempt), seconds(retry.grace));
+    let timeout = options.timeout.map_or(1.0, |timeout| timeout.as_secs_f64());
+    let attempts = Shown::Integer(retry.attempts.into());
+    let whole = "a whole number 1..100";
+    for (allowed, argument, given, words) in [
+        (
+            0.0 < timeout && timeout < HOUR,
+            "timeout",
+            Shown::Real(timeout),
+            above,
+        ),
+        (
+            0.0 < shortest && shortest < HOUR,
+            "retry.shortest_attempt",
+            Shown::Real(shortest),
+            above,
+        ),
+        (
+            grace < HOUR,
+            "retry.grace",
+            Shown::Real(grace),
+            "seconds from 0 to below 3600",
+        ),
+        (
+            (1..=100).contains(&retry.attempts),
+            "retry.attempts",
+            attempts,
+            whole,
+        ),
+    ] {
+        if !allowed {
+            return Err(Error::usage(bad_argument(argument, &given, words)));
         }
-    }
-    if !(1..=100).contains(&retry.attempts) {
-        let given = Shown::Integer(retry.attempts.into());
-        let text = bad_argument("retry.attempts", &given, "a whole number 1..100");
-        return Err(Error::usage(text));
     }
     Ok(())
 }

@@ -364,7 +364,7 @@ impl Session {
 
     /// Return what the next session on this port must know. What is being written counts as cut.
     pub fn persist(&mut self, now: Nanos) -> PersistedState {
-        self.end_write(None, now);
+        self.fail_write("the client was closed", now);
         self.exchange.persist(now)
     }
 

@@ -115,6 +115,7 @@ impl Probe {
             timeout: seconds("timeout"),
             deadline: seconds("deadline"),
             retry,
+            address: self.given.get("address").and_then(Json::as_str).map(str::to_owned),
             port_name: Some(self.url.clone()),
             ..Options::default()
         }

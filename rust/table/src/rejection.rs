@@ -34,7 +34,7 @@ impl Edition {
         address: Option<u8>,
     ) -> String {
         match error {
-            EncodeError::Address => self.no_address(address),
+            EncodeError::Address => self.no_raw_address(address),
             EncodeError::VariantId => self.bad_variant(command, direction, count),
             EncodeError::Value(bad) => {
                 let variant = VariantId {

@@ -2,6 +2,7 @@
 
 use alloc::format;
 use alloc::string::{String, ToString};
+use alloc::vec::Vec;
 use core::fmt::Display;
 
 use cobotwire_core::exchange::{
@@ -96,7 +97,7 @@ impl Edition {
                 return self.encode_error((command, Direction::Request), error, count, address);
             }
             RequestError::Command => String::new(),
-            RequestError::Address => return self.no_address(address),
+            RequestError::Address => return self.no_raw_address(address),
             RequestError::Unanswered => text!("unanswered"; command = command_name, name),
             RequestError::LacksJoints => {
                 let joints = known.map_or(0, |known| known.joints);
@@ -121,17 +122,18 @@ impl Edition {
 
     /// Return the text of the error that an edition has no such address.
     #[must_use]
-    pub fn no_address(&self, given: Option<u8>) -> String {
+    pub fn no_address(&self, given: &Shown) -> String {
         let addresses = self.protocol.table.frame().addresses.iter();
         let allowed = addresses.map(|raw| text!("label"; label = self.address_name(*raw), raw));
         match join(allowed, ", ") {
             none if none.is_empty() => text!("no-addresses"; edition = self.name),
-            allowed => bad_argument(
-                "address",
-                &Shown::Integer(given.unwrap_or(0).into()),
-                &allowed,
-            ),
+            allowed => bad_argument("address", given, &allowed),
         }
+    }
+
+    /// The same for a number.
+    pub(crate) fn no_raw_address(&self, given: Option<u8>) -> String {
+        self.no_address(&Shown::Integer(given.unwrap_or(0).into()))
     }
 
     /// Return the name of an address; its number, if it has none.
@@ -144,19 +146,29 @@ impl Edition {
     /// Return the fields of a message as texts show them.
     #[must_use]
     pub fn fields(&self, message: &Decoded) -> String {
+        let shown = self.named(message).into_iter().map(|(name, value)| {
+            let value = match value {
+                Shown::Text(text) => text,
+                value => value.to_string(),
+            };
+            format!("{name}={value}")
+        });
+        join(shown, ", ")
+    }
+
+    /// Return the fields of a message with their names.
+    #[must_use]
+    pub fn named(&self, message: &Decoded) -> Vec<(&str, Shown)> {
         let id = message.variant;
         let command = self.commands.get(id.command);
         let variants = command.map(|command| variants(command, id.direction));
         let fields = variants.and_then(|variants| variants.get(id.variant));
         let mut values = message.values.iter().copied();
-        let shown = fields.into_iter().flatten().map_while(|field| {
-            let value = match Shown::nested(&mut values)? {
-                Shown::Text(text) => text,
-                value => value.to_string(),
-            };
-            Some(format!("{}={value}", field.name))
-        });
-        join(shown, ", ")
+        let named = fields
+            .into_iter()
+            .flatten()
+            .map_while(|field| Some((&*field.name, Shown::nested(&mut values)?)));
+        named.collect()
     }
 
     /// Return a message as a person writes it: `get_encoder(joint=1)`, `stop() to LEFT`.
