@@ -68,27 +68,17 @@ impl AsyncClient {
         let stream = connected.unwrap_or_else(|late| Err(late.into()));
         let ready = stream.and_then(|stream| stream.set_nodelay(true).map(|()| stream));
         let stream = ready.map_err(|error| not_opened(port, error))?;
-        Self::with(edition, stream, Some(port), options)
+        Self::over(edition, stream, options.named(port))
     }
 
     /// Drive an arm over an open stream of bytes. Its methods need a runtime of tokio with timers.
     pub fn over(edition: Table, stream: impl ByteStream, options: Options) -> Result<Self, Error> {
-        let name = options.port_name.clone();
-        Self::with(edition, stream, name.as_deref(), options)
-    }
-
-    fn with(
-        edition: Table,
-        stream: impl ByteStream,
-        url: Option<&str>,
-        options: Options,
-    ) -> Result<Self, Error> {
         let arrived = Arc::<Arrived>::default();
         let port = Box::new(Polled {
             stream,
             waker: arrived.clone().into(),
         });
-        let (handle, connection) = Connection::new(edition, port, url, &options, Duration::ZERO)?;
+        let (handle, connection) = Connection::new(edition, port, &options, Duration::ZERO)?;
         let connection = Mutex::new(connection);
         let shared = Arc::new(Shared {
             connection,
@@ -163,25 +153,20 @@ impl Drop for Call<'_> {
 impl<R: Request> Stream for Polls<R, AsyncClient> {
     type Item = Result<Sample<R::Reply>, Error>;
 
-    fn poll_next(mut self: Pin<&mut Self>, context: &mut Context<'_>) -> Poll<Option<Self::Item>> {
-        let Self {
-            client,
-            polling,
-            pending,
-            ..
-        } = &mut *self;
-        while !polling.ended {
-            let future = pending.get_or_insert_with(|| {
-                let (client, at, prepared) =
-                    (client.clone(), polling.tick(), polling.prepared.clone());
+    fn poll_next(self: Pin<&mut Self>, context: &mut Context<'_>) -> Poll<Option<Self::Item>> {
+        let this = self.get_mut();
+        while !this.polling.ended {
+            let future = this.pending.get_or_insert_with(|| {
+                let (client, at) = (this.client.clone(), this.polling.tick());
+                let prepared = this.polling.prepared.clone();
                 Box::pin(async move {
                     tokio::time::sleep_until(at.into()).await;
                     client.perform(&prepared).await
                 })
             });
             let outcome = ready!(future.as_mut().poll(context));
-            *pending = None;
-            let sample = polling.sample::<R>(&client.handle, outcome);
+            this.pending = None;
+            let sample = this.polling.sample::<R>(&this.client.handle, outcome);
             if sample.is_some() {
                 return Poll::Ready(sample);
             }
@@ -205,8 +190,10 @@ impl<E: DeviceEvent> Stream for Events<E, AsyncClient> {
         let future = self.pending.get_or_insert_with(|| {
             Box::pin(async move {
                 let event = client.until(|session| next_event(&queue, session));
-                let longest = longest.unwrap_or(crate::FOREVER);
-                tokio::time::timeout(longest, event).await.ok()
+                match longest {
+                    Some(longest) => tokio::time::timeout(longest, event).await.ok(),
+                    None => Some(event.await),
+                }
             })
         });
         let event = ready!(future.as_mut().poll(context));

@@ -40,7 +40,7 @@ impl Client {
     /// Open a port: that of a serial line, or `socket://host:port`.
     pub fn open(edition: Table, port: &str, options: Options) -> Result<Self, Error> {
         let opened = port::open(port, options.baudrate.unwrap_or(edition.baudrate))?;
-        Self::with(edition, opened, Some(port), options)
+        Self::over(edition, opened, options.named(port))
     }
 
     /// Drive an arm over an open port.
@@ -49,17 +49,7 @@ impl Client {
         port: impl Port + 'static,
         options: Options,
     ) -> Result<Self, Error> {
-        let name = options.port_name.clone();
-        Self::with(edition, Box::new(port), name.as_deref(), options)
-    }
-
-    fn with(
-        edition: Table,
-        port: Box<dyn Port>,
-        url: Option<&str>,
-        options: Options,
-    ) -> Result<Self, Error> {
-        let opened = Connection::new(edition, port, url, &options, LONGEST_STOP);
+        let opened = Connection::new(edition, Box::new(port), &options, LONGEST_STOP);
         let (handle, connection) = opened?;
         let (connection, waiting) = (Mutex::new(connection), AtomicUsize::new(0));
         let shared = Arc::new(Shared {

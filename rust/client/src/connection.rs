@@ -35,11 +35,11 @@ impl Connection {
     pub fn new(
         edition: Table,
         port: Box<dyn Port>,
-        url: Option<&str>,
         options: &Options,
         patience: Duration,
     ) -> Result<(Handle, Self), Error> {
         let handle = Handle::new(edition, options)?;
+        let url = options.port_name.as_deref();
         let (begun, (note, left)) = (Instant::now(), Note::of(url));
         let connection = Self {
             session: Session::new(&handle, url.unwrap_or("port"), options.on_drop, &left),

@@ -119,13 +119,11 @@ impl Encoder {
             .collect()
     }
 
-    /// Return why a request has no answer; `fault` is what the transport reported.
-    pub fn failure(&self, request: &Encoded, failure: &Failure, fault: &Error) -> Error {
-        let Some(message) = self.edition.failure(request, failure) else {
-            return fault.clone();
-        };
-        match failure {
-            Failure::Link => fault.clone(),
+    /// Return why a request has no answer; `None`: the transport knows.
+    pub fn failure(&self, request: &Encoded, failure: &Failure) -> Option<Error> {
+        let message = self.edition.failure(request, failure)?;
+        Some(match failure {
+            Failure::Link => return None,
             Failure::Refused { .. } => Error::RequestRefused { message },
             Failure::Reply { data, .. } => Error::ProtocolError {
                 message,
@@ -142,7 +140,7 @@ impl Encoder {
                 attempts: *attempts,
                 waited_for: *waited_for,
             },
-        }
+        })
     }
 }
 

@@ -73,9 +73,6 @@ pub mod machine {
     pub use cobotwire_core::exchange::PersistedState;
 }
 
-/// How long a wait without a limit lasts.
-pub(crate) const FOREVER: std::time::Duration = std::time::Duration::from_secs(1 << 30);
-
 /// The result of a query at a time.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sample<T> {

@@ -56,6 +56,12 @@ pub(crate) fn find_address(edition: &Edition, given: &str) -> Result<u8, Error> 
 }
 
 impl Options {
+    /// Return the options of a client that opens this port itself.
+    pub(crate) fn named(self, port: &str) -> Self {
+        let port_name = Some(port.to_owned());
+        Self { port_name, ..self }
+    }
+
     /// Return what each request is sent with.
     pub(crate) fn settings(&self, edition: &Edition) -> Result<Settings, Error> {
         check_times(self)?;
@@ -73,42 +79,30 @@ impl Options {
 
 /// Check what Python checks, with the same texts.
 fn check_times(options: &Options) -> Result<(), Error> {
-    const HOUR: f64 = 3600.0;
     let (retry, above) = (options.retry, "seconds above 0 and below 3600");
-    let seconds = |nanos| Duration::from_nanos(nanos).as_secs_f64();
-    let (shortest, grace) = (seconds(retry.shortest_attempt), seconds(retry.grace));
-    let timeout = options.timeout.map_or(1.0, |timeout| timeout.as_secs_f64());
-    let attempts = Shown::Integer(retry.attempts.into());
-    let whole = "a whole number 1..100";
-    for (allowed, argument, given, words) in [
+    let (least, time) = (Duration::from_nanos(1), Duration::from_nanos);
+    for (argument, time, allowed) in [
+        ("timeout", options.timeout.unwrap_or(least), above),
         (
-            0.0 < timeout && timeout < HOUR,
-            "timeout",
-            Shown::Real(timeout),
-            above,
-        ),
-        (
-            0.0 < shortest && shortest < HOUR,
             "retry.shortest_attempt",
-            Shown::Real(shortest),
+            time(retry.shortest_attempt),
             above,
         ),
         (
-            grace < HOUR,
             "retry.grace",
-            Shown::Real(grace),
+            time(retry.grace).max(least),
             "seconds from 0 to below 3600",
         ),
-        (
-            (1..=100).contains(&retry.attempts),
-            "retry.attempts",
-            attempts,
-            whole,
-        ),
     ] {
-        if !allowed {
-            return Err(Error::usage(bad_argument(argument, &given, words)));
+        if time.is_zero() || time.as_secs() >= 3600 {
+            let given = Shown::Real(time.as_secs_f64());
+            return Err(Error::usage(bad_argument(argument, &given, allowed)));
         }
+    }
+    if !(1..=100).contains(&retry.attempts) {
+        let given = Shown::Integer(retry.attempts.into());
+        let text = bad_argument("retry.attempts", &given, "a whole number 1..100");
+        return Err(Error::usage(text));
     }
     Ok(())
 }

@@ -8,15 +8,16 @@ use crate::Error;
 
 pub(crate) const CONNECT: Duration = Duration::from_secs(5);
 
-/// A stream of bytes to a device, of which reading and writing can be limited in time.
+/// A stream of bytes to a device, of which reading can be limited in time.
 ///
-/// When the time is over, `read` and `write_some` return `ErrorKind::WouldBlock` or
+/// When the time is over or the line is full, `read` and `write_some` return `ErrorKind::WouldBlock` or
 /// `ErrorKind::TimedOut`. A `read` of 0 bytes says that the peer has closed the stream.
 pub trait Port: Read + Write + Send {
-    /// Limit each `read` and `write_some` from now on; zero: they return at once.
+    /// Limit each `read` from now on; zero: it returns at once, and so does `write_some`, which is
+    /// called only then.
     fn wait_at_most(&mut self, longest: Duration) -> std::io::Result<()>;
 
-    /// Write some of the bytes within the limit, and return how many; by default, with `write`.
+    /// Write some of the bytes at once, and return how many; by default, with `write`.
     fn write_some(&mut self, data: &[u8]) -> std::io::Result<usize> {
         self.write(data)
     }
@@ -33,8 +34,7 @@ impl Port for TcpStream {
         if longest.is_zero() {
             return Ok(());
         }
-        self.set_read_timeout(Some(longest))?;
-        self.set_write_timeout(Some(longest))
+        self.set_read_timeout(Some(longest))
     }
 }
 
@@ -92,7 +92,15 @@ pub(crate) fn not_opened(url: &str, error: impl std::fmt::Display) -> Error {
 /// Open a serial port, or connect to `socket://host:port`.
 pub(crate) fn open(url: &str, baudrate: u32) -> Result<Box<dyn Port>, Error> {
     let Some(address) = socket_of(url) else {
-        return open_serial(url, baudrate);
+        #[cfg(feature = "serial")]
+        return match serialport::new(url, baudrate).open() {
+            Ok(port) => Ok(Box::new(port)),
+            Err(error) => Err(not_opened(url, error)),
+        };
+        #[cfg(not(feature = "serial"))]
+        return Err(Error::usage(format!(
+            "{url} is a serial port of {baudrate} baud, which needs the feature serial of cobotwire"
+        )));
     };
     let mut last = std::io::Error::other("the name has no address");
     let failed = |error| not_opened(url, error);
@@ -106,17 +114,4 @@ pub(crate) fn open(url: &str, baudrate: u32) -> Result<Box<dyn Port>, Error> {
         }
     }
     Err(failed(last))
-}
-
-#[cfg(feature = "serial")]
-fn open_serial(url: &str, baudrate: u32) -> Result<Box<dyn Port>, Error> {
-    let opened = serialport::new(url, baudrate).open();
-    Ok(Box::new(opened.map_err(|error| not_opened(url, error))?))
-}
-
-#[cfg(not(feature = "serial"))]
-fn open_serial(url: &str, _: u32) -> Result<Box<dyn Port>, Error> {
-    Err(Error::usage(format!(
-        "{url} is a serial port, which needs the feature serial of the crate cobotwire"
-    )))
 }

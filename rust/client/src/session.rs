@@ -24,7 +24,6 @@ const CAPACITY: usize = 1000;
 /// Events of one command that wait for their consumer.
 #[derive(Debug, Default)]
 pub struct Queue {
-    command: usize,
     pub events: VecDeque<Named>,
     pub lost: u64,
 }
@@ -87,7 +86,8 @@ pub struct Session {
     /// The one-way requests that wait until they can be written.
     one_ways: VecDeque<CallId>,
     writing: Option<Writing>,
-    queues: Vec<Weak<Mutex<Queue>>>,
+    /// Who wants the events of which command.
+    queues: Vec<(usize, Weak<Mutex<Queue>>)>,
     /// The devices that were set in motion, and not stopped since.
     moved: Vec<Option<u8>>,
     on_drop: OnDrop,
@@ -130,13 +130,9 @@ impl Session {
 
     /// Keep events of a command for a consumer, from now on.
     pub fn subscribe(&mut self, command: usize) -> Arc<Mutex<Queue>> {
-        let queue = Queue {
-            command,
-            ..Queue::default()
-        };
-        let queue = Arc::new(Mutex::new(queue));
-        self.queues.retain(|queue| queue.strong_count() > 0);
-        self.queues.push(Arc::downgrade(&queue));
+        let queue = Arc::<Mutex<Queue>>::default();
+        self.queues.retain(|(_, queue)| queue.strong_count() > 0);
+        self.queues.push((command, Arc::downgrade(&queue)));
         queue
     }
 
@@ -179,12 +175,10 @@ impl Session {
         let fault = fault.map(|fault| fault.after_writing(call.written));
         let outcome = match (call.ticket, fault) {
             (Some(ticket), fault) if !call.done => {
-                let outcome = self.exchange.take(ticket)?;
-                outcome.map(Some).map_err(|failure| {
+                self.exchange.take(ticket)?.map(Some).map_err(|failure| {
+                    let error = self.encoder.failure(&call.prepared.request, &failure);
                     let lost = || Error::link(&self.url, "is lost", None);
-                    let request = &call.prepared.request;
-                    self.encoder
-                        .failure(request, &failure, &fault.unwrap_or_else(lost))
+                    error.or(fault).unwrap_or_else(lost)
                 })
             }
             (_, Some(fault)) => Err(fault),
@@ -198,6 +192,8 @@ impl Session {
     /// End a request whose caller waits no longer. It is not sent, unless it has been begun.
     pub fn give_up(&mut self, id: CallId) {
         self.one_ways.retain(|other| *other != id);
+        let begun = |writing: &mut Writing| writing.id != id || writing.taken > 0;
+        self.writing.take_if(|writing| !begun(writing));
         if let Some(ticket) = self.calls.remove(&id).and_then(|call| call.ticket) {
             self.exchange.give_up(ticket);
         }
@@ -395,11 +391,9 @@ impl Session {
             else {
                 continue;
             };
-            for queue in self.queues.iter().filter_map(Weak::upgrade) {
+            let wanted = self.queues.iter().filter(|(wanted, _)| *wanted == command);
+            for queue in wanted.filter_map(|(_, queue)| queue.upgrade()) {
                 let mut queue = crate::lock(&queue);
-                if queue.command != command {
-                    continue;
-                }
                 if queue.events.len() >= CAPACITY {
                     queue.events.pop_front();
                     queue.lost += 1;
@@ -414,8 +408,7 @@ impl Call {
     /// End a request with the error that none of its bytes was written by its deadline.
     fn unsent(&mut self, encoder: &Encoder, now: Nanos) {
         let failure = Failure::unsent(now.saturating_sub(self.called_at));
-        let fault = Error::usage("");
-        self.fault = Some(encoder.failure(&self.prepared.request, &failure, &fault));
+        self.fault = encoder.failure(&self.prepared.request, &failure);
         self.done |= self.ticket.is_none();
     }
 }

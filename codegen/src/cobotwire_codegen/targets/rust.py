@@ -26,10 +26,10 @@ from cobotwire_codegen.model import (
 )
 from cobotwire_codegen.publish import edition_json
 from cobotwire_codegen.render import Files, environment, with_used_types
+from cobotwire_codegen.render import python_api as api
 from cobotwire_codegen.render.arguments import arguments
 from cobotwire_codegen.render.escape_markdown import escaped
 from cobotwire_codegen.render.parameters import Parameter, parameters, reply_parameters, results
-from cobotwire_codegen.render.python_api import item_doc
 
 # Keywords of Rust that the check of names allows, because Python does not have them.
 _WORDS = """
@@ -151,7 +151,7 @@ class _Shape:
         """Return name, type and description of each part of a row."""
         return [
             (name, type_name(item.class_name) if isinstance(item, Enum) else _scalar(item), doc)
-            for name, item, doc in ((name, item, item_doc(item)) for name, item in type.items)
+            for name, item, doc in ((name, item, api.item_doc(item)) for name, item in type.items)
         ]
 
 
@@ -210,6 +210,11 @@ class _Shown:
         elif command.event:
             reported = reply_parameters(command)
             self.items = [(each.name, shape.result(each), each.doc) for each in reported]
+        parts = [f"{command.title}.", api.description(command)]
+        parts.append("\n".join(f"* {line}" for line in api.argument_lines(command)))
+        parts.append(f"Returns: {api.result_line(command)}" if command.awaits_reply else "")
+        parts.append(f"Safety: {command.safety}. Command id 0x{command.id:02X}.")
+        self.doc = "\n\n".join(filter(None, parts))
         self.reply = self.result if self.own_result else "()"
         if found and not self.own_result:
             self.reply = shape.result(found[0])
