@@ -138,7 +138,6 @@ impl From<Filled> for Value {
     fn from(filled: Filled) -> Self {
         match filled {
             Filled::Counted => Self::Counted,
-            Filled::Integer(raw) => Self::Integer(raw),
             Filled::Real(real) => Self::Real(real),
             Filled::Row(row) => row.into_value(),
         }

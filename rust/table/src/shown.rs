@@ -94,11 +94,8 @@ impl Display for Shown {
             Self::Text(text) => out.write_str(&quoted(text, is_printable)),
             Self::Bytes(bytes) => {
                 let text: String = bytes.iter().copied().map(char::from).collect();
-                write!(
-                    out,
-                    "b{}",
-                    quoted(&text, |char| (' '..='~').contains(&char))
-                )
+                let shown = quoted(&text, |char| (' '..='~').contains(&char));
+                write!(out, "b{shown}")
             }
             Self::List(all) => write!(out, "[{}]", joined(all)),
             Self::Tuple(all) if all.len() == 1 => write!(out, "({},)", joined(all)),
@@ -131,8 +128,7 @@ pub(crate) fn shortest(real: f64) -> String {
 }
 
 /// Return a real number with that many digits, without trailing zeros: `{:g}` in Python.
-#[must_use]
-pub fn general(real: f64, digits: usize) -> String {
+pub(crate) fn general(real: f64, digits: usize) -> String {
     let text = format!("{real:.*e}", digits.saturating_sub(1));
     let Some((mantissa, exponent)) = text.split_once('e') else {
         return shortest(real);
