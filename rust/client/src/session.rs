@@ -67,11 +67,10 @@ struct Writing {
     /// How many of the bytes end an earlier request that was cut.
     align: usize,
     taken: usize,
-    repeated: bool,
     at: Nanos,
     until: Nanos,
-    /// The device that it sets in motion (true) or stops (false).
-    moves: Option<(Option<u8>, bool)>,
+    /// The device that it stops, if it does.
+    stops: Option<Option<u8>>,
 }
 
 /// The requests and replies of one transport.
@@ -203,7 +202,7 @@ impl Session {
     pub fn receive(&mut self, data: &[u8], now: Nanos) {
         let mut writing = self.writing.iter();
         if writing.any(|writing| writing.until <= now) {
-            self.end_write(None, now);
+            self.end_write("", now);
         }
         for id in std::mem::take(&mut self.one_ways) {
             match self.calls.get_mut(&id) {
@@ -220,61 +219,51 @@ impl Session {
     /// that has come is unread.
     pub fn outgoing(&mut self, now: Nanos, drained: bool) -> &[u8] {
         if self.writing.is_none() && self.fault.is_none() {
-            let one_way = self.begin_one_way(now);
-            self.writing = one_way.or_else(|| self.begin_query(now, drained));
-            let moves = self.writing.as_ref().and_then(|writing| writing.moves);
-            // Only a stop that was written whole ends a motion for sure.
-            if let Some((address, true)) = moves
-                && !self.moved.contains(&address)
-            {
-                self.moved.push(address);
-            }
+            self.writing = self.next_write(now, drained);
         }
         let writing = self.writing.as_ref();
         let rest = writing.and_then(|writing| writing.bytes.get(writing.taken..));
         rest.unwrap_or_default()
     }
 
-    fn begin_one_way(&mut self, now: Nanos) -> Option<Writing> {
-        let id = self.one_ways.pop_front()?;
-        let call = self.calls.get_mut(&id)?;
-        let (request, ends_by) = (call.prepared.request.clone(), Some(call.ends_by));
-        let within = call.ack_within;
-        let (data, ticket) = self.exchange.send_one_way(request, now, within, ends_by);
-        call.ticket = ticket;
-        self.begin(id, None, &data, now)
-    }
-
-    fn begin_query(&mut self, now: Nanos, drained: bool) -> Option<Writing> {
-        let data = self.exchange.outgoing(now, drained);
-        let ticket = self.exchange.sent_last().filter(|_| !data.is_empty())?;
-        let mut calls = self.calls.iter();
-        let (id, _) = calls.find(|(_, call)| call.ticket == Some(ticket))?;
-        self.begin(*id, Some(ticket), &data, now)
-    }
-
-    fn begin(&self, id: CallId, ticket: Option<Ticket>, data: &[u8], at: Nanos) -> Option<Writing> {
+    /// Begin a one-way request, or else the query that is next.
+    fn next_write(&mut self, now: Nanos, drained: bool) -> Option<Writing> {
+        let (id, ticket, data) = if let Some(id) = self.one_ways.pop_front() {
+            let call = self.calls.get_mut(&id)?;
+            let (request, ends_by) = (call.prepared.request.clone(), Some(call.ends_by));
+            let (exchange, within) = (&mut self.exchange, call.ack_within);
+            let data;
+            (data, call.ticket) = exchange.send_one_way(request, now, within, ends_by);
+            (id, None, data)
+        } else {
+            let data = self.exchange.outgoing(now, drained);
+            let ticket = self.exchange.sent_last().filter(|_| !data.is_empty())?;
+            let mut calls = self.calls.iter();
+            let (id, _) = calls.find(|(_, call)| call.ticket == Some(ticket))?;
+            (*id, Some(ticket), data)
+        };
         let (call, align) = (self.calls.get(&id)?, self.exchange.align());
         let command = call.prepared.request.command;
         let command = self.encoder.edition.commands.get(command)?;
-        let (stops, moves) = (command.role == "stop", command.safety == Safety::Motion);
-        let repeated = call.written > 0;
-        let until = match call.ends_by {
-            // A repeated query is written only if the line takes it at once.
-            _ if repeated => at,
-            Nanos::MAX => at.saturating_add(LONGEST_WRITE),
-            ends_by => ends_by,
-        };
+        let (address, stops) = (call.prepared.address, command.role == "stop");
+        // Only a stop that was written whole ends a motion for sure.
+        if command.safety == Safety::Motion && !stops && !self.moved.contains(&address) {
+            self.moved.push(address);
+        }
         Some(Writing {
             id,
             ticket,
-            bytes: [align, data].concat(),
+            bytes: [align, &data].concat(),
             align: align.len(),
             taken: 0,
-            repeated,
-            at,
-            until,
-            moves: (stops || moves).then_some((call.prepared.address, !stops)),
+            at: now,
+            until: match call.ends_by {
+                // A repeated query is written only if the line takes it at once.
+                _ if call.written > 0 => now,
+                Nanos::MAX => now.saturating_add(LONGEST_WRITE),
+                ends_by => ends_by,
+            },
+            stops: stops.then_some(address),
         })
     }
 
@@ -283,55 +272,59 @@ impl Session {
         if let Some(writing) = &mut self.writing {
             writing.taken += size;
             if writing.taken >= writing.bytes.len() {
-                self.end_write(None, now);
+                self.end_write("", now);
             }
         }
     }
 
     /// Note that writing has failed.
     pub fn fail_write(&mut self, why: &str, now: Nanos) {
-        self.end_write(Some(why.to_owned()), now);
+        self.end_write(why, now);
     }
 
-    fn end_write(&mut self, failure: Option<String>, now: Nanos) {
+    /// End a write: whole, or else for a reason; without one, its time is over.
+    fn end_write(&mut self, why: &str, now: Nanos) {
         let Some(writing) = self.writing.take() else {
             return;
         };
         let (taken, all) = (writing.taken, writing.bytes.len());
         let (align, data) = writing.bytes.split_at(writing.align);
-        let mut written = Some(data.len());
+        let mut written = data.len();
         if taken < all {
-            written = self.exchange.cut(align, data, Some(taken));
+            let own = self.exchange.cut(align, data, Some(taken));
+            written = own.unwrap_or_default();
         } else if !align.is_empty() {
             self.exchange.aligned();
         }
         if let Some(ticket) = writing.ticket.filter(|_| now - writing.at > SLOW_WRITE) {
             self.exchange.written(ticket, now);
         }
-        if let (true, Some((stopped, false))) = (taken == all, writing.moves) {
+        if let Some(stopped) = writing.stops.filter(|_| taken == all) {
             self.moved.retain(|address| *address != stopped);
         }
-        // The line is only full if a repeated query is not taken; its first attempt was.
-        if taken < all && writing.repeated && failure.is_none() {
+        // A given-up request has no caller any more. If a repeated query is not taken, the line is
+        // only full; its first attempt was taken.
+        let call = self.calls.get_mut(&writing.id);
+        let Some(call) = call.filter(|call| taken == all || call.written == 0 || !why.is_empty())
+        else {
             return;
+        };
+        (call.written, call.done) = (written, writing.ticket.is_none() && taken < all);
+        if taken == all {
+            call.done = call.ticket.is_none();
+        } else if taken == 0 && call.ends_by <= now && why.is_empty() {
+            call.unsent(&self.encoder, now);
+        } else {
+            let seconds = (now - writing.at) as f64 / 1e9;
+            let few = format!("only {taken} of {all} bytes were taken in {seconds:.3} s");
+            let why = if why.is_empty() { &few } else { why };
+            let detail = format!("cannot be written: {why}");
+            call.fault = Some(Error::link(&self.url, &detail, None));
         }
-        if let Some(call) = self.calls.get_mut(&writing.id) {
-            call.written = written.unwrap_or_default();
-            call.done = writing.ticket.is_none() && (taken < all || call.ticket.is_none());
-            if taken == 0 && call.ends_by <= now && failure.is_none() {
-                call.unsent(&self.encoder, now);
-            } else if taken < all {
-                let seconds = (now - writing.at) as f64 / 1e9;
-                let few = format!("only {taken} of {all} bytes were taken in {seconds:.3} s");
-                let why = format!("cannot be written: {}", failure.unwrap_or(few));
-                call.fault = Some(Error::link(&self.url, &why, None));
-            }
-            if let Some(ticket) = call.ticket.filter(|_| call.done) {
-                self.exchange.give_up(ticket);
-            }
-        }
-        if taken < all && writing.ticket.is_some() {
-            self.exchange.fail_waiting();
+        match (writing.ticket, call.ticket) {
+            (Some(_), _) if taken < all => self.exchange.fail_waiting(),
+            (None, Some(ticket)) if taken < all => self.exchange.give_up(ticket),
+            _ => {}
         }
     }
 
@@ -367,7 +360,7 @@ impl Session {
     /// Return the bytes that stop every device in motion, as the policy says. They are empty
     /// if nothing moves.
     pub fn stops(&mut self, now: Nanos) -> Vec<u8> {
-        self.end_write(None, now);
+        self.end_write("", now);
         let moved = std::mem::take(&mut self.moved);
         let commands = &self.encoder.edition.commands;
         let stop = commands.iter().find(|command| command.role == "stop");

@@ -1,22 +1,13 @@
 //! What generated modules are made of.
 
-use std::sync::{Arc, OnceLock};
+use std::sync::Arc;
 
 use cobotwire_table::Edition;
 
-use crate::Error;
 pub use crate::value::{Typed, Value};
 
 /// The table of an edition.
 pub type Table = Arc<Edition>;
-/// A table that is read once.
-pub type Once = OnceLock<Result<Table, Error>>;
-
-/// Return a table; it is read on first use.
-pub fn read(once: &Once, text: &str) -> Result<Table, Error> {
-    once.get_or_init(|| crate::read_table(text.as_bytes()))
-        .clone()
-}
 
 /// A request of a command, as a type.
 pub trait Request: Clone + Send + 'static {

@@ -113,13 +113,12 @@ class _Shape:
         left_out = parameter.may_be_none or parameter.default is not None
         return f"Option<{found}>" if left_out else found
 
-    def result(self, parameter: Parameter, *, optional: bool | None = None) -> str:
+    def result(self, parameter: Parameter) -> str:
         """Return the type of a field of a reply."""
         types = parameter.types
         same = len(types) == 1 or not all(isinstance(type, Value) for type in types)
         found = _one(map(self.reported if same else self._given, types))
-        absent = parameter.optional if optional is None else optional
-        return f"Option<{found}>" if absent else found
+        return f"Option<{found}>" if parameter.optional else found
 
     def _given(self, type: Type) -> str:
         if isinstance(type, Value | Bits):
