@@ -12,7 +12,7 @@ use cobotwire_core::exchange::{
 use cobotwire_core::{Decoded, Direction, EncodeError, Given, decode};
 
 use crate::shown::{is_printable, join, printable, quoted};
-use crate::{Edition, Field, Quote, Shown};
+use crate::{Edition, Quote, Shown};
 
 // A link to a file of the Python package; a package of this crate contains the file.
 const TEMPLATES: &str = include_str!("../error_texts.json");
@@ -131,8 +131,7 @@ impl Edition {
         if allowed.is_empty() {
             return text!("no-addresses"; edition = self.name);
         }
-        let given = Shown::Integer(given.unwrap_or_default().into());
-        bad_argument("address", &given, &allowed)
+        bad_argument("address", given, &allowed)
     }
 
     /// The same for a number.
