@@ -69,7 +69,8 @@ impl Encoder {
                 _ => others.push((*argument, value.clone())),
             }
         }
-        let arranged = edition.arrange(command, &others, Value::from);
+        let filled = |value: Option<_>| value.map_or(Value::Counted, Value::from);
+        let arranged = edition.arrange(command, &others, filled);
         let (row, variant) = arranged.map_err(Error::usage)?;
         let mut missing = text_fields.iter().zip(&texts);
         if let Some((field, _)) = missing.find(|(_, text)| text.is_none()) {

@@ -3,7 +3,7 @@
 use std::convert::Infallible;
 
 use cobotwire_core::{Encoding, Given, Row, Unread, ValueFault};
-use cobotwire_table::{Filled, Quote, Shown};
+use cobotwire_table::{Quote, Shown};
 
 /// The value of an argument or of a field of a reply.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -130,16 +130,6 @@ impl From<Shown> for Value {
                 Self::Row(row.into_iter().map(Self::from).collect())
             }
             Shown::Other(_) => Self::Absent,
-        }
-    }
-}
-
-impl From<Filled> for Value {
-    fn from(filled: Filled) -> Self {
-        match filled {
-            Filled::Counted => Self::Counted,
-            Filled::Real(real) => Self::Real(real),
-            Filled::Row(row) => row.into_value(),
         }
     }
 }

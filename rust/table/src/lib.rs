@@ -32,7 +32,6 @@ use serde_json::Value;
 use crate::json::Record;
 use crate::messages::Messages;
 
-pub use crate::named::Filled;
 pub use crate::shown::{Quote, Shown};
 pub use crate::texts::{bad_argument, error_text, link_error};
 

@@ -5,22 +5,13 @@ use alloc::vec::Vec;
 
 use crate::shown::join;
 use crate::texts::text;
-use crate::{Edition, Field};
-
-/// A value that the table gives a request.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Filled {
-    /// The number of elements of a list, which the encoder counts.
-    Counted,
-    /// A constant or a default.
-    Real(f64),
-    /// The constants or defaults of a row.
-    Row(Vec<f64>),
-}
+use crate::{Edition, Field, Shown};
 
 impl Edition {
     /// Return the values of the variant of a request that takes exactly the given arguments, in the
-    /// order of the wire; and its index, unless several do, so that the values must decide.
+    /// order of the wire; and its index, unless several do, so that the values must decide. A
+    /// constant or a default is `filled` in; `None`: the number of elements of a list, which the
+    /// encoder counts.
     ///
     /// # Errors
     /// No variant does; the text names an argument at fault.
@@ -28,7 +19,7 @@ impl Edition {
         &self,
         command: usize,
         given: &[(&str, V)],
-        filled: impl Fn(Filled) -> V,
+        filled: impl Fn(Option<Shown>) -> V,
     ) -> Result<(Vec<V>, Option<usize>), String> {
         let Some(record) = self.commands.get(command) else {
             return Ok((Vec::new(), None));
@@ -59,7 +50,7 @@ impl Edition {
 fn row<'a, V: Clone>(
     fields: &'a [Field],
     given: &[(&'a str, V)],
-    filled: &impl Fn(Filled) -> V,
+    filled: &impl Fn(Option<Shown>) -> V,
 ) -> Result<Vec<V>, (&'static str, &'a str)> {
     let odd = |(name, _): &&(&str, V)| !fields.iter().any(|field| field.name == *name);
     if let Some((name, _)) = given.iter().find(odd) {
@@ -72,10 +63,13 @@ fn row<'a, V: Clone>(
             given.iter().find(own),
             field.default.as_deref(),
         ) {
-            (Some(_), ..) => Ok(filled(Filled::Counted)),
+            (Some(_), ..) => Ok(filled(None)),
             (_, Some((_, value)), _) => Ok(value.clone()),
-            (.., Some([one])) => Ok(filled(Filled::Real(*one))),
-            (.., Some(several)) => Ok(filled(Filled::Row(several.to_vec()))),
+            (.., Some([one])) => Ok(filled(Some(Shown::Real(*one)))),
+            (.., Some(several)) => {
+                let several = several.iter().copied().map(Shown::Real);
+                Ok(filled(Some(Shown::Tuple(several.collect()))))
+            }
             _ => Err(("missing-argument", &*field.name)),
         }
     };

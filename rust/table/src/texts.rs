@@ -161,16 +161,13 @@ impl Edition {
 
     /// Return the fields of a message with their names.
     #[must_use]
-    pub fn named(&self, message: &Decoded) -> Vec<(&str, Shown)> {
+    pub fn named<'a>(&'a self, message: &Decoded) -> Vec<(&'a str, Shown)> {
         let id = message.variant;
         let command = self.commands.get(id.command);
         let fields = command.and_then(|command| command.variants(id.direction).get(id.variant));
         let mut values = message.values.iter().copied();
-        let named = fields
-            .into_iter()
-            .flatten()
-            .map_while(|field| Some((&*field.name, Shown::nested(&mut values)?)));
-        named.collect()
+        let named = |field: &'a Field| Some((&*field.name, Shown::nested(&mut values)?));
+        fields.into_iter().flatten().map_while(named).collect()
     }
 
     /// Return a message as a person writes it: `get_encoder(joint=1)`, `stop() to LEFT`.
