@@ -40,18 +40,15 @@ const VERSION: i64 = 3;
 /// The largest file. A value of JSON takes up to 32 times its text in memory.
 const LARGEST: usize = 4 << 20;
 
-/// A protocol as data.
+/// A protocol as data. Commands are in the order of the table; addresses are those with names.
 #[derive(Clone, Debug)]
+#[allow(missing_docs)] // as above
 pub struct Edition {
-    /// Its name, for example `mycobot280`.
     pub name: String,
-    /// The rate of its serial port.
     pub baudrate: u32,
     /// What codec and exchange interpret.
     pub protocol: Protocol,
-    /// Its commands, in the order of the table.
     pub commands: Vec<Command>,
-    /// Its named addresses.
     pub addresses: Vec<Address>,
 }
 
@@ -68,9 +65,8 @@ pub struct Command {
     pub read_by: Option<String>,
     /// The states that it stores arguments in.
     pub stores: Vec<String>,
-    /// The variants of its request.
+    /// The variants of its request, and of its reply.
     pub request: Vec<Vec<Field>>,
-    /// The variants of its reply.
     pub reply: Vec<Vec<Field>>,
 }
 
@@ -87,8 +83,8 @@ impl Command {
 
 /// What texts and clients need of a field.
 #[derive(Clone, Debug, Default)]
+#[allow(missing_docs)] // as above
 pub struct Field {
-    /// Its name.
     pub name: String,
     /// Its kind: `number`, `enum`, `flag`, `bytes` or `text`.
     pub kind: &'static str,

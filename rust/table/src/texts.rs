@@ -12,7 +12,7 @@ use cobotwire_core::exchange::{
 use cobotwire_core::{Decoded, Direction, EncodeError, Given, decode};
 
 use crate::shown::{is_printable, join, printable, quoted};
-use crate::{Edition, Quote, Shown};
+use crate::{Edition, Field, Quote, Shown};
 
 // A link to a file of the Python package; a package of this crate contains the file.
 const TEMPLATES: &str = include_str!("../error_texts.json");

@@ -48,7 +48,7 @@ impl Protocol {
     }
 
     /// Return the variants of a command's reply.
-    pub(super) fn replies(&self, command: usize) -> &[Variant] {
+    fn replies(&self, command: usize) -> &[Variant] {
         let command = self.table.commands().get(command);
         command.map_or(&[], |command| &command.reply)
     }
@@ -82,7 +82,10 @@ impl Protocol {
         frame: &SeenFrame,
         request: &Request,
     ) -> Option<Result<Decoded, DecodeError>> {
-        if !request.can_come_from(self.address_of(frame)) {
+        let can_reply = !self.replies(request.command).is_empty()
+            && request.can_have_reply(self, frame)
+            && request.can_come_from(self.address_of(frame));
+        if !can_reply {
             return None;
         }
         let reply = self.read(frame, request.command);

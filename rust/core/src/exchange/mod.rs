@@ -498,11 +498,8 @@ impl Exchange {
             Err(error) => return self.reject(frame, error, is_copy),
             Ok(reply) => reply,
         };
-        match (
-            is_copy,
-            request.repeated_by(&self.protocol, &reply),
-            waiting(&mut self.last),
-        ) {
+        let repeats = request.repeated_by(&self.protocol, &reply);
+        match (is_copy, repeats, waiting(&mut self.last)) {
             (false, true, _) => return self.end(reply, Some(frame), now),
             (false, false, _) => return self.match_other(frame, now, began_at, is_copy),
             // A copy that can be the reply is kept; one that cannot proves that the line echoes.
@@ -514,13 +511,11 @@ impl Exchange {
 
     /// Return a frame as the reply to the request that waits, whichever arguments it repeats.
     fn as_reply(&self, frame: &SeenFrame) -> Option<(Arc<Request>, Result<Decoded, DecodeError>)> {
-        let waiting = self.waiting()?;
-        let request = &waiting.request;
-        let accepts = frame.offset >= waiting.offset
-            && !self.protocol.replies(request.command).is_empty()
-            && request.can_have_reply(&self.protocol, frame);
-        let reply = accepts.then(|| self.protocol.as_reply(frame, request));
-        Some((Arc::clone(request), reply.flatten()?))
+        let waiting = self
+            .waiting()
+            .filter(|waiting| frame.offset >= waiting.offset)?;
+        let reply = self.protocol.as_reply(frame, &waiting.request)?;
+        Some((Arc::clone(&waiting.request), reply))
     }
 
     /// Find out what a frame is that does not reply to the request that waits.

@@ -11,14 +11,13 @@ use crate::number::Value;
 
 /// What a request that has succeeded has got.
 #[derive(Clone, Debug, PartialEq)]
+#[allow(missing_docs)] // of times, whose names say what they are
 pub struct Answer {
     /// The reply; `None`: it was text, or the request has only an acknowledgement.
     pub decoded: Option<Decoded>,
     /// The fields of a reply that was text, in their order.
     pub texts: Vec<String>,
-    /// When the request was first sent.
     pub requested_at: Nanos,
-    /// When the reply or the acknowledgement was received, or the time of silence after it was over.
     pub replied_at: Nanos,
 }
 
