@@ -1,0 +1,185 @@
+/** What the handles of a client share: a session, and the transport that it uses. */
+import { LinkError, failure } from "./errors.js";
+import type { Machine, Value } from "./machine.js";
+import { reason, within, type Transport } from "./transport.js";
+
+/** What a step of the session asks for: bytes to write, calls that have ended, when to go on. */
+type Step = [
+  bytes: Uint8Array | undefined,
+  ended: [call: number, good: boolean, answer: readonly Value[]][],
+  idle: number | undefined,
+  more: boolean,
+];
+interface Caller {
+  done(answer: readonly Value[]): void;
+  failed(error: unknown): void;
+}
+
+/** A line that takes no bytes for so long is stuck. */
+const WRITE_SECONDS = 1;
+
+/** Return the time in nanoseconds. */
+export const now = (): number => Math.round(performance.now() * 1e6);
+
+/** Run a function when everything that has come by now was received. */
+const afterTurn: (run: () => void) => void =
+  typeof setImmediate === "function"
+    ? // The loop reads between two of its turns.
+      (run) => setImmediate(() => setImmediate(run))
+    : (run) => {
+        const { port1, port2 } = new MessageChannel();
+        port1.onmessage = run;
+        port2.postMessage(undefined);
+      };
+
+export class Line {
+  private readonly callers = new Map<number, Caller>();
+  private waiting: (() => void)[] = [];
+  private timer: ReturnType<typeof setTimeout> | undefined;
+  private wakesAt = Infinity;
+  private turning = false;
+  private open = true;
+
+  constructor(
+    private readonly machine: Machine,
+    private readonly id: number,
+    private readonly transport: Transport,
+  ) {
+    transport.start(
+      (data) => this.advance("receive", data),
+      (detail) => this.lose(detail),
+    );
+  }
+
+  /** Ask the session something that is no step. */
+  ask<T = Value>(what: string, ...rest: Value[]): T {
+    return this.machine.ask<T>(what, this.id, ...rest);
+  }
+
+  /** Send a request; return its answer: the fields of the reply, and when they were exchanged. */
+  call(signal: AbortSignal | undefined, ...request: Value[]): Promise<readonly Value[]> {
+    return new Promise((done, failed) => {
+      signal?.throwIfAborted();
+      const call = this.ask<number>("call", now(), ...request);
+      const giveUp = (): void => {
+        this.callers.delete(call);
+        failed(signal?.reason);
+        this.advance("give up", call);
+      };
+      signal?.addEventListener("abort", giveUp);
+      const ended = (): void => signal?.removeEventListener("abort", giveUp);
+      this.callers.set(call, {
+        done: (answer) => (ended(), done(answer)),
+        failed: (error) => (ended(), failed(error)),
+      });
+      this.advance("step");
+    });
+  }
+
+  /** Wait until something was received, for some time at most; return false if the time is over. */
+  arrival(seconds: number, signal: AbortSignal | undefined): Promise<boolean> {
+    return new Promise((done, failed) => {
+      const end = (settle: () => void) => (): void => {
+        clearTimeout(timer);
+        signal?.removeEventListener("abort", abort);
+        settle();
+      };
+      const abort = end(() => failed(signal?.reason));
+      const longest = Math.min(seconds * 1000, 2 ** 31 - 1);
+      const timer = setTimeout(end(() => done(false)), longest);
+      signal?.addEventListener("abort", abort);
+      this.waiting.push(end(() => done(true)));
+    });
+  }
+
+  /** Send a stop to each device that was set in motion, as the policy says. */
+  async stop(): Promise<void> {
+    const bytes = this.open ? this.ask<Uint8Array>("stops", now()) : [];
+    if (bytes instanceof Uint8Array && bytes.length) {
+      await within(WRITE_SECONDS, this.transport.write(bytes)).catch(() => {});
+    }
+  }
+
+  /** End every call, send what was written, and close the transport. */
+  async close(): Promise<void> {
+    if (this.open) {
+      this.end("close");
+      await this.transport.close();
+    }
+  }
+
+  private lose(detail: string): void {
+    if (this.open) {
+      this.end("lose", detail);
+      this.transport.abort();
+    }
+  }
+
+  private end(what: string, ...rest: Value[]): void {
+    const step = this.ask<Step>(what, now(), ...rest);
+    this.open = false;
+    this.take(step);
+    clearTimeout(this.timer);
+  }
+
+  private advance(what: string, ...rest: Value[]): void {
+    if (this.open) this.take(this.ask<Step>(what, now(), ...rest));
+  }
+
+  private take([bytes, ended, idle, more]: Step): void {
+    if (bytes) this.write(bytes);
+    for (const [call, good, answer] of ended) {
+      const caller = this.callers.get(call);
+      this.callers.delete(call);
+      if (good) caller?.done(answer);
+      else caller?.failed(failure(answer));
+    }
+    for (const wake of this.waiting.splice(0)) wake();
+    if (more) this.turn();
+    this.schedule(idle);
+  }
+
+  private write(bytes: Uint8Array): void {
+    const stuck = (): void => {
+      this.lose(`cannot be written: the line took no bytes in ${WRITE_SECONDS}.000 s`);
+    };
+    const timer = setTimeout(stuck, WRITE_SECONDS * 1000);
+    this.transport.write(bytes).then(
+      () => {
+        clearTimeout(timer);
+        this.advance("wrote", bytes.length);
+      },
+      (error: unknown) => {
+        clearTimeout(timer);
+        this.lose(`cannot be written: ${reason(error)}`);
+      },
+    );
+  }
+
+  /** Send the next request when nothing that has come is unread. */
+  private turn(): void {
+    if (this.turning) return;
+    this.turning = true;
+    afterTurn(() => {
+      this.turning = false;
+      this.advance("send");
+    });
+  }
+
+  private schedule(idle: number | undefined): void {
+    const at = idle === undefined ? Infinity : performance.now() + idle / 1e6;
+    // The timer that runs comes first; it sets the next one.
+    if (at >= this.wakesAt) return;
+    clearTimeout(this.timer);
+    this.wakesAt = at;
+    this.timer = setTimeout(() => {
+      this.wakesAt = Infinity;
+      this.advance("step");
+    }, at - performance.now());
+  }
+}
+
+/** Return the error of a transport that was lost before there was a session. */
+export function unopened(url: string, error: unknown): LinkError {
+  return new LinkError(`${url}: cannot be opened: ${reason(error)}`, 0);
+}
