@@ -1,8 +1,8 @@
 /** The client: what users call. Modules of editions add a method for each command. */
 import { ProtocolError, ReplyTimeout, UsageError } from "./errors.js";
-import { Line, now } from "./line.js";
+import { Line, WRITE_SECONDS, now } from "./line.js";
 import { Machine, inNode, node, type Value } from "./machine.js";
-import { openWebSerial, type Transport, type WebSerialPort } from "./transport.js";
+import { nameOf, openWebSerial, reason, type Transport, type WebSerialPort } from "./transport.js";
 
 /** Where an arm is: `/dev/ttyACM0` or `socket://host:port` in Node, a port of the browser, a transport. */
 export type Port = string | WebSerialPort | Transport;
@@ -121,10 +121,18 @@ export class Client {
       ...[timeout, deadline, retry?.attempts, retry?.shortestAttempt, retry?.grace],
       ...[address?.toString(), limits?.speed, limits?.workspace, onError === "leave"],
     ];
-    session.ask("check", index, ...given);
-    const transport = await opened(port, baudrate);
-    const id = session.ask<number>("open", index, transport.url, now(), ...given);
-    return new this(new Line(session, id, transport), description);
+    const url = typeof port === "string" ? port : "start" in port ? port.url : nameOf(port);
+    // The session first: it reports what is not allowed before the port is opened.
+    const id = session.ask<number>("open", index, url, ...given);
+    let transport: Transport;
+    try {
+      transport = await opened(port, url, baudrate);
+    } catch (error) {
+      session.ask("lose", id, now(), reason(error));
+      throw error;
+    }
+    const line = new Line(session, id, transport, Math.min(WRITE_SECONDS, deadline ?? Infinity));
+    return new this(line, description);
   }
 
   /** Open an arm, run a function with it, and close it. If the function fails, the arm is stopped. */
@@ -213,14 +221,14 @@ export class Client {
   }
 }
 
-async function opened(port: Port, baudrate: number): Promise<Transport> {
+async function opened(port: Port, url: string, baudrate: number): Promise<Transport> {
   if (typeof port !== "string") {
-    return "start" in port ? port : openWebSerial(port, baudrate);
+    return "start" in port ? port : openWebSerial(port, url, baudrate);
   }
   if (!inNode) {
-    throw new UsageError(`${port} needs Node; in a browser pass await navigator.serial.requestPort()`);
+    throw new UsageError(`${url} needs Node; in a browser pass await navigator.serial.requestPort()`);
   }
-  return (await node()).open(port, baudrate);
+  return (await node()).open(url, baudrate);
 }
 
 /** The samples of a query; see `Client.stream`. */
@@ -268,19 +276,24 @@ export class EventStream<T> implements AsyncIterable<T> {
 
   /** How many events were dropped because too many waited: always the oldest. */
   get lost(): number {
-    return this.line.ask<number>("lost", this.queue);
+    return this.ask<number>("lost");
   }
 
   async *[Symbol.asyncIterator](): AsyncGenerator<T> {
-    const until = performance.now() + this.timeout * 1000;
+    let until = performance.now() + this.timeout * 1000;
     for (;;) {
-      const fields = this.line.ask<readonly Value[] | undefined>("event", this.queue);
+      const fields = this.ask<readonly Value[] | undefined>("event");
       if (fields) {
         yield shaped(objectOf(fields), this.row[2]) as T;
-        return yield* this[Symbol.asyncIterator]();
+        until = performance.now() + this.timeout * 1000;
+      } else {
+        const left = (until - performance.now()) / 1000;
+        if (left <= 0 || !(await this.line.arrival(left, this.signal))) return;
       }
-      const left = (until - performance.now()) / 1000;
-      if (left <= 0 || !(await this.line.arrival(left, this.signal))) return;
     }
+  }
+
+  private ask<A>(what: string): A {
+    return this.line.ask<A>(what, this.queue, this.row[0]);
   }
 }

@@ -5,7 +5,7 @@ import { reason, within, type Transport } from "./transport.js";
 
 /** What a step of the session asks for: bytes to write, calls that have ended, when to go on. */
 type Step = [
-  bytes: Uint8Array | undefined,
+  bytes: Uint8Array,
   ended: [call: number, good: boolean, answer: readonly Value[]][],
   idle: number | undefined,
   more: boolean,
@@ -16,7 +16,7 @@ interface Caller {
 }
 
 /** A line that takes no bytes for so long is stuck. */
-const WRITE_SECONDS = 1;
+export const WRITE_SECONDS = 1;
 
 /** Return the time in nanoseconds. */
 export const now = (): number => Math.round(performance.now() * 1e6);
@@ -44,6 +44,7 @@ export class Line {
     private readonly machine: Machine,
     private readonly id: number,
     private readonly transport: Transport,
+    private readonly writeSeconds: number,
   ) {
     transport.start(
       (data) => this.advance("receive", data),
@@ -127,33 +128,35 @@ export class Line {
   }
 
   private take([bytes, ended, idle, more]: Step): void {
-    if (bytes) this.write(bytes);
+    const written = bytes.length ? this.write(bytes) : undefined;
+    written?.catch(() => {}); // the session reports it, too
     for (const [call, good, answer] of ended) {
       const caller = this.callers.get(call);
       this.callers.delete(call);
-      if (good) caller?.done(answer);
-      else caller?.failed(failure(answer));
+      if (!good) caller?.failed(failure(answer));
+      // The call of a one-way request ends when the transport has taken its bytes.
+      else if (written && answer.length === 1) written.then(() => caller?.done(answer), caller?.failed);
+      else caller?.done(answer);
     }
     for (const wake of this.waiting.splice(0)) wake();
     if (more) this.turn();
     this.schedule(idle);
   }
 
-  private write(bytes: Uint8Array): void {
-    const stuck = (): void => {
-      this.lose(`cannot be written: the line took no bytes in ${WRITE_SECONDS}.000 s`);
-    };
-    const timer = setTimeout(stuck, WRITE_SECONDS * 1000);
-    this.transport.write(bytes).then(
-      () => {
-        clearTimeout(timer);
-        this.advance("wrote", bytes.length);
-      },
-      (error: unknown) => {
-        clearTimeout(timer);
-        this.lose(`cannot be written: ${reason(error)}`);
-      },
-    );
+  private async write(bytes: Uint8Array): Promise<void> {
+    let detail = `the line took no bytes in ${this.writeSeconds.toFixed(3)} s`;
+    const lose = (): void => this.lose(`cannot be written: ${detail}`);
+    const timer = setTimeout(lose, this.writeSeconds * 1000);
+    try {
+      await this.transport.write(bytes);
+    } catch (error) {
+      if (this.open) detail = reason(error);
+      lose();
+      throw new LinkError(`${this.transport.url}: cannot be written: ${detail}`);
+    } finally {
+      clearTimeout(timer);
+    }
+    this.advance("wrote");
   }
 
   /** Send the next request when nothing that has come is unread. */
@@ -177,9 +180,4 @@ export class Line {
       this.advance("step");
     }, at - performance.now());
   }
-}
-
-/** Return the error of a transport that was lost before there was a session. */
-export function unopened(url: string, error: unknown): LinkError {
-  return new LinkError(`${url}: cannot be opened: ${reason(error)}`, 0);
 }

@@ -42,10 +42,19 @@ export async function within(seconds: number, promise: Promise<unknown>): Promis
 const names = new WeakMap<WebSerialPort, string>();
 let ports = 0;
 
+/** Return the name of a port of the browser. */
+export function nameOf(port: WebSerialPort): string {
+  const name = names.get(port) ?? `serial port ${++ports}`;
+  names.set(port, name);
+  return name;
+}
+
 /** Open a serial port that the browser gave the page. */
-export async function openWebSerial(port: WebSerialPort, baudRate: number): Promise<Transport> {
-  const url = names.get(port) ?? `serial port ${++ports}`;
-  names.set(port, url);
+export async function openWebSerial(
+  port: WebSerialPort,
+  url: string,
+  baudRate: number,
+): Promise<Transport> {
   try {
     await port.open({ baudRate });
   } catch (error) {

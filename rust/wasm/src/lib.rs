@@ -11,8 +11,8 @@ mod message;
 use std::cell::RefCell;
 use std::collections::HashMap;
 
-use cobotwire::machine::PersistedState;
-use cobotwire::{Error, Value, typed};
+use cobotwire::machine::{Handle, PersistedState};
+use cobotwire::{Error, Options, Value};
 
 use client::Client;
 
@@ -35,85 +35,81 @@ pub extern "C" fn room(size: usize) -> *mut u8 {
 pub extern "C" fn answer() -> usize {
     MESSAGE.with_borrow_mut(|message| {
         let given = message::read(&mut &**message);
-        let outcome = match given {
-            Some(Value::Row(given)) => MACHINE.with_borrow_mut(|machine| machine.answer(&given)),
-            _ => Err(wrong()),
-        };
-        let (good, result) = outcome.map_or_else(
-            |error| (false, described(&error)),
-            |result| (true, result),
-        );
+        let outcome = MACHINE.with_borrow_mut(|machine| machine.answer(&row(given)?));
+        let good = Value::Flag(outcome.is_ok());
+        let result = outcome.unwrap_or_else(|error| described(&error));
         message.clear();
-        message::write(&Value::Row(vec![Value::Flag(good), result]), message);
+        message::write(&Value::Row(vec![good, result]), message);
         message.len()
     })
 }
 
 #[derive(Default)]
 struct Machine {
-    editions: Vec<typed::Table>,
-    clients: Vec<Option<Client>>,
+    editions: Vec<Handle>,
+    /// Each client, or why it has ended.
+    clients: Vec<Result<Client, Error>>,
     /// What clients have left on their ports, for the next ones.
     left: HashMap<String, PersistedState>,
 }
 
 impl Machine {
     fn answer(&mut self, given: &[Value]) -> Result<Value, Error> {
-        let [Value::Text(what), given @ ..] = given else {
-            return Err(wrong());
-        };
-        match (&**what, given) {
-            ("edition", [Value::Text(json)]) => {
+        match given {
+            [Value::Text(what), Value::Text(json)] if what == "edition" => {
                 let edition = cobotwire::read_table(json.as_bytes())?;
-                let baudrate = edition.baudrate;
-                self.editions.push(edition);
-                Ok(Value::Row(vec![
-                    whole(self.editions.len() - 1),
-                    Value::Integer(baudrate.into()),
-                ]))
+                let baudrate = Value::Integer(edition.baudrate.into());
+                self.editions
+                    .push(Handle::new(edition, &Options::default())?);
+                Ok(Value::Row(vec![whole(self.editions.len() - 1), baudrate]))
             }
-            ("check", [index, options @ ..]) => {
-                client::handle(self.edition(index)?, options).map(|_| Value::Absent)
-            }
-            ("open", [index, Value::Text(url), _, options @ ..]) => {
-                let edition = self.edition(index)?;
+            [Value::Text(what), index, Value::Text(url), given @ ..] if what == "open" => {
+                let edition = self.edition(index)?.encoder.edition.clone();
                 let left = self.left.remove(url).unwrap_or_default();
-                self.clients
-                    .push(Some(Client::new(edition, url, options, &left)?));
+                let client = Client::new(edition, url, given, &left)?;
+                self.clients.push(Ok(client));
                 Ok(whole(self.clients.len() - 1))
             }
-            ("encode" | "decode" | "frames", [index, given @ ..]) => {
-                codec::answer(&*self.edition(index)?, what, given).ok_or_else(wrong)
+            [Value::Text(what), index, given @ ..] if codec::FUNCTIONS.contains(&&**what) => {
+                codec::answer(&self.edition(index)?.encoder, what, given).ok_or_else(wrong)
             }
-            (_, [index, given @ ..]) => {
-                let client = index_of(index).and_then(|index| self.clients.get_mut(index));
-                let slot = client.ok_or_else(wrong)?;
-                let client = slot.as_mut().ok_or_else(wrong)?;
-                let step = client.answer(what, given)?;
-                if let ("close" | "lose", [Value::Integer(now), ..]) = (&**what, given) {
-                    self.left.insert(client.url.clone(), client.session.persist(*now as u64));
-                    *slot = None;
+            [Value::Text(what), index, given @ ..] => {
+                let slot = number(index).and_then(|index| self.clients.get_mut(index));
+                let slot = slot.ok_or_else(wrong)?;
+                let client = slot.as_mut().map_err(|error| error.clone())?;
+                let answer = client.answer(what, given)?;
+                if let Some((state, fault)) = client.ended.take() {
+                    self.left.insert(client.url.clone(), state);
+                    *slot = Err(fault);
                 }
-                Ok(step)
+                Ok(answer)
             }
             _ => Err(wrong()),
         }
     }
 
-    fn edition(&self, index: &Value) -> Result<typed::Table, Error> {
-        let found = index_of(index).and_then(|index| self.editions.get(index));
-        found.cloned().ok_or_else(wrong)
+    fn edition(&self, index: &Value) -> Result<&Handle, Error> {
+        let found = number(index).and_then(|index| self.editions.get(index));
+        found.ok_or_else(wrong)
     }
 }
 
-/// The error of a message that the JavaScript of this package never sends.
+/// Return the error of a message that the JavaScript of the package never sends.
 fn wrong() -> Error {
-    Error::UsageError { message: "the message is wrong".into() }
+    let message = "the message is wrong".to_owned();
+    Error::UsageError { message }
 }
 
-fn index_of(value: &Value) -> Option<usize> {
+fn row(value: Option<Value>) -> Result<Vec<Value>, Error> {
     match value {
-        Value::Integer(index) => usize::try_from(*index).ok(),
+        Some(Value::Row(row)) => Ok(row),
+        _ => Err(wrong()),
+    }
+}
+
+fn number(value: &Value) -> Option<usize> {
+    match value {
+        Value::Integer(number) => usize::try_from(*number).ok(),
         _ => None,
     }
 }
@@ -124,13 +120,22 @@ fn whole(number: usize) -> Value {
 
 /// Return an error as a row: its kind, its text, and what else it knows.
 fn described(error: &Error) -> Value {
-    let mut row = vec![Value::Text(error.name().into()), Value::Text(error.to_string())];
+    let mut row = vec![
+        Value::Text(error.name().to_owned()),
+        Value::Text(error.to_string()),
+    ];
     match error {
         Error::LinkError { written, .. } => row.push(written.map_or(Value::Absent, whole)),
-        Error::ReplyTimeout { waited, attempts, waited_for, .. } => {
+        Error::ReplyTimeout {
+            waited,
+            attempts,
+            waited_for,
+            ..
+        } => {
+            let waited_for = waited_for.map_or(String::new(), |each| format!("{each:?}"));
             row.push(Value::Real(waited.as_secs_f64()));
             row.push(whole(*attempts));
-            row.push(Value::Text(waited_for.map_or("", |reason| reason.word()).into()));
+            row.push(Value::Text(waited_for.to_lowercase()));
         }
         Error::ProtocolError { data, .. } => row.push(Value::Bytes(data.clone())),
         _ => {}
