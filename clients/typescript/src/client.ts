@@ -34,8 +34,8 @@ export interface Sample<T> {
 
 /** The fields of a message by the names that they have in a method: one of them, or an object. */
 type Result = string | Record<string, string> | undefined;
-/** A command: its name, its arguments, its result, and what of them is in radians. */
-type Row = [command: string, names?: string[], result?: Result, radians?: string[]];
+/** A command: its name, its arguments, its result; what of them is in radians, or true or false. */
+type Row = [command: string, names?: string[], result?: Result, radians?: string[], flags?: string[]];
 interface Description {
   table: string;
   events: Record<string, Row>;
@@ -73,23 +73,38 @@ export function describe(
   events: Record<string, Row>,
 ): void {
   descriptions.set(type, { table, events });
-  for (const [method, [command, names = [], result, radians = []]] of Object.entries(methods)) {
+  for (const [method, row] of Object.entries(methods)) {
+    const [command, names = [], , radians = []] = row;
     const value = async function (this: Client, ...given: Value[]): Promise<unknown> {
       if (given.length > names.length) {
         throw new UsageError(`${method}() takes ${names.length} arguments, not ${given.length}`);
       }
-      const named = given.flatMap((each, index) => [names[index], each]);
-      return shaped(await this.perform(command, named, radians), result);
+      const named = names.flatMap((name, index) => {
+        const each = given[index];
+        return [name, radians.includes(name) ? mapped(each, (angle) => angle * (180 / Math.PI)) : each];
+      });
+      return shaped(await this.perform(command, named), row);
     };
     Object.defineProperty(type.prototype, method, { value, writable: true, configurable: true });
   }
 }
 
+/** Return a value with each number changed, in rows too. */
+function mapped(value: Value, change: (number: number) => Value): Value {
+  if (typeof value === "number") return change(value);
+  if (typeof value !== "object" || value instanceof Uint8Array) return value;
+  return Array.from(value, (each) => mapped(each, change));
+}
+
 /** Return the result of a method. */
-function shaped(fields: Record<string, Value>, result: Result): unknown {
-  if (result === undefined || typeof result === "string") return fields[result ?? ""];
-  const named = Object.entries(result).map(([name, field]) => [name, fields[field]]);
-  return Object.fromEntries(named);
+function shaped(fields: Record<string, Value>, [, , result, radians, flags]: Row): unknown {
+  const take = (name: string): Value => {
+    if (flags?.includes(name)) return mapped(fields[name], (number) => number !== 0);
+    if (radians?.includes(name)) return mapped(fields[name], (angle) => angle * (Math.PI / 180));
+    return fields[name];
+  };
+  if (result === undefined || typeof result === "string") return take(result ?? "");
+  return Object.fromEntries(Object.entries(result).map(([name, field]) => [name, take(field)]));
 }
 
 function objectOf(fields: readonly Value[]): Record<string, Value> {
@@ -198,15 +213,15 @@ export class Client {
 
   /** Send a request by the name of its command; return the fields of its reply. */
   call(command: string, fields: Record<string, Value> = {}): Promise<Record<string, Value>> {
-    return this.perform(command, Object.entries(fields).flat(), []);
+    return this.perform(command, Object.entries(fields).flat());
   }
 
   /** @internal */
-  async perform(command: string, named: Value[], radians: string[]): Promise<Record<string, Value>> {
+  async perform(command: string, named: Value[]): Promise<Record<string, Value>> {
     const { address, ackWithin, signal, sampled } = this.settings;
     const [fields, requestedAt, repliedAt] = await this.line.call(
       signal,
-      ...[command, named, radians, address, ackWithin, sampled !== undefined],
+      ...[command, named, address, ackWithin, sampled !== undefined],
     );
     if (sampled) {
       sampled.requestedAt = (requestedAt as number) / 1e6;
@@ -284,7 +299,7 @@ export class EventStream<T> implements AsyncIterable<T> {
     for (;;) {
       const fields = this.ask<readonly Value[] | undefined>("event");
       if (fields) {
-        yield shaped(objectOf(fields), this.row[2]) as T;
+        yield shaped(objectOf(fields), this.row) as T;
         until = performance.now() + this.timeout * 1000;
       } else {
         const left = (until - performance.now()) / 1000;
@@ -294,6 +309,6 @@ export class EventStream<T> implements AsyncIterable<T> {
   }
 
   private ask<A>(what: string): A {
-    return this.line.ask<A>(what, this.queue, this.row[0]);
+    return this.line.ask<A>(what, this.queue);
   }
 }

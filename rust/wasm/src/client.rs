@@ -3,7 +3,7 @@
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
-use cobotwire::machine::{CallId, Handle, PersistedState, Prepared, Queue, Session};
+use cobotwire::machine::{CallId, Handle, Named, PersistedState, Prepared, Queue, Session};
 use cobotwire::{Error, Limits, OnDrop, Options, RetryPolicy, Value, typed};
 use cobotwire_core::exchange::{Answer, Safety};
 
@@ -14,7 +14,6 @@ struct Caller {
     call: CallId,
     number: i64,
     prepared: Prepared,
-    radians: Vec<Value>,
 }
 
 /// A session that JavaScript drives.
@@ -63,15 +62,13 @@ impl Client {
                 self.queues.push(self.session.subscribe(command));
                 Ok(whole(self.queues.len() - 1))
             }
-            ("event" | "lost", [index, Value::Text(command)]) => {
+            ("event" | "lost", [index]) => {
                 let queue = number(index).and_then(|index| self.queues.get(index));
                 let mut queue = queue.ok_or_else(wrong)?.lock().map_err(|_| wrong())?;
-                if what == "lost" {
-                    return Ok(Value::Integer(queue.lost as i64));
-                }
-                let command = self.handle.encoder.command(command)?;
-                let event = queue.events.pop_front();
-                Ok(event.map_or(Value::Absent, |event| self.fields(command, event, &[])))
+                Ok(match what {
+                    "event" => queue.events.pop_front().map_or(Value::Absent, flat),
+                    _ => Value::Integer(queue.lost as i64),
+                })
             }
             (_, [Value::Integer(now), given @ ..]) => self.at(*now as u64, what, given),
             _ => Err(wrong()),
@@ -110,7 +107,6 @@ impl Client {
         let [
             Value::Text(command),
             Value::Row(named),
-            Value::Row(radians),
             address,
             within,
             sampled,
@@ -123,18 +119,11 @@ impl Client {
             handle.settings.address = u8::try_from(address).ok();
         }
         handle.settings.ack_within = seconds("seconds", within)?.map(nanos);
-        let mut arguments = Vec::new();
-        for pair in named.chunks_exact(2) {
-            if let [name @ Value::Text(text), value] = pair {
-                let (given, value) = (radians.contains(name), value.clone());
-                let degrees = if given {
-                    value.map(f64::to_degrees)
-                } else {
-                    value
-                };
-                arguments.push((&**text, degrees));
-            }
-        }
+        let pairs = named.chunks_exact(2).filter_map(|pair| match pair {
+            [Value::Text(name), value] => Some((&**name, value.clone())),
+            _ => None,
+        });
+        let arguments: Vec<_> = pairs.collect();
         let prepared = handle.prepare_named(command, &arguments)?;
         if *sampled == Value::Flag(true) {
             let commands = &handle.encoder.edition.commands;
@@ -152,7 +141,6 @@ impl Client {
             call: self.session.submit(&prepared, &handle.settings, now, now),
             number: self.calls,
             prepared,
-            radians: radians.clone(),
         });
         Ok(Value::Integer(self.calls))
     }
@@ -200,8 +188,7 @@ impl Client {
             .as_ref()
             .map(|each| [each.requested_at, each.replied_at]);
         let fields = self.handle.encoder.fields(&caller.prepared, answer);
-        let command = caller.prepared.request.command;
-        let mut row = vec![self.fields(command, fields, &caller.radians)];
+        let mut row = vec![flat(fields)];
         row.extend(
             times
                 .into_iter()
@@ -210,36 +197,15 @@ impl Client {
         );
         Value::Row(row)
     }
-
-    /// Return names and values in turn, as JavaScript has them: flags are truth values.
-    fn fields(&self, command: usize, fields: Vec<(String, Value)>, radians: &[Value]) -> Value {
-        let record = self.handle.encoder.edition.commands.get(command);
-        let known = || {
-            record
-                .into_iter()
-                .flat_map(|each| each.reply.iter().flatten())
-        };
-        let mut row = Vec::new();
-        for (name, mut value) in fields {
-            if known().any(|field| field.name == name && field.kind == "flag") {
-                value = flags(value);
-            }
-            let name = Value::Text(name);
-            if radians.contains(&name) {
-                value = value.map(f64::to_radians);
-            }
-            row.extend([name, value]);
-        }
-        Value::Row(row)
-    }
 }
 
-fn flags(value: Value) -> Value {
-    match value {
-        Value::Integer(raw) => Value::Flag(raw != 0),
-        Value::Row(row) => Value::Row(row.into_iter().map(flags).collect()),
-        other => other,
-    }
+/// Return names and values in turn.
+pub fn flat(fields: Named) -> Value {
+    let each = fields.into_iter();
+    Value::Row(
+        each.flat_map(|(name, value)| [Value::Text(name), value])
+            .collect(),
+    )
 }
 
 fn options(given: &[Value]) -> Result<Options, Error> {

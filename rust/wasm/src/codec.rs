@@ -4,7 +4,8 @@ use cobotwire::Value;
 use cobotwire::machine::Encoder;
 use cobotwire_core::{Choice, DecodeError, Direction, Event, Framer, Listening, decode, encode};
 
-use crate::whole;
+use crate::client::flat;
+use crate::{number, whole};
 
 pub const FUNCTIONS: [&str; 3] = ["encode", "decode", "frames"];
 
@@ -22,8 +23,9 @@ pub fn answer(encoder: &Encoder, what: &str, given: &[Value]) -> Option<Value> {
         _ => None,
     };
     match (what, given) {
-        ("encode", [command, Value::Row(names), Value::Row(values)]) => {
-            encoded(encoder, direction, index(command)?, (names, values))
+        ("encode", [command, variant, Value::Row(names), Value::Row(values)]) => {
+            let which = (index(command)?, number(variant));
+            encoded(encoder, direction, which, (names, values))
         }
         ("decode", [Value::Bytes(frame), of]) => {
             Some(decoded(encoder, direction, frame, index(of)))
@@ -33,11 +35,12 @@ pub fn answer(encoder: &Encoder, what: &str, given: &[Value]) -> Option<Value> {
     }
 }
 
-/// Return the frame of the first variant that has these fields and allows their values.
+/// Return the frame of the first variant, or of that one, that has these fields and allows their
+/// values.
 fn encoded(
     encoder: &Encoder,
     direction: Direction,
-    index: usize,
+    (index, only): (usize, Option<usize>),
     (names, values): (&[Value], &[Value]),
 ) -> Option<Value> {
     let (table, record) = (
@@ -61,7 +64,8 @@ fn encoded(
             variant: (!sized).then_some(at),
             address: None,
         };
-        if let Some(row) = row.filter(|row| row.len() == names.len()) {
+        let fits = only.is_none_or(|only| only == at);
+        if let Some(row) = row.filter(|row| fits && row.len() == names.len()) {
             let (command, row) = (table.commands().get(index)?, Value::Row(row));
             let made = encode::<Value>(table.frame(), command, direction, &row, choice);
             if let Ok(frame) = made {
@@ -78,10 +82,8 @@ fn decoded(encoder: &Encoder, direction: Direction, frame: &[u8], of: Option<usi
     let (what, rest) = match decode(&edition.protocol.table, direction, frame, of) {
         Ok(decoded) => {
             let command = edition.commands.get(decoded.variant.command);
-            let named = encoder.named(decoded).into_iter();
-            let named = named.flat_map(|(name, value)| [Value::Text(name), value]);
-            let named = Value::Row(named.collect());
-            (command.map_or("", |command| &command.name), named)
+            let name = command.map_or("", |command| &command.name);
+            (name, flat(encoder.named(decoded)))
         }
         Err(DecodeError::Frame { reason, offset }) => (reason.word(), whole(offset)),
         Err(DecodeError::Raw(bad)) => ("bad-value", whole(bad.offset)),

@@ -5,13 +5,13 @@ from __future__ import annotations
 import pytest
 
 import npm_package
-from strategies import TABLES
+from cobotwire import editions
 from targets.typescript.comparison import compare
 
 pytestmark = pytest.mark.skipif(bool(npm_package.missing()), reason=npm_package.missing())
 
 
-@pytest.mark.parametrize("edition", sorted(TABLES))
+@pytest.mark.parametrize("edition", editions.names())
 def test_every_vector_agrees_with_codec(edition: str) -> None:
     found = compare(edition)
     assert found.differences == []

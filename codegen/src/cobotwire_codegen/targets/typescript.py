@@ -174,12 +174,18 @@ class _Shown:
 
     @property
     def row(self) -> list[Any]:
-        """What the package makes the method from: command, arguments, results, radians."""
+        """What the package makes the method from; see ``Row`` in its ``client.ts``."""
         named = {camel(name): name for name, _, _ in self.items}
         every = [*parameters(self.command), *self._found]
         radians = list(dict.fromkeys(each.name for each in every if each.radians))
+        flags = [each.name for each in self._found if all(map(_is_flag, each.types))]
         given = [each.name for each in arguments(self.command)]
-        row = [self.command.name, given, self._found[0].name if self._single else named, radians]
+        result = self._found[0].name if self._single else named
+        row = [self.command.name, given, result, radians, flags]
         while row[-1] in ([], {}):
             row.pop()
         return row
+
+
+def _is_flag(type: Type) -> bool:
+    return _is_flag(type.of) if isinstance(type, Listed) else isinstance(type, Flag)
