@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import fcntl
 import gzip
-import json
+import os
 import re
 import shutil
 import subprocess
@@ -69,15 +69,10 @@ def build(found: list[Edition] | None = None) -> Path:
         changed = max(path.stat().st_mtime for path in (PACKAGE / "src").iterdir())
         if not index.exists() or index.stat().st_mtime < changed:
             run(PACKAGE, "npm", "run", "--silent", "build")
-        words = ("--profile", "wasm", "--target", TARGET, "--message-format", "json", "--quiet")
-        lines = run(ROOT, "cargo", "build", "--package", "cobotwire-wasm", *words).splitlines()
-        [name] = [
-            name
-            for message in map(json.loads, lines)
-            for name in message.get("filenames", ())
-            if name.endswith("/cobotwire_wasm.wasm")
-        ]
-        shutil.copy(name, PACKAGE / WASM)
+        words = ("--quiet", "--profile", "wasm", "--target", TARGET)
+        run(ROOT, "cargo", "build", "--package", "cobotwire-wasm", *words)
+        target = ROOT / os.environ.get("CARGO_TARGET_DIR", "target")
+        shutil.copy(target / TARGET / "wasm/cobotwire_wasm.wasm", PACKAGE / WASM)
     return PACKAGE
 
 

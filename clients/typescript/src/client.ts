@@ -143,7 +143,7 @@ export class Client {
     try {
       transport = await opened(port, url, baudrate);
     } catch (error) {
-      session.ask("lose", id, now(), reason(error));
+      session.ask("lose", id, now(), true, reason(error));
       throw error;
     }
     const line = new Line(session, id, transport, Math.min(WRITE_SECONDS, deadline ?? Infinity));

@@ -5,10 +5,10 @@ import { reason, within, type Transport } from "./transport.js";
 
 /** What a step of the session asks for: bytes to write, calls that have ended, when to go on. */
 type Step = [
-  bytes: Uint8Array,
+  bytes: Uint8Array | undefined,
   ended: [call: number, good: boolean, answer: readonly Value[]][],
   idle: number | undefined,
-  more: boolean,
+  call: number | undefined,
 ];
 interface Caller {
   done(answer: readonly Value[]): void;
@@ -38,6 +38,7 @@ export class Line {
   private timer: ReturnType<typeof setTimeout> | undefined;
   private wakesAt = Infinity;
   private turning = false;
+  private writing = false;
   private open = true;
 
   constructor(
@@ -61,7 +62,8 @@ export class Line {
   call(signal: AbortSignal | undefined, ...request: Value[]): Promise<readonly Value[]> {
     return new Promise((done, failed) => {
       signal?.throwIfAborted();
-      const call = this.ask<number>("call", now(), ...request);
+      const step = this.step("call", ...request);
+      const call = step[3]!;
       const giveUp = (): void => {
         this.callers.delete(call);
         failed(signal?.reason);
@@ -73,7 +75,7 @@ export class Line {
         done: (answer) => (ended(), done(answer)),
         failed: (error) => (ended(), failed(error)),
       });
-      this.advance("step");
+      this.take(step);
     });
   }
 
@@ -95,7 +97,7 @@ export class Line {
 
   /** Send a stop to each device that was set in motion, as the policy says. */
   async stop(): Promise<void> {
-    const bytes = this.open ? this.ask<Uint8Array>("stops", now()) : [];
+    const bytes = this.open ? this.step<Uint8Array>("stops") : [];
     if (bytes instanceof Uint8Array && bytes.length) {
       await within(WRITE_SECONDS, this.transport.write(bytes)).catch(() => {});
     }
@@ -117,19 +119,22 @@ export class Line {
   }
 
   private end(what: string, ...rest: Value[]): void {
-    const step = this.ask<Step>(what, now(), ...rest);
+    const step = this.step(what, ...rest);
     this.open = false;
     this.take(step);
     clearTimeout(this.timer);
   }
 
-  private advance(what: string, ...rest: Value[]): void {
-    if (this.open) this.take(this.ask<Step>(what, now(), ...rest));
+  private step<T = Step>(what: string, ...rest: Value[]): T {
+    return this.ask<T>(what, now(), !this.writing, ...rest);
   }
 
-  private take([bytes, ended, idle, more]: Step): void {
-    const written = bytes.length ? this.write(bytes) : undefined;
-    written?.catch(() => {}); // the session reports it, too
+  private advance(what: string, ...rest: Value[]): void {
+    if (this.open) this.take(this.step(what, ...rest));
+  }
+
+  private take([bytes, ended, idle]: Step, drained = false): void {
+    const written = bytes && this.write(bytes);
     for (const [call, good, answer] of ended) {
       const caller = this.callers.get(call);
       this.callers.delete(call);
@@ -139,33 +144,39 @@ export class Line {
       else caller?.done(answer);
     }
     for (const wake of this.waiting.splice(0)) wake();
-    if (more) this.turn();
-    this.schedule(idle);
+    if (idle === 0 && !drained) this.turn();
+    else this.schedule(idle);
   }
 
-  private async write(bytes: Uint8Array): Promise<void> {
-    let detail = `the line took no bytes in ${this.writeSeconds.toFixed(3)} s`;
-    const lose = (): void => this.lose(`cannot be written: ${detail}`);
-    const timer = setTimeout(lose, this.writeSeconds * 1000);
-    try {
-      await this.transport.write(bytes);
-    } catch (error) {
-      if (this.open) detail = reason(error);
-      lose();
-      throw new LinkError(`${this.transport.url}: cannot be written: ${detail}`);
-    } finally {
-      clearTimeout(timer);
-    }
-    this.advance("wrote");
+  /** Write bytes; the promise is fulfilled when the transport has taken them; none: it has. */
+  private write(bytes: Uint8Array): Promise<void> | undefined {
+    const pending = this.transport.write(bytes);
+    if (!pending) return undefined;
+    this.writing = true;
+    const why = `the line took no bytes in ${this.writeSeconds.toFixed(3)} s`;
+    const timer = setTimeout(() => this.lose(`cannot be written: ${why}`), this.writeSeconds * 1000);
+    const written = pending.then(
+      () => {
+        this.writing = false;
+        this.advance("step");
+      },
+      (error: unknown) => {
+        const detail = `cannot be written: ${this.open ? reason(error) : why}`;
+        this.lose(detail);
+        throw new LinkError(`${this.transport.url}: ${detail}`);
+      },
+    );
+    written.finally(() => clearTimeout(timer)).catch(() => {}); // the session reports it, too
+    return written;
   }
 
-  /** Send the next request when nothing that has come is unread. */
+  /** Go on when nothing that has come is unread, and the transport is free. */
   private turn(): void {
-    if (this.turning) return;
+    if (this.turning || this.writing) return;
     this.turning = true;
     afterTurn(() => {
       this.turning = false;
-      this.advance("send");
+      if (this.open) this.take(this.step("drained"), true);
     });
   }
 

@@ -6,14 +6,18 @@ export type Value = undefined | number | bigint | boolean | string | Uint8Array 
 
 interface Exports {
   memory: WebAssembly.Memory;
-  /** Return where a message of that size is to be written. */
+  /** Return where a message of that size can be written. */
   room(size: number): number;
-  /** Answer the message, and return the size of the answer, which is where `room(0)` says. */
-  answer(): number;
+  /** Take the message of that size, and return where its answer is. */
+  answer(size: number): number;
 }
 
 const encoder = new TextEncoder();
 const decoder = new TextDecoder();
+const WORD = 2 ** 32;
+/** Short texts recur: names of functions, commands and arguments. */
+const SHORT = 32;
+const MOST_SHORT = 2000;
 const NODE = "./node.js";
 
 /** Whether the program runs in Node. Its module has no constant name, so that no bundler follows it. */
@@ -25,8 +29,12 @@ export async function node(): Promise<typeof import("./node.js")> {
 }
 
 export class Machine {
-  private scratch = new DataView(new ArrayBuffer(1 << 16));
+  private heap = new Uint8Array();
+  private view = new DataView(this.heap.buffer);
   private at = 0;
+  private end = 0;
+  private room = 1 << 12;
+  private readonly short = new Map<string, Uint8Array>();
 
   private constructor(private readonly wasm: Exports) {}
 
@@ -40,98 +48,130 @@ export class Machine {
 
   /** Send a message and return the answer, or throw its error. */
   ask<T = Value>(...message: Value[]): T {
-    this.at = 0;
-    this.write(message);
-    const start = this.wasm.room(this.at);
-    new Uint8Array(this.wasm.memory.buffer, start, this.at).set(
-      new Uint8Array(this.scratch.buffer, 0, this.at),
-    );
-    const size = this.wasm.answer();
-    const view = new DataView(this.wasm.memory.buffer, this.wasm.room(size), size);
-    const [good, answer] = new Reader(view).next() as [boolean, Value];
+    let start = this.begin();
+    while (!this.fits(message)) {
+      this.room *= 2;
+      start = this.begin();
+    }
+    this.at = this.wasm.answer(this.at - start);
+    this.refresh();
+    const [good, answer] = this.read() as Value[];
     if (!good) throw failure(answer as readonly Value[]);
     return answer as T;
   }
 
-  private put(tag: number, size: number): number {
-    const at = this.at + 1;
-    this.at = at + size;
-    if (this.at > this.scratch.byteLength) {
-      const larger = new Uint8Array(2 * this.at);
-      larger.set(new Uint8Array(this.scratch.buffer));
-      this.scratch = new DataView(larger.buffer);
+  private begin(): number {
+    this.at = this.wasm.room(this.room);
+    this.end = this.at + this.room;
+    this.refresh();
+    return this.at;
+  }
+
+  /** Look at the memory again: it may have grown. */
+  private refresh(): void {
+    const { buffer } = this.wasm.memory;
+    if (this.heap.buffer !== buffer) {
+      this.heap = new Uint8Array(buffer);
+      this.view = new DataView(buffer);
     }
-    this.scratch.setUint8(at - 1, tag);
-    return at;
   }
 
-  private bytes(tag: number, bytes: Uint8Array): void {
-    const at = this.put(tag, 4 + bytes.length);
-    this.scratch.setUint32(at, bytes.length, true);
-    new Uint8Array(this.scratch.buffer).set(bytes, at + 4);
-  }
-
-  private write(value: Value): void {
+  /** Append a value; return false if there is no room. */
+  private fits(value: Value): boolean {
+    if (this.at + 9 > this.end) return false;
     if (value === undefined || value === null) {
-      this.put(0, 0);
-    } else if (typeof value === "bigint" || (Number.isSafeInteger(value) && !Object.is(value, -0))) {
-      const at = this.put(1, 8);
-      this.scratch.setBigInt64(at, BigInt(value as number), true);
+      this.heap[this.at++] = 0;
+    } else if (typeof value === "number" && Number.isSafeInteger(value) && !Object.is(value, -0)) {
+      this.heap[this.at] = 1;
+      this.view.setUint32(this.at + 1, value % WORD, true);
+      this.view.setInt32(this.at + 5, Math.floor(value / WORD), true);
+      this.at += 9;
+    } else if (typeof value === "bigint") {
+      this.heap[this.at] = 1;
+      this.view.setBigInt64(this.at + 1, value, true);
+      this.at += 9;
     } else if (typeof value === "number") {
-      const at = this.put(2, 8);
-      this.scratch.setFloat64(at, value, true);
+      this.heap[this.at] = 2;
+      this.view.setFloat64(this.at + 1, value, true);
+      this.at += 9;
     } else if (typeof value === "boolean") {
-      const at = this.put(3, 1);
-      this.scratch.setUint8(at, Number(value));
+      this.heap[this.at] = 3;
+      this.heap[this.at + 1] = Number(value);
+      this.at += 2;
     } else if (typeof value === "string") {
-      this.bytes(4, encoder.encode(value));
+      return this.fitsBytes(4, this.encoded(value));
     } else if (value instanceof Uint8Array) {
-      this.bytes(5, value);
+      return this.fitsBytes(5, value);
     } else {
       // Other rows than arrays, such as a Float64Array, are rows too.
-      const row = Array.from(value);
-      const at = this.put(6, 4);
-      this.scratch.setUint32(at, row.length, true);
-      row.forEach((each) => this.write(each));
+      const row = Array.isArray(value) ? value : Array.from(value as Iterable<Value>);
+      this.size(6, row.length);
+      return row.every((each) => this.fits(each));
     }
-  }
-}
-
-class Reader {
-  private at = 0;
-
-  constructor(private readonly view: DataView) {}
-
-  private skip(size: number): number {
-    this.at += size;
-    return this.at - size;
+    return true;
   }
 
-  private bytes(): Uint8Array {
-    const size = this.view.getUint32(this.skip(4), true);
-    return new Uint8Array(this.view.buffer, this.view.byteOffset + this.skip(size), size);
+  private size(tag: number, size: number): void {
+    this.heap[this.at] = tag;
+    this.view.setUint32(this.at + 1, size, true);
+    this.at += 5;
   }
 
-  next(): Value {
-    switch (this.view.getUint8(this.skip(1))) {
+  private fitsBytes(tag: number, bytes: Uint8Array): boolean {
+    this.size(tag, bytes.length);
+    if (this.at + bytes.length > this.end) return false;
+    this.heap.set(bytes, this.at);
+    this.at += bytes.length;
+    return true;
+  }
+
+  private encoded(text: string): Uint8Array {
+    if (text.length > SHORT) return encoder.encode(text);
+    const found = this.short.get(text) ?? encoder.encode(text);
+    if (this.short.size < MOST_SHORT) this.short.set(text, found);
+    return found;
+  }
+
+  /** Return the next value of an answer. */
+  private read(): Value {
+    const at = this.at + 1;
+    switch (this.heap[at - 1]) {
       case 1: {
-        const whole = this.view.getBigInt64(this.skip(8), true);
-        return Number.isSafeInteger(Number(whole)) ? Number(whole) : whole;
+        this.at = at + 8;
+        const whole = this.view.getInt32(at + 4, true) * WORD + this.view.getUint32(at, true);
+        return Number.isSafeInteger(whole) ? whole : this.view.getBigInt64(at, true);
       }
       case 2:
-        return this.view.getFloat64(this.skip(8), true);
+        this.at = at + 8;
+        return this.view.getFloat64(at, true);
       case 3:
-        return this.view.getUint8(this.skip(1)) === 1;
+        this.at = at + 1;
+        return this.heap[at] === 1;
       case 4:
-        return decoder.decode(this.bytes());
+        return this.text(at + 4, this.view.getUint32(at, true));
       case 5:
-        return this.bytes().slice();
+        this.at = at + 4 + this.view.getUint32(at, true);
+        return this.heap.slice(at + 4, this.at);
       case 6: {
-        const size = this.view.getUint32(this.skip(4), true);
-        return Array.from({ length: size }, () => this.next());
+        this.at = at + 4;
+        const row: Value[] = [];
+        for (let left = this.view.getUint32(at, true); left > 0; left -= 1) row.push(this.read());
+        return row;
       }
       default:
+        this.at = at;
         return undefined;
     }
+  }
+
+  private text(start: number, size: number): string {
+    this.at = start + size;
+    let text = "";
+    // A decoder takes longer for a few characters.
+    for (let at = start; size <= SHORT && at < this.at; at += 1) {
+      if (this.heap[at]! > 127) break;
+      text += String.fromCharCode(this.heap[at]!);
+    }
+    return text.length === size ? text : decoder.decode(this.heap.subarray(start, this.at));
   }
 }

@@ -31,6 +31,7 @@ interface Stream {
   on(event: "error", listener: (error: Error) => void): unknown;
   on(event: "close", listener: () => void): unknown;
   write(data: Uint8Array, done: (error?: Error | null) => void): boolean;
+  readonly writableLength: number;
   end(done?: () => void): unknown;
   destroy(): unknown;
 }
@@ -79,10 +80,11 @@ class NodeTransport implements Transport {
     this.stream.on("close", () => ended("the peer has closed the connection"));
   }
 
-  write(data: Uint8Array): Promise<void> {
-    return new Promise((done, failed) =>
-      this.stream.write(data, (error) => (error ? failed(error) : done())),
-    );
+  write(data: Uint8Array): Promise<void> | undefined {
+    let settle: (error?: Error | null) => void = () => {};
+    this.stream.write(data, (error) => settle(error));
+    if (this.stream.writableLength === 0) return undefined;
+    return new Promise((done, failed) => (settle = (error) => (error ? failed(error) : done())));
   }
 
   async close(): Promise<void> {

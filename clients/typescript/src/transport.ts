@@ -7,8 +7,8 @@ export interface Transport {
   readonly url: string;
   /** Begin to report what comes, and the reason if the stream ends. */
   start(received: (data: Uint8Array) => void, ended: (detail: string) => void): void;
-  /** Write bytes; the promise is fulfilled when the system has taken all of them. */
-  write(data: Uint8Array): Promise<void>;
+  /** Write bytes; the promise is fulfilled when the system has taken all; none: it has already. */
+  write(data: Uint8Array): Promise<void> | undefined;
   /** Send what was written, and close the stream. It takes a second at most. */
   close(): Promise<void>;
   /** Close the stream at once; nothing more is sent. */
@@ -29,7 +29,7 @@ export function reason(error: unknown): string {
 }
 
 /** Wait for a promise, or for some time. */
-export async function within(seconds: number, promise: Promise<unknown>): Promise<void> {
+export async function within(seconds: number, promise: Promise<unknown> | undefined): Promise<void> {
   let timer: ReturnType<typeof setTimeout> | undefined;
   const over = new Promise((done) => (timer = setTimeout(done, seconds * 1000)));
   try {

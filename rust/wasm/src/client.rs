@@ -26,8 +26,6 @@ pub struct Client {
     callers: Vec<Caller>,
     queues: Vec<Arc<Mutex<Queue>>>,
     calls: i64,
-    /// Whether the transport has not yet taken the bytes of the last step.
-    writing: bool,
 }
 
 impl Client {
@@ -47,7 +45,6 @@ impl Client {
             callers: Vec::new(),
             queues: Vec::new(),
             calls: 0,
-            writing: false,
         })
     }
 
@@ -70,18 +67,21 @@ impl Client {
                     _ => Value::Integer(queue.lost as i64),
                 })
             }
-            (_, [Value::Integer(now), given @ ..]) => self.at(*now as u64, what, given),
+            (_, [Value::Integer(now), Value::Flag(free), given @ ..]) => {
+                self.step(*now as u64, *free, what, given)
+            }
             _ => Err(wrong()),
         }
     }
 
-    /// Answer what happens at a time; most of it is a step of the session.
-    fn at(&mut self, now: u64, what: &str, given: &[Value]) -> Result<Value, Error> {
+    /// Take what happens at a time; return the bytes to write if the transport is free, the calls
+    /// that have ended, for how long nothing is to be done, and the number of a new call.
+    fn step(&mut self, now: u64, free: bool, what: &str, given: &[Value]) -> Result<Value, Error> {
+        let mut call = Value::Absent;
         match (what, given) {
-            ("call", given) => return self.call(given, now),
+            ("call", given) => call = self.call(given, now)?,
             ("stops", []) => return Ok(Value::Bytes(self.session.stops(now))),
             ("receive", [Value::Bytes(data)]) => self.session.receive(data, now),
-            ("wrote", []) => self.writing = false,
             ("give up", [Value::Integer(number)]) => {
                 let mut callers = self.callers.iter();
                 if let Some(at) = callers.position(|caller| caller.number == *number) {
@@ -96,10 +96,22 @@ impl Client {
                 let state = self.session.close(now);
                 self.ended = self.session.fault().map(|fault| (state, fault.clone()));
             }
-            ("step" | "send", []) => self.session.receive(&[], now),
+            ("step" | "drained", []) => self.session.receive(&[], now),
             _ => return Err(wrong()),
         }
-        Ok(self.step(now, what == "send"))
+        let mut bytes = Value::Absent;
+        if free {
+            let outgoing = self.session.outgoing(now, what == "drained").to_vec();
+            // The transport takes them, or it is lost.
+            self.session.wrote(outgoing.len(), now);
+            bytes = Some(outgoing)
+                .filter(|outgoing| !outgoing.is_empty())
+                .map_or(bytes, Value::Bytes);
+        }
+        let ended = self.ended_calls();
+        let idle = self.session.idle(now);
+        let idle = idle.map_or(Value::Absent, |idle| Value::Integer(idle as i64));
+        Ok(Value::Row(vec![bytes, Value::Row(ended), idle, call]))
     }
 
     /// Submit a request; return its number, by which a step will report how it ended.
@@ -145,16 +157,8 @@ impl Client {
         Ok(Value::Integer(self.calls))
     }
 
-    /// Return the bytes to write, the calls that have ended, for how long nothing is to be done, and
-    /// whether a request is to be sent as soon as nothing that has come is unread.
-    fn step(&mut self, now: u64, drained: bool) -> Value {
-        let mut bytes = Vec::new();
-        if !self.writing {
-            bytes.extend(self.session.outgoing(now, drained));
-            // The transport takes it, or it is lost.
-            self.session.wrote(bytes.len(), now);
-            self.writing = !bytes.is_empty();
-        }
+    /// Return the calls that have ended: their numbers, whether it is good, and the answer or error.
+    fn ended_calls(&mut self) -> Vec<Value> {
         let mut ended = Vec::new();
         for caller in std::mem::take(&mut self.callers) {
             match self.session.take(caller.call) {
@@ -171,15 +175,7 @@ impl Client {
                 }
             }
         }
-        let idle = self.session.idle(now).filter(|_| !self.writing);
-        let more = !drained && idle == Some(0);
-        let idle = idle.map_or(Value::Absent, |idle| Value::Integer(idle as i64));
-        Value::Row(vec![
-            Value::Bytes(bytes),
-            Value::Row(ended),
-            idle,
-            Value::Flag(more),
-        ])
+        ended
     }
 
     /// Return the fields of a reply, and when they were exchanged.

@@ -18,29 +18,30 @@ use client::Client;
 
 thread_local! {
     static MESSAGE: RefCell<Vec<u8>> = const { RefCell::new(Vec::new()) };
+    static ANSWER: RefCell<Vec<u8>> = const { RefCell::new(Vec::new()) };
     static MACHINE: RefCell<Machine> = RefCell::default();
 }
 
-/// Return where a message of that size is to be written, and where the answer is.
+/// Return where a message of that size can be written.
 #[unsafe(no_mangle)]
 pub extern "C" fn room(size: usize) -> *mut u8 {
     MESSAGE.with_borrow_mut(|message| {
-        message.resize(size, 0);
+        message.resize(size.max(message.len()), 0);
         message.as_mut_ptr()
     })
 }
 
-/// Answer the message, and return the size of the answer.
+/// Take the message of that size, and return where its answer is.
 #[unsafe(no_mangle)]
-pub extern "C" fn answer() -> usize {
-    MESSAGE.with_borrow_mut(|message| {
-        let given = message::read(&mut &**message);
-        let outcome = MACHINE.with_borrow_mut(|machine| machine.answer(&row(given)?));
-        let good = Value::Flag(outcome.is_ok());
-        let result = outcome.unwrap_or_else(|error| described(&error));
-        message.clear();
-        message::write(&Value::Row(vec![good, result]), message);
-        message.len()
+pub extern "C" fn answer(size: usize) -> *const u8 {
+    let given = MESSAGE.with_borrow(|message| message::read(&mut message.get(..size)?));
+    let outcome = MACHINE.with_borrow_mut(|machine| machine.answer(&row(given)?));
+    let good = Value::Flag(outcome.is_ok());
+    let result = outcome.unwrap_or_else(|error| described(&error));
+    ANSWER.with_borrow_mut(|answer| {
+        answer.clear();
+        message::write(&Value::Row(vec![good, result]), answer);
+        answer.as_ptr()
     })
 }
 
