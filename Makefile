@@ -188,7 +188,7 @@ conform: .venv/.tools .venv/.native ## break subjects of EDITIONS (all) on purpo
 defects: .venv/.tools .venv/.native ## test independent subjects with planted defects
 	PYTHONPATH=tests:tests/peers $(BIN)/python -m defects $(DEFECTS)
 
-attack: .venv/.tools .venv/.native ## attack the clients for ATTACK_SECONDS (180) with a hostile peer; CLIENT=rust: those in Rust
+attack: .venv/.tools .venv/.native ## attack the clients for ATTACK_SECONDS (180) with a hostile peer; CLIENT=rust or CLIENT=node: those in Rust or Node
 	PYTHONPATH=tests $(BIN)/python -m attack --seconds $(ATTACK_SECONDS) $(if $(CLIENT),--client $(CLIENT)) $(ATTACK)
 
 explore: .venv/.tools .venv/.native ## explore every order of events of an exchange until STATES (1000000) were seen; RUST=1: in Rust too

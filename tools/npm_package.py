@@ -107,7 +107,7 @@ def first_program(folder: Path) -> str:
 
 
 def own_protocol(folder: Path) -> str:
-    """Load the module of an own protocol whose texts try to leave their comments; check its types."""
+    """Check and load the module of an own protocol whose texts try to leave their comments."""
     lamp = (ROOT / "tests/codegen/lamp.yaml").read_text()
     # Docs in braces end at a brace, so the others are enough.
     doc = re.compile(r"^( *doc: )[^{}\n]*$", re.M)

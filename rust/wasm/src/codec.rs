@@ -83,7 +83,7 @@ fn decoded(encoder: &Encoder, direction: Direction, frame: &[u8], of: Option<usi
         Ok(decoded) => {
             let command = edition.commands.get(decoded.variant.command);
             let name = command.map_or("", |command| &command.name);
-            (name, flat(encoder.named(decoded)))
+            (name, flat(encoder.named(&decoded)))
         }
         Err(DecodeError::Frame { reason, offset }) => (reason.word(), whole(offset)),
         Err(DecodeError::Raw(bad)) => ("bad-value", whole(bad.offset)),

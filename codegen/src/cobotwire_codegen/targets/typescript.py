@@ -1,4 +1,4 @@
-"""Writes a module in JavaScript with its types for each edition: a client for the package ``cobotwire``.
+"""Writes a module in JavaScript for each edition, and its types: a client for the npm package.
 
 The module has the table as JSON, and a row for each method: its command, arguments and results. The
 package makes the methods from these rows; the types of the module describe them.
@@ -13,19 +13,31 @@ from pathlib import Path, PurePosixPath
 from typing import Any
 
 from cobotwire_codegen import lower
-from cobotwire_codegen.model import Bits, Chars, Command, Edition, Enum, Flag, Listed, Octets
-from cobotwire_codegen.model import Type, Value
+from cobotwire_codegen.model import (
+    Bits,
+    Chars,
+    Command,
+    Edition,
+    Enum,
+    Flag,
+    Listed,
+    Octets,
+    Type,
+    Value,
+)
 from cobotwire_codegen.publish import edition_json
 from cobotwire_codegen.render import Files, environment, with_used_types
 from cobotwire_codegen.render.arguments import arguments
 from cobotwire_codegen.render.escape_markdown import escaped
 from cobotwire_codegen.render.parameters import Parameter, parameters, reply_parameters, results
-from cobotwire_codegen.targets.rust import stripped
 
 # What types use without an import, and what the module imports.
-_TYPES = frozenset("Client EventStream Options Port Promise Uint8Array describe table".split())
-# What every client has.
-_METHODS = frozenset("acknowledged at call close constructor events stream then withSignal".split())
+_TYPES = frozenset({"Client", "EventStream", "Promise", "Uint8Array", "describe", "table"})
+# What every client has, or a promise.
+_METHODS = frozenset(
+    {"acknowledged", "at", "call", "close", "constructor", "events", "stream", "then", "withSignal"}
+    | {"description", "line", "perform", "settings", "with"}
+)
 # Names that an argument cannot have.
 _WORDS = """
     arguments await break case catch class const continue debugger default delete do else enum eval
@@ -34,6 +46,9 @@ _WORDS = """
     void while with yield
 """
 _KEYWORDS = frozenset(_WORDS.split())
+# What only people read; a page would load it.
+_TEXTS = "agrees_with changes disputed doc document firmware generated lines notes place samples"
+_FOR_PEOPLE = frozenset(_TEXTS.split())
 
 
 def render_typescript(edition: Edition, templates: Path | None = None) -> Files:
@@ -58,7 +73,7 @@ def _rendered(edition: Edition, templates: Path | None, package: str) -> Files:
         "edition": shown,
         "package": package,
         "name": type_name(shown.class_name),
-        "table": stripped(edition_json(edition)),
+        "table": literal(_without_texts(json.loads(edition_json(edition)))),
         "commands": [_Shown(command, taken) for command in shown.commands],
         "item": _reported,
     }
@@ -68,6 +83,16 @@ def _rendered(edition: Edition, templates: Path | None, package: str) -> Files:
         ).render(common)
         for end in (".js", ".d.ts")
     }
+
+
+def _without_texts(value: Any) -> Any:
+    """Return a part of a table without texts for people. The keys of an effect are states."""
+    if isinstance(value, list):
+        return [_without_texts(each) for each in value]
+    if not isinstance(value, dict):
+        return value
+    kept = ((key, each) for key, each in value.items() if key not in _FOR_PEOPLE)
+    return {key: each if key == "effect" else _without_texts(each) for key, each in kept}
 
 
 def camel(name: str) -> str:
