@@ -25,7 +25,7 @@ WASM := wasm32-unknown-unknown
 CHECK_WASM := RUSTFLAGS=-Dwarnings cargo check --release --package cobotwire-core --target $(WASM) --quiet
 CARGO_FUZZ := .cargo-tools/bin/cargo-fuzz
 
-.PHONY: set-up spec-mutants help demo test lint lint-and-rust python-test computing-tests simulating-tests calling-tests waiting-tests other-tests rust-test products gen targets docs bench plots smoothness picture answers table fuzz figures clean faults conform defects attack archives lerobot bench-archive bench-compare rust-asan robots layer demos front-end front-end-if-reachable four-hours studio-pictures explore nightly rust-package release-check figures-page every-edition urdf
+.PHONY: set-up spec-mutants help demo test lint lint-and-rust python-test computing-tests simulating-tests calling-tests waiting-tests other-tests rust-test products gen targets docs bench plots smoothness picture answers table fuzz figures clean faults conform defects attack archives lerobot bench-archive bench-compare rust-asan robots layer demos front-end front-end-if-reachable four-hours studio-pictures explore nightly rust-package npm-package release-check figures-page every-edition urdf
 .DEFAULT_GOAL := help
 
 help: ## list the targets
@@ -65,6 +65,10 @@ lint-and-rust: lint
 rust-package: .venv/.tools .venv/.native ## package the Rust crates; use them in a clean folder; run the tests of the client
 	$(BIN)/cobotwire-gen --rust-data
 	PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/python tools/rust_package.py
+
+npm-package: .venv/.tools .venv/.native ## build the npm package; use it in a clean folder; compare a call with a bare round trip
+	PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/python tools/npm_package.py
+	node clients/typescript/examples/round_trip.mjs
 
 rust-test: .venv/.tools ## run the Rust tests
 	$(BIN)/cobotwire-gen --rust-data
@@ -244,6 +248,7 @@ figures: .venv/.tools .venv/.native ## count files and lines of each room, and t
 clean: ## remove the environment and all build products
 	git clean -dfqX docs spec
 	rm -rf .venv target targets rust/core/tests/data rust/client/src/editions .cargo-tools rust/fuzz/target
+	cd clients/typescript && rm -rf dist editions node_modules
 
 .venv/.base: pyproject.toml
 	$(PYTHON) -c 'import sys; sys.exit("cobotwire needs Python 3.11 or newer" if sys.version_info < (3, 11) else 0)'
