@@ -43,7 +43,7 @@ def talk_with_arm(name: str, table: Table = mycobot280.TABLE) -> tuple[list[Any]
 
 
 @contextmanager
-def peer(serve: Callable[[socket.socket], None]) -> Iterator[str]:
+def peer(serve: Callable[[socket.socket], object]) -> Iterator[str]:
     """Serve one connection after another with a function, in a thread."""
     with socket.create_server(("127.0.0.1", 0)) as listener:
 
@@ -150,7 +150,7 @@ def test_failed_run_stops_the_arm_unless_it_is_left() -> None:
 
 
 def test_lost_connection_ends_calls_with_link_error() -> None:
-    with peer(lambda connection: connection.recv(100) and None) as url:
+    with peer(lambda connection: connection.recv(100)) as url:
         [found] = talk("lost", url)
     assert found == [["LinkError", f"{url}: the peer has closed the connection"]] * 2
 
