@@ -1,3 +1,4 @@
+/// <reference lib="esnext.disposable" preserve="true" />
 /** The client: what users call. Modules of editions add a method for each command. */
 import { ProtocolError, ReplyTimeout, UsageError } from "./errors.js";
 import { Line, WRITE_SECONDS, now } from "./line.js";
