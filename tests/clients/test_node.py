@@ -171,6 +171,26 @@ def test_reply_to_earlier_client_is_not_taken_for_that_of_the_next() -> None:
         assert talk("late", url) == ["ReplyTimeout", 2]
 
 
+def test_port_of_the_browser_is_opened_used_and_closed() -> None:
+    [[*log, unplugged]] = talk("web", "")
+    opened, closed = ["open", 115200], ["close", False, False]
+    calls = [["fefe033b01fa", 7], ["fefe033b02fa", 7]]
+    assert log == [
+        *[each for call in calls for each in (opened, *call, "fefe056a010203fa", closed)],
+        opened,
+        "fefe0220fa",
+        closed,
+    ]
+    assert unplugged == ["LinkError", "serial port 1: cannot be read: it was unplugged"]
+
+
+def test_page_needs_no_module_of_node() -> None:
+    for path in (package() / "dist").glob("*.js"):
+        imports = re.findall(r"""(?:from|import)[ (]+["']([^"']+)""", path.read_text())
+        assert path.name == "node.js" or all(each.startswith("./") for each in imports), path
+        assert path.name == "node.js" or "./node.js" not in imports, path
+
+
 def test_page_shows_first_program() -> None:
     program = (npm_package.PACKAGE / "examples/first.mjs").read_text()
     assert len(program.splitlines()) == 8
