@@ -10,9 +10,7 @@
 
 use std::fs;
 use std::path::Path;
-use std::sync::Arc;
 
-use cobotwire_core::exchange::{Exchange, Request, RetryPolicy};
 use cobotwire_table::Edition;
 
 mod damage;
@@ -111,19 +109,6 @@ fn a_mistake_is_named_with_its_place() {
         error.starts_with("the file is not JSON: recursion limit"),
         "{error}"
     );
-}
-
-#[test]
-fn ended_request_that_is_given_up_leaves_no_outcome() {
-    let edition = Edition::read(&files().swap_remove(MYCOBOT)).unwrap();
-    let protocol = Arc::new(edition.protocol);
-    let is_power_on = [0xFE, 0xFE, 0x02, 0x12, 0xFA];
-    let request = Request::from_frame(&protocol, &is_power_on).unwrap();
-    let mut exchange = Exchange::new(protocol);
-    let ticket = exchange.enqueue(request, None, RetryPolicy::default(), 0, None);
-    exchange.fail(1);
-    exchange.give_up(ticket);
-    assert_eq!(exchange.take(ticket), None);
 }
 
 #[test]
