@@ -17,6 +17,7 @@ from cobotwire.client import persisted_state, port_notes
 from cobotwire.codec.interface import Codec
 from cobotwire.editions.mycobot import TABLE, MyCobot
 from cobotwire.simulator import PtyServer, SimulatedArm
+from probe import Probe
 
 # Hooks of pytest, for all tests.
 from pty_users import pytest_ignore_collect, pytest_itemcollected
@@ -91,6 +92,14 @@ def _ports_without_notes() -> None:
 def codec(request: pytest.FixtureRequest) -> Codec:
     """Run the test on both codecs. A missing binary is a failure, not a skip."""
     return codecs.load(TABLE, request.param)
+
+
+@pytest.fixture(scope="module")
+def probe() -> Iterator[Probe]:
+    """Yield a probe, which the tests of a module share."""
+    made = Probe()
+    yield made
+    made.close()
 
 
 @pytest.fixture

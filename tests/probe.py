@@ -27,19 +27,18 @@ def path() -> str:
 
 
 class Probe:
-    """The probe in one of its modes that answer each line, which is JSON."""
+    """The probe, which answers each line of steps (``rust/probe/src/main.rs``)."""
 
-    def __init__(self, *mode: str) -> None:
-        self._process = subprocess.Popen(
-            [path(), *mode], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
-        )
+    def __init__(self) -> None:
+        pipe = subprocess.PIPE
+        self._process = subprocess.Popen([path()], stdin=pipe, stdout=pipe, text=True)
 
-    def ask(self, question: Any) -> Any:
-        """Return the answer to a line."""
+    def ask(self, steps: list[Any]) -> Any:
+        """Return the result of each step."""
         target, source = self._process.stdin, self._process.stdout
         assert target is not None
         assert source is not None
-        print(json.dumps(question), file=target, flush=True)
+        print(json.dumps(steps), file=target, flush=True)
         return json.loads(source.readline())
 
     def close(self) -> None:

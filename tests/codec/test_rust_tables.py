@@ -1,10 +1,12 @@
-"""The table that Rust reads from an ``edition.json`` is that of Python: their codecs are alike."""
+"""Rust reads the table that Python has from an ``edition.json``, and makes the same error texts.
+
+The codec in Rust is tested as the native codec: it interprets the same tables.
+"""
 
 from __future__ import annotations
 
 import json
-import os
-from collections.abc import Iterator
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -12,81 +14,107 @@ import pytest
 from hypothesis import HealthCheck, Phase, given, settings
 from hypothesis import strategies as st
 
-import vectors
+import random_tables
 from cobotwire import codec as codecs
-from cobotwire.conformance.codec.questions.our_codec import OurCodec
+from cobotwire.protocol.errors import CobotwireError
 from cobotwire.protocol.loading import table_of
+from cobotwire.protocol.table import Table, Variant
 from cobotwire_codegen.publish import edition_json
-from cobotwire_codegen.targets.vectors.document import document
-from command_line import run_program
-from probe import Probe, needed, path
-from random_editions import editions
-from strategies import codec_of
-from targets.vectors.comparison import read
+from probe import Probe, needed
+from random_editions import editions, sensors
+from session.twins import plain
 from vectors import ROOT
 
-Record = dict[str, Any]
-
 pytestmark = needed
-EVERY = "EVERY_EDITION" in os.environ
+EDITIONS = sorted((ROOT / "python/cobotwire/editions").glob("*/edition.json"))
+MYCOBOT = next(path for path in EDITIONS if path.parent.name == "mycobot")
+RANDOM = [HealthCheck.function_scoped_fixture, HealthCheck.too_slow]
 
 
-# Its questions take six seconds; `make every-edition` asks those of all.
-FEW = [name for name in vectors.sampled() if name == "mycobot" or EVERY]
+def text_of(act: Callable[..., object], *arguments: object) -> str | None:
+    try:
+        act(*arguments)
+    except CobotwireError as error:
+        return str(error)
+    return None
 
 
-@pytest.mark.parametrize("name", FEW)
-def test_codec_in_rust_passes_every_question(name: str) -> None:
-    file = ROOT / "python" / "cobotwire" / "editions" / name / "edition.json"
-    done = run_program("--edition", name, "conform", "codec", "--", path(), "codec", file)
-    assert done.returncode == 0, done.stdout
-    assert "pass" in done.stdout.splitlines()[-1]
-    assert "not supported" not in done.stdout
+def given_value(value: Any) -> Any:
+    """Return a value that Python and the Rust clients both know."""
+    if isinstance(value, tuple | list):
+        return tuple(map(given_value, value))
+    if isinstance(value, bytearray | memoryview):
+        return bytes(value)
+    # The clients take a whole number for an integer, whatever its type.
+    if isinstance(value, float) and value.is_integer() and abs(value) < 1 << 53:
+        value = int(value)
+    if isinstance(value, int) and abs(value) >= 1 << 63:
+        return 1 << 40
+    known = isinstance(value, bool | int | float | str | bytes) or value is ...
+    return value if known else (str(value),)
 
 
-# Each document makes thousands of questions; `make every-edition` asks those of all.
-@pytest.mark.parametrize("name", vectors.sampled() if EVERY else FEW)
-def test_vectors_of_an_edition_have_the_answers_that_python_gives(name: str) -> None:
-    rust = Probe("codec", str(ROOT / "python" / "cobotwire" / "editions" / name / "edition.json"))
-    python = OurCodec(codec_of(name, "native"))
-    asked = [*_questions(read(name), python)]
-    assert len(asked) > 1500
-    wrong = [each for each in asked if _compared(rust.ask(each)) != _compared(python.ask(each))]
-    assert wrong == []
-    rust.close()
+@st.composite
+def near_frames(draw: st.DrawFn, table: Table) -> bytes:
+    """Draw a frame, a part of one, or one with more bytes or another byte."""
+    frame = draw(random_tables.frames(table))
+    at = draw(st.integers(0, len(frame) - 1))
+    damaged = (frame[:at], frame + b"\0", frame[:at] + bytes([frame[at] ^ 1]) + frame[at + 1 :])
+    return draw(st.sampled_from([frame, *damaged]))
+
+
+@st.composite
+def given_values(draw: st.DrawFn, variants: tuple[Variant, ...]) -> tuple[Any, ...]:
+    """Draw values for a variant, some of them illegal, and at times one too many."""
+    drawn = draw(random_tables.values(draw(st.sampled_from(variants)))) if variants else ()
+    values: tuple[Any, ...] = given_value(drawn)
+    return values if draw(st.integers(0, 9)) else (*values, 0)
+
+
+def check_texts(data: st.DataObject, probe: Probe, path: Path, table: Table, times: int) -> None:
+    """Compare the errors of messages and of frames."""
+    codec, steps, expected = codecs.load(table, "reference"), list[Any](), list[str | None]()
+    for _ in range(times):
+        command = data.draw(st.sampled_from(table.commands))
+        way = data.draw(st.sampled_from(random_tables.WAYS))
+        values = data.draw(given_values(command.variants(way)))
+        frame = data.draw(near_frames(table))
+        steps.append(["encode", str(path), way, command.name, plain(values)])
+        expected.append(text_of(codec.encode, command.name, way, values))
+        steps.append(["decode", str(path), way, frame.hex()])
+        expected.append(text_of(codec.decode, way, frame))
+    assert [*zip(steps, probe.ask(steps))] == [*zip(steps, expected)]
+
+
+def native_table(table: Table) -> str:
+    """Return the table that the native codec interprets, in Rust's words."""
+    codec: Any = codecs.load(table, "native")
+    text: str = codec._core_table()
+    return text
+
+
+@pytest.mark.parametrize("path", EDITIONS, ids=lambda path: path.parent.name)
+@settings(max_examples=1, suppress_health_check=RANDOM)
+@given(data=st.data())
+def test_edition_has_same_table_and_texts(probe: Probe, path: Path, data: st.DataObject) -> None:
+    table = table_of(json.loads(path.read_text("utf-8")))
+    assert probe.ask([["table", str(path)]]) == [native_table(table)]
+    check_texts(data, probe, path, table, 20)
 
 
 # Shrinking would take minutes.
-@settings(max_examples=8, phases=[Phase.generate], suppress_health_check=list(HealthCheck))
-@given(data=st.data())
-def test_tables_of_random_editions_are_alike(tmp_path: Path, data: st.DataObject) -> None:
-    edition = data.draw(editions(tmp_path, "rnd"))
-    file = tmp_path / "edition.json"
-    file.write_text(edition_json(edition), encoding="utf-8")
-    python = OurCodec(codecs.load(table_of(json.loads(file.read_text("utf-8"))), "native"))
-    rust = Probe("codec", str(file))
-    for question in _questions(json.loads(document(edition)), python):
-        assert _compared(rust.ask(question)) == _compared(python.ask(question)), question
-    rust.close()
-
-
-def _questions(found: Record, python: OurCodec) -> Iterator[Record]:
-    """Yield a question for each vector: decode it, and encode what Python decodes."""
-    for record in found["messages"] + found["malformed"]:
-        data = record["bytes"].replace(" ", "")
-        decode = {"do": "decode", "direction": record["direction"], "bytes": data}
-        yield decode
-        if "command" in record:
-            named = {**decode, "command": record["command"]}
-            yield named
-            fields = python.ask(named)["fields"]
-            yield {**named, "do": "encode", "fields": fields}
-            yield {**named, "do": "encode", "fields": {n: -1 for n in fields}}
-    for record in found["streams"]:
-        chunks = [record["bytes"].replace(" ", ""), None]
-        yield {"do": "stream", "direction": record["direction"], "chunks": chunks}
-
-
-def _compared(answer: Record) -> Record:
-    """Return an answer without the words of an error."""
-    return {key: value for key, value in answer.items() if key not in ("id", "why")}
+@settings(max_examples=16, phases=[Phase.generate], suppress_health_check=RANDOM)
+@given(data=st.data(), every_type=st.booleans())
+def test_random_edition_has_same_table_and_texts(
+    probe: Probe,
+    tmp_path_factory: pytest.TempPathFactory,
+    data: st.DataObject,
+    every_type: bool,
+) -> None:
+    folder = tmp_path_factory.mktemp("random")
+    edition = data.draw(sensors("sensor") if every_type else editions(folder, "rnd"))
+    path = folder / "edition.json"
+    path.write_text(edition_json(edition), encoding="utf-8")
+    table = table_of(json.loads(path.read_text("utf-8")))
+    assert probe.ask([["table", str(path)]]) == [native_table(table)]
+    check_texts(data, probe, path, table, 10)

@@ -84,8 +84,9 @@ class Talk:
         values = self._codec.decode(
             "request", self._table.frame.enclose(command.id, data), of=command.name
         ).values
-        fields = command.request_text.fields if command.request_text else ()
-        texts = {name: dice.choice(["", "a", "b c"]) for name in fields}
+        form = command.request_text
+        words = ["", "a", "b c", "ä", *(form.prefixes if form else ())]
+        texts = {name: dice.choice(words) for name in (form.fields if form else ())}
         try:
             encoder = RequestEncoder(self._codec, dice.choice(self._to))
             return encoder.encode(command.name, values, texts, variant)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator
 from functools import lru_cache
 from pathlib import Path
 from random import Random
@@ -37,13 +36,6 @@ DEPTHS = {"unread": 3, "echoes": 3}
 TALKS = st.lists(
     st.tuples(st.sampled_from(STEPS), st.integers(0, 1 << 32)), min_size=20, max_size=50
 )
-
-
-@pytest.fixture(scope="module")
-def probe() -> Iterator[Probe]:
-    made = Probe("exchange")
-    yield made
-    made.close()
 
 
 @lru_cache

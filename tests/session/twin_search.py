@@ -20,7 +20,7 @@ from vectors import ROOT
 # What does not change, or only an outcome shows it; what is a time; and a position in the stream.
 LEFT_OUT = re.compile(
     r"queued_at: \d+, |requested_at: \d+, |, count: \d+|policy: RetryPolicy {[^}]*}, "
-    r"|received: ReceivedMeanwhile\(\[.*?\]\) (?=}, (?:policy|ack):)"
+    r"|received: ReceivedMeanwhile\(\[.*?\]\), (?=policy: )"
 )
 TIMES = "until|ends_by|deadline|undrained_since|sent_at|last|began_at|attempt_times|doubts"
 TIME = re.compile(rf"\b({TIMES}): (Some\(|\[)?([\d, ]+)")

@@ -2,12 +2,14 @@
 
 The probe plays the steps of all exchanges at once. It answers each with its result, and with what
 can be seen of the exchange afterwards: when it is idle until, the outcomes of requests, and so on.
+Messages and errors are compared by their texts.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable
 from contextlib import ExitStack
+from inspect import signature
 from itertools import repeat
 from math import inf, isfinite
 from types import TracebackType
@@ -15,29 +17,22 @@ from typing import Any, NamedTuple, Self
 from unittest.mock import patch
 
 from cobotwire.codec.interface import Codec, DecodedMessage, Frame, Noise
-from cobotwire.protocol.error_texts import error_text
-from cobotwire.protocol.errors import LinkError, ProtocolError, ReplyTimeout, RequestRefused
-from cobotwire.protocol.table import _word
+from cobotwire.protocol.addresses import address_name
+from cobotwire.protocol.errors import LinkError, ProtocolError, ReplyTimeout, UsageError
+from cobotwire.protocol.table import Command
 from cobotwire.session import (
-    AckReceived,
-    EchoReceived,
     EncodedRequest,
-    EventReceived,
     Exchange,
-    LateReply,
     Pending,
     PendingAck,
     PendingRequest,
     ReplyMatched,
     ReplyRejected,
-    RequestExpired,
-    SessionEvent,
-    UnexpectedFrame,
     received,
     text,
 )
 from cobotwire.session.alignment import Alignment
-from cobotwire.session.outstanding import PersistedState
+from cobotwire.session.request import RequestEncoder
 
 METHODS = (
     *("enqueue", "send_one_way", "give_up", "fail", "fail_waiting", "persist", "restore"),
@@ -72,13 +67,21 @@ class Twin:
         self.pending: list[Pending] = []
         self.open: set[int] = set()
 
+    def ticket(self, pending: Pending) -> int:
+        """Return the number of a request's ticket; a new request gets the next one."""
+        known = (i for i, other in enumerate(self.pending) if other is pending)
+        ticket = next(known, len(self.pending))
+        if ticket == len(self.pending):
+            self.open.add(ticket)
+            self.pending.append(pending)
+        return ticket
+
 
 class Step(NamedTuple):
-    """A step for the probe, the result in Python, and what could be seen afterwards."""
+    """A step for the probe, and its result in Python with what could be seen afterwards."""
 
     sent: list[Any]
     result: Any
-    seen: Any
 
 
 class Recorder:
@@ -90,13 +93,12 @@ class Recorder:
         self._edition = edition
         self.steps: list[Step] = []
         self._twins: dict[int, Twin] = {}
-        self._indices = {command.name: i for i, command in enumerate(codec.table.commands)}
         self._patches = ExitStack()
         self._inside = False
 
     def __enter__(self) -> Self:
         wrapped = [(Exchange, name) for name in METHODS] + [(Alignment, "cut"), (Alignment, "end")]
-        for owner, name in (*wrapped, (Exchange, "__init__")):
+        for owner, name in (*wrapped, (Exchange, "__init__"), (RequestEncoder, "encode")):
             call = self._recording(name, getattr(owner, name))
             self._patches.enter_context(patch.object(owner, name, call))
         # The diagnosis of noise stays in Python.
@@ -113,119 +115,147 @@ class Recorder:
         steps, self.steps = self.steps, []
         states: list[str] = []
         for step, answer in zip(steps, ask([step.sent for step in steps]), strict=True):
-            if step.sent[2] == "new":
-                assert answer is None, answer
-                continue
-            assert isinstance(answer, list), (step, answer)
-            result, seen = answer
-            if step.sent[2] == "state":
-                states.append(result)
-                continue
-            assert step.result == result, (step, answer)
-            *seen, ended = seen
-            ended = [[ticket, self._outcome_of(outcome)] for ticket, outcome in ended]
-            assert step.seen == [*seen, ended], (step, answer)
+            if step.sent[0] == "state":
+                states.append(answer)
+            else:
+                assert step.result == answer, (step, answer)
         return states
 
     def note_state(self, exchange: Exchange) -> Twin:
         """Have Rust describe the state of an exchange; return its twin."""
         twin = self._twins[id(exchange.alignment)]
-        self.steps.append(Step([twin.number, nanos(twin.now), "state"], None, None))
+        self._send(twin, "state", [], None)
         return twin
 
+    def _send(self, twin: Twin, method: str, given: list[Any], result: Any) -> None:
+        sent = [method, self._edition, twin.number, nanos(twin.now), *given]
+        self.steps.append(Step(sent, result))
+
     def _recording(self, name: str, original: Callable[..., Any]) -> Callable[..., Any]:
+        parameters = signature(original)
+
         def call(subject: Any, *arguments: Any, **named: Any) -> Any:
             if self._inside:
                 return original(subject, *arguments, **named)
+            bound = parameters.bind(subject, *arguments, **named)
+            bound.apply_defaults()
+            _, *given = bound.arguments.items()
             self._inside = True
             try:
                 result = original(subject, *arguments, **named)
                 if name == "__init__":
-                    self._open(subject)
-                else:
+                    twin = self._twins[id(subject.alignment)] = Twin(len(self._twins), subject)
+                    self.steps.append(Step(["new", self._edition, twin.number], None))
+                elif name != "encode":
                     part = subject.alignment if isinstance(subject, Exchange) else subject
-                    self._note(self._twins[id(part)], name, arguments, named, result)
+                    self._note(self._twins[id(part)], name, dict(given), result)
+            except UsageError as error:
+                self._note_refusal(subject._address, dict(given), error)
+                raise
             finally:
                 self._inside = False
             return result
 
         return call
 
-    def _open(self, exchange: Exchange) -> None:
-        twin = Twin(len(self._twins), exchange)
-        self._twins[id(exchange.alignment)] = twin
-        self.steps.append(Step([twin.number, 0, "new", self._edition], None, None))
-
-    def _note(
-        self, twin: Twin, name: str, arguments: tuple[Any, ...], named: Any, result: Any
-    ) -> None:
-        sent: list[Any] = []
+    def _note(self, twin: Twin, name: str, given: dict[str, Any], result: Any) -> None:
+        pending = given.get("pending")
+        twin.now = given.pop("now", twin.now)
         if name == "enqueue":
-            [pending] = arguments
             assert isinstance(pending, PendingRequest)
             twin.now = pending.queued_at
             usual = pending._wait == pending.request.command.deadline_ms / 1000
-            wait = None if usual else nanos(pending._wait)
-            attempts, shortest, grace = pending.policy
-            policy = [attempts, nanos(shortest), nanos(grace)]
-            sent = [self._request(pending.request), nanos(pending.ends_by), wait, policy]
-            self._add(twin, pending)
-        elif name == "send_one_way":
-            request, twin.now, within, ends_by = (*arguments, *named.values(), inf)[:4]
-            within = None if within is None else nanos(within)
-            sent = [self._request(request), nanos(ends_by), within]
-            data, ack = result
-            result = [data.hex(), ack is not None]
-            if ack is not None:
-                self._add(twin, ack)
-        elif name in ("give_up", "written"):
-            ticket = next(i for i, p in enumerate(twin.pending) if p is arguments[0])
-            sent = [ticket]
-            if name == "give_up":
-                # It has ended without an outcome, unless the outcome was seen before.
-                twin.open.discard(ticket)
-            twin.now = arguments[1] if name == "written" else twin.now
-        elif name == "restore":
-            sent = [_persisted(*arguments)]
-        elif name == "cut":
-            align, request, written = arguments
-            sent = [align.hex(), request.hex(), written]
-        elif name == "note_full":
-            sent = [*arguments]
-        elif name == "outgoing":
-            twin.now, drained = [*arguments, *dict(named).values()]
-            sent, result = [drained], result.hex()
-        elif name in ("advance", "receive"):
-            data, twin.now = arguments
-            sent, result = [data.hex()], self._events(result)
-        elif name != "end" and name != "fail_waiting":
-            twin.now = arguments[-1]
-            result = _persisted(result) if name == "persist" else self._events(result)
-        method = "aligned" if name == "end" else name
-        now = nanos(twin.now)
-        seen = self._seen(twin)
-        self.steps.append(Step([twin.number, now, method, *sent], result, seen))
+            wait = None if usual else pending._wait
+            given["pending"] = pending.request, wait, pending.policy, pending.ends_by
+            twin.ticket(pending)
+        elif name == "give_up":
+            # It has ended without an outcome, unless the outcome was seen before.
+            twin.open.discard(twin.ticket(given["pending"]))
+        sent = [self._plain(twin, value) for value in given.values()]
+        result = self._plain(twin, result)
+        self._send(twin, name, sent, [result, self._seen(twin)])
 
-    def _add(self, twin: Twin, pending: Pending) -> None:
-        twin.open.add(len(twin.pending))
-        twin.pending.append(pending)
+    def _note_refusal(self, address: int | None, given: dict[str, Any], error: UsageError) -> None:
+        """Have Rust refuse a request in the same words."""
+        name, values, texts, variant = given.values()
+        request = {
+            "command": name,
+            "values": plain(values),
+            "texts": [*(texts or {}).values()],
+            "address": address,
+            "variant": variant,
+        }
+        twin = [*self._twins.values()][-1]
+        self._send(twin, "prepare", [request], [str(error), self._seen(twin)])
 
     def _seen(self, twin: Twin) -> list[Any]:
         exchange, now = twin.exchange, twin.now
-        idle = exchange.idle_seconds(now)
-        last = [i for i, pending in enumerate(twin.pending) if pending is exchange.sent_last]
+        last = exchange.sent_last
         ended = [ticket for ticket in sorted(twin.open) if twin.pending[ticket].done]
         twin.open.difference_update(ended)
         return [
-            None if idle is None else nanos(idle),
+            self._plain(twin, exchange.idle_seconds(now)),
             exchange.busy,
             exchange.has_next(now),
             exchange.alignment.align.hex(),
-            last[0] if last else None,
+            None if last is None else twin.ticket(last),
             [[ticket, self._outcome(twin.pending[ticket], now)] for ticket in ended],
         ]
 
-    # What Python has, as the probe writes it.
+    def _outcome(self, pending: Pending, now: float) -> list[Any]:
+        error = pending._error
+        if error is None:
+            if isinstance(pending, PendingRequest):
+                assert pending.replied_at is not None
+                times = [nanos(pending.requested_at), nanos(pending.replied_at)]
+            else:
+                assert isinstance(pending, PendingAck)
+                times = [nanos(pending.ack.sent_at), nanos(now)]
+            return ["answer", _fields(pending._fields), times]
+        if not isinstance(error, ReplyTimeout):
+            return [type(error).__name__, str(error), None]
+        if pending._received is not None and not error.received:  # the explorer saves this time
+            request = pending.request
+            lines = _lines(pending._received, self._codec, request.frame, request.command)
+            why = error.waited_for or None
+            sent = error.attempts, error.request
+            error = ReplyTimeout(error.command, error.waited, lines, *sent, why)
+        return [type(error).__name__, str(error), nanos(error.waited)]
+
+    def _plain(self, twin: Twin, value: Any) -> Any:
+        """Return a value as the probe reads and writes it."""
+        match value:
+            case float():
+                return nanos(value)
+            case bytes():
+                return value.hex()
+            case Command():
+                return value.name
+            case Frame():
+                return [value.offset, value.data.hex()]
+            case DecodedMessage():
+                to = "" if value.address is None else address_name(self._codec.table, value.address)
+                return f"{value.command.name}({_fields(value.fields)}){to and f' to {to}'}"
+            case EncodedRequest():
+                return self._request(value)
+            case Pending():
+                return twin.ticket(value)
+            case LinkError():
+                return [value.url, value.detail]
+            case ProtocolError():
+                return str(value)
+            case Noise():
+                return ["Noise", value.offset, value.data.hex(), value.reason]
+            case ReplyRejected(frame=None):
+                return ["ReplyRejected", value.command.name, None, None]
+            case ReplyMatched():
+                texts = None if value.message else [*value.fields.values()]
+                parts = value.command, texts, value.message, value.frame
+                return ["ReplyMatched", *self._plain(twin, parts)]
+            case tuple() | list():
+                event = type(value).__module__ == "cobotwire.session.events"
+                return [type(value).__name__] * event + [self._plain(twin, each) for each in value]
+        return value
 
     def _request(self, request: EncodedRequest) -> dict[str, Any]:
         command = request.command
@@ -234,132 +264,24 @@ class Recorder:
         return {
             "command": command.name,
             "values": plain(message.values),
-            "texts": list(text.decode(form, request.text).values()) if form else [],
+            "texts": [*text.decode(form, request.text).values()] if form else [],
             "address": message.address,
             "variant": command.request.index(message.variant),
         }
 
-    def _events(self, events: Iterable[SessionEvent]) -> list[Any]:
-        return [self._event(event) for event in events]
 
-    def _event(self, event: SessionEvent) -> list[Any]:
-        if isinstance(event, Noise):
-            return ["noise", event.offset, event.reason, event.data.hex()]
-        frame = None if isinstance(event, RequestExpired) else _frame(event.frame)
-        if isinstance(event, UnexpectedFrame | EchoReceived):
-            return ["echo" if isinstance(event, EchoReceived) else "unexpected", frame]
-        index = self._indices[event.command.name]
-        match event:
-            case ReplyMatched(message=message):
-                texts = [] if message else [*event.fields.values()]
-                reply = None if message is None else self._decoded(message)
-                return ["matched", index, reply, texts, frame]
-            case ReplyRejected(error=error):
-                return ["rejected", index, frame and [error.reason, error.offset], frame]
-            case LateReply():
-                return ["late", index, frame]
-            case AckReceived(message=message):
-                return ["ack", index, self._decoded(message), frame]
-            case EventReceived(message=message):
-                return ["event", index, self._decoded(message), frame]
-            case RequestExpired():
-                return ["expired", index, nanos(event.requested_at), event.attempts]
-        raise AssertionError(event)
-
-    def _decoded(self, message: DecodedMessage) -> list[Any]:
-        variant = message.command.reply.index(message.variant)
-        index = self._indices[message.command.name]
-        return [index, variant, plain(message.values), message.address]
-
-    def _outcome(self, pending: Pending, now: float) -> list[Any]:
-        error = pending._error
-        if error is None:
-            if isinstance(pending, PendingRequest):
-                assert pending.replied_at is not None
-                times = [nanos(pending.requested_at), nanos(pending.replied_at)]
-                return ["answer", plain_fields(pending._fields), times]
-            assert isinstance(pending, PendingAck)
-            return ["answer", {}, [nanos(pending.ack.sent_at), nanos(now)]]
-        match error:
-            case LinkError():
-                return ["link"]
-            case ReplyTimeout():
-                waited_for = error.waited_for or None
-                waited = nanos(error.waited)
-                lines = error.received
-                if pending._received is not None and not lines:  # the explorer saves this time
-                    request = pending.request
-                    lines = _lines(pending._received, self._codec, request.frame, request.command)
-                return ["timeout", waited, error.attempts, waited_for, [*lines]]
-            case RequestRefused():
-                return ["refused", error.field, error.status]
-            case ProtocolError():
-                return ["reply", error.reason, error.offset, error.data.hex()]
-        raise AssertionError(error)
-
-    # What the probe has, as Python would have it.
-
-    def _outcome_of(self, outcome: Any) -> list[Any]:
-        if outcome == "link":
-            return ["link"]
-        [(kind, parts)] = outcome.items()
-        commands = self._codec.table.commands
-        if kind == "answer":
-            reply, texts, times = parts
-            if reply is not None:
-                index, variant, values, _ = reply
-                names: Sequence[str] = commands[index].reply[variant].names
-                return [kind, plain_fields(dict(zip(names, values, strict=True))), times]
-            return [kind, dict(enumerate(texts)), times]
-        if kind == "timeout":
-            *head, items = parts
-            return [kind, *head, [self._line(*item) for item in items]]
-        if kind == "refused":
-            index, variant, field, [value] = parts
-            field = commands[index].reply[variant].fields[field]
-            return [kind, field.name, _word(field, value)]
-        (reason, offset), data = parts
-        return [kind, reason, offset, data]
-
-    def _line(self, kind: str, index: int | None, detail: Any, shown: str, size: int) -> str:
-        name = "" if index is None else self._codec.table.commands[index].name
-        rest = f" ... {size} bytes" if size > len(shown) // 2 else ""
-        doubt = ", perhaps of an earlier request" if detail is True else ""
-        what = {
-            "noise": f"noise ({detail})",
-            "late": f"late reply to {name}",
-            "event": f"event {name}",
-            "ack": f"acknowledgement of {name}{doubt}",
-            "echo": "the request's own bytes",
-            "frame": "frame",
-        }
-        if kind == "unread":
-            return error_text("too-much")
-        return f"{what[kind]} {bytes.fromhex(shown).hex(' ').upper()}{rest}"
+def _fields(fields: dict[str, Any]) -> str:
+    return ", ".join(f"{name}={value}" for name, value in fields.items())
 
 
 def plain(value: Any) -> Any:
-    """Return a value as the probe reads and writes it."""
+    """Return a value of a caller as the probe reads it."""
     if isinstance(value, tuple | list):
         return [plain(each) for each in value]
     if isinstance(value, bytes):
         return {"bytes": value.hex()}
+    if value is ...:
+        return {"count": True}
     if isinstance(value, float) and not isfinite(value):
-        return {"real": {inf: "inf", -inf: "-inf"}.get(value, "NaN")}
+        return {"real": str(value)}
     return value
-
-
-def plain_fields(fields: dict[str, Any]) -> dict[Any, Any]:
-    """Return the fields of a reply; those of a text by their position."""
-    if fields and all(isinstance(value, str) for value in fields.values()):
-        return dict(enumerate(fields.values()))
-    return {name: plain(value) for name, value in fields.items()}
-
-
-def _persisted(state: PersistedState) -> list[Any]:
-    late = [[each.request.hex(), nanos(each.until)] for each in state.late]
-    return [late, [[part.request.hex(), part.written] for part in state.parts]]
-
-
-def _frame(frame: Frame | None) -> list[Any] | None:
-    return None if frame is None else [frame.offset, frame.data.hex()]

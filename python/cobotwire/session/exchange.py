@@ -115,6 +115,7 @@ class Exchange:
             return request.frame + request.text, None
         ack, pending = self._acks.expect(request, now, offset, ack_within, ends_by)
         if request.command.id in self._replying_ids:
+            self._outstanding.drop_expired(now)
             self._outstanding.expect(request, ack.until)
         return request.frame + request.text, pending
 

@@ -1,40 +1,34 @@
-//! The asynchronous client: a task serves the stream, and calls send it their requests.
+//! The asynchronous client: whichever future is polled reads and writes for all.
 
+use std::future::poll_fn;
+use std::io::{self, Read, Write};
 use std::marker::PhantomData;
 use std::pin::Pin;
-use std::sync::{Arc, Mutex};
-use std::task::{Context, Waker};
+use std::sync::{Arc, Mutex, MutexGuard};
+use std::task::{Context, Poll, Wake, Waker, ready};
 use std::time::{Duration, Instant};
 
-use cobotwire_core::exchange::Ticket;
-use tokio::io::{AsyncRead, AsyncReadExt, AsyncWrite, AsyncWriteExt, ReadHalf, WriteHalf};
+use futures_core::Stream;
+use tokio::io::{AsyncRead, AsyncWrite, ReadBuf};
 use tokio::net::TcpStream;
-use tokio::sync::mpsc::{UnboundedReceiver, UnboundedSender, unbounded_channel};
-use tokio::sync::{Notify, oneshot};
+use tokio::sync::Notify;
 
-use crate::encoder::{Handle, Named, Outcome, Prepared, client_methods, result};
-use crate::options::{Settings, nanos};
-use crate::port::{CONNECT, socket_of};
-use crate::session::{Outgoing, Queue, Session};
+use crate::connection::Connection;
+use crate::encoder::{Handle, Outcome, Prepared};
+use crate::options::nanos;
+use crate::port::{CONNECT, not_opened, socket_of};
+use crate::session::{CallId, Session};
+use crate::streams::{Events, Polling, Polls, client_methods, next_event};
 use crate::typed::{DeviceEvent, Request, Table};
-use crate::{Error, Events, Options, Polls, Sample, Value, lock};
+use crate::{Error, Options, Port, Sample, Value, lock};
 
 /// A stream of bytes to a device.
 pub trait ByteStream: AsyncRead + AsyncWrite + Send + Unpin + 'static {}
 
 impl<T: AsyncRead + AsyncWrite + Send + Unpin + 'static> ByteStream for T {}
 
-/// How long the task sleeps if nothing is to be done.
+/// How long a future sleeps if nothing is to be done.
 const LONGEST: Duration = Duration::from_secs(3600);
-
-/// What callers want of the task.
-enum Order {
-    Call(Prepared, Settings, u64, oneshot::Sender<Outcome>),
-    /// A caller waits no longer.
-    GivenUp,
-    Subscribe(Arc<Mutex<Queue>>),
-    Close(oneshot::Sender<()>),
-}
 
 /// An arm at the other end of a stream; clients of editions add a method for each command.
 ///
@@ -47,11 +41,18 @@ pub struct AsyncClient {
 }
 
 struct Shared {
-    orders: UnboundedSender<Order>,
-    /// Tells consumers of events that something has come.
-    arrived: Arc<Notify>,
-    closed: Error,
-    begun: Instant,
+    connection: Mutex<Connection>,
+    arrived: Arc<Arrived>,
+}
+
+/// Wakes every future that waits: the stream remembers only who has polled it last.
+#[derive(Default)]
+struct Arrived(Notify);
+
+impl Wake for Arrived {
+    fn wake(self: Arc<Self>) {
+        self.0.notify_waiters();
+    }
 }
 
 client_methods!(AsyncClient [async] [.await]);
@@ -66,340 +67,192 @@ impl AsyncClient {
         let connected = tokio::time::timeout(CONNECT, TcpStream::connect(address)).await;
         let stream = connected.unwrap_or_else(|late| Err(late.into()));
         let ready = stream.and_then(|stream| stream.set_nodelay(true).map(|()| stream));
-        let stream = ready
-            .map_err(|error| Error::link(port, &format!("cannot be opened: {error}"), Some(0)))?;
-        Self::with(edition, stream, Some(port), options)
+        let stream = ready.map_err(|error| not_opened(port, error))?;
+        Self::over(edition, stream, options.named(port))
     }
 
-    /// Drive an arm over an open stream of bytes; a task of the present runtime serves it.
+    /// Drive an arm over an open stream of bytes. Its methods need a runtime of tokio with timers.
     pub fn over(edition: Table, stream: impl ByteStream, options: Options) -> Result<Self, Error> {
-        let name = options.port_name.clone();
-        Self::with(edition, stream, name.as_deref(), options)
+        let arrived = Arc::<Arrived>::default();
+        let port = Box::new(Polled {
+            stream,
+            waker: arrived.clone().into(),
+        });
+        let (handle, connection) = Connection::new(edition, port, &options, Duration::ZERO)?;
+        let connection = Mutex::new(connection);
+        let shared = Arc::new(Shared {
+            connection,
+            arrived,
+        });
+        Ok(Self { handle, shared })
     }
 
-    fn with(
-        edition: Table,
-        stream: impl ByteStream,
-        url: Option<&str>,
-        options: Options,
-    ) -> Result<Self, Error> {
-        let handle = Handle::new(edition, &options)?;
-        let runtime = tokio::runtime::Handle::try_current();
-        let runtime =
-            runtime.map_err(|_| Error::usage("an AsyncClient needs a runtime of tokio"))?;
-        let (orders, received) = unbounded_channel();
-        let arrived = Arc::new(Notify::new());
-        let (reader, writer) = tokio::io::split(stream);
-        let server = Server {
-            session: Session::new(handle.encoder.clone(), url, options.on_drop),
-            reader,
-            writer,
-            arrived: arrived.clone(),
-            callers: Vec::new(),
-            writing: None,
-            taken: 0,
-            buffer: vec![0; 4096],
-            open: true,
-        };
-        let (closed, begun) = (
-            Error::link(url.unwrap_or("port"), "is closed", Some(0)),
-            server.session.begun,
-        );
-        runtime.spawn(server.run(received));
-        Ok(Self {
-            handle,
-            shared: Arc::new(Shared {
-                orders,
-                arrived,
-                closed,
-                begun,
-            }),
-        })
-    }
-
-    /// Close the stream. Nothing is sent to the arm; other calls end with a `LinkError`.
+    /// Close the stream. Nothing more is sent to the arm; other calls end with a `LinkError`.
     pub async fn close(&self) {
-        let (done, closed) = oneshot::channel();
-        let _ = self.shared.orders.send(Order::Close(done));
-        let _ = closed.await;
+        // Its stream was not flushed in time; nothing else can be done about that.
+        let _ = self.connection().close();
+        self.shared.arrived.0.notify_waiters();
     }
 
-    fn subscribe(&self, queue: &Arc<Mutex<Queue>>) {
-        let _ = self.shared.orders.send(Order::Subscribe(queue.clone()));
+    fn connection(&self) -> MutexGuard<'_, Connection> {
+        lock(&self.shared.connection)
     }
 
     async fn perform(&self, prepared: &Prepared) -> Outcome {
-        let (sender, receiver) = oneshot::channel();
-        let called_at = nanos(self.shared.begun.elapsed());
-        let settings = self.handle.settings.clone();
-        let order = Order::Call(prepared.clone(), settings, called_at, sender);
-        if self.shared.orders.send(order).is_err() {
-            return Err(self.shared.closed.clone());
+        let called = Instant::now();
+        if prepared.awaits_reply {
+            // The runtime notices only then that earlier bytes have come.
+            tokio::task::yield_now().await;
         }
-        let mut call = Call {
-            orders: &self.shared.orders,
-            receiver,
-        };
-        let outcome = (&mut call.receiver).await;
-        outcome.unwrap_or_else(|_| {
-            let mut closed = self.shared.closed.clone();
-            if let Error::LinkError { written, .. } = &mut closed {
-                // The task had the request, and may have written it.
-                *written = None;
+        let settings = &self.handle.settings;
+        let id = self.connection().submit(prepared, settings, called);
+        let call = Call { client: self, id };
+        self.until(|session| session.take(call.id)).await
+    }
+
+    /// Read and write for all until `done` returns something.
+    async fn until<T>(&self, mut done: impl FnMut(&mut Session) -> Option<T>) -> T {
+        loop {
+            // Before the stream is polled, so that nothing is overlooked.
+            let arrived = self.shared.arrived.0.notified();
+            let idle = {
+                let mut connection = self.connection();
+                let came = connection.step(Duration::ZERO);
+                if let Some(found) = done(&mut connection.session) {
+                    self.shared.arrived.0.notify_waiters();
+                    return found;
+                }
+                (!came).then(|| connection.idle(LONGEST))
+            };
+            match idle {
+                Some(idle) => drop(tokio::time::timeout(idle, arrived).await),
+                None => {
+                    // The others must find out what was read for them.
+                    self.shared.arrived.0.notify_waiters();
+                    tokio::task::yield_now().await;
+                }
             }
-            Err(closed)
-        })
+        }
     }
 }
 
-/// A call that tells the task when it is dropped.
+/// A call that is given up when it is dropped.
 struct Call<'a> {
-    orders: &'a UnboundedSender<Order>,
-    receiver: oneshot::Receiver<Outcome>,
+    client: &'a AsyncClient,
+    id: CallId,
 }
 
 impl Drop for Call<'_> {
     fn drop(&mut self) {
-        if !self.receiver.is_terminated() {
-            self.receiver.close();
-            let _ = self.orders.send(Order::GivenUp);
+        self.client.connection().session.give_up(self.id);
+        // What it has read or written for others must go on.
+        self.client.shared.arrived.0.notify_waiters();
+    }
+}
+
+impl<R: Request> Stream for Polls<R, AsyncClient> {
+    type Item = Result<Sample<R::Reply>, Error>;
+
+    fn poll_next(self: Pin<&mut Self>, context: &mut Context<'_>) -> Poll<Option<Self::Item>> {
+        let this = self.get_mut();
+        while !this.polling.ended {
+            let future = this.pending.get_or_insert_with(|| {
+                let (client, at) = (this.client.clone(), this.polling.tick());
+                let prepared = this.polling.prepared.clone();
+                Box::pin(async move {
+                    tokio::time::sleep_until(at.into()).await;
+                    client.perform(&prepared).await
+                })
+            });
+            let outcome = ready!(future.as_mut().poll(context));
+            this.pending = None;
+            let sample = this.polling.sample::<R>(&this.client.handle, outcome);
+            if sample.is_some() {
+                return Poll::Ready(sample);
+            }
         }
+        Poll::Ready(None)
     }
 }
 
 impl<R: Request> Polls<R, AsyncClient> {
     /// Wait for the next sample; the samples end with an error.
     pub async fn next(&mut self) -> Option<Result<Sample<R::Reply>, Error>> {
-        while !self.polling.ended {
-            let at = self.polling.tick();
-            tokio::time::sleep_until(at.into()).await;
-            let answer = self.client.perform(&self.polling.prepared).await;
-            let sample = self.polling.sample::<R>(&self.client.handle, answer);
-            if sample.is_some() {
-                return sample;
-            }
-        }
-        None
+        poll_fn(|context| Pin::new(&mut *self).poll_next(context)).await
+    }
+}
+
+impl<E: DeviceEvent> Stream for Events<E, AsyncClient> {
+    type Item = Result<E, Error>;
+
+    fn poll_next(mut self: Pin<&mut Self>, context: &mut Context<'_>) -> Poll<Option<Self::Item>> {
+        let (client, queue, longest) = (self.client.clone(), self.queue.clone(), self.timeout);
+        let future = self.pending.get_or_insert_with(|| {
+            Box::pin(async move {
+                let event = client.until(|session| next_event(&queue, session));
+                match longest {
+                    Some(longest) => tokio::time::timeout(longest, event).await.ok(),
+                    None => Some(event.await),
+                }
+            })
+        });
+        let event = ready!(future.as_mut().poll(context));
+        self.pending = None;
+        Poll::Ready(event)
     }
 }
 
 impl<E: DeviceEvent> Events<E, AsyncClient> {
     /// Wait for the next event; return `None` if the time is over.
     pub async fn next(&mut self) -> Option<Result<E, Error>> {
-        let longest = self.timeout.unwrap_or(crate::FOREVER);
-        tokio::time::timeout(longest, self.received()).await.ok()
-    }
-
-    async fn received(&self) -> Result<E, Error> {
-        loop {
-            // Before the queue is read, so that no event is overlooked.
-            let arrived = self.client.shared.arrived.notified();
-            let event = lock(&self.queue).events.pop_front();
-            if let Some(fields) = event {
-                return result(fields, (E::FIELDS, false), &[]);
-            }
-            if self.client.shared.orders.is_closed() {
-                return Err(self.client.shared.closed.clone());
-            }
-            arrived.await;
-        }
+        poll_fn(|context| Pin::new(&mut *self).poll_next(context)).await
     }
 }
 
-/// The task that serves a stream.
-struct Server<S: ByteStream> {
-    session: Session,
-    reader: ReadHalf<S>,
-    writer: WriteHalf<S>,
-    arrived: Arc<Notify>,
-    callers: Vec<(Ticket, Prepared, oneshot::Sender<Outcome>)>,
-    /// What is being written, and how much of it was taken.
-    writing: Option<Outgoing>,
-    taken: usize,
-    buffer: Vec<u8>,
-    open: bool,
+/// A stream as a port: it never waits, and wakes those who wait for it.
+struct Polled<S> {
+    stream: S,
+    waker: Waker,
 }
 
-impl<S: ByteStream> Server<S> {
-    async fn run(mut self, mut orders: UnboundedReceiver<Order>) {
-        while self.open {
-            let idle = self.session.idle().unwrap_or(LONGEST);
-            tokio::select! {
-                order = orders.recv() => match order {
-                    Some(order) => self.obey(order).await,
-                    None => break,
-                },
-                size = self.reader.read(&mut self.buffer) => self.take(size),
-                () = tokio::time::sleep(idle) => {}
-            }
-            // Requests that were given up must not be sent.
-            self.finish();
-            self.step().await;
-            self.finish();
-        }
-        let bytes = self.session.stops();
-        if self.open && !bytes.is_empty() {
-            let writer = &mut self.writer;
-            let stopped = async {
-                writer.write_all(&bytes).await?;
-                writer.flush().await
-            };
-            // Nobody is left who could handle an error.
-            let _ = tokio::time::timeout(Duration::from_secs(1), stopped).await;
-        }
-        // Events wake their consumers, which find the channel closed.
-        orders.close();
-        self.finish();
-        self.arrived.notify_waiters();
-    }
-
-    async fn obey(&mut self, order: Order) {
-        match order {
-            Order::Subscribe(queue) => self.session.subscribe(&queue),
-            Order::GivenUp => {}
-            Order::Close(done) => {
-                self.session.close();
-                self.open = false;
-                let _ = done.send(());
-            }
-            // Its caller has given it up before it was sent.
-            Order::Call(_, _, _, caller) if caller.is_closed() => {}
-            Order::Call(prepared, settings, called_at, caller) if prepared.awaits_reply => {
-                let ticket = self.session.enqueue(&prepared, &settings, called_at);
-                self.callers.push((ticket, prepared, caller));
-            }
-            Order::Call(prepared, settings, called_at, caller) => {
-                match self.session.one_way(&prepared, &settings, called_at) {
-                    Err(error) => drop(caller.send(Err(error))),
-                    Ok((outgoing, ticket)) => match (self.write(outgoing).await, ticket) {
-                        (Err(error), ticket) => {
-                            ticket
-                                .into_iter()
-                                .for_each(|ticket| self.session.give_up(ticket));
-                            drop(caller.send(Err(error)));
-                        }
-                        (Ok(()), Some(ticket)) => self.callers.push((ticket, prepared, caller)),
-                        (Ok(()), None) => drop(caller.send(Ok(None))),
-                    },
-                }
-            }
-        }
-    }
-
-    /// Take what was read.
-    fn take(&mut self, size: std::io::Result<usize>) {
-        match size {
-            Ok(0) => self.lose("the peer has closed the connection"),
-            Ok(size) => {
-                let data = self.buffer.get(..size).unwrap_or_default();
-                self.session.advance(data);
-                self.arrived.notify_waiters();
-            }
-            Err(error) => self.lose(&format!("cannot be read: {error}")),
-        }
-    }
-
-    /// Read what has come, let time pass, and send the request that is next.
-    async fn step(&mut self) {
-        while self.open {
-            if self.session.exchange.has_next(self.session.now()) {
-                // The runtime notices only now that bytes have come.
-                tokio::task::yield_now().await;
-            }
-            let size = tokio::select! {
-                biased;
-                size = self.reader.read(&mut self.buffer) => Some(size),
-                () = std::future::ready(()) => None,
-            };
-            let drained = size.is_none();
-            size.into_iter().for_each(|size| self.take(size));
-            if !self.open || !self.session.advance(&[]) {
-                return;
-            }
-            self.session.exchange.note_full(false);
-            match self.session.next(drained) {
-                Some(outgoing) => drop(self.write(outgoing).await),
-                None => return,
-            }
-        }
-    }
-
-    /// Write a request whole, within its time.
-    async fn write(&mut self, outgoing: Outgoing) -> Result<(), Error> {
-        let (bytes, until, mut fault) = (outgoing.bytes(), outgoing.until, None);
-        (self.writing, self.taken) = (Some(outgoing), 0);
-        while let Some(rest) = bytes
-            .get(self.taken..)
-            .filter(|rest| !rest.is_empty() && self.open)
-        {
-            let idle = self.session.idle().unwrap_or(LONGEST);
-            tokio::select! {
-                biased;
-                size = self.writer.write(rest) => match size {
-                    Ok(size) if size > 0 => self.taken += size,
-                    Ok(_) => break,
-                    Err(error) => {
-                        fault = Some(error);
-                        break;
-                    }
-                },
-                () = tokio::time::sleep_until(until.into()) => break,
-                // A full line must not delay the calls that wait for something else.
-                size = self.reader.read(&mut self.buffer) => self.take(size),
-                () = tokio::time::sleep(idle) => drop(self.session.advance(&[])),
-            }
-            if self.taken < bytes.len() {
-                self.finish();
-            }
-        }
-        if self.taken == bytes.len() {
-            // A stream with a buffer keeps the bytes until then.
-            let until = Instant::now().max(until).into();
-            if let Ok(Err(error)) = tokio::time::timeout_at(until, self.writer.flush()).await {
-                fault = Some(error);
-            }
-        }
-        let written = self.writing.take();
-        written.map_or(Ok(()), |outgoing| {
-            self.session.wrote(&outgoing, self.taken, fault.as_ref())
-        })
-    }
-
-    fn lose(&mut self, detail: &str) {
-        self.session.lose(detail);
-        self.open = false;
-    }
-
-    /// Report the requests that have ended, and give up those without a caller.
-    fn finish(&mut self) {
-        let (session, open) = (&mut self.session, self.open);
-        let waiting = std::mem::take(&mut self.callers).into_iter();
-        let left = waiting.filter_map(|(ticket, prepared, caller)| {
-            if let Some(outcome) = session.take(ticket, &prepared) {
-                drop(caller.send(outcome.map(Some)));
-                return None;
-            }
-            if caller.is_closed() || !open {
-                session.give_up(ticket);
-                return None;
-            }
-            Some((ticket, prepared, caller))
-        });
-        self.callers = left.collect();
+impl<S: ByteStream> Polled<S> {
+    fn poll<T>(
+        &mut self,
+        poll: impl FnOnce(Pin<&mut S>, &mut Context<'_>) -> Poll<io::Result<T>>,
+    ) -> io::Result<T> {
+        let mut context = Context::from_waker(&self.waker);
+        let polled = poll(Pin::new(&mut self.stream), &mut context);
+        let Poll::Ready(done) = polled else {
+            return Err(io::ErrorKind::WouldBlock.into());
+        };
+        done
     }
 }
 
-impl<S: ByteStream> Drop for Server<S> {
-    fn drop(&mut self) {
-        // The stop must follow what ends a request that was cut.
-        if let Some(outgoing) = self.writing.take() {
-            let _ = self.session.wrote(&outgoing, self.taken, None);
-        }
-        let bytes = self.session.stops();
-        if self.open && !bytes.is_empty() {
-            // The runtime may be at its end, so nothing can be waited for.
-            let mut context = Context::from_waker(Waker::noop());
-            let _ = Pin::new(&mut self.writer).poll_write(&mut context, &bytes);
-        }
+impl<S: ByteStream> Read for Polled<S> {
+    fn read(&mut self, data: &mut [u8]) -> io::Result<usize> {
+        // The stream may keep written bytes in a buffer until then.
+        let _ = self.flush();
+        let mut buffer = ReadBuf::new(data);
+        self.poll(|stream, context| stream.poll_read(context, &mut buffer))?;
+        Ok(buffer.filled().len())
+    }
+}
+
+impl<S: ByteStream> Write for Polled<S> {
+    fn write(&mut self, data: &[u8]) -> io::Result<usize> {
+        let size = self.poll(|stream, context| stream.poll_write(context, data))?;
+        let _ = self.flush();
+        Ok(size)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.poll(|stream, context| stream.poll_flush(context))
+    }
+}
+
+impl<S: ByteStream> Port for Polled<S> {
+    fn wait_at_most(&mut self, _: Duration) -> io::Result<()> {
+        Ok(())
     }
 }

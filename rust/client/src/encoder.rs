@@ -1,26 +1,25 @@
 //! Requests by the names of their commands and arguments, and replies by the names of their fields.
 
-use std::collections::HashMap;
 use std::sync::Arc;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
-use cobotwire_core::exchange::{Answer, Failure, Replier, Request as Encoded, Safety};
-use cobotwire_core::{Decoded, Direction, decode};
-use cobotwire_table::{Quote, Shown, as_call, bad_argument};
+use cobotwire_core::Decoded;
+use cobotwire_core::exchange::{Answer, Failure, Replier, Request as Encoded};
+use cobotwire_table::error_text;
 
-use crate::limits::{Limits, refusals};
-use crate::options::{Settings, find_address};
-use crate::typed::{Request, Table, Typed, plain};
-use crate::{Error, Options, Sample, Value};
+use crate::options::find_address;
+use crate::session::Settings;
+use crate::typed::{Request, Table, Typed};
+use crate::{Error, Limits, Options, Value};
 
 /// The values of a message with their names.
-pub(crate) type Named = Vec<(String, Value)>;
+pub type Named = Vec<(String, Value)>;
 /// The reply that a call has waited for; `None`: it did not.
-pub(crate) type Outcome = Result<Option<Answer>, Error>;
+pub type Outcome = Result<Option<Answer>, Error>;
 
 /// A request that is validated and encoded, not yet sent.
 #[derive(Clone, Debug)]
-pub(crate) struct Prepared {
+pub struct Prepared {
     pub request: Encoded,
     /// Whether a call waits for its reply.
     pub awaits_reply: bool,
@@ -29,35 +28,18 @@ pub(crate) struct Prepared {
 
 /// Encodes the requests of an edition, within limits.
 #[derive(Debug)]
-pub(crate) struct Encoder {
+pub struct Encoder {
     pub edition: Table,
-    commands: HashMap<String, usize>,
-    /// The commands that could exceed the limits whatever their arguments are, and why.
-    refused: HashMap<usize, String>,
+    limits: Limits,
 }
 
 impl Encoder {
-    fn new(edition: Table, limits: &Limits) -> Result<Self, Error> {
-        let edition = limits.applied(edition)?;
-        let commands = edition.commands.iter().enumerate();
-        Ok(Self {
-            commands: commands
-                .map(|(index, each)| (each.name.clone(), index))
-                .collect(),
-            refused: refusals(&edition, limits),
-            edition,
-        })
-    }
-
     /// Return the index of a command.
     pub fn command(&self, name: &str) -> Result<usize, Error> {
-        let found = self.commands.get(name).copied();
-        found.ok_or_else(|| {
-            Error::usage(format!(
-                "edition {} has no command {name}",
-                self.edition.name
-            ))
-        })
+        let mut commands = self.edition.commands.iter();
+        let unknown = || format!("edition {} has no command {name}", self.edition.name);
+        let found = commands.position(|command| command.name == name);
+        found.ok_or_else(|| Error::usage(unknown()))
     }
 
     /// Validate and encode a request.
@@ -67,48 +49,45 @@ impl Encoder {
         given: &[(&str, Value)],
         address: Option<u8>,
     ) -> Result<Prepared, Error> {
-        let command = self.command(name)?;
-        if let Some(why) = self.refused.get(&command) {
-            return Err(Error::usage(why));
-        }
-        let protocol = &self.edition.protocol;
-        let facts = protocol.facts.get(command);
+        let (edition, command) = (&self.edition, self.command(name)?);
+        let record = edition.commands.get(command);
+        let refusal = record.and_then(|record| self.limits.refusal(edition, record));
+        refusal.map_or(Ok(()), |why| Err(Error::usage(why)))?;
+        let facts = edition.protocol.facts.get(command);
         let form = facts.and_then(|facts| facts.request_text.as_ref());
-        let mut texts = vec![None; form.map_or(0, |form| form.fields.len())];
-        let mut others = Vec::with_capacity(given.len());
-        let given = given.iter().filter(|(_, value)| *value != Value::Absent);
-        for (at, (argument, _)) in given.clone().enumerate() {
-            if given.clone().take(at).any(|(other, _)| other == argument) {
+        let text_fields = form.map_or(&[][..], |form| &form.fields);
+        let (mut texts, mut others) = (vec![None; text_fields.len()], Vec::new());
+        for (at, (argument, value)) in given.iter().enumerate() {
+            if given.iter().take(at).any(|(other, _)| other == argument) {
                 let text = format!("{name}() is given its argument {argument} twice");
                 return Err(Error::usage(text));
             }
-        }
-        for (name, value) in given {
-            let at =
-                form.and_then(|form| form.fields.iter().position(|each| **each == *plain(name)));
-            match (at.and_then(|at| texts.get_mut(at)), value) {
+            let text_at = text_fields.iter().position(|field| **field == **argument);
+            match (text_at.and_then(|at| texts.get_mut(at)), value) {
+                (_, Value::Absent) => {}
                 (Some(place), Value::Text(text)) => *place = Some(&**text),
-                _ => others.push((plain(name), value.clone())),
+                _ => others.push((*argument, value.clone())),
             }
         }
-        let arranged = self.edition.arrange(command, &others, Value::from);
+        let filled = |value: Option<_>| value.map_or(Value::Counted, Value::from);
+        let arranged = edition.arrange(command, &others, filled);
         let (row, variant) = arranged.map_err(Error::usage)?;
-        let missing = form
-            .into_iter()
-            .flat_map(|form| form.fields.iter().zip(&texts))
-            .find(|(_, text)| text.is_none());
-        if let Some((field, _)) = missing {
-            let places: [(&str, &dyn std::fmt::Display); 3] =
-                [("call", &name), ("name", field), ("allowed", field)];
-            let text = cobotwire_table::error_text("missing-argument", &places);
+        let mut missing = text_fields.iter().zip(&texts);
+        if let Some((field, _)) = missing.find(|(_, text)| text.is_none()) {
+            let all = text_fields.join(", ");
+            let text = error_text(
+                "missing-argument",
+                &[("call", &name), ("name", field), ("allowed", &all)],
+            );
             return Err(Error::usage(text));
         }
         let texts: Vec<&str> = texts.into_iter().flatten().collect();
         let (count, row) = (row.len(), Value::Row(row));
-        let request = Encoded::encode::<Value>(protocol, command, &row, &texts, address, variant)
-            .map_err(|error| {
+        let protocol = &edition.protocol;
+        let encoded = Encoded::encode::<Value>(protocol, command, &row, &texts, address, variant);
+        let request = encoded.map_err(|error| {
             let given = (count, &*texts, address);
-            Error::usage(self.edition.request_error(command, &error, given))
+            Error::usage(edition.request_error(command, &error, given))
         })?;
         let awaits_reply = facts.is_some_and(|each| each.requires_reply() || each.text.is_some());
         Ok(Prepared {
@@ -123,7 +102,7 @@ impl Encoder {
         let Some(answer) = answer else {
             return Vec::new();
         };
-        if let Some(decoded) = answer.decoded {
+        if let Some(decoded) = &answer.decoded {
             return self.named(decoded);
         }
         let facts = self.edition.protocol.facts.get(prepared.request.command);
@@ -134,51 +113,18 @@ impl Encoder {
     }
 
     /// Return the fields of a message by name.
-    pub fn named(&self, decoded: Decoded) -> Named {
-        let id = decoded.variant;
-        let facts = self.edition.protocol.facts.get(id.command);
-        let variants = facts.map(|facts| match id.direction {
-            Direction::Request => &facts.request,
-            Direction::Reply => &facts.reply,
-        });
-        let fields = variants
-            .and_then(|variants| variants.get(id.variant))
-            .into_iter()
-            .flatten();
-        let mut values = decoded.values.into_iter();
-        let named =
-            fields.map_while(|field| Some((field.name.to_string(), Value::nested(&mut values)?)));
-        named.collect()
+    pub fn named(&self, decoded: &Decoded) -> Named {
+        let named = self.edition.named(decoded).into_iter();
+        named
+            .map(|(name, value)| (name.to_owned(), value.into()))
+            .collect()
     }
 
-    /// Return the values of a request by name, as a reply would show them; and its address.
-    pub fn arguments(&self, request: &Encoded) -> (Named, Option<u8>) {
-        let table = &self.edition.protocol.table;
-        let own = decode(
-            table,
-            Direction::Request,
-            &request.frame,
-            Some(request.command),
-        );
-        own.map_or((Vec::new(), None), |own| {
-            let address = own.address;
-            (self.named(own), address)
-        })
-    }
-
-    /// Return why a request has no answer; `fault` is what the transport reported.
-    pub fn failure(&self, request: &Encoded, failure: &Failure, fault: &Error) -> Error {
-        let (fields, address) = self.arguments(request);
-        let address = address.map(|address| self.edition.address_name(address));
-        let shown = fields.iter().map(|(name, value)| (&**name, value.quote()));
-        let command = self.edition.commands.get(request.command);
-        let name = command.map_or("", |command| &command.name);
-        let call = as_call(name, shown, address.as_deref());
-        let Some(message) = self.edition.failure(&call, request, failure) else {
-            return fault.clone();
-        };
-        match failure {
-            Failure::Link => fault.clone(),
+    /// Return why a request has no answer; `None`: the transport knows.
+    pub fn failure(&self, request: &Encoded, failure: &Failure) -> Option<Error> {
+        let message = self.edition.failure(request, failure)?;
+        Some(match failure {
+            Failure::Link => return None,
             Failure::Refused { .. } => Error::RequestRefused { message },
             Failure::Reply { data, .. } => Error::ProtocolError {
                 message,
@@ -195,7 +141,7 @@ impl Encoder {
                 attempts: *attempts,
                 waited_for: *waited_for,
             },
-        }
+        })
     }
 }
 
@@ -206,14 +152,12 @@ pub(crate) fn result<T: Typed>(
     radians: &[&str],
 ) -> Result<T, Error> {
     let mut take = |name: &&str| {
-        let found = fields.iter_mut().find(|(each, _)| each == plain(name));
-        let value = found
-            .map(|(_, value)| std::mem::take(value))
-            .unwrap_or_default();
-        if radians.contains(name) {
-            value.map(f64::to_radians)
-        } else {
-            value
+        let found = fields.iter_mut().find(|(each, _)| each == name);
+        let value = found.map(|(_, value)| std::mem::take(value));
+        let value = value.unwrap_or_default();
+        match radians.contains(name) {
+            true => value.map(f64::to_radians),
+            false => value,
         }
     };
     let value = match names {
@@ -226,15 +170,16 @@ pub(crate) fn result<T: Typed>(
 
 /// A handle of a client: how it encodes requests, and with what it sends them.
 #[derive(Clone, Debug)]
-pub(crate) struct Handle {
+pub struct Handle {
     pub encoder: Arc<Encoder>,
     pub settings: Settings,
 }
 
 impl Handle {
     pub fn new(edition: Table, options: &Options) -> Result<Self, Error> {
-        let settings = Settings::new(&edition, options)?;
-        let encoder = Arc::new(Encoder::new(edition, &options.limits)?);
+        let (settings, limits) = (options.settings(&edition)?, options.limits.clone());
+        let edition = limits.applied(edition)?;
+        let encoder = Arc::new(Encoder { edition, limits });
         Ok(Self { encoder, settings })
     }
 
@@ -256,7 +201,7 @@ impl Handle {
     pub fn prepare_named(&self, name: &str, given: &[(&str, Value)]) -> Result<Prepared, Error> {
         let prepared = self.encoder.prepare(name, given, self.settings.address)?;
         if self.settings.ack_within.is_some() && prepared.request.replier == Replier::Nobody {
-            let text = cobotwire_table::error_text("unacknowledged", &[("command", &name)]);
+            let text = error_text("unacknowledged", &[("command", &name)]);
             return Err(Error::usage(text));
         }
         Ok(prepared)
@@ -267,156 +212,7 @@ impl Handle {
         prepared: &Prepared,
         answer: Option<Answer>,
     ) -> Result<R::Reply, Error> {
-        result(
-            self.encoder.fields(prepared, answer),
-            (R::RESULTS, true),
-            R::RADIANS,
-        )
-    }
-
-    /// Return what samples a query.
-    pub fn polling<R: Request>(&self, request: R, rate: f64) -> Result<Polling, Error> {
-        let prepared = self.prepare(request)?;
-        let command = self.encoder.edition.commands.get(prepared.request.command);
-        if !prepared.awaits_reply || command.is_none_or(|each| each.safety != Safety::Query) {
-            let why = "is not a query; a stream can send only queries";
-            return Err(Error::usage(format!("{} {why}", R::COMMAND)));
-        }
-        if !(0.0 < rate && rate <= 1000.0) {
-            let allowed = "a number above 0 and up to 1000";
-            return Err(Error::usage(bad_argument(
-                "rate",
-                &Shown::Real(rate),
-                allowed,
-            )));
-        }
-        let period = Duration::from_secs_f64((1.0 / rate).min(86_400.0));
-        Ok(Polling {
-            prepared,
-            period,
-            next: None,
-            missed: 0,
-            ended: false,
-        })
+        let fields = self.encoder.fields(prepared, answer);
+        result(fields, (R::RESULTS, true), R::RADIANS)
     }
 }
-
-/// Says when a query is to be sampled, and counts the periods without a sample.
-pub(crate) struct Polling {
-    pub prepared: Prepared,
-    period: Duration,
-    next: Option<Instant>,
-    pub missed: u64,
-    pub ended: bool,
-}
-
-impl Polling {
-    /// Return the sample of a period, or the error that ends the stream; a period may have neither.
-    pub fn sample<R: Request>(
-        &mut self,
-        handle: &Handle,
-        answer: Outcome,
-    ) -> Option<Result<Sample<R::Reply>, Error>> {
-        let times = answer.as_ref().ok().and_then(Option::as_ref);
-        let times = times.map_or((0, 0), |answer| (answer.requested_at, answer.replied_at));
-        let value = answer.and_then(|answer| handle.result::<R>(&self.prepared, answer));
-        self.ended = matches!(value, Err(Error::LinkError { .. }));
-        if value.is_err() && !self.ended {
-            self.missed += 1;
-            return None;
-        }
-        let (requested_at, replied_at) = times;
-        Some(value.map(|value| Sample {
-            value,
-            requested_at,
-            replied_at,
-        }))
-    }
-
-    /// Return when the next period begins; those that have passed are missed.
-    pub fn tick(&mut self) -> Instant {
-        let now = Instant::now();
-        let at = self.next.unwrap_or(now);
-        let late = now.saturating_duration_since(at).as_nanos() / self.period.as_nanos().max(1);
-        let late = u32::try_from(late).unwrap_or(u32::MAX);
-        self.missed += u64::from(late);
-        self.next = Some(at + self.period * late + self.period);
-        at + self.period * late
-    }
-}
-
-/// Makes the methods of a client with the fields `handle` and `shared`, and with private methods
-/// `perform` and `subscribe`.
-macro_rules! client_methods {
-    ($client:ident [$($async:tt)*] [$($await:tt)*]) => {
-        impl std::fmt::Debug for $client {
-            fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-                write!(f, "{}({})", stringify!($client), self.edition().name)
-            }
-        }
-
-        impl $client {
-            /// Return the table of the edition, within the limits of this client.
-            #[must_use]
-            pub fn edition(&self) -> &Table {
-                &self.handle.encoder.edition
-            }
-
-            /// Return this client for another address, by its name or number.
-            pub fn at(&self, address: &str) -> Result<Self, Error> {
-                let handle = self.handle.clone().at(address)?;
-                Ok(Self { handle, shared: self.shared.clone() })
-            }
-
-            /// Return this client so that requests without a reply wait for their acknowledgement.
-            #[must_use]
-            pub fn acknowledged(&self, within: Duration) -> Self {
-                let mut other = self.clone();
-                other.handle.settings.ack_within = Some(crate::options::nanos(within));
-                other
-            }
-
-            /// Send a request; return the result of its reply, if it has one.
-            pub $($async)* fn call<R: Request>(&self, request: R) -> Result<R::Reply, Error> {
-                let prepared = self.handle.prepare(request)?;
-                let answer = self.perform(&prepared) $($await)* ?;
-                self.handle.result::<R>(&prepared, answer)
-            }
-
-            /// Send a request by the name of its command; return the fields of its reply.
-            pub $($async)* fn call_named(
-                &self,
-                command: &str,
-                arguments: &[(&str, Value)],
-            ) -> Result<Named, Error> {
-                let prepared = self.handle.prepare_named(command, arguments)?;
-                let answer = self.perform(&prepared) $($await)* ?;
-                Ok(self.handle.encoder.fields(&prepared, answer))
-            }
-
-            /// Sample a query `rate` times a second, above 0 and up to 1000.
-            ///
-            /// A request is sent only when the loop wants a sample, and not again within its period.
-            /// A period without a reply has no sample; [`Polls::missed`] counts such periods, and
-            /// those for which the loop came too late.
-            pub fn poll<R: Request>(&self, request: R, rate: f64) -> Result<Polls<R, Self>, Error> {
-                let polling = self.handle.polling(request, rate)?;
-                let mut client = self.clone();
-                client.handle.settings.retry.attempts = 1;
-                Ok(Polls { client, polling, reply: PhantomData })
-            }
-
-            /// Receive the events of a type that come from now on, until none comes within
-            /// `timeout`.
-            pub fn events<E: DeviceEvent>(
-                &self,
-                timeout: Option<Duration>,
-            ) -> Result<Events<E, Self>, Error> {
-                let queue = Queue::new(self.handle.encoder.command(E::COMMAND)?);
-                self.subscribe(&queue);
-                Ok(Events { client: self.clone(), queue, timeout, event: PhantomData })
-            }
-        }
-    };
-}
-pub(crate) use client_methods;

@@ -5,37 +5,29 @@ use std::time::Duration;
 
 use cobotwire_core::exchange::WaitedFor;
 
-/// Why a call failed. Its text says what happened, to what, and what to do.
+/// Why a call failed. Its `message` says what happened, to what, and what to do.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
+#[allow(missing_docs)] // the messages
 pub enum Error {
     /// An error of the caller, detected before a byte was sent.
-    UsageError {
-        /// The text.
-        message: String,
-    },
+    UsageError { message: String },
     /// An error of the peer: bytes that the protocol does not allow.
     ProtocolError {
-        /// The text.
         message: String,
         /// The rejected bytes.
         data: Vec<u8>,
     },
     /// The device replied that it does not carry out a request.
-    RequestRefused {
-        /// The text.
-        message: String,
-    },
+    RequestRefused { message: String },
     /// An error of the port: it could not be opened, or it disappeared.
     LinkError {
-        /// The text.
         message: String,
         /// How many bytes of the request were written; `None`: that is not known.
         written: Option<usize>,
     },
     /// The reply, or the requested acknowledgement, did not arrive in time.
     ReplyTimeout {
-        /// The text.
         message: String,
         /// Since the request was sent; since the call, if its deadline passed.
         waited: Duration,
@@ -57,27 +49,34 @@ impl Error {
         Self::LinkError { message, written }
     }
 
+    /// Return it for a request of which that many bytes were written.
+    pub(crate) fn after_writing(mut self, bytes: usize) -> Self {
+        if let Self::LinkError { written, .. } = &mut self {
+            *written = Some(bytes);
+        }
+        self
+    }
+
     /// Return the name of its kind, for example `ReplyTimeout`.
     #[must_use]
     pub fn name(&self) -> &'static str {
+        self.parts().0
+    }
+
+    fn parts(&self) -> (&'static str, &str) {
         match self {
-            Self::UsageError { .. } => "UsageError",
-            Self::ProtocolError { .. } => "ProtocolError",
-            Self::RequestRefused { .. } => "RequestRefused",
-            Self::LinkError { .. } => "LinkError",
-            Self::ReplyTimeout { .. } => "ReplyTimeout",
+            Self::UsageError { message } => ("UsageError", message),
+            Self::ProtocolError { message, .. } => ("ProtocolError", message),
+            Self::RequestRefused { message } => ("RequestRefused", message),
+            Self::LinkError { message, .. } => ("LinkError", message),
+            Self::ReplyTimeout { message, .. } => ("ReplyTimeout", message),
         }
     }
 }
 
 impl Display for Error {
     fn fmt(&self, f: &mut Formatter<'_>) -> std::fmt::Result {
-        let (Self::UsageError { message }
-        | Self::ProtocolError { message, .. }
-        | Self::RequestRefused { message }
-        | Self::LinkError { message, .. }
-        | Self::ReplyTimeout { message, .. }) = self;
-        f.write_str(message)
+        f.write_str(self.parts().1)
     }
 }
 

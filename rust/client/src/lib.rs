@@ -32,24 +32,22 @@ extern crate self as cobotwire;
 #[cfg(feature = "tokio")]
 mod asynchronous;
 mod blocking;
+mod connection;
+#[doc(hidden)]
 mod encoder;
 mod error;
 mod limits;
 mod notes;
 mod options;
 mod port;
+#[doc(hidden)]
 mod session;
+mod streams;
 pub mod typed;
 mod value;
 
 #[rustfmt::skip]
-#[cfg(any(
-    feature = "mecharm270", feature = "mercury_a1", feature = "mercury_b1", feature = "mercury_x1",
-    feature = "myarm300", feature = "myarm_c650", feature = "myarm_m750", feature = "mybuddy",
-    feature = "mycobot", feature = "mycobot280", feature = "mycobot280_rdkx5",
-    feature = "mycobot320", feature = "mypalletizer260", feature = "pro400", feature = "pro450",
-    feature = "pro630",
-))]
+#[cfg(feature = "editions")]
 pub mod editions;
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -58,16 +56,22 @@ use cobotwire_table::Edition;
 
 #[cfg(feature = "tokio")]
 pub use asynchronous::{AsyncClient, ByteStream};
-pub use blocking::{Client, Events, Polls};
+pub use blocking::Client;
 pub use cobotwire_core::exchange::{Nanos, RetryPolicy, WaitedFor};
 pub use error::Error;
 pub use limits::{Limits, Range};
 pub use options::{OnDrop, Options};
 pub use port::Port;
+pub use streams::{Events, Polls};
 pub use value::Value;
 
-/// How long a wait without a limit lasts.
-pub(crate) const FOREVER: std::time::Duration = std::time::Duration::from_secs(1 << 30);
+/// A client without a port and a clock, for transports of other kinds.
+#[doc(hidden)]
+pub mod machine {
+    pub use crate::encoder::{Encoder, Handle, Named, Outcome, Prepared};
+    pub use crate::session::{CallId, Queue, Session, Settings};
+    pub use cobotwire_core::exchange::PersistedState;
+}
 
 /// The result of a query at a time.
 #[derive(Clone, Debug, PartialEq)]

@@ -1,11 +1,11 @@
 //! Limits for those who move an arm from afar: a highest speed, and a box for the end of the arm.
 
-use std::collections::HashMap;
+use std::fmt::Display;
 use std::sync::Arc;
 
 use cobotwire_core::exchange::Safety;
-use cobotwire_core::{Number, Table, Variant};
-use cobotwire_table::{Command, Edition, Shown, bad_argument};
+use cobotwire_core::{Number, Table, Value};
+use cobotwire_table::{Command, Edition, Field, Shown, bad_argument, error_text};
 
 use crate::Error;
 use crate::typed;
@@ -31,93 +31,134 @@ pub struct Limits {
 impl Limits {
     /// Return the edition with the ranges of these limits.
     pub(crate) fn applied(&self, edition: typed::Table) -> Result<typed::Table, Error> {
-        self.check()?;
+        self.check(&edition)?;
         if *self == Self::default() {
             return Ok(edition);
         }
         let mut edition = Arc::unwrap_or_clone(edition);
-        if self.workspace.is_some() && !has_axes(&edition) {
-            return Err(Error::usage(
-                "a workspace needs the coordinates x, y, z; this edition does not have them",
-            ));
-        }
         let table = &edition.protocol.table;
         let mut commands = table.commands().to_vec();
         for (command, record) in commands.iter_mut().zip(&edition.commands) {
-            for (index, variant) in command.request.iter_mut().enumerate() {
-                *variant = self.narrowed(record, index, variant)?;
+            for (variant, named) in command.request.iter_mut().zip(&record.request) {
+                let mut fields = variant.fields().to_vec();
+                for (field, named) in fields.iter_mut().zip(named) {
+                    for (case, numbers) in field.cases.iter_mut().enumerate() {
+                        for (at, number) in numbers.numbers.iter_mut().enumerate() {
+                            self.narrow(number, record, named, (case, at))?;
+                        }
+                    }
+                }
+                *variant = cobotwire_core::Variant::new(fields);
             }
         }
-        let frame = table.frame().clone();
-        edition.protocol.table = Table::new(frame, commands)
+        edition.protocol.table = Table::new(table.frame().clone(), commands)
             .map_err(|_| Error::usage("the limits leave nothing of a range of this edition"))?;
         Ok(Arc::new(edition))
     }
 
-    fn check(&self) -> Result<(), Error> {
+    fn check(&self, edition: &Edition) -> Result<(), Error> {
         if let Some(speed) = self.speed.filter(|speed| !(1.0..=100.0).contains(speed)) {
-            let text = bad_argument(
-                "limits.speed",
-                &Shown::Real(speed),
-                "a number 1..100 percent",
-            );
+            let allowed = error_text("speed", &[]);
+            let text = bad_argument("limits.speed", &Shown::Real(speed), &allowed);
             return Err(Error::usage(text));
         }
         for (axis, range) in self.workspace.iter().flatten().enumerate() {
-            if let Some((low, high)) =
+            if let Some(range) =
                 range.filter(|(low, high)| !(low <= high && (high - low).is_finite()))
             {
-                let given = Shown::Tuple(vec![Shown::Real(low), Shown::Real(high)]);
-                let argument = format!("limits.workspace[{axis}]");
-                return Err(Error::usage(bad_argument(
-                    &argument,
-                    &given,
-                    "a pair (lowest, highest), or None",
-                )));
+                return Err(bad_range(axis, range, &error_text("pair", &[])));
             }
+        }
+        let target = find(edition, |each| each.role == "coordinate targets");
+        let fields = target.and_then(|target| target.request.first());
+        let cases = fields.into_iter().flatten().flat_map(|field| &field.cases);
+        let names: Vec<&str> = cases.flatten().map(|number| &*number.name).collect();
+        if self.workspace.is_some() && !AXES.iter().all(|axis| names.contains(axis)) {
+            let names = Shown::List(
+                names
+                    .iter()
+                    .map(|name| Shown::Text((*name).into()))
+                    .collect(),
+            );
+            return Err(Error::usage(error_text(
+                "no-coordinates",
+                &[("names", &names)],
+            )));
         }
         Ok(())
     }
 
-    /// Return a variant of a request with narrower ranges.
-    fn narrowed(
+    /// Narrow the range of a number of a request, if these limits do.
+    fn narrow(
         &self,
+        number: &mut Number,
         command: &Command,
-        index: usize,
-        variant: &Variant,
-    ) -> Result<Variant, Error> {
-        let mut fields = variant.fields().to_vec();
-        let names = command.request.get(index).into_iter().flatten();
-        for (field, named) in fields.iter_mut().zip(names) {
-            for (case, numbers) in field.cases.iter_mut().enumerate() {
-                for (at, number) in numbers.numbers.iter_mut().enumerate() {
-                    let Some(known) = named.number(case, at) else {
-                        continue;
-                    };
-                    let axis = AXES.iter().position(|axis| *axis == known.name);
-                    let range = match (self.speed, axis, &self.workspace) {
-                        (Some(speed), _, _) if named.name == "speed" && known.unit == "percent" => {
-                            Some((0.0, speed))
-                        }
-                        (_, Some(axis), Some(all)) if command.role == "coordinate targets" => {
-                            all.get(axis).copied().flatten()
-                        }
-                        _ => None,
-                    };
-                    if let Some((low, high)) = range {
-                        let (lowest, highest) = raw_range(number, (low, high));
-                        let lowest = number.minimum.max(lowest);
-                        let highest = number.maximum.min(highest);
-                        if lowest > highest {
-                            return Err(empty(axis, (low, high), number, &known.unit));
-                        }
-                        (number.minimum, number.maximum) = (lowest, highest);
-                    }
-                }
-            }
+        field: &Field,
+        (case, at): (usize, usize),
+    ) -> Result<(), Error> {
+        let Some(known) = field.number(case, at) else {
+            return Ok(());
+        };
+        if let Some(speed) = self.speed.filter(|_| is_speed(field)) {
+            number.maximum = number.maximum.min(raw_range(number, (0.0, speed)).1);
         }
-        Ok(Variant::new(fields))
+        let axis = AXES.iter().position(|axis| *axis == known.name);
+        let axis = axis.filter(|_| command.role == "coordinate targets");
+        let found = axis
+            .zip(self.workspace)
+            .and_then(|(axis, all)| Some((axis, (*all.get(axis)?)?)));
+        let Some((axis, range)) = found else {
+            return Ok(());
+        };
+        let (lowest, highest) = raw_range(number, range);
+        let (lowest, highest) = (lowest.max(number.minimum), highest.min(number.maximum));
+        if lowest > highest {
+            let end = |raw| match number.physical(raw) {
+                Value::Real(real) => real,
+                _ => raw as f64,
+            };
+            let (low, high) = (end(number.minimum), end(number.maximum));
+            let places: [(&str, &dyn Display); 3] =
+                [("low", &low), ("high", &high), ("unit", &known.unit)];
+            return Err(bad_range(axis, range, &error_text("workspace", &places)));
+        }
+        (number.minimum, number.maximum) = (lowest, highest);
+        Ok(())
     }
+
+    /// Return why a command is not sent within these limits; `None`: it is.
+    pub(crate) fn refusal(&self, edition: &Edition, command: &Command) -> Option<String> {
+        let (fast, far) = (self.speed.is_some(), self.workspace.is_some());
+        let moves = moves_arm(edition, command);
+        let mut states = command.stores.iter();
+        let is_capped = |variant: &Vec<Field>| variant.iter().any(is_speed);
+        let kind = if !fast && !far || matches!(&*command.role, "stop" | "halt") {
+            return None;
+        } else if command.safety == Safety::Persistent {
+            "refused-lasting"
+        } else if far && states.any(|state| FRAMES.contains(&&**state)) {
+            "refused-frame"
+        } else if far && moves && command.role != "coordinate targets" {
+            "refused-blind"
+        } else if fast && moves && !command.request.iter().all(is_capped) {
+            "refused-speedless"
+        } else {
+            return None;
+        };
+        Some(error_text(kind, &[("command", &command.name)]))
+    }
+}
+
+fn bad_range(axis: usize, (low, high): Range, allowed: &str) -> Error {
+    let given = Shown::Tuple(vec![Shown::Real(low), Shown::Real(high)]);
+    let argument = format!("limits.workspace[{axis}]");
+    Error::usage(bad_argument(&argument, &given, allowed))
+}
+
+/// Return whether a field is a speed in percent.
+fn is_speed(field: &Field) -> bool {
+    let mut numbers = field.cases.iter().flatten();
+    field.name == "speed" && numbers.all(|number| number.unit == "percent")
 }
 
 /// Return a range as raw values, rounded inwards; 0.1 is one tenth, not the float next to it.
@@ -135,121 +176,25 @@ fn raw_range(number: &Number, (low, high): Range) -> (i64, i64) {
             .clamp(-9e15, 9e15)
     };
     let physical = |raw: f64| raw * multiply / divide;
-    let (mut lowest, mut highest) = (raw(low), raw(high));
-    if physical(lowest) < low {
-        lowest += 1.0;
-    }
-    if physical(highest) > high {
-        highest -= 1.0;
-    }
-    (lowest as i64, highest as i64)
+    let (lowest, highest) = (raw(low), raw(high));
+    let (inside, below) = (physical(lowest) < low, physical(highest) > high);
+    (
+        lowest as i64 + i64::from(inside),
+        highest as i64 - i64::from(below),
+    )
 }
 
-/// Return why a range leaves nothing of that of a number.
-fn empty(axis: Option<usize>, (low, high): Range, number: &Number, unit: &str) -> Error {
-    let argument = axis.map_or("limits.speed".to_owned(), |axis| {
-        format!("limits.workspace[{axis}]")
-    });
-    let end = |raw| match number.physical(raw) {
-        cobotwire_core::Value::Real(real) => real,
-        _ => raw as f64,
-    };
-    let (lowest, highest) = (end(number.minimum), end(number.maximum));
-    let places: [(&str, &dyn std::fmt::Display); 3] =
-        [("low", &lowest), ("high", &highest), ("unit", &unit)];
-    let given = Shown::Tuple(vec![Shown::Real(low), Shown::Real(high)]);
-    let allowed = cobotwire_table::error_text("workspace", &places);
-    Error::usage(bad_argument(&argument, &given, &allowed))
-}
-
-fn has_axes(edition: &Edition) -> bool {
-    let target = edition
-        .commands
-        .iter()
-        .find(|each| each.role == "coordinate targets");
-    let fields = target
-        .and_then(|target| target.request.first())
-        .into_iter()
-        .flatten();
-    let names: Vec<&str> = fields
-        .flat_map(|field| field.cases.iter().flatten())
-        .map(|number| &*number.name)
-        .collect();
-    AXES.iter().all(|axis| names.contains(axis))
-}
-
-/// Return the commands that are not sent within limits, each with the reason.
-pub(crate) fn refusals(edition: &Edition, limits: &Limits) -> HashMap<usize, String> {
-    let why = |command: &Command| {
-        if *limits == Limits::default() || matches!(&*command.role, "stop" | "halt") {
-            return None;
-        }
-        if command.safety == Safety::Persistent {
-            return Some(
-                "its effect stays, and limits.speed or limits.workspace is set".to_owned(),
-            );
-        }
-        let moves = moves_arm(edition, command);
-        let leaves = limits
-            .workspace
-            .and_then(|_| leaves_workspace(command, moves));
-        let is_speed = |field: &cobotwire_table::Field| {
-            field.name == "speed"
-                && field
-                    .cases
-                    .iter()
-                    .flatten()
-                    .all(|number| number.unit == "percent")
-        };
-        let capped = command
-            .request
-            .iter()
-            .all(|variant| variant.iter().any(is_speed));
-        let fast = limits.speed.is_some() && moves && !capped;
-        leaves.or(fast.then(|| "limits.speed is set, and it takes no speed in percent".to_owned()))
-    };
-    let commands = edition.commands.iter().enumerate();
-    let refused = commands.filter_map(|(index, command)| {
-        Some((
-            index,
-            format!("{}() is refused: {}", command.name, why(command)?),
-        ))
-    });
-    refused.collect()
-}
-
-fn leaves_workspace(command: &Command, moves: bool) -> Option<String> {
-    if command
-        .stores
-        .iter()
-        .any(|state| FRAMES.contains(&&**state))
-    {
-        return Some("it changes what coordinates mean, and limits.workspace is set".to_owned());
-    }
-    match &*command.role {
-        _ if !moves => None,
-        "coordinate targets" => None,
-        _ => Some(
-            "limits.workspace is set, and where the end would go is not known before".to_owned(),
-        ),
-    }
+fn find(edition: &Edition, is: impl Fn(&Command) -> bool) -> Option<&Command> {
+    edition.commands.iter().find(|each| is(each))
 }
 
 /// Return whether a command may set joints in motion; one for the gripper does not.
 fn moves_arm(edition: &Edition, command: &Command) -> bool {
-    let find = |name: &str| edition.commands.iter().find(|each| each.name == name);
-    let resumes = command
-        .read_by
-        .as_deref()
-        .and_then(find)
-        .is_some_and(|query| query.role == "paused");
-    let gripper = edition.commands.iter().find(|each| each.role == "gripper");
-    let of_gripper = gripper.is_some_and(|gripper| gripper.family == command.family)
-        || command
-            .request
-            .iter()
-            .flatten()
-            .any(|field| field.name == "gripper_id");
+    let read_by = |each: &Command| Some(&each.name) == command.read_by.as_ref();
+    let resumes = find(edition, read_by).is_some_and(|query| query.role == "paused");
+    let gripper = find(edition, |each| each.role == "gripper");
+    let of_gripper = gripper.is_some_and(|gripper| gripper.family == command.family);
+    let mut fields = command.request.iter().flatten();
     let starts = command.safety == Safety::Motion && !matches!(&*command.role, "stop" | "halt");
-    starts && !resumes && !of_gripper
+    starts && !resumes && !of_gripper && !fields.any(|field| field.name == "gripper_id")
 }

@@ -2,7 +2,6 @@
 //! which look like those to its own requests, and halves of requests that the device may hold.
 
 use std::collections::BTreeMap;
-use std::path::Path;
 use std::sync::Mutex;
 use std::time::Instant;
 
@@ -13,62 +12,47 @@ use crate::options::nanos;
 /// The entries of each kind that a note has at most.
 const MOST_ENTRIES: usize = 64;
 
-/// The state that a session left, and when the zero of its times was.
-type Note = (PersistedState, Instant);
+/// What was left on each port, and when; each time in it is from then on.
+static NOTES: Mutex<BTreeMap<String, (PersistedState, Instant)>> = Mutex::new(BTreeMap::new());
 
-static NOTES: Mutex<BTreeMap<String, Note>> = Mutex::new(BTreeMap::new());
+/// The note of a port; `None`: nothing says which port it is, or the note was left.
+#[derive(Debug)]
+pub(crate) struct Note(Option<String>, Instant);
 
-/// The names of a port: its device, and a link that keeps its name when the device is replugged.
-#[derive(Debug, Default)]
-pub(crate) struct PortNames(Vec<String>);
-
-impl PortNames {
-    pub fn of(url: &str) -> Self {
-        let mut names = vec![url.to_owned()];
-        if let Ok(device) = Path::new(url).canonicalize() {
-            let device = device.to_string_lossy().into_owned();
-            // The next pseudo-terminal of this name is another line.
-            if device.starts_with("/dev/pts/") {
-                names.retain(|name| *name != device);
-            } else if device != url {
-                names.push(device);
-            }
+impl Note {
+    /// Return the note of a port, and what was left there; its times are from now on.
+    pub fn of(url: Option<&str>) -> (Self, PersistedState) {
+        // A link that keeps its name stands for the device that it names now.
+        let device = url.and_then(|url| std::fs::canonicalize(url).ok());
+        let name = device.map(|device| device.to_string_lossy().into_owned());
+        // The next pseudo-terminal of this name is another line.
+        let name = match name.filter(|name| !name.starts_with("/dev/pts/")) {
+            None => url
+                .filter(|url| !url.starts_with("/dev/pts/"))
+                .map(str::to_owned),
+            name => name,
+        };
+        let note = name
+            .as_ref()
+            .and_then(|name| crate::lock(&NOTES).remove(name));
+        let mut state = PersistedState::default();
+        if let Some((left, at)) = note {
+            state = left;
+            let passed = nanos(at.elapsed());
+            state.late.retain(|late| late.until > passed);
+            state.late.iter_mut().for_each(|late| late.until -= passed);
         }
-        Self(names)
+        (Self(name, Instant::now()), state)
     }
 
-    /// Return what was left on the port, and remove it; `begun` is the zero of the caller's times.
-    pub fn recall(&self, begun: Instant) -> PersistedState {
-        let mut notes = crate::lock(&NOTES);
-        let mut found = PersistedState::default();
-        for (state, zero) in self.0.iter().filter_map(|name| notes.remove(name)) {
-            let passed = nanos(begun.saturating_duration_since(zero));
-            for mut late in state.late {
-                late.until = late.until.saturating_sub(passed);
-                if late.until > 0 && !found.late.contains(&late) {
-                    found.late.push(late);
-                }
-            }
-            let parts = state.parts.into_iter();
-            let new: Vec<_> = parts.filter(|part| !found.parts.contains(part)).collect();
-            found.parts.extend(new);
-        }
-        found
-    }
-
-    /// Leave a note on the port, unless the line is aligned and silent.
-    pub fn leave(&self, mut state: PersistedState, begun: Instant) {
-        state
-            .late
-            .drain(..state.late.len().saturating_sub(MOST_ENTRIES));
-        state
-            .parts
-            .drain(..state.parts.len().saturating_sub(MOST_ENTRIES));
-        if state != PersistedState::default() {
-            let mut notes = crate::lock(&NOTES);
-            for name in &self.0 {
-                notes.insert(name.clone(), (state.clone(), begun));
-            }
+    /// Leave a note once, unless the line is aligned and silent.
+    pub fn leave(&mut self, mut state: PersistedState) {
+        let (late, parts) = (&mut state.late, &mut state.parts);
+        late.drain(..late.len().saturating_sub(MOST_ENTRIES));
+        parts.drain(..parts.len().saturating_sub(MOST_ENTRIES));
+        let name = self.0.take().filter(|_| state != PersistedState::default());
+        if let Some(name) = name {
+            crate::lock(&NOTES).insert(name, (state, self.1));
         }
     }
 }

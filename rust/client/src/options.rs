@@ -5,6 +5,7 @@ use std::time::Duration;
 use cobotwire_core::exchange::{Nanos, RetryPolicy};
 use cobotwire_table::{Edition, Shown, bad_argument};
 
+use crate::session::Settings;
 use crate::{Error, Limits};
 
 /// How a client sends requests, and what it does with the arm at its end.
@@ -45,64 +46,56 @@ pub enum OnDrop {
 pub(crate) fn find_address(edition: &Edition, given: &str) -> Result<u8, Error> {
     let mut known = edition.addresses.iter();
     let named = known.find(|known| known.name.eq_ignore_ascii_case(given));
-    let number = given.parse().ok();
+    let number: Result<i64, _> = given.parse();
     let all = &edition.protocol.table.frame().addresses;
-    let numbered = number.filter(|number| all.contains(number));
+    let mut numbered = all.iter().copied();
+    let numbered = numbered.find(|raw| number == Ok(i64::from(*raw)));
     let found = named.map(|known| known.value).or(numbered);
-    found.ok_or_else(|| match edition.addresses.is_empty() || number.is_some() {
-        true => Error::usage(edition.no_address(number)),
-        false => {
-            let names = edition.addresses.iter().map(|known| &*known.name);
-            let names = names.collect::<Vec<_>>().join(", ");
-            Error::usage(bad_argument(
-                "address",
-                &Shown::Text(given.to_owned()),
-                &names,
-            ))
-        }
-    })
+    let shown = number.map_or_else(|_| Shown::Text(given.to_owned()), Shown::Integer);
+    found.ok_or_else(|| Error::usage(edition.no_address(&shown)))
 }
 
-/// What a handle of a client sends each request with.
-#[derive(Clone, Debug)]
-pub(crate) struct Settings {
-    pub address: Option<u8>,
-    pub timeout: Option<Nanos>,
-    pub deadline: Option<Nanos>,
-    pub ack_within: Option<Nanos>,
-    pub retry: RetryPolicy,
-}
+impl Options {
+    /// Return the options of a client that opens this port itself.
+    pub(crate) fn named(self, port: &str) -> Self {
+        let port_name = Some(port.to_owned());
+        Self { port_name, ..self }
+    }
 
-impl Settings {
-    pub fn new(edition: &Edition, options: &Options) -> Result<Self, Error> {
-        let address = options
-            .address
-            .as_ref()
-            .map(|given| find_address(edition, given));
-        check_times(options)?;
-        Ok(Self {
+    /// Return what each request is sent with.
+    pub(crate) fn settings(&self, edition: &Edition) -> Result<Settings, Error> {
+        check_times(self)?;
+        let address = self.address.as_ref();
+        let address = address.map(|given| find_address(edition, given));
+        Ok(Settings {
             address: address.transpose()?,
-            timeout: options.timeout.map(nanos),
-            deadline: options.deadline.map(nanos),
+            timeout: self.timeout.map(nanos),
+            deadline: self.deadline.map(nanos),
             ack_within: None,
-            retry: options.retry,
+            retry: self.retry,
         })
     }
 }
 
 /// Check what Python checks, with the same texts.
 fn check_times(options: &Options) -> Result<(), Error> {
-    const HOUR: Nanos = 3_600_000_000_000;
     let (retry, above) = (options.retry, "seconds above 0 and below 3600");
-    let from = "seconds from 0 to below 3600";
-    let times = [
-        ("timeout", options.timeout.map_or(1, nanos), 1, above),
-        ("retry.shortest_attempt", retry.shortest_attempt, 1, above),
-        ("retry.grace", retry.grace, 0, from),
-    ];
-    for (argument, time, least, allowed) in times {
-        if !(least..HOUR).contains(&time) {
-            let given = Shown::Real(Duration::from_nanos(time).as_secs_f64());
+    let (least, time) = (Duration::from_nanos(1), Duration::from_nanos);
+    for (argument, time, allowed) in [
+        ("timeout", options.timeout.unwrap_or(least), above),
+        (
+            "retry.shortest_attempt",
+            time(retry.shortest_attempt),
+            above,
+        ),
+        (
+            "retry.grace",
+            time(retry.grace).max(least),
+            "seconds from 0 to below 3600",
+        ),
+    ] {
+        if time.is_zero() || time.as_secs() >= 3600 {
+            let given = Shown::Real(time.as_secs_f64());
             return Err(Error::usage(bad_argument(argument, &given, allowed)));
         }
     }

@@ -1,124 +1,379 @@
-//! What both clients do with the exchange: begin requests, write them, sort what is received.
+//! The client without its transport and clock: requests, received bytes and times go in; bytes to
+//! write and outcomes come out. Times are nanoseconds of a clock that never goes back.
 
 use std::collections::{HashMap, VecDeque};
 use std::sync::{Arc, Mutex, Weak};
-use std::time::{Duration, Instant};
 
-use cobotwire_core::exchange::{Answer, Event, Exchange, Failure, Nanos, Safety, Ticket};
+use cobotwire_core::exchange::{
+    Event, Exchange, Failure, Nanos, PersistedState, RetryPolicy, Safety, Ticket,
+};
 
-use crate::encoder::{Encoder, Named, Prepared};
-use crate::notes::PortNames;
-use crate::options::Settings;
+use crate::encoder::{Encoder, Handle, Named, Outcome, Prepared};
 use crate::{Error, OnDrop};
 
-/// The least time that a write has, if a deadline limits it.
-const SHORTEST_WRITE: Nanos = 20_000_000;
 /// What a write has without a deadline: the line takes nothing for so long only if it is stuck.
 const LONGEST_WRITE: Nanos = 1_000_000_000;
 /// A write that takes longer than this was held up by a full line.
 const SLOW_WRITE: Nanos = 5_000_000;
+/// After this time, a full line is tried again.
+const FULL: Nanos = 1_000_000;
 
 /// How many events wait for their consumer; if more come, the oldest is dropped.
 const CAPACITY: usize = 1000;
 
 /// Events of one command that wait for their consumer.
-#[derive(Debug)]
-pub(crate) struct Queue {
-    pub command: usize,
+#[derive(Debug, Default)]
+pub struct Queue {
     pub events: VecDeque<Named>,
     pub lost: u64,
 }
 
-/// Bytes that are to be written now.
-#[derive(Debug)]
-pub(crate) struct Outgoing {
-    /// What ends an earlier request that was cut.
-    align: Vec<u8>,
-    data: Vec<u8>,
-    /// The request whose caller waits; `None`: it is a one-way request.
+/// Identifies a request that was submitted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct CallId(u64);
+
+/// With what each request of a handle is sent.
+#[derive(Clone, Debug)]
+pub struct Settings {
+    pub address: Option<u8>,
+    pub timeout: Option<Nanos>,
+    pub deadline: Option<Nanos>,
+    pub ack_within: Option<Nanos>,
+    pub retry: RetryPolicy,
+}
+
+/// A submitted request.
+struct Call {
+    prepared: Prepared,
+    called_at: Nanos,
+    ends_by: Nanos,
+    ack_within: Option<Nanos>,
+    /// By which the exchange knows it; `None`: it does not, or not yet.
     ticket: Option<Ticket>,
+    /// How many of its bytes were written.
+    written: usize,
+    /// Why writing it has failed.
+    fault: Option<Error>,
+    /// Whether it is a one-way request that was written, or has failed.
+    done: bool,
+}
+
+/// A request that is being written.
+struct Writing {
+    id: CallId,
+    /// `None`: it is a one-way request.
+    ticket: Option<Ticket>,
+    bytes: Vec<u8>,
+    /// How many of the bytes end an earlier request that was cut.
+    align: usize,
+    taken: usize,
+    at: Nanos,
+    until: Nanos,
     /// The device that it stops, if it does.
     stops: Option<Option<u8>>,
-    at: Nanos,
-    /// Until when the write may take.
-    pub until: Instant,
 }
 
-impl Outgoing {
-    pub fn bytes(&self) -> Vec<u8> {
-        [&*self.align, &*self.data].concat()
-    }
-}
-
-/// The exchange over one transport, with its clock.
-pub(crate) struct Session {
-    pub encoder: Arc<Encoder>,
-    pub exchange: Exchange,
-    pub url: String,
-    /// What happened to the transport last.
-    pub fault: Error,
-    /// Why writing a request has failed, by its ticket.
-    faults: HashMap<Ticket, Error>,
-    pub begun: Instant,
-    queues: Vec<Weak<Mutex<Queue>>>,
-    /// Until when the callers wait, by their tickets.
-    ends: HashMap<Ticket, Nanos>,
-    /// The ticket that was written last.
-    written: Option<Ticket>,
+/// The requests and replies of one transport.
+pub struct Session {
+    encoder: Arc<Encoder>,
+    exchange: Exchange,
+    url: String,
+    /// What happened to the transport; `None`: it is open.
+    fault: Option<Error>,
+    calls: HashMap<CallId, Call>,
+    submitted: u64,
+    /// The one-way requests that wait until they can be written.
+    one_ways: VecDeque<CallId>,
+    writing: Option<Writing>,
+    /// Who wants the events of which command.
+    queues: Vec<(usize, Weak<Mutex<Queue>>)>,
     /// The devices that were set in motion, and not stopped since.
     moved: Vec<Option<u8>>,
     on_drop: OnDrop,
-    names: PortNames,
 }
 
 impl Session {
-    /// Begin with what an earlier session left; `None`: nothing says which port it is.
-    pub fn new(encoder: Arc<Encoder>, url: Option<&str>, on_drop: OnDrop) -> Self {
-        let (names, begun) = (url.map(PortNames::of).unwrap_or_default(), Instant::now());
+    /// Begin on a port with what an earlier session on it left.
+    pub fn new(handle: &Handle, url: &str, on_drop: OnDrop, left: &PersistedState) -> Self {
+        let encoder = handle.encoder.clone();
         let mut exchange = Exchange::new(Arc::new(encoder.edition.protocol.clone()));
-        exchange.restore(&names.recall(begun));
-        let url = url.unwrap_or("port");
+        exchange.restore(left);
         Self {
-            exchange,
             encoder,
+            exchange,
             url: url.to_owned(),
-            fault: Error::link(url, "is lost", None),
-            faults: HashMap::new(),
-            begun,
-            names,
+            fault: None,
+            calls: HashMap::new(),
+            submitted: 0,
+            one_ways: VecDeque::new(),
+            writing: None,
             queues: Vec::new(),
-            ends: HashMap::new(),
-            written: None,
             moved: Vec::new(),
             on_drop,
         }
     }
 
-    pub fn now(&self) -> Nanos {
-        crate::options::nanos(self.begun.elapsed())
-    }
-
-    fn instant(&self, at: Nanos) -> Instant {
-        self.begun + Duration::from_nanos(at)
+    /// Return what happened to the transport; `None`: it is open.
+    pub fn fault(&self) -> Option<&Error> {
+        self.fault.as_ref()
     }
 
     /// Return for how long nothing is to be done unless bytes come.
-    pub fn idle(&self) -> Option<Duration> {
-        self.exchange.idle(self.now()).map(Duration::from_nanos)
+    pub fn idle(&self, now: Nanos) -> Option<Nanos> {
+        match &self.writing {
+            Some(_) => Some(FULL),
+            None if !self.one_ways.is_empty() => Some(0),
+            None => self.exchange.idle(now),
+        }
     }
 
-    /// Keep events of a command for a consumer.
-    pub fn subscribe(&mut self, queue: &Arc<Mutex<Queue>>) {
-        self.queues.retain(|queue| queue.strong_count() > 0);
-        self.queues.push(Arc::downgrade(queue));
+    /// Keep events of a command for a consumer, from now on.
+    pub fn subscribe(&mut self, command: usize) -> Arc<Mutex<Queue>> {
+        let queue = Arc::<Mutex<Queue>>::default();
+        self.queues.retain(|(_, queue)| queue.strong_count() > 0);
+        self.queues.push((command, Arc::downgrade(&queue)));
+        queue
     }
 
-    /// Take received bytes and let time pass; return whether a request is to be sent.
-    pub fn advance(&mut self, data: &[u8]) -> bool {
-        let now = self.now();
+    /// Take a request, which is sent when it is its turn; the call began at `called_at`.
+    pub fn submit(
+        &mut self,
+        prepared: &Prepared,
+        settings: &Settings,
+        called_at: Nanos,
+        now: Nanos,
+    ) -> CallId {
+        self.submitted += 1;
+        let id = CallId(self.submitted);
+        let longest = settings.deadline.unwrap_or(Nanos::MAX);
+        let mut call = Call {
+            prepared: prepared.clone(),
+            called_at,
+            ends_by: called_at.saturating_add(longest),
+            ack_within: settings.ack_within,
+            ticket: None,
+            written: 0,
+            fault: None,
+            done: false,
+        };
+        if self.fault.is_none() && prepared.awaits_reply {
+            let (request, ends_by) = (prepared.request.clone(), Some(call.ends_by));
+            let (wait, retry) = (settings.timeout, settings.retry);
+            call.ticket = Some(self.exchange.enqueue(request, wait, retry, now, ends_by));
+        } else if self.fault.is_none() {
+            self.one_ways.push_back(id);
+        }
+        self.calls.insert(id, call);
+        id
+    }
+
+    /// Return how a request has ended, once; `None`: it has not.
+    pub fn take(&mut self, id: CallId) -> Option<Outcome> {
+        let call = self.calls.get(&id)?;
+        let fault = call.fault.as_ref().or(self.fault.as_ref()).cloned();
+        let fault = fault.map(|fault| fault.after_writing(call.written));
+        let outcome = match (call.ticket, fault) {
+            (Some(ticket), fault) if !call.done => {
+                self.exchange.take(ticket)?.map(Some).map_err(|failure| {
+                    let error = self.encoder.failure(&call.prepared.request, &failure);
+                    let lost = || Error::link(&self.url, "is lost", None);
+                    error.or(fault).unwrap_or_else(lost)
+                })
+            }
+            (_, Some(fault)) => Err(fault),
+            (_, None) if call.done => Ok(None),
+            (_, None) => return None,
+        };
+        self.calls.remove(&id);
+        Some(outcome)
+    }
+
+    /// End a request whose caller waits no longer. It is not sent, unless it has been begun.
+    pub fn give_up(&mut self, id: CallId) {
+        self.one_ways.retain(|other| *other != id);
+        let begun = |writing: &mut Writing| writing.id != id || writing.taken > 0;
+        self.writing.take_if(|writing| !begun(writing));
+        if let Some(ticket) = self.calls.remove(&id).and_then(|call| call.ticket) {
+            self.exchange.give_up(ticket);
+        }
+    }
+
+    /// Take received bytes, which may be empty, and let time pass.
+    pub fn receive(&mut self, data: &[u8], now: Nanos) {
+        let mut writing = self.writing.iter();
+        if writing.any(|writing| writing.until <= now) {
+            self.end_write("", now);
+        }
+        for id in std::mem::take(&mut self.one_ways) {
+            match self.calls.get_mut(&id) {
+                Some(call) if call.ends_by <= now => call.unsent(&self.encoder, now),
+                _ => self.one_ways.push_back(id),
+            }
+        }
+        self.exchange.note_full(self.writing.is_some());
         let events = self.exchange.advance(data, now);
         self.dispatch(events);
-        self.exchange.has_next(now)
+    }
+
+    /// Return the bytes that are to be written now; none, if it is nothing's turn. `drained`: nothing
+    /// that has come is unread.
+    pub fn outgoing(&mut self, now: Nanos, drained: bool) -> &[u8] {
+        if self.writing.is_none() && self.fault.is_none() {
+            self.writing = self.next_write(now, drained);
+        }
+        let writing = self.writing.as_ref();
+        let rest = writing.and_then(|writing| writing.bytes.get(writing.taken..));
+        rest.unwrap_or_default()
+    }
+
+    /// Begin a one-way request, or else the query that is next.
+    fn next_write(&mut self, now: Nanos, drained: bool) -> Option<Writing> {
+        let (id, ticket, data) = if let Some(id) = self.one_ways.pop_front() {
+            let call = self.calls.get_mut(&id)?;
+            let (request, ends_by) = (call.prepared.request.clone(), Some(call.ends_by));
+            let (exchange, within) = (&mut self.exchange, call.ack_within);
+            let data;
+            (data, call.ticket) = exchange.send_one_way(request, now, within, ends_by);
+            (id, None, data)
+        } else {
+            let data = self.exchange.outgoing(now, drained);
+            let ticket = self.exchange.sent_last().filter(|_| !data.is_empty())?;
+            let mut calls = self.calls.iter();
+            let (id, _) = calls.find(|(_, call)| call.ticket == Some(ticket))?;
+            (*id, Some(ticket), data)
+        };
+        let (call, align) = (self.calls.get(&id)?, self.exchange.align());
+        let command = call.prepared.request.command;
+        let command = self.encoder.edition.commands.get(command)?;
+        let (address, stops) = (call.prepared.address, command.role == "stop");
+        // Only a stop that was written whole ends a motion for sure.
+        if command.safety == Safety::Motion && !stops && !self.moved.contains(&address) {
+            self.moved.push(address);
+        }
+        Some(Writing {
+            id,
+            ticket,
+            bytes: [align, &data].concat(),
+            align: align.len(),
+            taken: 0,
+            at: now,
+            until: match call.ends_by {
+                // A repeated query is written only if the line takes it at once.
+                _ if call.written > 0 => now,
+                Nanos::MAX => now.saturating_add(LONGEST_WRITE),
+                ends_by => ends_by,
+            },
+            stops: stops.then_some(address),
+        })
+    }
+
+    /// Note that the line has taken more bytes.
+    pub fn wrote(&mut self, size: usize, now: Nanos) {
+        if let Some(writing) = &mut self.writing {
+            writing.taken += size;
+            if writing.taken >= writing.bytes.len() {
+                self.end_write("", now);
+            }
+        }
+    }
+
+    /// Note that writing has failed.
+    pub fn fail_write(&mut self, why: &str, now: Nanos) {
+        self.end_write(why, now);
+    }
+
+    /// End a write: whole, or else for a reason; without one, its time is over.
+    fn end_write(&mut self, why: &str, now: Nanos) {
+        let Some(writing) = self.writing.take() else {
+            return;
+        };
+        let (taken, all) = (writing.taken, writing.bytes.len());
+        let (align, data) = writing.bytes.split_at(writing.align);
+        let mut written = data.len();
+        if taken < all {
+            let own = self.exchange.cut(align, data, Some(taken));
+            written = own.unwrap_or_default();
+        } else if !align.is_empty() {
+            self.exchange.aligned();
+        }
+        if let Some(ticket) = writing.ticket.filter(|_| now - writing.at > SLOW_WRITE) {
+            self.exchange.written(ticket, now);
+        }
+        if let Some(stopped) = writing.stops.filter(|_| taken == all) {
+            self.moved.retain(|address| *address != stopped);
+        }
+        // A given-up request has no caller any more. If a repeated query is not taken, the line is
+        // only full; its first attempt was taken.
+        let call = self.calls.get_mut(&writing.id);
+        let Some(call) = call.filter(|call| taken == all || call.written == 0 || !why.is_empty())
+        else {
+            return;
+        };
+        (call.written, call.done) = (written, writing.ticket.is_none() && taken < all);
+        if taken == all {
+            call.done = call.ticket.is_none();
+        } else if taken == 0 && call.ends_by <= now && why.is_empty() {
+            call.unsent(&self.encoder, now);
+        } else {
+            let seconds = (now - writing.at) as f64 / 1e9;
+            let few = format!("only {taken} of {all} bytes were taken in {seconds:.3} s");
+            let why = if why.is_empty() { &few } else { why };
+            let detail = format!("cannot be written: {why}");
+            call.fault = Some(Error::link(&self.url, &detail, None));
+        }
+        match (writing.ticket, call.ticket) {
+            (Some(_), _) if taken < all => self.exchange.fail_waiting(),
+            (None, Some(ticket)) if taken < all => self.exchange.give_up(ticket),
+            _ => {}
+        }
+    }
+
+    /// End every request: the transport is gone.
+    pub fn lose(&mut self, detail: &str, now: Nanos) -> Error {
+        if let Some(writing) = self.writing.take()
+            && let Some(call) = self.calls.get_mut(&writing.id)
+        {
+            call.written = writing.taken.saturating_sub(writing.align);
+        }
+        self.one_ways.clear();
+        let fault = Error::link(&self.url, detail, Some(0));
+        self.fault = Some(fault.clone());
+        let events = self.exchange.fail(now);
+        self.dispatch(events);
+        fault
+    }
+
+    /// End every request, since the client was closed; return what the next session must know.
+    pub fn close(&mut self, now: Nanos) -> PersistedState {
+        let state = self.persist(now);
+        self.moved.clear();
+        self.lose("is closed", now);
+        state
+    }
+
+    /// Return what the next session on this port must know. What is being written counts as cut.
+    pub fn persist(&mut self, now: Nanos) -> PersistedState {
+        self.fail_write("the client was closed", now);
+        self.exchange.persist(now)
+    }
+
+    /// Return the bytes that stop every device in motion, as the policy says. They are empty
+    /// if nothing moves.
+    pub fn stops(&mut self, now: Nanos) -> Vec<u8> {
+        self.end_write("", now);
+        let moved = std::mem::take(&mut self.moved);
+        let commands = &self.encoder.edition.commands;
+        let stop = commands.iter().find(|command| command.role == "stop");
+        let Some(stop) = stop.filter(|_| self.on_drop == OnDrop::Stop && !moved.is_empty()) else {
+            return Vec::new();
+        };
+        let mut bytes = self.exchange.align().to_vec();
+        for address in moved {
+            if let Ok(prepared) = self.encoder.prepare(&stop.name, &[], address) {
+                bytes.extend(&prepared.request.frame);
+            }
+        }
+        bytes
     }
 
     fn dispatch(&mut self, events: Vec<Event>) {
@@ -129,249 +384,24 @@ impl Session {
             else {
                 continue;
             };
-            for queue in self.queues.iter().filter_map(Weak::upgrade) {
+            let wanted = self.queues.iter().filter(|(wanted, _)| *wanted == command);
+            for queue in wanted.filter_map(|(_, queue)| queue.upgrade()) {
                 let mut queue = crate::lock(&queue);
-                if queue.command != command {
-                    continue;
-                }
                 if queue.events.len() >= CAPACITY {
                     queue.events.pop_front();
                     queue.lost += 1;
                 }
-                queue.events.push_back(self.encoder.named(decoded.clone()));
+                queue.events.push_back(self.encoder.named(&decoded));
             }
         }
-    }
-
-    /// Queue a request whose caller waits for its reply. The call began at `called_at`.
-    pub fn enqueue(
-        &mut self,
-        prepared: &Prepared,
-        settings: &Settings,
-        called_at: Nanos,
-    ) -> Ticket {
-        let now = self.now();
-        self.note_motion(prepared);
-        let ends_by = settings
-            .deadline
-            .map(|longest| called_at.saturating_add(longest));
-        let request = prepared.request.clone();
-        let ticket = self
-            .exchange
-            .enqueue(request, settings.timeout, settings.retry, now, ends_by);
-        self.ends.extend(ends_by.map(|ends_by| (ticket, ends_by)));
-        ticket
-    }
-
-    /// Return whether a request may be late if the line takes no bytes.
-    pub fn has_deadline(&self) -> bool {
-        !self.ends.is_empty()
-    }
-
-    /// Return whether a call may still wait for the line to take its request.
-    pub fn has_time(&self, settings: &Settings, called_at: Nanos) -> bool {
-        settings
-            .deadline
-            .is_some_and(|longest| self.now() - called_at < longest)
-    }
-
-    /// Return the bytes of a one-way request, and its ticket if its caller waits for the
-    /// acknowledgement. The call began at `called_at`.
-    pub fn one_way(
-        &mut self,
-        prepared: &Prepared,
-        settings: &Settings,
-        called_at: Nanos,
-    ) -> Result<(Outgoing, Option<Ticket>), Error> {
-        let now = self.now();
-        let ends_by = settings
-            .deadline
-            .map(|longest| called_at.saturating_add(longest));
-        if ends_by.is_some_and(|ends_by| ends_by <= now) {
-            let unsent = Failure::unsent(now - called_at);
-            return Err(self
-                .encoder
-                .failure(&prepared.request, &unsent, &self.fault));
-        }
-        self.note_motion(prepared);
-        let request = prepared.request.clone();
-        let (data, ticket) = self
-            .exchange
-            .send_one_way(request, now, settings.ack_within, ends_by);
-        let until = ends_by.unwrap_or(now + LONGEST_WRITE);
-        let mut outgoing = self.outgoing(data, None, now, until);
-        outgoing.stops = self.is_stop(prepared).then_some(prepared.address);
-        Ok((outgoing, ticket))
-    }
-
-    /// Return the request that is to be sent now; `drained`: nothing that has come is unread.
-    pub fn next(&mut self, drained: bool) -> Option<Outgoing> {
-        let now = self.now();
-        let data = self.exchange.outgoing(now, drained);
-        let ticket = self.exchange.sent_last().filter(|_| !data.is_empty())?;
-        let longest = self
-            .ends
-            .get(&ticket)
-            .map_or(LONGEST_WRITE, |ends_by| ends_by.saturating_sub(now));
-        // A repeated query is written only if the line takes it at once.
-        let longest = if self.written == Some(ticket) {
-            0
-        } else {
-            longest.max(SHORTEST_WRITE)
-        };
-        self.written = Some(ticket);
-        Some(self.outgoing(data, Some(ticket), now, now + longest))
-    }
-
-    fn outgoing(&self, data: Vec<u8>, ticket: Option<Ticket>, at: Nanos, until: Nanos) -> Outgoing {
-        let (align, until) = (self.exchange.align().to_vec(), self.instant(until));
-        Outgoing {
-            align,
-            data,
-            ticket,
-            stops: None,
-            at,
-            until,
-        }
-    }
-
-    /// Note how writing has ended: all bytes were taken, or `taken` of them, for a reason.
-    pub fn wrote(
-        &mut self,
-        outgoing: &Outgoing,
-        taken: usize,
-        error: Option<&std::io::Error>,
-    ) -> Result<(), Error> {
-        let (now, all) = (self.now(), outgoing.align.len() + outgoing.data.len());
-        let mut written = None;
-        if taken < all {
-            written = self
-                .exchange
-                .cut(&outgoing.align, &outgoing.data, Some(taken));
-        } else if !outgoing.align.is_empty() {
-            self.exchange.aligned();
-        }
-        if let Some(ticket) = outgoing.ticket.filter(|_| now - outgoing.at > SLOW_WRITE) {
-            self.exchange.written(ticket, now);
-        }
-        let seconds = Duration::from_nanos(now - outgoing.at).as_secs_f64();
-        let detail = match error {
-            Some(error) => format!("cannot be written: {error}"),
-            None if taken < all => format!(
-                "cannot be written: only {taken} of {all} bytes were taken in {seconds:.3} s"
-            ),
-            None => {
-                if let Some(stopped) = outgoing.stops {
-                    self.moved.retain(|address| *address != stopped);
-                }
-                return Ok(());
-            }
-        };
-        let fault = Error::link(&self.url, &detail, written);
-        if outgoing.ticket.is_none() {
-            return Err(fault);
-        }
-        // The line is only full if a repeated query is not taken; its first attempt was.
-        if error.is_some() || outgoing.until > self.instant(outgoing.at) {
-            self.faults
-                .extend(outgoing.ticket.map(|ticket| (ticket, fault)));
-            self.exchange.fail_waiting();
-        }
-        Ok(())
-    }
-
-    /// End every request: the transport is gone.
-    pub fn lose(&mut self, detail: &str) -> Error {
-        self.fault = Error::link(&self.url, detail, None);
-        let now = self.now();
-        let events = self.exchange.fail(now);
-        self.dispatch(events);
-        self.fault.clone()
-    }
-
-    /// Return how a request has ended; `None`: it has not.
-    pub fn take(&mut self, ticket: Ticket, prepared: &Prepared) -> Option<Result<Answer, Error>> {
-        let outcome = self.exchange.take(ticket)?;
-        self.ends.remove(&ticket);
-        let fault = self.faults.remove(&ticket);
-        Some(outcome.map_err(|failure| {
-            let fault = fault.as_ref().unwrap_or(&self.fault);
-            self.encoder.failure(&prepared.request, &failure, fault)
-        }))
-    }
-
-    /// End a request whose caller waits no longer.
-    pub fn give_up(&mut self, ticket: Ticket) {
-        self.ends.remove(&ticket);
-        self.faults.remove(&ticket);
-        self.exchange.give_up(ticket);
-    }
-
-    /// Note that a motion may begin; only a stop that was written whole ends it for sure.
-    fn note_motion(&mut self, prepared: &Prepared) {
-        let command = self.encoder.edition.commands.get(prepared.request.command);
-        let moves = command.is_some_and(|command| command.safety == Safety::Motion);
-        if moves && !self.is_stop(prepared) && !self.moved.contains(&prepared.address) {
-            self.moved.push(prepared.address);
-        }
-    }
-
-    fn is_stop(&self, prepared: &Prepared) -> bool {
-        let command = self.encoder.edition.commands.get(prepared.request.command);
-        command.is_some_and(|command| command.role == "stop")
-    }
-
-    /// End every request: the client was closed, and sends nothing to the arm any more.
-    pub fn close(&mut self) {
-        self.moved.clear();
-        // The transport is whole until now, so no request is cut.
-        self.leave();
-        self.lose("is closed");
-    }
-
-    /// Leave what the next session on this port must know.
-    fn leave(&mut self) {
-        let names = std::mem::take(&mut self.names);
-        names.leave(self.exchange.persist(self.now()), self.begun);
-    }
-
-    /// Return the bytes that stop every device in motion, as the policy says. They are empty
-    /// if nothing moves.
-    pub fn stops(&mut self) -> Vec<u8> {
-        let moved = std::mem::take(&mut self.moved);
-        let edition = &self.encoder.edition;
-        let Some(stop) = edition
-            .commands
-            .iter()
-            .find(|command| command.role == "stop")
-        else {
-            return Vec::new();
-        };
-        if self.on_drop == OnDrop::Leave || moved.is_empty() {
-            return Vec::new();
-        }
-        let mut bytes = self.exchange.align().to_vec();
-        for address in moved {
-            if let Ok(prepared) = self.encoder.prepare(&stop.name, &[], address) {
-                bytes.extend(&prepared.request.frame);
-            }
-        }
-        bytes
     }
 }
 
-impl Drop for Session {
-    fn drop(&mut self) {
-        self.leave();
-    }
-}
-
-impl Queue {
-    pub fn new(command: usize) -> Arc<Mutex<Self>> {
-        Arc::new(Mutex::new(Self {
-            command,
-            events: VecDeque::new(),
-            lost: 0,
-        }))
+impl Call {
+    /// End a request with the error that none of its bytes was written by its deadline.
+    fn unsent(&mut self, encoder: &Encoder, now: Nanos) {
+        let failure = Failure::unsent(now.saturating_sub(self.called_at));
+        self.fault = encoder.failure(&self.prepared.request, &failure);
+        self.done |= self.ticket.is_none();
     }
 }

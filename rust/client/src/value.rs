@@ -2,8 +2,8 @@
 
 use std::convert::Infallible;
 
-use cobotwire_core::{Encoding, Given, Row, Unread, Value as Flat, ValueFault};
-use cobotwire_table::{Filled, Quote, Shown};
+use cobotwire_core::{Encoding, Given, Row, Unread, ValueFault};
+use cobotwire_table::{Quote, Shown};
 
 /// The value of an argument or of a field of a reply.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -118,38 +118,25 @@ impl Quote for Value {
     }
 }
 
-impl From<Filled> for Value {
-    fn from(filled: Filled) -> Self {
-        match filled {
-            Filled::Counted => Self::Counted,
-            Filled::Integer(raw) => Self::Integer(raw),
-            Filled::Real(real) => Self::Real(real),
-            Filled::Row(row) => row.into_value(),
+impl From<Shown> for Value {
+    fn from(shown: Shown) -> Self {
+        match shown {
+            Shown::Flag(set) => Self::Flag(set),
+            Shown::Integer(raw) => Self::Integer(raw),
+            Shown::Real(real) => Self::Real(real),
+            Shown::Text(text) => Self::Text(text),
+            Shown::Bytes(bytes) => Self::Bytes(bytes),
+            Shown::List(row) | Shown::Tuple(row) => {
+                Self::Row(row.into_iter().map(Self::from).collect())
+            }
+            Shown::Other(_) => Self::Absent,
         }
     }
 }
 
 impl Value {
-    /// Return the next value of a decoded message; a row takes those that follow it.
-    pub(crate) fn nested(flat: &mut impl Iterator<Item = Flat>) -> Option<Self> {
-        Some(match flat.next()? {
-            Flat::Integer(raw) => Self::Integer(raw),
-            Flat::Real(real) => Self::Real(real),
-            Flat::Row(size) | Flat::Rows(size) => Self::Row(
-                (0..size)
-                    .map(|_| Self::nested(flat))
-                    .collect::<Option<_>>()?,
-            ),
-            Flat::Bytes(size) => Self::Bytes(bytes(flat, size)?),
-            Flat::Text(size, Encoding::Latin1) => {
-                Self::Text(bytes(flat, size)?.into_iter().map(char::from).collect())
-            }
-            Flat::Text(size, _) => Self::Text(String::from_utf8(bytes(flat, size)?).ok()?),
-        })
-    }
-
     /// Return the value with each number changed, in rows too.
-    pub(crate) fn map(self, change: fn(f64) -> f64) -> Self {
+    pub fn map(self, change: fn(f64) -> f64) -> Self {
         match self {
             Self::Real(real) => Self::Real(change(real)),
             Self::Integer(raw) => Self::Real(change(raw as f64)),
@@ -157,14 +144,6 @@ impl Value {
             other => other,
         }
     }
-}
-
-fn bytes(flat: &mut impl Iterator<Item = Flat>, size: usize) -> Option<Vec<u8>> {
-    let one = |value| match value {
-        Flat::Integer(raw) => u8::try_from(raw).ok(),
-        _ => None,
-    };
-    (0..size).map(|_| flat.next().and_then(one)).collect()
 }
 
 /// A type that arguments and fields of replies have.

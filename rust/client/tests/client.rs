@@ -4,7 +4,7 @@
 use std::collections::VecDeque;
 use std::io::{ErrorKind, Read, Write};
 use std::sync::{Arc, Mutex};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use cobotwire::editions::mycobot280::{
     AsyncMyCobot280, FreshMode, MyCobot280, messages::GetAngles,
@@ -174,7 +174,7 @@ fn cut_request_is_ended_before_the_next_one() {
     let arm = over(
         &port,
         Options {
-            deadline: Some(Duration::from_millis(30)),
+            deadline: Some(Duration::from_millis(300)),
             ..Options::default()
         },
     );
@@ -263,11 +263,7 @@ fn event_of_device_is_received() {
 
 #[test]
 fn dropped_future_is_given_up_and_its_reply_is_late() {
-    let runtime = tokio::runtime::Builder::new_current_thread()
-        .enable_all()
-        .build()
-        .unwrap();
-    runtime.block_on(async {
+    runtime().block_on(async {
         let (near, mut far) = tokio::io::duplex(1000);
         let arm = AsyncMyCobot280::over(near, Options::default()).unwrap();
         let short = Duration::from_millis(50);
@@ -284,12 +280,161 @@ fn dropped_future_is_given_up_and_its_reply_is_late() {
     });
 }
 
+/// Return a runtime of the asynchronous tests.
+fn runtime() -> tokio::runtime::Runtime {
+    let mut builder = tokio::runtime::Builder::new_current_thread();
+    builder.enable_all().build().unwrap()
+}
+
+/// Return an error and how much of the request it says was written.
+fn lost<T: std::fmt::Debug>(outcome: Result<T, Error>) -> (String, Option<usize>) {
+    match outcome.unwrap_err() {
+        Error::LinkError { message, written } => (message, written),
+        other => panic!("{other:?}"),
+    }
+}
+
+#[test]
+fn full_line_delays_neither_the_refusal_of_a_stop_nor_a_close() {
+    runtime().block_on(async {
+        let (near, far) = tokio::io::duplex(10);
+        let deadline = Some(Duration::from_millis(200));
+        let options = Options {
+            deadline,
+            ..Options::default()
+        };
+        let arm = AsyncMyCobot280::over(near, options).unwrap();
+        let begun = Instant::now();
+        let (moved, stopped) = tokio::join!(arm.send_angles([0.0; 6], 50), arm.stop());
+        assert!(begun.elapsed() < Duration::from_secs(1));
+        assert_eq!(lost(moved).1, Some(10));
+        let Err(Error::ReplyTimeout {
+            message, attempts, ..
+        }) = stopped
+        else {
+            panic!("{stopped:?}");
+        };
+        assert!(message.starts_with("stop() was not sent: its deadline passed"));
+        assert!(message.ends_with("while the line took no bytes"));
+        assert_eq!(attempts, 0);
+        // The rest of the cut request is stuck, and then nobody waits any more.
+        let closed = async {
+            tokio::time::sleep(Duration::from_millis(20)).await;
+            arm.close().await;
+        };
+        let (stopped, ()) = tokio::join!(arm.stop(), closed);
+        let text = "port: cannot be written: the client was closed";
+        assert_eq!(lost(stopped), (text.to_owned(), Some(0)));
+        drop(far);
+    });
+}
+
+#[test]
+fn stop_is_sent_when_a_full_line_takes_bytes_again() {
+    runtime().block_on(async {
+        let (near, mut far) = tokio::io::duplex(10);
+        let arm = AsyncMyCobot280::over(near, Options::default()).unwrap();
+        let mut sent = [0; 23];
+        let read = async {
+            tokio::time::sleep(Duration::from_millis(20)).await;
+            tokio::io::AsyncReadExt::read_exact(&mut far, &mut sent).await
+        };
+        let calls = async { tokio::join!(arm.send_angles([0.0; 6], 50), arm.stop()) };
+        let ((moved, stopped), read) = tokio::join!(calls, read);
+        assert_eq!((moved, stopped, read.unwrap()), (Ok(()), Ok(()), 23));
+        assert!(sent.ends_with(&STOP));
+    });
+}
+
+#[test]
+fn error_says_how_much_of_a_request_was_written() {
+    let port = Memory::default();
+    let arm = over(&port, Options::default());
+    let waiting = arm.clone();
+    let waiting = std::thread::spawn(move || waiting.get_angles());
+    while port.written().is_empty() {
+        std::thread::yield_now();
+    }
+    arm.close().unwrap();
+    // A request that was written whole, and two that were not sent.
+    assert_eq!(lost(waiting.join().unwrap()).1, Some(5));
+    assert_eq!(
+        lost(arm.get_angles()),
+        ("port: is closed".to_owned(), Some(0))
+    );
+    let acknowledged = arm.acknowledged(Duration::from_secs(1));
+    assert_eq!(lost(acknowledged.stop()).1, Some(0));
+    assert_eq!(port.written().len(), 5);
+}
+
+#[test]
+fn stop_does_not_wait_for_the_reply_that_another_thread_waits_for() {
+    let listener = std::net::TcpListener::bind("127.0.0.1:0").unwrap();
+    let arm = MyCobot280::open(&format!("socket://{}", listener.local_addr().unwrap())).unwrap();
+    let mut far = listener.accept().unwrap().0;
+    let waiting = arm.clone();
+    let waiting = std::thread::spawn(move || waiting.get_angles());
+    far.read_exact(&mut [0; 5]).unwrap();
+    let stops = (0..10).map(|_| {
+        let begun = Instant::now();
+        arm.stop().unwrap();
+        begun.elapsed()
+    });
+    let shortest = stops.min().unwrap();
+    assert!(shortest < Duration::from_millis(15), "{shortest:?}");
+    arm.close().unwrap();
+    assert_eq!(lost(waiting.join().unwrap()).1, Some(5));
+}
+
+#[cfg(all(unix, feature = "serial"))]
+#[test]
+fn serial_port_of_the_caller_never_waits_longer_than_the_deadline() {
+    let (near, far) = serialport::TTYPort::pair().unwrap();
+    let near: Box<dyn serialport::SerialPort> = Box::new(near);
+    let deadline = Some(Duration::from_millis(100));
+    let options = Options {
+        deadline,
+        on_drop: OnDrop::Leave,
+        ..Options::default()
+    };
+    let arm = MyCobot280::over(near, options).unwrap();
+    // Nobody reads what the other end of the line receives.
+    let mut last = Instant::now();
+    let refused = (0..10_000).find_map(|_| {
+        last = Instant::now();
+        arm.stop().err()
+    });
+    assert!(last.elapsed() < Duration::from_secs(1));
+    assert!(refused.is_some(), "the line is never full");
+    drop(far);
+}
+
+#[test]
+fn events_and_samples_are_streams() {
+    async fn next<S: futures_core::Stream + Unpin>(mut stream: S) -> Option<S::Item> {
+        std::future::poll_fn(|context| std::pin::Pin::new(&mut stream).poll_next(context)).await
+    }
+    runtime().block_on(async {
+        let (near, mut far) = tokio::io::duplex(1000);
+        let arm = pro630::AsyncPro630::over(near, Options::default()).unwrap();
+        let events = arm.events(Some(Duration::from_millis(500))).unwrap();
+        let samples = arm.poll(pro630::messages::IsMoving {}, 100.0).unwrap();
+        let frame = [0xFE, 0xFE, 0x04, 0x5B, 0x00, 0xCD, 0x46];
+        let sent = tokio::io::AsyncWriteExt::write_all(&mut far, &frame);
+        let (event, sent) = tokio::join!(next(events), sent);
+        sent.unwrap();
+        assert_eq!(event, Some(Ok(pro630::MotionEnded { status: 0 })));
+        drop(far);
+        assert!(matches!(
+            next(samples).await,
+            Some(Err(Error::LinkError { .. }))
+        ));
+    });
+}
+
 #[test]
 fn end_of_runtime_stops_moving_arm() {
-    let runtime = tokio::runtime::Builder::new_current_thread()
-        .enable_all()
-        .build()
-        .unwrap();
+    let runtime = runtime();
     let listener = std::net::TcpListener::bind("127.0.0.1:0").unwrap();
     let url = format!("socket://{}", listener.local_addr().unwrap());
     runtime.block_on(async {

@@ -37,6 +37,30 @@ pub struct Decoded {
     pub address: Option<u8>,
 }
 
+impl Decoded {
+    /// Return the values of each field; a row is followed by its elements.
+    pub fn fields(&self) -> impl Iterator<Item = &[Value]> {
+        let mut rest = self.values.as_slice();
+        core::iter::from_fn(move || {
+            let (field, after) = rest.split_at_checked(size(rest))?;
+            rest = after;
+            (!field.is_empty()).then_some(field)
+        })
+    }
+}
+
+/// Return how many of these values are the first field.
+fn size(values: &[Value]) -> usize {
+    match values.first() {
+        None => 0,
+        Some(Value::Integer(_) | Value::Real(_)) => 1,
+        Some(Value::Row(count) | Value::Bytes(count) | Value::Text(count, _)) => 1 + count,
+        Some(Value::Rows(count)) => {
+            (0..*count).fold(1, |at, _| at + values.get(at..).map_or(0, size))
+        }
+    }
+}
+
 /// Decode `data`, which must be one frame and nothing else, as the first message that allows its
 /// values. With `of`, only messages of the command with that index count.
 ///

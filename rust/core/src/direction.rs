@@ -9,6 +9,17 @@ pub enum Direction {
     Reply,
 }
 
+impl Direction {
+    /// Return its name in the API.
+    #[must_use]
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Request => "request",
+            Self::Reply => "reply",
+        }
+    }
+}
+
 /// The directions whose frames a framer accepts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Listening {

@@ -1,5 +1,6 @@
 //! Messages: their directions, their variants, and the commands that they belong to.
 
+use alloc::collections::BTreeMap;
 use alloc::vec::Vec;
 
 use crate::direction::Direction;
@@ -69,6 +70,40 @@ impl Variant {
         self.starts.get(field).copied().unwrap_or_default()
     }
 
+    /// Return whether data bytes can be this variant, as far as its constants show.
+    pub(crate) fn has_constants(&self, data: &[u8]) -> bool {
+        let mut places = self.places().into_iter();
+        self.size == data.len()
+            && places.all(|(at, (field, number))| {
+                field.choices.len() != 1 || field.allows(number, number.unpack(data, at))
+            })
+    }
+
+    /// Return whether no data bytes are legal in both variants. That is known if their sizes
+    /// differ, or if a number of each, at the same place, have no raw value in common, such as two
+    /// constants.
+    pub(crate) fn excludes(&self, other: &Self) -> bool {
+        let there = other.places();
+        let differs = |(at, one): (usize, (&Field, &Number))| {
+            let other = there.get(&at);
+            other.is_some_and(|other| one.1.is_alike(other.1) && !meet(one, *other))
+        };
+        self.size != other.size || self.places().into_iter().any(differs)
+    }
+
+    /// Return the fields and numbers that no selector decides, by their offset.
+    fn places(&self) -> BTreeMap<usize, (&Field, &Number)> {
+        let mut found = BTreeMap::new();
+        for (field, start) in self.fields.iter().zip(&self.starts) {
+            let mut at = *start;
+            for number in field.numbers(0).iter().filter(|_| field.selector.is_none()) {
+                found.insert(at, (field, number));
+                at += number.step();
+            }
+        }
+        found
+    }
+
     pub(crate) fn check(&self, frame: &FrameFormat, direction: Direction) -> Result<(), Misfit> {
         self.fields
             .iter()
@@ -86,6 +121,17 @@ impl Variant {
         }
         Ok(())
     }
+}
+
+/// Return whether a raw value is legal in both numbers of fields.
+fn meet(one: (&Field, &Number), other: (&Field, &Number)) -> bool {
+    for ((field, number), (two, there)) in [(one, other), (other, one)] {
+        let own = [&field.choices, &number.choices];
+        if let Some(choices) = own.into_iter().find(|choices| !choices.is_empty()) {
+            return choices.iter().any(|raw| two.allows(there, *raw));
+        }
+    }
+    one.1.minimum.max(other.1.minimum) <= one.1.maximum.min(other.1.maximum)
 }
 
 /// One command: its id, its request and its reply.

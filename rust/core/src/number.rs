@@ -140,6 +140,14 @@ impl Number {
         self.float || self.scaled()
     }
 
+    /// Return whether the same bytes hold the same raw value in both numbers.
+    pub(crate) fn is_alike(&self, other: &Self) -> bool {
+        let bits = |number: &Self| number.bits.map(|bits| (bits.shift, bits.count));
+        let sign = |number: &Self| (number.signed_at, number.float);
+        (self.width, self.order) == (other.width, other.order)
+            && (sign(self), bits(self)) == (sign(other), bits(other))
+    }
+
     /// Return the number of bytes from here to the next number of the field.
     #[inline]
     pub(crate) fn step(&self) -> usize {
@@ -275,14 +283,20 @@ impl Number {
         if self.float || self.bits.is_some() || !self.choices.is_empty() {
             return false; // then each value is compared
         }
-        let values = 1 << (8 * self.width);
-        let signed_at = self.signed_at.clamp(-1, values - 1);
-        let least = if signed_at < values - 1 {
-            signed_at + 1 - values
-        } else {
-            0
-        };
-        self.minimum <= least && signed_at <= self.maximum
+        let (least, most) = self.natural_range();
+        self.minimum <= least && most <= self.maximum
+    }
+
+    /// Return the lowest and the highest raw value that its bytes can hold; of floats: finite ones.
+    #[must_use]
+    pub fn natural_range(&self) -> (i64, i64) {
+        if self.float {
+            let infinite = raw_of_float(f64::INFINITY, self.width);
+            return (-infinite, infinite - 1);
+        }
+        let top = (1 << (8 * self.width.min(7))) - 1;
+        let signed_at = self.signed_at.clamp(-1, top);
+        (if signed_at < top { signed_at - top } else { 0 }, signed_at)
     }
 
     pub(crate) fn check(&self) -> Result<(), Misfit> {

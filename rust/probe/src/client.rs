@@ -20,7 +20,7 @@ use tokio::net::unix::pipe;
 use tokio::runtime::Runtime;
 use tokio::task::AbortHandle;
 
-use crate::values::hex;
+use crate::values::{hex, shown, value_of};
 
 #[derive(Clone)]
 enum Arm {
@@ -115,6 +115,7 @@ impl Probe {
             timeout: seconds("timeout"),
             deadline: seconds("deadline"),
             retry,
+            address: self.given.get("address").and_then(Json::as_str).map(str::to_owned),
             port_name: Some(self.url.clone()),
             ..Options::default()
         }
@@ -182,8 +183,12 @@ impl<P: Port> Port for Observed<P> {
         self.0.wait_at_most(longest)
     }
 
-    fn has_room(&mut self) -> bool {
-        self.0.has_room()
+    fn write_some(&mut self, data: &[u8]) -> io::Result<usize> {
+        self.observe(data, |port| port.write_some(data))
+    }
+
+    fn finish(&mut self) -> io::Result<()> {
+        self.0.finish()
     }
 }
 
@@ -261,28 +266,4 @@ fn named(line: &Json) -> Vec<(&str, Value)> {
     let fields = line.get("fields").and_then(Json::as_object);
     let named = |(name, value)| (String::as_str(name), value_of(value));
     fields.into_iter().flatten().map(named).collect()
-}
-
-fn value_of(json: &Json) -> Value {
-    match json {
-        Json::Bool(set) => Value::Flag(*set),
-        Json::String(text) => Value::Text(text.clone()),
-        Json::Array(row) => Value::Row(row.iter().map(value_of).collect()),
-        _ => match (json.as_i64(), json.as_f64()) {
-            (Some(raw), _) => Value::Integer(raw),
-            (None, Some(real)) => Value::Real(real),
-            (None, None) => Value::Absent,
-        },
-    }
-}
-
-fn shown(value: &Value) -> Json {
-    match value {
-        Value::Integer(raw) => json!(raw),
-        Value::Real(real) => json!(real),
-        Value::Flag(set) => json!(set),
-        Value::Text(text) => json!(text),
-        Value::Row(row) => row.iter().map(shown).collect(),
-        _ => Json::Null,
-    }
 }

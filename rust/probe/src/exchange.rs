@@ -1,186 +1,144 @@
-//! The exchange. A line is a list of steps, each `[exchange, now, method, arguments...]`; the answer
-//! is the list of their results, each with what can be seen of the exchange afterwards. Times are
-//! nanoseconds, bytes hexadecimal digits. A request is given by its number: that of its ticket.
+//! The steps of an exchange. Each result comes with what can be seen of the exchange afterwards.
+//! Times are nanoseconds; bytes are hexadecimal digits; a request is given by the number of its
+//! ticket, messages and errors by their texts. `tests/session/twins.py` is the other end.
 
-use std::collections::BTreeMap;
 use std::sync::Arc;
 
+use cobotwire::Value;
 use cobotwire_core::exchange::{
-    Event, Exchange, Failure, Kind, LateFrame, Part, PersistedState, Received, ReplyError, Request,
-    RetryPolicy, SeenFrame, Ticket, WaitedFor,
+    Answer, Event, Exchange, Failure, Nanos, PersistedState, ReplyError, Request, RetryPolicy,
+    SeenFrame, Ticket,
 };
-use cobotwire_core::{DecodeError, Decoded};
-use cobotwire_table::Edition;
+use cobotwire_core::{Decoded, Direction, Row};
+use cobotwire_table::{Edition, link_error};
 use serde_json::{Value as Json, json};
 
-use crate::values::{Sample, from_hex, hex, nested};
+use crate::values::{from_hex, hex, index, value_of};
 
-/// The exchanges and editions of one process.
-#[derive(Default)]
-pub struct Exchanges {
-    editions: BTreeMap<String, Arc<Edition>>,
-    open: BTreeMap<u64, Open>,
-}
-
-/// An exchange, with its tickets by number.
-#[derive(Clone)]
-struct Open {
+/// An exchange, with its requests by the numbers of their tickets.
+pub struct Open {
     edition: Arc<Edition>,
     exchange: Exchange,
-    tickets: Vec<Ticket>,
-}
-
-type Answer = Result<Json, String>;
-
-impl Exchanges {
-    /// Answer one line.
-    pub fn answer(&mut self, line: &str) -> String {
-        let steps: Vec<Vec<Json>> = serde_json::from_str(line).unwrap_or_default();
-        let answers = steps.iter().map(|step| {
-            let answer = self.step(step);
-            answer.unwrap_or_else(|error| json!({"error": error}))
-        });
-        Json::Array(answers.collect()).to_string()
-    }
-
-    fn step(&mut self, step: &[Json]) -> Answer {
-        let [number, now, method, arguments @ ..] = step else {
-            return Err("a step is a number, a time, a method and arguments".into());
-        };
-        let number = number.as_u64().ok_or("no number")?;
-        let now = now.as_u64().ok_or("no time")?;
-        let arguments = Arguments(arguments);
-        match method.as_str().unwrap_or_default() {
-            "new" => {
-                let edition = self.edition(arguments.text(0)?)?;
-                let open = Open {
-                    exchange: Exchange::new(Arc::new(edition.protocol.clone())),
-                    tickets: Vec::new(),
-                    edition,
-                };
-                self.open.insert(number, open);
-                Ok(Json::Null)
-            }
-            "fork" => {
-                let copy = self.open.get(&number).cloned().ok_or("not open")?;
-                self.open.insert(arguments.number(0)?, copy);
-                Ok(Json::Null)
-            }
-            method => {
-                let open = self.open.get_mut(&number).ok_or("not open")?;
-                let result = match method {
-                    "enqueue" | "send_one_way" => open.submit(method, &arguments, now),
-                    _ => open.call(method, &arguments, now),
-                }?;
-                Ok(json!([result, open.look(now)]))
-            }
-        }
-    }
-
-    fn edition(&mut self, path: &str) -> Result<Arc<Edition>, String> {
-        if let Some(edition) = self.editions.get(path) {
-            return Ok(Arc::clone(edition));
-        }
-        let data = std::fs::read(path).map_err(|error| error.to_string())?;
-        let edition = Edition::read(&data).map_err(|error| format!("{error:?}"))?;
-        let edition = Arc::new(edition);
-        self.editions.insert(path.into(), Arc::clone(&edition));
-        Ok(edition)
-    }
-}
-
-/// The arguments of a step.
-struct Arguments<'a>(&'a [Json]);
-
-impl Arguments<'_> {
-    fn at(&self, index: usize) -> &Json {
-        self.0.get(index).unwrap_or(&Json::Null)
-    }
-
-    fn text(&self, index: usize) -> Result<&str, String> {
-        let text = self.at(index).as_str();
-        text.ok_or_else(|| format!("argument {index} is no text"))
-    }
-
-    fn number(&self, index: usize) -> Result<u64, String> {
-        let number = self.at(index).as_u64();
-        number.ok_or_else(|| format!("argument {index} is no number"))
-    }
-
-    fn flag(&self, index: usize) -> bool {
-        self.at(index) == &Json::Bool(true)
-    }
-
-    fn bytes(&self, index: usize) -> Result<Vec<u8>, String> {
-        from_hex(self.at(index)).ok_or_else(|| format!("argument {index} is no bytes"))
-    }
+    requests: Vec<(Ticket, Request)>,
+    /// How the transport failed.
+    fault: String,
 }
 
 impl Open {
-    fn submit(&mut self, method: &str, arguments: &Arguments<'_>, now: u64) -> Answer {
-        let request = self.request(arguments.at(0))?;
-        let (ends_by, time) = (arguments.at(1).as_u64(), arguments.at(2).as_u64());
-        if method == "send_one_way" {
-            let (data, ticket) = self.exchange.send_one_way(request, now, time, ends_by);
-            self.tickets.extend(ticket);
-            return Ok(json!([hex(&data), ticket.is_some()]));
+    pub fn new(edition: Arc<Edition>) -> Self {
+        Self {
+            exchange: Exchange::new(Arc::new(edition.protocol.clone())),
+            edition,
+            requests: Vec::new(),
+            fault: String::new(),
         }
-        let policy = policy(arguments.at(3));
-        let ticket = self.exchange.enqueue(request, time, policy, now, ends_by);
-        self.tickets.push(ticket);
-        Ok(Json::Null)
     }
 
-    fn call(&mut self, method: &str, arguments: &Arguments<'_>, now: u64) -> Answer {
-        let exchange = &mut self.exchange;
-        let ticket = || {
-            let index = usize::try_from(arguments.number(0)?).unwrap_or(usize::MAX);
-            let ticket = self.tickets.get(index).copied();
-            ticket.ok_or_else(|| "no such ticket".to_owned())
-        };
-        match method {
-            "give_up" => exchange.give_up(ticket()?),
-            "written" => exchange.written(ticket()?, now),
-            "fail_waiting" => exchange.fail_waiting(),
-            "restore" => exchange.restore(&restored(arguments.at(0))),
-            "note_full" => exchange.note_full(arguments.flag(0)),
-            "aligned" => exchange.aligned(),
-            _ => return self.ask(method, arguments, now),
+    /// Do a step; `left` is the state that the last exchange left.
+    pub fn step(
+        &mut self,
+        method: &str,
+        now: Nanos,
+        given: &[Json],
+        left: &mut PersistedState,
+    ) -> Json {
+        if method == "state" {
+            return json!(format!("{:?}", self.exchange));
         }
-        Ok(Json::Null)
+        let exchange = &mut self.exchange;
+        let ticket = || self.requests[given[0].as_u64().unwrap() as usize].0;
+        match method {
+            "give_up" => exchange.give_up(ticket()),
+            "written" => exchange.written(ticket(), now),
+            "restore" => exchange.restore(left),
+            "note_full" => exchange.note_full(given[0] == true),
+            "end" => exchange.aligned(),
+            "fail_waiting" => {
+                self.fault = fault(&given[0]);
+                self.exchange.fail_waiting();
+            }
+            _ => {
+                let result = self.call(method, now, given, left);
+                return json!([result, self.look(now)]);
+            }
+        }
+        json!([Json::Null, self.look(now)])
     }
 
     /// Call a method that returns something.
-    fn ask(&mut self, method: &str, arguments: &Arguments<'_>, now: u64) -> Answer {
+    fn call(
+        &mut self,
+        method: &str,
+        now: Nanos,
+        given: &[Json],
+        left: &mut PersistedState,
+    ) -> Json {
         let exchange = &mut self.exchange;
-        Ok(match method {
-            "fail" => events(&exchange.fail(now)),
-            "persist" => persisted(&exchange.persist(now)),
-            "cut" => {
-                let (align, request) = (arguments.bytes(0)?, arguments.bytes(1)?);
-                let written = arguments.at(2).as_u64();
-                let written = written.and_then(|size| usize::try_from(size).ok());
-                json!(exchange.cut(&align, &request, written))
+        let bytes = |index: usize| from_hex(&given[index]);
+        let events = match method {
+            "prepare" => return json!(self.request(&given[0]).err()),
+            "enqueue" => {
+                let [request, wait, policy, ends_by] = [0, 1, 2, 3].map(|at| &given[0][at]);
+                let request = self.request(request).unwrap();
+                let (wait, policy) = (wait.as_u64(), retry_policy(policy));
+                let ends_by = ends_by.as_u64();
+                let ticket = self
+                    .exchange
+                    .enqueue(request.clone(), wait, policy, now, ends_by);
+                self.requests.push((ticket, request));
+                return Json::Null;
             }
-            "advance" => events(&exchange.advance(&arguments.bytes(0)?, now)),
-            "receive" => events(&exchange.receive(&arguments.bytes(0)?, now)),
-            "wake" => events(&exchange.wake(now)),
-            "end_overdue" => events(&exchange.end_overdue(now)),
-            "outgoing" => json!(hex(&exchange.outgoing(now, arguments.flag(0)))),
-            "state" => json!(format!("{exchange:?}")),
-            _ => return Err(format!("no method {method}")),
-        })
+            "send_one_way" => {
+                let (request, number) = (self.request(&given[0]).unwrap(), self.requests.len());
+                let (within, ends_by) = (given[1].as_u64(), given[2].as_u64());
+                let (data, ticket) =
+                    self.exchange
+                        .send_one_way(request.clone(), now, within, ends_by);
+                self.requests.extend(ticket.map(|ticket| (ticket, request)));
+                return json!([hex(&data), ticket.map(|_| number)]);
+            }
+            "persist" => {
+                *left = exchange.persist(now);
+                return persisted(left);
+            }
+            "cut" => {
+                let written = given[2].as_u64().map(|size| size as usize);
+                return json!(exchange.cut(&bytes(0), &bytes(1), written));
+            }
+            "outgoing" => return json!(hex(&exchange.outgoing(now, given[0] == true))),
+            "fail" => {
+                self.fault = fault(&given[0]);
+                exchange.fail(now)
+            }
+            "advance" => exchange.advance(&bytes(0), now),
+            "receive" => exchange.receive(&bytes(0), now),
+            "wake" => exchange.wake(now),
+            _ => exchange.end_overdue(now),
+        };
+        events.iter().map(|event| self.event(event)).collect()
     }
 
     /// Return what can be seen of the exchange; outcomes are taken.
-    fn look(&mut self, now: u64) -> Json {
+    fn look(&mut self, now: Nanos) -> Json {
         let exchange = &mut self.exchange;
-        let tickets = self.tickets.iter().enumerate();
-        let ended: Vec<Json> = tickets
-            .filter_map(|(index, ticket)| Some(json!([index, outcome(&exchange.take(*ticket)?)])))
-            .collect();
+        let tickets = self.requests.iter().enumerate();
+        let ended = tickets.filter_map(|(index, (ticket, request))| {
+            let outcome = exchange.take(*ticket)?;
+            Some((index, request, outcome))
+        });
+        let ended: Vec<_> = ended.collect();
+        let ended = ended.iter().map(|(index, request, outcome)| {
+            let outcome = outcome.as_ref();
+            let failed = |why| self.failed(request, why);
+            json!([
+                index,
+                outcome.map_or_else(failed, |answer| self.answered(request, answer))
+            ])
+        });
+        let ended: Json = ended.collect();
+        let exchange = &self.exchange;
         let last = exchange.sent_last();
-        let last = last.and_then(|last| self.tickets.iter().position(|known| *known == last));
+        let last = last.and_then(|last| self.requests.iter().position(|each| each.0 == last));
         json!([
             exchange.idle(now),
             exchange.busy(),
@@ -191,204 +149,131 @@ impl Open {
         ])
     }
 
-    /// Return the request of `{"command", "values", "texts", "address", "variant"}`.
+    /// Return the request of `{"command", "values", "texts", "address", "variant"}`, or the text of
+    /// its error.
     fn request(&self, json: &Json) -> Result<Request, String> {
-        let name = json.get("command").and_then(Json::as_str);
-        let mut commands = self.edition.commands.iter();
-        let command = commands.position(|command| Some(command.name.as_str()) == name);
-        let values = Sample(json.get("values").cloned().unwrap_or_default());
-        let texts = json.get("texts").and_then(Json::as_array);
-        let texts = texts.into_iter().flatten().filter_map(Json::as_str);
-        let texts: Vec<&str> = texts.collect();
-        let number = |key: &str| json.get(key).and_then(Json::as_u64);
-        let address = number("address").and_then(|address| u8::try_from(address).ok());
-        let variant = number("variant").and_then(|variant| usize::try_from(variant).ok());
-        let command = command.ok_or("no such command")?;
-        Request::encode::<Sample>(
-            &self.edition.protocol,
-            command,
-            &values,
-            &texts,
-            address,
-            variant,
+        let (edition, number) = (&*self.edition, |key: &str| json[key].as_u64());
+        let command = index(edition, &json["command"]);
+        let values = value_of(&json["values"]);
+        let texts = json["texts"].as_array().unwrap().iter();
+        let texts: Vec<&str> = texts.filter_map(Json::as_str).collect();
+        let address = number("address").map(|address| address as u8);
+        let variant = number("variant").map(|variant| variant as usize);
+        let protocol = &edition.protocol;
+        Request::encode::<Value>(protocol, command, &values, &texts, address, variant).map_err(
+            |error| edition.request_error(command, &error, (values.count(), &texts, address)),
         )
-        .map_err(|error| format!("{error:?}"))
+    }
+
+    fn event(&self, event: &Event) -> Json {
+        let name = |command: &usize| &self.edition.commands[*command].name;
+        let message = |decoded: &Decoded| self.edition.message(decoded);
+        match event {
+            Event::Noise {
+                offset,
+                reason,
+                data,
+            } => json!(["Noise", offset, hex(data), reason.word()]),
+            Event::Matched {
+                command,
+                decoded,
+                texts,
+                frame: own,
+            } => {
+                let texts = decoded.is_none().then_some(texts);
+                let decoded = decoded.as_ref().map(message);
+                let own = own.as_ref().map(frame);
+                json!(["ReplyMatched", name(command), texts, decoded, own])
+            }
+            Event::Rejected {
+                command,
+                error,
+                frame: own,
+            } => {
+                let text = match (error, own) {
+                    (ReplyError::Frame(error), Some(own)) => {
+                        let direction = Direction::Reply;
+                        Some(self.edition.decode_error(direction, *error, own.bytes()))
+                    }
+                    _ => None,
+                };
+                json!([
+                    "ReplyRejected",
+                    name(command),
+                    text,
+                    own.as_ref().map(frame)
+                ])
+            }
+            Event::Late {
+                command,
+                frame: own,
+            } => json!(["LateReply", name(command), frame(own)]),
+            Event::Ack {
+                command,
+                decoded,
+                frame: own,
+            } => json!(["AckReceived", name(command), message(decoded), frame(own)]),
+            Event::DeviceEvent {
+                command,
+                decoded,
+                frame: own,
+            } => json!(["EventReceived", name(command), message(decoded), frame(own)]),
+            Event::Unexpected { frame: own } => json!(["UnexpectedFrame", frame(own)]),
+            Event::Echo { frame: own } => json!(["EchoReceived", frame(own)]),
+            Event::Expired {
+                command,
+                requested_at,
+                attempts,
+            } => json!(["RequestExpired", name(command), requested_at, attempts]),
+        }
+    }
+
+    fn answered(&self, request: &Request, answer: &Answer) -> Json {
+        let facts = &self.edition.protocol.facts[request.command];
+        let names = facts.text.iter().flat_map(|form| &form.fields);
+        let texts = names.zip(&answer.texts);
+        let texts: Vec<_> = texts.map(|(name, text)| format!("{name}={text}")).collect();
+        let fields = answer.decoded.as_ref().map(|own| self.edition.fields(own));
+        let fields = fields.unwrap_or_else(|| texts.join(", "));
+        json!(["answer", fields, [answer.requested_at, answer.replied_at]])
+    }
+
+    fn failed(&self, request: &Request, failure: &Failure) -> Json {
+        let (class, waited) = match failure {
+            Failure::Timeout { waited, .. } => ("ReplyTimeout", Some(waited)),
+            Failure::Reply { .. } => ("ProtocolError", None),
+            Failure::Refused { .. } => ("RequestRefused", None),
+            Failure::Link => ("LinkError", None),
+        };
+        let text = self.edition.failure(request, failure);
+        json!([class, text.as_ref().unwrap_or(&self.fault), waited])
     }
 }
 
-fn policy(json: &Json) -> RetryPolicy {
-    let number = |index| json.get(index).and_then(Json::as_u64).unwrap_or_default();
+fn fault(json: &Json) -> String {
+    link_error(json[0].as_str().unwrap(), json[1].as_str().unwrap())
+}
+
+fn retry_policy(json: &Json) -> RetryPolicy {
+    let number = |index: usize| json[index].as_u64().unwrap();
     RetryPolicy {
-        attempts: u8::try_from(number(0)).unwrap_or_default(),
+        attempts: number(0) as u8,
         shortest_attempt: number(1),
         grace: number(2),
     }
 }
 
 fn persisted(state: &PersistedState) -> Json {
-    let late = state
-        .late
-        .iter()
-        .map(|late| json!([hex(&late.request), late.until]));
-    let parts = state
-        .parts
-        .iter()
-        .map(|part| json!([hex(&part.request), part.written]));
-    json!([late.collect::<Json>(), parts.collect::<Json>()])
-}
-
-fn restored(json: &Json) -> PersistedState {
-    let pairs = |index: usize| {
-        let list = json.get(index).and_then(Json::as_array);
-        list.into_iter()
-            .flatten()
-            .filter_map(|pair| Some((from_hex(pair.get(0)?)?, pair.get(1)?.as_u64()?)))
-    };
-    PersistedState {
-        late: pairs(0)
-            .map(|(request, until)| LateFrame { request, until })
-            .collect(),
-        parts: pairs(1)
-            .map(|(request, written)| {
-                let written = usize::try_from(written).unwrap_or(usize::MAX);
-                Part { request, written }
-            })
-            .collect(),
-    }
-}
-
-fn decoded(decoded: &Decoded) -> Json {
-    let variant = decoded.variant;
-    let values = nested(&decoded.values);
-    json!([variant.command, variant.variant, values, decoded.address])
+    let (late, parts) = (state.late.iter(), state.parts.iter());
+    let late: Json = late
+        .map(|late| json!([hex(&late.request), late.until]))
+        .collect();
+    let parts: Json = parts
+        .map(|part| json!([hex(&part.request), part.written]))
+        .collect();
+    json!([late, parts])
 }
 
 fn frame(frame: &SeenFrame) -> Json {
     json!([frame.offset, hex(frame.bytes())])
-}
-
-fn events(events: &[Event]) -> Json {
-    events.iter().map(event).collect()
-}
-
-fn event(event: &Event) -> Json {
-    match event {
-        Event::Noise {
-            offset,
-            reason,
-            data,
-        } => json!(["noise", offset, reason.word(), hex(data)]),
-        Event::Matched {
-            command,
-            decoded: reply,
-            texts,
-            frame: own,
-        } => {
-            let reply = reply.as_ref().map(decoded);
-            json!(["matched", command, reply, texts, own.as_ref().map(frame)])
-        }
-        Event::Rejected {
-            command,
-            error,
-            frame: own,
-        } => {
-            let error = own.as_ref().map(|own| wrong(error, own.bytes().len()));
-            json!(["rejected", command, error, own.as_ref().map(frame)])
-        }
-        Event::Late {
-            command,
-            frame: own,
-        } => json!(["late", command, frame(own)]),
-        Event::Ack {
-            command,
-            decoded: reply,
-            frame: own,
-        } => {
-            json!(["ack", command, decoded(reply), frame(own)])
-        }
-        Event::DeviceEvent {
-            command,
-            decoded: reply,
-            frame: own,
-        } => {
-            json!(["event", command, decoded(reply), frame(own)])
-        }
-        Event::Unexpected { frame: own } => json!(["unexpected", frame(own)]),
-        Event::Echo { frame: own } => json!(["echo", frame(own)]),
-        Event::Expired {
-            command,
-            requested_at,
-            attempts,
-        } => {
-            json!(["expired", command, requested_at, attempts])
-        }
-    }
-}
-
-fn outcome(outcome: &Result<cobotwire_core::exchange::Answer, Failure>) -> Json {
-    match outcome {
-        Ok(answer) => {
-            let reply = answer.decoded.as_ref().map(decoded);
-            let times = [answer.requested_at, answer.replied_at];
-            json!({"answer": [reply, answer.texts, times]})
-        }
-        Err(failure) => failed(failure),
-    }
-}
-
-fn failed(failure: &Failure) -> Json {
-    match failure {
-        Failure::Timeout {
-            waited,
-            attempts,
-            waited_for,
-            received,
-        } => {
-            let waited_for = waited_for.map(|waited_for| match waited_for {
-                WaitedFor::Turn => "turn",
-                WaitedFor::Hold => "hold",
-                WaitedFor::Line => "line",
-                WaitedFor::Reply => "reply",
-            });
-            let received: Vec<Json> = received.iter().map(item).collect();
-            json!({"timeout": [waited, attempts, waited_for, received]})
-        }
-        Failure::Reply { error, data } => {
-            json!({"reply": [wrong(error, data.len()), hex(data)]})
-        }
-        Failure::Refused {
-            variant,
-            field,
-            value,
-        } => {
-            let value = nested(&[*value]);
-            json!({"refused": [variant.command, variant.variant, field, value]})
-        }
-        Failure::Link => json!("link"),
-    }
-}
-
-fn item(item: &Received) -> Json {
-    let (kind, command, detail) = match item.kind {
-        Kind::Noise(reason) => ("noise", None, json!(reason.word())),
-        Kind::Late { command } => ("late", Some(command), Json::Null),
-        Kind::DeviceEvent { command } => ("event", Some(command), Json::Null),
-        Kind::Ack {
-            command,
-            perhaps_earlier,
-        } => ("ack", Some(command), json!(perhaps_earlier)),
-        Kind::Echo => ("echo", None, Json::Null),
-        Kind::Unexpected => ("frame", None, Json::Null),
-        Kind::Unread => ("unread", None, Json::Null),
-    };
-    json!([kind, command, detail, hex(&item.shown), item.size])
-}
-
-/// Return the reason and the offset of an error in `size` bytes.
-fn wrong(error: &ReplyError, size: usize) -> Json {
-    match error {
-        ReplyError::Frame(DecodeError::Frame { reason, offset }) => json!([reason.word(), offset]),
-        ReplyError::Frame(DecodeError::Raw(raw)) => json!(["bad-value", raw.offset]),
-        ReplyError::Text(error) => json!(["bad-text", error.offset(size)]),
-    }
 }

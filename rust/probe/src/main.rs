@@ -1,46 +1,112 @@
-//! Answers the tests in Python, one JSON value a line: `codec`, `exchange`, `client` or `texts`.
+//! Answers the tests in Python: each line is a list of steps in JSON, and gets a list of results.
+//! With `client`, it is a client instead: see `client.rs`.
 
-#![allow(clippy::indexing_slicing)] // reading a name of a JSON value never panics
+// A test with a wrong step fails: the program ends.
+#![allow(clippy::indexing_slicing, clippy::unwrap_used)]
 
 #[cfg(unix)]
 mod client;
-mod codec;
 mod exchange;
-mod texts;
 mod values;
 
-use std::io::{BufRead, Error, Write, stdin, stdout};
+use std::collections::BTreeMap;
+use std::io::{BufRead, Result, Write, stdin, stdout};
+use std::sync::Arc;
 
+use cobotwire::Value;
+use cobotwire_core::exchange::PersistedState;
+use cobotwire_core::{Choice, Direction, Row, decode, encode};
 use cobotwire_table::Edition;
+use serde_json::{Value as Json, json};
 
-/// Answer each line until there is no more.
-fn main() -> std::io::Result<()> {
-    let (mode, path) = (std::env::args().nth(1), std::env::args().nth(2));
-    match mode.as_deref().unwrap_or_default() {
-        "codec" => {
-            let edition = Edition::read(&std::fs::read(path.unwrap_or_default())?);
-            let edition = edition.map_err(Error::other)?;
-            answer(|line| codec::answer(&edition, line))
-        }
-        "exchange" => {
-            let mut exchanges = exchange::Exchanges::default();
-            answer(|line| exchanges.answer(line))
-        }
-        #[cfg(unix)]
-        "client" => client::serve(std::env::args().skip(2)),
-        "texts" => {
-            let mut texts = texts::Texts::default();
-            answer(|line| texts.answer(line))
-        }
-        _ => Err(Error::other("codec, exchange, client or texts?")),
-    }
+use crate::exchange::Open;
+use crate::values::{from_hex, index, value_of};
+
+/// What earlier steps have read and opened.
+#[derive(Default)]
+struct Probe {
+    editions: BTreeMap<String, Arc<Edition>>,
+    exchanges: BTreeMap<u64, Open>,
+    left: PersistedState,
 }
 
-fn answer(mut reply: impl FnMut(&str) -> String) -> std::io::Result<()> {
-    let mut output = stdout().lock();
+fn main() -> Result<()> {
+    #[cfg(unix)]
+    if std::env::args().nth(1).as_deref() == Some("client") {
+        return client::serve(std::env::args().skip(2));
+    }
+    let (mut probe, mut output) = (Probe::default(), stdout().lock());
     for line in stdin().lock().lines() {
-        writeln!(output, "{}", reply(&line?))?;
+        let steps: Vec<Vec<Json>> = serde_json::from_str(&line?)?;
+        let results: Json = steps.iter().map(|step| probe.result(step)).collect();
+        writeln!(output, "{results}")?;
         output.flush()?;
     }
     Ok(())
+}
+
+impl Probe {
+    /// Do `["read" or "table", path]`, `["encode", path, direction, command, values]`,
+    /// `["decode", path, direction, bytes]`, `["new", path, exchange]`, or a step of an exchange:
+    /// `[method, path, exchange, now, arguments...]`.
+    fn result(&mut self, step: &[Json]) -> Json {
+        let path = step[1].as_str().unwrap();
+        let edition = match self.edition(path) {
+            Ok(edition) => edition,
+            Err(why) => return json!(why),
+        };
+        match step[0].as_str().unwrap() {
+            "read" => Json::Null,
+            "table" => {
+                let table = &edition.protocol.table;
+                json!(format!("{:?} {:?}", table.frame(), table.commands()))
+            }
+            "encode" => json!(encode_error(&edition, &step[2..])),
+            "decode" => json!(decode_error(&edition, &step[2..])),
+            "new" => {
+                let number = step[2].as_u64().unwrap();
+                self.exchanges.insert(number, Open::new(edition));
+                Json::Null
+            }
+            method => {
+                let (number, now) = (step[2].as_u64().unwrap(), step[3].as_u64().unwrap());
+                let open = self.exchanges.get_mut(&number).unwrap();
+                open.step(method, now, &step[4..], &mut self.left)
+            }
+        }
+    }
+
+    fn edition(&mut self, path: &str) -> std::result::Result<Arc<Edition>, String> {
+        if let Some(edition) = self.editions.get(path) {
+            return Ok(Arc::clone(edition));
+        }
+        let edition = Edition::read(&std::fs::read(path).unwrap());
+        let edition = Arc::new(edition.map_err(|why| why.to_string())?);
+        self.editions.insert(path.into(), Arc::clone(&edition));
+        Ok(edition)
+    }
+}
+
+fn direction(word: &Json) -> Direction {
+    if word == "request" {
+        Direction::Request
+    } else {
+        Direction::Reply
+    }
+}
+
+/// Return the text of the error of a message that cannot be encoded.
+fn encode_error(edition: &Edition, step: &[Json]) -> Option<String> {
+    let (direction, index) = (direction(&step[0]), index(edition, &step[1]));
+    let (table, values) = (&edition.protocol.table, value_of(&step[2]));
+    let (command, choice) = (&table.commands()[index], Choice::default());
+    let error = encode::<Value>(table.frame(), command, direction, &values, choice).err()?;
+    Some(edition.encode_error((index, direction), &error, values.count(), None))
+}
+
+/// Return the text of the error of bytes that cannot be decoded.
+fn decode_error(edition: &Edition, step: &[Json]) -> Option<String> {
+    let (direction, data) = (direction(&step[0]), from_hex(&step[1]));
+    let error = decode(&edition.protocol.table, direction, &data, None).err()?;
+    Some(edition.decode_error(direction, error, &data))
 }

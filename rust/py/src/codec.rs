@@ -43,6 +43,12 @@ impl NativeCodec {
         "native"
     }
 
+    /// Return the table that the core interprets, in Rust's words: for tests.
+    fn _core_table(&self) -> String {
+        let core = &self.edition.core;
+        format!("{:?} {:?}", core.frame(), core.commands())
+    }
+
     /// Build one frame: the first variant that has as many fields as `values` and allows them.
     #[pyo3(signature = (command, direction, values, *, variant = None, address = None))]
     fn encode<'py>(

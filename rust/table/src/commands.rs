@@ -21,7 +21,7 @@ pub(crate) type Parts = (wire::Command, Facts, Command);
 /// Return a command; its id is at most `last`.
 pub(crate) fn command<'a>(
     record: Record<'a>,
-    messages: &mut Messages<'a>,
+    messages: &Messages<'a>,
     last: u16,
 ) -> Outcome<Parts> {
     let event: bool = record.any("event")?;
@@ -30,9 +30,8 @@ pub(crate) fn command<'a>(
         lists.push(record.at("request"));
     }
     let request = messages.variants(lists).within("request", "")?;
-    let reply = messages
-        .variants(record.records("reply")?)
-        .within("reply", "")?;
+    let reply = messages.variants(record.records("reply")?);
+    let reply = reply.within("reply", "")?;
     let facts = Facts {
         safety: record.get("safety")?,
         deadline: record.within("deadline_ms", 0..=LONGEST_MS)? * 1_000_000,
@@ -43,50 +42,36 @@ pub(crate) fn command<'a>(
         request: request.iter().map(named).collect(),
         reply: reply.iter().map(named).collect(),
         accepted: record.any("accepted")?,
-        statuses: reply.iter().map(statuses).collect(),
     };
-    let (in_request, request) = parted(request);
-    let (in_reply, reply) = parted(reply);
-    let id = record.within("id", 0..=last)?;
+    let (in_request, request) = request.into_iter().map(parts).unzip();
+    let (in_reply, reply) = reply.into_iter().map(parts).unzip();
     let stores: BTreeMap<String, String> = record.at("effect").any("stores")?;
     let command = Command {
-        id,
         name: record.get("name")?,
         family: record.any("family")?,
         safety: facts.safety,
         role: record.any("role")?,
-        read_by: match record.some("read_by") {
-            Some(back) => back.get("query")?,
-            None => None,
-        },
+        read_by: record.at("read_by").get("query")?,
         stores: stores.into_values().collect(),
         request: in_request,
         reply: in_reply,
     };
+    let id = record.within("id", 0..=last)?;
     Ok((wire::Command { id, request, reply }, facts, command))
 }
 
-fn parted(variants: Vec<Variant>) -> (Vec<Vec<crate::Field>>, Vec<wire::Variant>) {
-    let parts = variants.into_iter();
-    parts
-        .map(|each| (each.texts, wire::Variant::new(each.fields)))
-        .unzip()
+fn parts(variant: Variant) -> (Vec<crate::Field>, wire::Variant) {
+    (variant.texts, wire::Variant::new(variant.fields))
 }
 
 fn named(variant: &Variant) -> Vec<Named> {
-    let named = |field: &crate::Field| Named {
-        name: field.name.as_str().into(),
-        echo: field.echo,
-    };
-    variant.texts.iter().map(named).collect()
-}
-
-/// Return the indices of the fields that report success or failure.
-fn statuses(variant: &Variant) -> Vec<usize> {
-    let fields = variant.fields.iter().zip(&variant.texts).enumerate();
-    let own =
-        fields.filter(|(_, (field, text))| field.choices.len() != 1 || !text.labels.is_empty());
-    own.map(|(index, _)| index).collect()
+    let fields = variant.fields.iter().zip(&variant.texts);
+    let named = fields.map(|(field, text)| Named {
+        name: text.name.as_str().into(),
+        echo: text.echo,
+        status: field.choices.len() != 1 || !text.labels.is_empty(),
+    });
+    named.collect()
 }
 
 fn text(record: Record<'_>, key: &str) -> Outcome<Option<TextForm>> {
@@ -99,10 +84,7 @@ fn text(record: Record<'_>, key: &str) -> Outcome<Option<TextForm>> {
         prefixes: record.any("prefixes")?,
         fields: fields.collect::<Outcome<_>>()?,
         suffix: record.any("suffix")?,
-        silence: match record.some("silence_ms") {
-            Some(_) => record.within("silence_ms", 0..=LONGEST_MS)? * 1_000_000,
-            None => 0,
-        },
+        silence: record.within_or("silence_ms", 0..=LONGEST_MS, 0)? * 1_000_000,
     };
     if form.prefixes.len() != form.fields.len() {
         return BadEdition::because("prefixes must be as many as fields").within(key, "");

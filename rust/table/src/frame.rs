@@ -6,7 +6,7 @@ use alloc::vec;
 use alloc::vec::Vec;
 use core::ops::RangeInclusive;
 
-use cobotwire_core::exchange::Replier;
+use cobotwire_core::exchange::{Addressee, Replier};
 use cobotwire_core::{Algorithm, Check, Computed, Crc, CrcParameters, FrameFormat, Layout, Part};
 use serde::Deserialize;
 
@@ -74,18 +74,14 @@ pub(crate) fn frame_format(record: Record<'_>, json: &[u8]) -> Outcome<FrameForm
     use Place::{Address, Check as CheckBytes, Command, Data, Footer, Header, Length};
     let (header, footer) = (hex(record, "header", 1..=4)?, hex(record, "footer", 0..=2)?);
     let addresses = address_bytes(record)?;
-    let algorithm = algorithm(record, json)?;
-    let check_width = match algorithm {
-        Some(_) => record.get("check_width")?,
-        None => 0,
-    };
+    let (algorithm, check_width) = algorithm(record, json)?;
     let (length, id) = (record.at("length"), record.at("command"));
     let sizes = Sizes {
         sizes: [
             (Header, header.len()),
             (Address, usize::from(!addresses.is_empty())),
-            (Length, length.size("width", 1..=2)?),
-            (Command, id.size("width", 1..=2)?),
+            (Length, length.within_or("width", 1..=2, 1)?),
+            (Command, id.within_or("width", 1..=2, 1)?),
             (Data, 0),
             (CheckBytes, check_width),
             (Footer, footer.len()),
@@ -95,28 +91,24 @@ pub(crate) fn frame_format(record: Record<'_>, json: &[u8]) -> Outcome<FrameForm
     let reply_has_id = !record.any::<bool>("replies_without_id")?;
     let counted = record.or("counted", vec![Command, Data, CheckBytes, Footer])?;
     check_layout(&sizes, &counted, reply_has_id)?;
-    let uncounted = sizes
-        .sizes
-        .iter()
-        .filter(|(part, _)| !counted.contains(part));
+    let mut uncounted = Vec::from(sizes.sizes);
+    uncounted.retain(|(part, _)| !counted.contains(part));
     let layout = Layout {
         address_at: (!addresses.is_empty()).then(|| sizes.offset(Address)),
         length: sizes.part(Length, length)?,
         id: sizes.part(Command, id)?,
         data_at: sizes.offset(Data),
-        overhead: uncounted.map(|(_, size)| size).sum(),
+        overhead: uncounted.iter().map(|(_, size)| size).sum(),
         reply_has_id,
     };
     let check = match (algorithm, &*footer) {
         (None, &[footer]) => Check::Footer(footer),
-        (None, _) => {
-            return BadEdition::because("footer must have one byte, since check is footer");
-        }
-        (Some(algorithm), _) => Check::Computed(Box::new(Computed {
+        (None, _) => return BadEdition::because("footer must be one byte, since check is footer"),
+        (algorithm, _) => Check::Computed(Box::new(Computed {
             width: check_width,
             order: record.any("check_order")?,
             from: check_from(record, &sizes, reply_has_id)?,
-            algorithm: Some(algorithm),
+            algorithm,
             footer,
         })),
     };
@@ -144,23 +136,24 @@ fn hex(record: Record<'_>, key: &str, sizes: RangeInclusive<usize>) -> Outcome<V
 }
 
 fn check_layout(sizes: &Sizes, counted: &[Place], reply_has_id: bool) -> Outcome<()> {
+    use Place::{Address, Command, Data, Length};
     let times = |parts: &[Place], part| parts.iter().filter(|each| **each == part).count();
-    let (layout, no_id) = (&*sizes.layout, !reply_has_id);
-    let addresses = times(layout, Place::Address);
-    let both = times(layout, Place::Length) == 1 && times(layout, Place::Command) == 1;
-    let all = both && addresses <= 1 && layout.len() == 2 + addresses;
+    let layout = &*sizes.layout;
+    let addresses = times(layout, Address);
+    let all = (times(layout, Length), times(layout, Command)) == (1, 1)
+        && (sizes.of(Address)..=1).contains(&addresses)
+        && layout.len() == 2 + addresses;
     let once = counted.iter().all(|part| times(counted, *part) == 1);
-    let counts = |part| times(counted, part) == 1;
     BadEdition::because(match layout.last() {
-        _ if !all || addresses < sizes.of(Place::Address) => {
+        _ if !all => {
             "layout must have length, command, and an address if frames have it, each once"
         }
-        Some(Place::Address) => "layout must end with length or command",
-        Some(Place::Length) if no_id => "layout must end with command, since replies have none",
-        _ if !once || !counts(Place::Data) => {
+        Some(Address) => "layout must end with length or command",
+        Some(Length) if !reply_has_id => "layout must end with command, since replies have none",
+        _ if !once || !counted.contains(&Data) => {
             "counted must have data and other parts of a frame, each once"
         }
-        _ if no_id && !counts(Place::Command) => {
+        _ if !reply_has_id && !counted.contains(&Command) => {
             "counted must have command, since replies have data in its place"
         }
         _ => return Ok(()),
@@ -180,29 +173,34 @@ fn check_from(record: Record<'_>, sizes: &Sizes, reply_has_id: bool) -> Outcome<
     BadEdition::because("check_from must be a part before the check that all frames have")
 }
 
-fn algorithm(record: Record<'_>, json: &[u8]) -> Outcome<Option<Algorithm>> {
+const ALGORITHMS: [(&str, Algorithm, &[usize]); 6] = [
+    ("sum", Algorithm::Sum, &[1, 2, 4]),
+    ("inverted-sum", Algorithm::InvertedSum, &[1, 2, 4]),
+    ("negated-sum", Algorithm::NegatedSum, &[1, 2, 4]),
+    ("xor", Algorithm::Xor, &[1]),
+    ("fletcher", Algorithm::Fletcher(256), &[2]),
+    ("fletcher-16", Algorithm::Fletcher(255), &[2]),
+];
+
+/// Return how the check is computed, and its bytes; `None`: it is only a footer.
+fn algorithm(record: Record<'_>, json: &[u8]) -> Outcome<(Option<Algorithm>, usize)> {
     let word: &str = record.get("check")?;
-    if record.some("crc").is_some() && word != "footer" {
-        return crc(json, record.get("check_width")?).map(Some);
+    if word == "footer" {
+        return Ok((None, 0));
     }
-    let (algorithm, widths): (_, &[usize]) = match word {
-        "footer" => return Ok(None),
-        "sum" => (Algorithm::Sum, &[1, 2, 4]),
-        "inverted-sum" => (Algorithm::InvertedSum, &[1, 2, 4]),
-        "negated-sum" => (Algorithm::NegatedSum, &[1, 2, 4]),
-        "xor" => (Algorithm::Xor, &[1]),
-        "fletcher" => (Algorithm::Fletcher(256), &[2]),
-        "fletcher-16" => (Algorithm::Fletcher(255), &[2]),
-        _ => {
-            return BadEdition::because(
-                "check must be footer, sum, inverted-sum, negated-sum, xor, fletcher, fletcher-16, or a CRC",
-            );
+    let width = record.get("check_width")?;
+    if record.some("crc").is_some() {
+        return Ok((Some(crc(json, width)?), width));
+    }
+    let mut known = ALGORITHMS.into_iter();
+    match known.find(|(name, ..)| *name == word) {
+        Some((_, algorithm, widths)) if widths.contains(&width) => Ok((Some(algorithm), width)),
+        Some((.., widths)) => BadEdition::because(format!("check_width must be one of {widths:?}")),
+        None => {
+            let names = ALGORITHMS.map(|(name, ..)| name).join(", ");
+            BadEdition::because(format!("check must be footer, {names}, or a CRC"))
         }
-    };
-    if !widths.contains(&record.get("check_width")?) {
-        return BadEdition::because(format!("check_width must be one of {widths:?}"));
     }
-    Ok(Some(algorithm))
 }
 
 fn crc(json: &[u8], size: usize) -> Outcome<Algorithm> {
@@ -222,37 +220,39 @@ fn crc(json: &[u8], size: usize) -> Outcome<Algorithm> {
 
 fn address_bytes(record: Record<'_>) -> Outcome<Vec<u8>> {
     let named = record.records("addresses")?.into_iter();
-    let mut bytes = named
-        .map(|each| each.get("value"))
-        .collect::<Outcome<Vec<u8>>>()?;
+    let named: Outcome<Vec<u8>> = named.map(|each| each.get("value")).collect();
+    let mut bytes = named?;
     if let Some(range) = record.some("address_range") {
-        let all = range.get::<u8>("first")?..=range.get("last")?;
-        let others: Vec<u8> = all.filter(|each| !bytes.contains(each)).collect();
-        bytes.extend(others);
+        for byte in range.get::<u8>("first")?..=range.get("last")? {
+            if !bytes.contains(&byte) {
+                bytes.push(byte);
+            }
+        }
     }
     Ok(bytes)
 }
 
 /// Return the addresses that the file names.
-pub(crate) fn addresses(record: Record<'_>) -> Outcome<Vec<Address>> {
+pub(crate) fn addresses(record: Record<'_>) -> Outcome<Vec<(Address, Addressee)>> {
     let address = |record: Record<'_>| {
-        let value = record.get("value")?;
-        Ok(Address {
-            name: record.get("name")?,
-            value,
-            replier: match record.or("replies", "own")? {
-                "own" => Replier::Address(value),
-                "any" => Replier::Anybody,
-                "one" => Replier::Somebody,
-                "none" => Replier::Nobody,
-                _ => return BadEdition::because("replies must be own, any, one, none"),
+        let (name, value) = (record.get("name")?, record.get("value")?);
+        let replier = match record.or("replies", "own")? {
+            "own" => Replier::Address(value),
+            "any" => Replier::Anybody,
+            "one" => Replier::Somebody,
+            "none" => Replier::Nobody,
+            _ => return BadEdition::because("replies must be own, any, one, none"),
+        };
+        let joints = record.any::<u8>("joints")?.into();
+        Ok((
+            Address { name, value },
+            Addressee {
+                value,
+                replier,
+                joints,
             },
-            joints: record.any::<u8>("joints")?.into(),
-        })
+        ))
     };
-    record
-        .records("addresses")?
-        .into_iter()
-        .map(address)
-        .collect()
+    let records = record.records("addresses")?.into_iter();
+    records.map(address).collect()
 }

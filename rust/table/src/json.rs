@@ -55,15 +55,16 @@ impl<'a> Record<'a> {
         BadEdition::because(format_args!("{key} is {found}; allowed: {low}..{high}"))
     }
 
-    /// Return a size in a range; 1 if it is missing.
-    pub(crate) fn size(self, key: &str, range: RangeInclusive<usize>) -> Outcome<usize> {
-        match self.some(key) {
-            Some(_) => self.within(key, range),
-            None => Ok(1),
-        }
+    /// Return a number in a range; the usual one if it is missing.
+    pub(crate) fn within_or<T>(self, key: &str, range: RangeInclusive<T>, usual: T) -> Outcome<T>
+    where
+        T: Deserialize<'a> + PartialOrd + Display,
+    {
+        let found = self.some(key);
+        found.map_or(Ok(usual), |_| self.within(key, range))
     }
 
-    /// Return the items of a list; none if it is missing.
+    /// Return the items of a list; there are none if it is missing.
     pub(crate) fn items(self) -> Outcome<Vec<Self>> {
         match self.0 {
             Value::Null => Ok(Vec::new()),
@@ -72,29 +73,22 @@ impl<'a> Record<'a> {
         }
     }
 
-    /// Return the objects of a list; none if the key is missing.
+    /// Return the objects of a list; there are none if the key is missing.
     pub(crate) fn records(self, key: &str) -> Outcome<Vec<Self>> {
         self.at(key).items().within(key, "")
     }
 
     /// Return an exact number, such as `-552/5`: its numerator and its denominator, which is not 0.
+    /// It is 1 if it is missing.
     pub(crate) fn rational(self, key: &str) -> Outcome<(i64, i64)> {
         let Some(text) = self.at(key).0.as_str() else {
-            return Ok((self.get(key)?, 1));
+            return Ok((self.or(key, 1)?, 1));
         };
         let (above, below) = text.split_once('/').unwrap_or((text, "1"));
         match (above.parse(), below.parse()) {
             (Ok(above), Ok(below)) if below != 0 => Ok((above, below)),
-            _ => {
-                BadEdition::because("expected an integer, or a text such as 1/100").within(key, "")
-            }
+            _ => BadEdition::because("expected an integer, or a text such as 1/2").within(key, ""),
         }
-    }
-
-    /// Return the nearest float to an exact number.
-    pub(crate) fn real(self, key: &str) -> Outcome<f64> {
-        let (above, below) = self.rational(key)?;
-        Ok(above as f64 / below as f64)
     }
 
     /// Return the name of what the object describes.

@@ -14,7 +14,6 @@ mod json;
 mod messages;
 mod named;
 mod rejection;
-mod robot;
 mod shown;
 mod texts;
 mod types;
@@ -25,52 +24,40 @@ use alloc::string::{String, ToString};
 use alloc::vec::Vec;
 use core::fmt;
 
-use cobotwire_core::Table;
-use cobotwire_core::exchange::{Addressee, Protocol, Replier, Safety};
+use cobotwire_core::exchange::{Addressee, Protocol, Safety};
+use cobotwire_core::{Direction, Table};
+use serde::Deserialize;
 use serde_json::Value;
 
 use crate::json::Record;
 use crate::messages::Messages;
 
-pub use crate::named::Filled;
-pub use crate::robot::Link;
-pub use crate::shown::{Quote, Shown, general};
-pub use crate::texts::{as_call, bad_argument, error_text, link_error};
+pub use crate::shown::{Quote, Shown};
+pub use crate::texts::{bad_argument, error_text, link_error};
 
 /// The version of the format.
 const VERSION: i64 = 3;
 /// The largest file. A value of JSON takes up to 32 times its text in memory.
 const LARGEST: usize = 4 << 20;
 
-/// A protocol as data.
+/// A protocol as data. Commands are in the order of the table; addresses are those with names.
 #[derive(Clone, Debug)]
+#[allow(missing_docs)] // as above
 pub struct Edition {
-    /// Its name, for example `mycobot280`.
     pub name: String,
-    /// How many joints its arm has.
-    pub joints: usize,
-    /// The rate of its serial port.
     pub baudrate: u32,
     /// What codec and exchange interpret.
     pub protocol: Protocol,
-    /// Its commands, in the order of the table.
     pub commands: Vec<Command>,
-    /// Its named addresses.
     pub addresses: Vec<Address>,
-    /// The links of the arm, from the base on, if they are known.
-    pub geometry: Option<Vec<Link>>,
 }
 
 /// What texts and clients need of a command.
 #[derive(Clone, Debug)]
+#[allow(missing_docs)] // of fields, whose names say what they are
 pub struct Command {
-    /// Its id.
-    pub id: u16,
-    /// Its name.
     pub name: String,
-    /// The family that it belongs to.
     pub family: String,
-    /// What it does to the arm.
     pub safety: Safety,
     /// The role in which clients use it; empty: none.
     pub role: String,
@@ -78,19 +65,27 @@ pub struct Command {
     pub read_by: Option<String>,
     /// The states that it stores arguments in.
     pub stores: Vec<String>,
-    /// The variants of its request.
+    /// The variants of its request, and of its reply.
     pub request: Vec<Vec<Field>>,
-    /// The variants of its reply.
     pub reply: Vec<Vec<Field>>,
+}
+
+impl Command {
+    /// Return the variants in one direction.
+    #[must_use]
+    pub fn variants(&self, direction: Direction) -> &[Vec<Field>] {
+        match direction {
+            Direction::Request => &self.request,
+            Direction::Reply => &self.reply,
+        }
+    }
 }
 
 /// What texts and clients need of a field.
 #[derive(Clone, Debug, Default)]
+#[allow(missing_docs)] // as above
 pub struct Field {
-    /// Its name.
     pub name: String,
-    /// Its kind: `number`, `enum`, `flag`, `bytes` or `text`.
-    pub kind: &'static str,
     /// Whether a reply repeats an argument in it.
     pub echo: bool,
     /// The words of its choices, in their order; empty: they have none.
@@ -104,8 +99,8 @@ pub struct Field {
     pub sizes: Option<(usize, usize)>,
     /// The field whose elements it counts.
     pub counts: Option<String>,
-    /// The raw value of a constant.
-    pub constant: Option<i64>,
+    /// Whether it is a constant, which the default is then.
+    pub constant: bool,
     /// The value of an argument that is left out, in physical units.
     pub default: Option<Vec<f64>>,
 }
@@ -119,28 +114,23 @@ impl Field {
     }
 }
 
-/// What texts need of a number.
-#[derive(Clone, Debug, Default)]
+/// What texts need of a number: its name in a row, its unit, and the words of its choices. What is
+/// empty does not exist.
+#[derive(Clone, Debug, Default, Deserialize)]
+#[serde(default)]
+#[allow(missing_docs)] // as above
 pub struct Number {
-    /// Its name in a row; empty: none.
     pub name: String,
-    /// Its unit; empty: none.
     pub unit: String,
-    /// The words of its choices; empty: they have none.
     pub labels: Vec<String>,
 }
 
 /// An address with a name.
 #[derive(Clone, Debug)]
+#[allow(missing_docs)] // as above
 pub struct Address {
-    /// Its name.
     pub name: String,
-    /// The byte.
     pub value: u8,
-    /// Who replies to a request to it.
-    pub replier: Replier,
-    /// How many joints the device has; 0: those of the edition.
-    pub joints: usize,
 }
 
 impl Edition {
@@ -152,10 +142,9 @@ impl Edition {
         if json.len() > LARGEST {
             return BadEdition::because(format!("the file has more than {LARGEST} bytes"));
         }
-        let document: Value = serde_json::from_slice(json)
-            .or_else(BadEdition::because)
-            .within("the file is not JSON", "")?;
-        let root = Record(&document);
+        let document: Result<Value, _> = serde_json::from_slice(json);
+        let document = document.or_else(BadEdition::because);
+        let root = Record(&document.within("the file is not JSON", "")?);
         let version: i64 = root.get("version")?;
         if version != VERSION {
             return BadEdition::because(format!(
@@ -164,52 +153,39 @@ impl Edition {
         }
         let (frame, described) = (root.at("frame"), root.at("edition"));
         let format = frame::frame_format(frame, json).within("frame", "")?;
-        let addresses = frame::addresses(frame).within("frame", "")?;
+        let named = frame::addresses(frame).within("frame", "")?;
+        let (addresses, addressees): (Vec<Address>, Vec<Addressee>) = named.into_iter().unzip();
         let last = if format.layout.id.wide { 0xFFFF } else { 0xFF };
         let (mut wire, mut facts, mut commands) = (Vec::new(), Vec::new(), Vec::new());
-        let mut messages = Messages::new(root)?;
-        let mut names = BTreeSet::new();
+        let (messages, mut names) = (Messages::new(root)?, BTreeSet::new());
         for record in root.records("commands")? {
             let name = record.name().within("a command", "")?;
             if !names.insert(name) {
                 return BadEdition::because("the file has it twice").within("command", name);
             }
-            let parts = commands::command(record, &mut messages, last).within("command", name)?;
+            let parts = commands::command(record, &messages, last).within("command", name)?;
             wire.push(parts.0);
             facts.push(parts.1);
             commands.push(parts.2);
         }
-        let table = Table::new(format, wire).map_err(|error| {
-            let at = commands.get(error.command);
-            let name = at.map_or("", |command: &Command| &command.name);
-            BadEdition(format!("command {}: {}", short(name), error.misfit))
+        let table = Table::new(format, wire).or_else(|error| {
+            let command: Option<&Command> = commands.get(error.command);
+            let name = command.map_or("", |command| &command.name);
+            BadEdition::because(error.misfit).within("command", name)
         })?;
-        let addressees = addresses.iter().map(|each| Addressee {
-            value: each.value,
-            replier: each.replier,
-            joints: each.joints,
-        });
-        let joints = described.get::<u8>("joints")?.into();
-        let links = described.some("geometry").map(|each| each.records("links"));
-        let links = links
-            .transpose()?
-            .map(|all| all.into_iter().map(robot::link).collect());
-        let mut roles = commands.iter().map(|command| &*command.role);
         let protocol = Protocol {
             table,
             facts,
-            reports_ends: roles.any(|role| role == "motion ended"),
-            addresses: addressees.collect(),
-            joints,
+            reports_ends: commands.iter().any(|each| each.role == "motion ended"),
+            addresses: addressees,
+            joints: described.get::<u8>("joints")?.into(),
         };
         Ok(Self {
             name: described.get("name")?,
-            joints,
             baudrate: frame.within("baudrate", 1..=100_000_000)?,
             protocol,
             commands,
             addresses,
-            geometry: links.transpose().within("geometry", "")?,
         })
     }
 }

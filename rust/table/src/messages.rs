@@ -11,12 +11,8 @@ use cobotwire_core::Shape;
 
 use crate::frame::LONGEST;
 use crate::json::Record;
-use crate::types::{Kind, Numbers, Types, all_choices, bits, fitting, kind};
+use crate::types::{Kind, Numbers, Types, all_choices, bits, fitting, kind, words};
 use crate::{BadEdition, Field, Outcome, Within};
-
-/// The most memory of all fields together, in bytes. A message has as many variants as the product
-/// of the sizes of its lists, so a short file could fill the memory.
-pub(crate) const MOST_MEMORY: usize = 1 << 27;
 
 /// One variant of a message.
 pub(crate) struct Variant {
@@ -29,8 +25,6 @@ pub(crate) struct Messages<'a> {
     types: Types<'a>,
     /// The most data bytes of a message with lists that vary.
     most: usize,
-    /// How many bytes more all fields together may take.
-    left: usize,
 }
 
 /// A list of which the number of elements varies.
@@ -48,30 +42,27 @@ struct Varying<'a> {
 impl<'a> Messages<'a> {
     pub(crate) fn new(file: Record<'a>) -> Outcome<Self> {
         let most = file.at("frame").within("maximum_data", 0..=LONGEST)?;
-        let (types, left) = (Types::new(file)?, MOST_MEMORY);
-        Ok(Self { types, most, left })
+        let types = Types::new(file)?;
+        Ok(Self { types, most })
     }
 
     /// Return the variants of a message; the file has one or more lists of fields for it.
-    pub(crate) fn variants(&mut self, lists: Vec<Record<'a>>) -> Outcome<Vec<Variant>> {
+    pub(crate) fn variants(&self, lists: Vec<Record<'a>>) -> Outcome<Vec<Variant>> {
         let mut made = Vec::new();
         for list in lists {
             let records = &*list.items()?;
             let mut varying = self.varying(records)?;
-            if varying.is_empty() {
-                made.push(self.variant(records, &varying)?);
-                continue;
-            }
             // The lists are as short as they can be.
             let shortest = self.variant(records, &varying)?;
-            let size = wire::Variant::new(shortest.fields).size();
-            let Some(room) = self.most.checked_sub(size) else {
-                continue;
-            };
-            loop {
-                made.push(self.variant(records, &varying)?);
-                if !lengthen(&mut varying, room) {
-                    break;
+            let size = wire::Variant::new(shortest.fields.clone()).size();
+            match self.most.checked_sub(size) {
+                _ if varying.is_empty() => made.push(shortest),
+                None => {}
+                Some(room) => {
+                    made.push(shortest);
+                    while lengthen(&mut varying, room) {
+                        made.push(self.variant(records, &varying)?);
+                    }
                 }
             }
         }
@@ -86,14 +77,13 @@ impl<'a> Messages<'a> {
             if !names.insert(name) {
                 return BadEdition::because("the message has it twice").within("field", name);
             }
-            let list = self.list(*record).within("field", name)?;
-            found.extend(list);
+            found.extend(self.list(*record, name).within("field", name)?);
         }
         Ok(found)
     }
 
     /// Return a field as a list that varies, if it is one.
-    fn list(&self, record: Record<'a>) -> Outcome<Option<Varying<'a>>> {
+    fn list(&self, record: Record<'a>, name: &'a str) -> Outcome<Option<Varying<'a>>> {
         let Some(of) = self.of(record)? else {
             return Ok(None);
         };
@@ -101,31 +91,26 @@ impl<'a> Messages<'a> {
         if least >= most {
             return Ok(None);
         }
-        let each = self.shaped(of)?.1.size();
+        let (each, count) = (self.shaped(of)?.1.size(), least);
         if each == 0 {
             return BadEdition::because("its elements have no bytes");
         }
         Ok(Some(Varying {
-            name: record.name()?,
+            name,
             least,
             most,
             each,
-            count: least,
+            count,
         }))
     }
 
-    fn variant(&mut self, records: &[Record<'a>], lists: &[Varying<'_>]) -> Outcome<Variant> {
+    fn variant(&self, records: &[Record<'a>], lists: &[Varying<'_>]) -> Outcome<Variant> {
         let (mut fields, mut texts) = (Vec::new(), Vec::new());
         for record in records {
             let name = record.name()?;
             let (field, mut text) = self.field(*record, records, lists).within("field", name)?;
             (text.name, text.echo) = (name.into(), record.some("echo").is_some());
-            let Some(left) = self.left.checked_sub(memory(&field, &text)) else {
-                return BadEdition::because(
-                    "the variants of all messages together take too much memory",
-                );
-            };
-            self.left = left;
+            self.types.spend(memory(&field, &text))?;
             fields.push(field);
             texts.push(text);
         }
@@ -146,7 +131,7 @@ impl<'a> Messages<'a> {
             let (mut field, mut text) = self.plain(record, records, Some(list.count as i64))?;
             field.varies = true;
             text.sizes = Some((list.least, list.most));
-            text.counts = Some(counted.into());
+            (text.counts, text.constant) = (Some(counted.into()), false);
             return Ok((field, text));
         }
         match self.of(record)? {
@@ -169,13 +154,10 @@ impl<'a> Messages<'a> {
     ) -> Outcome<(wire::Field, Field)> {
         let (mut field, numbers, mut text) = self.shaped(of)?;
         let count = list.map_or(bounds(of)?.0, |list| list.count);
-        let size = numbers.wire.len().saturating_mul(count);
-        if numbers.weight().saturating_mul(count) > self.left {
-            return BadEdition::because("it has too many numbers");
-        }
+        self.types.spend(numbers.weight().saturating_mul(count))?;
         field.cases = vec![wire::Case {
             when: Vec::new(),
-            numbers: numbers.wire.iter().cycle().take(size).cloned().collect(),
+            numbers: vec![numbers.wire; count].concat(),
         }];
         field.varies = list.is_some();
         text.cases = vec![numbers.texts];
@@ -186,33 +168,42 @@ impl<'a> Messages<'a> {
     /// Return such a field without its numbers, and the numbers of one element.
     fn shaped(&self, of: Record<'a>) -> Outcome<(wire::Field, Numbers, Field)> {
         let (mut field, mut text) = (wire::Field::default(), Field::default());
-        (field.many, text.kind) = (true, "number");
-        let numbers = match kind(of)? {
-            Kind::Bits => bits(of)?,
-            Kind::Bytes => {
-                (field.shape, text.kind) = (Shape::Bytes, "bytes");
+        let shape = kind(of)?;
+        let of = if shape == Kind::List {
+            self.types.get(of, "of")?
+        } else {
+            of
+        };
+        let kind = kind(of)?;
+        field.many = true;
+        let numbers = match (shape, kind) {
+            (Kind::Bits, _) => bits(of)?,
+            (Kind::Bytes, _) => {
+                field.shape = Shape::Bytes;
                 Numbers::bytes(1, 255)
             }
-            Kind::Text => {
-                text.kind = "text";
-                letters(of, 1, &mut field)?
+            (_, Kind::Text) => {
+                let encoding = of.get("encoding")?;
+                field.shape = Shape::Text(encoding, of.get("padding")?);
+                let count = if shape == Kind::List {
+                    bounds(of)?.0
+                } else {
+                    1
+                };
+                field.each = if shape == Kind::List { count } else { 0 };
+                let ascii = encoding == wire::Encoding::Ascii;
+                Numbers::bytes(count, if ascii { 127 } else { 255 })
             }
             _ => {
-                let of = self.types.get(of, "of")?;
-                let kind = kind(of)?;
-                text.kind = kind.word();
-                if kind == Kind::Text {
-                    field.each = bounds(of)?.0;
-                    letters(of, field.each, &mut field)?
+                let numbers = self.types.numbers(of)?;
+                field.each = if kind == Kind::Value {
+                    numbers.wire.len()
                 } else {
-                    let numbers = self.types.numbers(of)?;
-                    if kind == Kind::Value {
-                        field.each = numbers.wire.len();
-                    }
-                    (field.flag, field.choices) = (kind == Kind::Flag, all_choices(of)?);
-                    text.labels = labels(of)?;
-                    numbers
-                }
+                    0
+                };
+                (field.flag, field.choices) = (kind == Kind::Flag, all_choices(of)?);
+                text.labels = labels(of)?;
+                numbers
             }
         };
         Ok((field, numbers, text))
@@ -251,26 +242,20 @@ impl<'a> Messages<'a> {
         for number in field.cases.iter().flat_map(|case| &case.numbers) {
             fitting(number, &field.choices)?;
         }
-        text.kind = kind.word();
+        text.constant = fixed.is_some();
         if fixed.is_none() {
             text.labels = labels(first)?;
         }
-        text.default = default(record, &field)?;
-        text.constant = fixed;
+        let numbers = field.cases.first().map_or(0, |case| case.numbers.len());
+        let constants = fixed.map(|fixed| vec![fixed; numbers]);
+        let default = constants.map_or(record.get("default"), |raws| Ok(Some(raws)))?;
+        text.default = default.map(|raws| physical(&raws, &field)).transpose()?;
         for each in first.records("meanings")? {
             let meaning = (each.get("first")?, each.get("last")?, each.get("says")?);
             text.meanings.push(meaning);
         }
         Ok((field, text))
     }
-}
-
-/// Return the bytes of a text, and note its encoding in its field.
-fn letters(of: Record<'_>, count: usize, field: &mut wire::Field) -> Outcome<Numbers> {
-    let encoding = of.get("encoding")?;
-    field.shape = Shape::Text(encoding, of.get("padding")?);
-    let ascii = encoding == wire::Encoding::Ascii;
-    Ok(Numbers::bytes(count, if ascii { 127 } else { 255 }))
 }
 
 fn labels(of: Record<'_>) -> Outcome<Vec<String>> {
@@ -285,10 +270,8 @@ fn lengthen(lists: &mut [Varying<'_>], room: usize) -> bool {
         if let Some(list) = lists.get_mut(index) {
             list.count += 1;
         }
-        let more = lists
-            .iter()
-            .map(|list| (list.count - list.least) * list.each);
-        let fits = more.sum::<usize>() <= room;
+        let more = |list: &Varying<'_>| (list.count - list.least) * list.each;
+        let fits = lists.iter().map(more).sum::<usize>() <= room;
         if let Some(list) = lists.get_mut(index) {
             if fits && list.count <= list.most {
                 return true;
@@ -301,10 +284,8 @@ fn lengthen(lists: &mut [Varying<'_>], room: usize) -> bool {
 
 /// Return the least and the most elements of a type.
 fn bounds(of: Record<'_>) -> Outcome<(usize, usize)> {
-    Ok((
-        of.size("least", 0..=LONGEST)?,
-        of.size("most", 0..=LONGEST)?,
-    ))
+    let bound = |key| of.within_or(key, 0..=LONGEST, 1);
+    Ok((bound("least")?, bound("most")?))
 }
 
 fn selector(name: Option<&str>, records: &[Record<'_>]) -> Outcome<Option<usize>> {
@@ -317,48 +298,26 @@ fn selector(name: Option<&str>, records: &[Record<'_>]) -> Outcome<Option<usize>
     }
 }
 
-/// Return the value of an argument that is left out, in physical units.
-fn default(record: Record<'_>, field: &wire::Field) -> Outcome<Option<Vec<f64>>> {
-    let Some(raws) = record.get::<Option<Vec<i64>>>("default")? else {
-        return Ok(None);
-    };
+/// Return raw values of a field's first case in physical units.
+fn physical(raws: &[i64], field: &wire::Field) -> Outcome<Vec<f64>> {
     let numbers = field.cases.first().map_or(&[][..], |case| &case.numbers);
     if numbers.len() != raws.len() {
         return BadEdition::because("default is not a raw value for each number");
     }
-    let mut values = Vec::with_capacity(raws.len());
-    for (number, raw) in numbers.iter().zip(&raws) {
+    let physical = |(number, raw): (&wire::Number, &i64)| {
         fitting(number, [raw]).within("default", "")?;
-        values.push(match number.physical(*raw) {
+        Ok(match number.physical(*raw) {
             wire::Value::Real(real) => real,
             _ => *raw as f64,
-        });
-    }
-    Ok(Some(values))
+        })
+    };
+    numbers.iter().zip(raws).map(physical).collect()
 }
 
-/// Return about how many bytes a field takes.
+/// Return about how many bytes a field takes besides its numbers.
 fn memory(field: &wire::Field, text: &Field) -> usize {
-    let numbers = field.cases.iter().flat_map(|case| &case.numbers);
-    let numbers = numbers.map(|number| size_of_val(number) + 8 * number.choices.len());
-    let named = text.cases.iter().flatten();
-    let named = named
-        .map(|each| size_of_val(each) + each.name.len() + each.unit.len() + words(&each.labels));
-    let whens = field
-        .cases
-        .iter()
-        .map(|case| size_of_val(case) + 8 * case.when.len());
+    let whens = field.cases.iter().map(|case| 8 * case.when.len());
     let says = text.meanings.iter().map(|(.., says)| 48 + says.len());
     let lists = words(&text.labels) + 8 * field.choices.len() + 2 * text.name.len();
-    size_of_val(field)
-        + size_of_val(text)
-        + lists
-        + numbers.chain(named).chain(whens).chain(says).sum::<usize>()
-}
-
-fn words(labels: &[String]) -> usize {
-    labels
-        .iter()
-        .map(|label| size_of::<String>() + label.len())
-        .sum()
+    size_of_val(field) + size_of_val(text) + lists + whens.chain(says).sum::<usize>()
 }

@@ -1,17 +1,19 @@
 //! The texts of the errors of the codec: values, raw values and frames that are not allowed.
 
+use alloc::collections::BTreeSet;
 use alloc::format;
 use alloc::string::{String, ToString};
 use alloc::vec::Vec;
 
 use cobotwire_core::{
     Algorithm, BadRaw, BadValue, Check, DecodeError, Direction, EncodeError, Encoding,
-    Field as Wire, Given, Number as WireNumber, Reason, Shape, Value, ValueFault, VariantId,
+    Field as Wire, Given, Number as WireNumber, Reason, Shape, Value, ValueFault, Variant,
+    VariantId,
 };
 
-use crate::shown::{join, printable, shortest};
-use crate::texts::{bad_argument, either, entry, hex, protocol_error, text};
-use crate::{Command, Edition, Field, Number, Quote, Shown, general};
+use crate::shown::{general, join, printable, shortest};
+use crate::texts::{bad_argument, either, entry, hex, one_or, protocol_error, text};
+use crate::{Edition, Field, Number, Quote, Shown};
 
 // A link to a file of the Python package; a package of this crate contains the file.
 const UNITS: &str = include_str!("../units.json");
@@ -34,7 +36,7 @@ impl Edition {
         address: Option<u8>,
     ) -> String {
         match error {
-            EncodeError::Address => self.no_address(address),
+            EncodeError::Address => self.no_raw_address(address),
             EncodeError::VariantId => self.bad_variant(command, direction, count),
             EncodeError::Value(bad) => {
                 let variant = VariantId {
@@ -65,10 +67,8 @@ impl Edition {
 
     pub(crate) fn part(&self, id: VariantId, field: usize, case: usize) -> Option<Part<'_>> {
         let wire = self.protocol.table.variant(id)?.fields().get(field)?;
-        let command = self.commands.get(id.command)?;
-        let name = variants(command, id.direction)
-            .get(id.variant)?
-            .get(field)?;
+        let variants = self.commands.get(id.command)?.variants(id.direction);
+        let name = variants.get(id.variant)?.get(field)?;
         let numbers = &wire.cases.get(case)?.numbers;
         Some(Part {
             name,
@@ -79,11 +79,9 @@ impl Edition {
     }
 
     fn bad_variant(&self, command: usize, direction: Direction, count: usize) -> String {
-        let Some(command) = self.commands.get(command) else {
-            return String::new();
-        };
-        let (name, variants, direction) =
-            (&command.name, variants(command, direction), word(direction));
+        let (name, record) = (self.command_name(command), self.commands.get(command));
+        let variants = record.map_or(&[][..], |record| record.variants(direction));
+        let direction = direction.word();
         if variants.is_empty() {
             return text!("no-message"; command = name, direction);
         }
@@ -91,31 +89,20 @@ impl Edition {
             let names = fields.iter().map(|field| field.name.clone());
             format!("({})", join(names, ", "))
         }));
-        let kind = if count == 1 {
-            "value-count"
-        } else {
-            "values-count"
-        };
+        let kind = one_or(count, "value-count", "values-count");
         printable(&text!(kind; count, message = format!("{name} {direction}"), allowed))
     }
 
     fn bad_raw(&self, bad: &BadRaw) -> Option<String> {
         let (part, at) = (self.part(bad.variant, bad.field, bad.case)?, bad.element);
-        let (command, name) = (
-            &self.commands.get(bad.variant.command)?.name,
-            &part.name.name,
-        );
+        let (command, name) = (self.command_name(bad.variant.command), &part.name.name);
         if let Shape::Text(encoding, _) = part.wire.shape {
-            let (raw, encoding) = (format!("{:02X}", bad.raw), words(encoding).1);
+            let (raw, encoding) = (format!("{:02X}", bad.raw), word(encoding).to_lowercase());
             return Some(text!("bad-byte"; command, at, name, raw, encoding));
         }
         let number = part.numbers.get(at)?;
         let whole = part.wire.each == 0 && number.bits.is_none();
-        let name = if whole {
-            name.clone()
-        } else {
-            part.element(at)
-        };
+        let name = if whole { name } else { &part.element(at) };
         let (value, allowed) = (Shown::from(number.physical(bad.raw)), part.allowed(at));
         Some(text!("bad-value"; command, name, value, allowed))
     }
@@ -138,20 +125,19 @@ impl Edition {
                 };
                 let size = usize::from(counted) + layout.overhead;
                 let missing = size.saturating_sub(data.len());
-                text!(if missing == 1 { "truncated-by-one" } else { "truncated" }; length, missing)
+                text!(one_or(missing, "truncated-by-one", "truncated"); length, missing)
             }
             Reason::BadLength => self.bad_length(direction, &length, data),
             Reason::UnknownId => {
                 let id = digits(layout.id.read(data).unwrap_or_default(), layout.id.wide);
-                text!("unknown-id"; edition = self.name, direction = word(direction), id)
+                text!("unknown-id"; edition = self.name, direction = direction.word(), id)
             }
             Reason::BadCheck => match &frame.check {
                 Check::Footer(footer) => text!("no-footer"; footer = hex(&[*footer], "")),
                 Check::Computed(check) => match check.algorithm {
-                    None => text!("no-footer"; footer = hex(&check.footer, "")),
                     Some(Algorithm::Crc(_)) => text!("bad-crc"),
                     Some(Algorithm::Sum) => text!("bad-sum"),
-                    Some(_) => text!("bad-check"),
+                    _ => text!("bad-check"),
                 },
             },
             Reason::Trailing => text!("trailing"; length),
@@ -162,22 +148,16 @@ impl Edition {
         let frame = self.protocol.table.frame();
         let (layout, has_id) = (frame.layout, frame.has_id(direction));
         let id = layout.length.read(data).and(layout.id.read(data));
-        let (mut legal, mut names) = (Vec::new(), Vec::new());
+        let (mut legal, mut names) = (BTreeSet::new(), Vec::new());
         for (wire, command) in self.protocol.table.commands().iter().zip(&self.commands) {
             let variants = wire.variants(direction);
-            if variants.is_empty() || id.is_none_or(|id| has_id && wire.id != id) {
-                continue;
+            if !variants.is_empty() && id.is_some_and(|id| !has_id || wire.id == id) {
+                let length = |each: &Variant| frame.length(each.size(), direction);
+                legal.extend(variants.iter().map(length));
+                names.push(command.name.clone());
             }
-            legal.extend(
-                variants
-                    .iter()
-                    .map(|each| frame.length(each.size(), direction)),
-            );
-            names.push(command.name.clone());
         }
-        legal.sort_unstable();
-        legal.dedup();
-        let direction = word(direction);
+        let direction = direction.word();
         if legal.is_empty() {
             return text!("no-length"; direction, edition = self.name, length);
         }
@@ -189,10 +169,8 @@ impl Edition {
             }
             _ => direction.into(),
         };
-        let legal = legal
-            .into_iter()
-            .filter_map(|length| u16::try_from(length).ok());
-        let allowed = either(legal.map(|length| digits(length, layout.length.wide)));
+        let digits = |length| digits(length as u16, layout.length.wide);
+        let allowed = either(legal.into_iter().map(digits));
         text!("bad-length"; message, length, allowed)
     }
 }
@@ -203,11 +181,10 @@ impl Part<'_> {
         let value = bad.picked.map_or_else(|| bad.value.quote(), Shown::Integer);
         let size = if each > 0 { each } else { self.numbers.len() };
         let listed = self.name.sizes.is_some() || each > 0;
-        let encoding = match self.wire.shape {
-            Shape::Text(encoding, _) => Some(encoding),
-            _ => None,
+        let (is_bytes, encoding) = match self.wire.shape {
+            Shape::Text(encoding, _) => (false, Some(encoding)),
+            shape => (shape == Shape::Bytes, None),
         };
-        let is_bytes = self.wire.shape == Shape::Bytes;
         let count = Shown::Integer(value.count(encoding) as i64);
         let length = format!("len({name})");
         let indexed = format!("{name}[{}]", bad.element.unwrap_or(0) / size.max(1));
@@ -266,7 +243,7 @@ impl Part<'_> {
         let Shape::Text(encoding, padding) = self.wire.shape else {
             return String::new();
         };
-        let encoding = words(encoding).0;
+        let encoding = word(encoding);
         match (self.name.sizes, padding) {
             (Some((low, high)), _) if self.wire.each == 0 => {
                 text!("text-of-sizes"; encoding, sizes = text!("range"; low, high))
@@ -294,9 +271,8 @@ impl Part<'_> {
             true => (&self.name.labels, &self.wire.choices),
             false => (&names.labels, &number.choices),
         };
-        let choice = [&self.wire.choices, &number.choices]
-            .into_iter()
-            .find(|all| !all.is_empty());
+        let mut all = [&self.wire.choices, &number.choices].into_iter();
+        let choice = all.find(|all| !all.is_empty());
         if self.wire.flag || number.flag {
             text!("flag")
         } else if !labels.is_empty() {
@@ -331,23 +307,15 @@ impl Part<'_> {
 
 /// Return what a number without choices may be.
 fn range(number: &WireNumber, unit: &str) -> String {
-    let infinity = if number.width == 4 {
-        0x7F80_0000
-    } else {
-        0x7FF0_0000_0000_0000
-    };
+    let natural = number.natural_range();
     let kind = match number.float {
-        true if number.maximum >= infinity => "any-float",
-        true if (number.minimum, number.maximum) == (-infinity, infinity - 1) => "finite",
+        true if number.maximum > natural.1 => "any-float",
+        true if (number.minimum, number.maximum) == natural => "finite",
         float if float || number.scaled() => "real",
         _ => "whole",
     };
     let unit = entry(UNITS, unit).unwrap_or(unit);
-    let kind = if unit.is_empty() {
-        kind.into()
-    } else {
-        format!("{kind}-with-unit")
-    };
+    let kind = format!("{kind}{}", if unit.is_empty() { "" } else { "-with-unit" });
     let (low, high) = (bound(number, number.minimum), bound(number, number.maximum));
     text!(&kind; low, high, width = number.width, unit)
 }
@@ -366,26 +334,11 @@ fn bound(number: &WireNumber, raw: i64) -> String {
     }
 }
 
-fn variants(command: &Command, direction: Direction) -> &[Vec<Field>] {
-    match direction {
-        Direction::Request => &command.request,
-        Direction::Reply => &command.reply,
-    }
-}
-
-fn word(direction: Direction) -> &'static str {
-    match direction {
-        Direction::Request => "request",
-        Direction::Reply => "reply",
-    }
-}
-
-/// Return the name of an encoding in a sentence, and in the table.
-fn words(encoding: Encoding) -> (&'static str, &'static str) {
+fn word(encoding: Encoding) -> &'static str {
     match encoding {
-        Encoding::Ascii => ("ASCII", "ascii"),
-        Encoding::Utf8 => ("UTF-8", "utf-8"),
-        Encoding::Latin1 => ("Latin-1", "latin-1"),
+        Encoding::Ascii => "ASCII",
+        Encoding::Utf8 => "UTF-8",
+        Encoding::Latin1 => "Latin-1",
     }
 }
 

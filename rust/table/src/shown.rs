@@ -44,6 +44,25 @@ impl From<Value> for Shown {
 }
 
 impl Shown {
+    /// Return the next value of a decoded message; a row takes those that follow it.
+    pub(crate) fn nested(rest: &mut impl Iterator<Item = Value>) -> Option<Self> {
+        Some(match rest.next()? {
+            Value::Integer(raw) => Self::Integer(raw),
+            Value::Real(real) => Self::Real(real),
+            Value::Row(size) | Value::Rows(size) => {
+                Self::Tuple((0..size).map_while(|_| Self::nested(rest)).collect())
+            }
+            Value::Bytes(size) => Self::Bytes(bytes(rest, size)),
+            Value::Text(size, encoding) => {
+                let bytes = bytes(rest, size);
+                Self::Text(match encoding {
+                    Encoding::Latin1 => bytes.into_iter().map(char::from).collect(),
+                    _ => String::from_utf8_lossy(&bytes).into(),
+                })
+            }
+        })
+    }
+
     /// Return its length: of a text, in bytes of an encoding.
     pub(crate) fn count(&self, encoding: Option<Encoding>) -> usize {
         match self {
@@ -75,11 +94,8 @@ impl Display for Shown {
             Self::Text(text) => out.write_str(&quoted(text, is_printable)),
             Self::Bytes(bytes) => {
                 let text: String = bytes.iter().copied().map(char::from).collect();
-                write!(
-                    out,
-                    "b{}",
-                    quoted(&text, |char| (' '..='~').contains(&char))
-                )
+                let shown = quoted(&text, |char| (' '..='~').contains(&char));
+                write!(out, "b{shown}")
             }
             Self::List(all) => write!(out, "[{}]", joined(all)),
             Self::Tuple(all) if all.len() == 1 => write!(out, "({},)", joined(all)),
@@ -87,6 +103,14 @@ impl Display for Shown {
             Self::Other(text) => out.write_str(text),
         }
     }
+}
+
+fn bytes(rest: &mut impl Iterator<Item = Value>, size: usize) -> Vec<u8> {
+    let byte = |value| match value {
+        Value::Integer(raw) => u8::try_from(raw).ok(),
+        _ => None,
+    };
+    rest.take(size).filter_map(byte).collect()
 }
 
 pub(crate) fn join(all: impl Iterator<Item = String>, between: &str) -> String {
@@ -104,8 +128,7 @@ pub(crate) fn shortest(real: f64) -> String {
 }
 
 /// Return a real number with that many digits, without trailing zeros: `{:g}` in Python.
-#[must_use]
-pub fn general(real: f64, digits: usize) -> String {
+pub(crate) fn general(real: f64, digits: usize) -> String {
     let text = format!("{real:.*e}", digits.saturating_sub(1));
     let Some((mantissa, exponent)) = text.split_once('e') else {
         return shortest(real);

@@ -2,19 +2,22 @@
 
 use alloc::format;
 use alloc::string::{String, ToString};
+use alloc::vec::Vec;
 use core::fmt::Display;
 
 use cobotwire_core::exchange::{
-    Failure, Kind, Received, ReplyError, Request, RequestError, TextError, TextFault, TextForm,
+    Event, Failure, Received, ReplyError, Request, RequestError, TextError, TextFault, TextForm,
     WaitedFor,
 };
-use cobotwire_core::{Direction, EncodeError, Given};
+use cobotwire_core::{Decoded, Direction, EncodeError, Given, decode};
 
 use crate::shown::{is_printable, join, printable, quoted};
-use crate::{Edition, Quote, Shown};
+use crate::{Edition, Field, Quote, Shown};
 
 // A link to a file of the Python package; a package of this crate contains the file.
 const TEMPLATES: &str = include_str!("../error_texts.json");
+/// This many bytes of what was received meanwhile are shown.
+const SHOWN: usize = 24;
 
 /// Return what a file says of a key. Each entry has its own line, and no escapes.
 pub(crate) fn entry(file: &'static str, key: &str) -> Option<&'static str> {
@@ -65,27 +68,17 @@ pub fn link_error(url: &str, detail: &str) -> String {
     printable(&text!("link"; url, detail))
 }
 
-/// Return a request as a person writes it: `get_encoder(joint=1)`, `stop() to LEFT`.
-pub fn as_call<'a>(
-    command: &str,
-    arguments: impl Iterator<Item = (&'a str, Shown)>,
-    address: Option<&str>,
-) -> String {
-    let arguments = arguments.map(|(name, value)| match value {
-        Shown::Text(text) => format!("{name}={text}"),
-        value => format!("{name}={value}"),
-    });
-    let to = address.map_or(String::new(), |address| format!(" to {address}"));
-    format!("{command}({}){to}", join(arguments, ", "))
-}
-
 pub(crate) fn protocol_error(detail: &str, offset: usize, data: &[u8]) -> String {
-    let data = if data.is_empty() {
-        text!("no-bytes")
-    } else {
-        hex(data, " ")
+    let data = match data {
+        [] => text!("no-bytes"),
+        data => hex(data, " "),
     };
     printable(&text!("protocol"; detail, offset, data))
+}
+
+/// Return the first word if the count is 1, or else the second.
+pub(crate) fn one_or(count: usize, one: &'static str, other: &'static str) -> &'static str {
+    if count == 1 { one } else { other }
 }
 
 impl Edition {
@@ -97,34 +90,25 @@ impl Edition {
         error: &RequestError<EncodeError<V>>,
         (count, texts, address): (usize, &[&str], Option<u8>),
     ) -> String {
-        let record = self.commands.get(command);
-        let command_name = record.map_or("", |command| &command.name);
-        let known = self
-            .addresses
-            .iter()
-            .find(|known| Some(known.value) == address);
-        let name = self.address_name(address.unwrap_or_default());
+        let (name, protocol) = (self.command_name(command), &self.protocol);
+        let to = self.address_name(address.unwrap_or_default());
         let text = match error {
             RequestError::Values(error) => {
                 return self.encode_error((command, Direction::Request), error, count, address);
             }
             RequestError::Command => String::new(),
-            RequestError::Address => return self.no_address(address),
-            RequestError::Unanswered => text!("unanswered"; command = command_name, name),
+            RequestError::Address => return self.no_raw_address(address),
+            RequestError::Unanswered => text!("unanswered"; command = name, name = to),
             RequestError::LacksJoints => {
+                let mut known = protocol.addresses.iter();
+                let known = known.find(|known| Some(known.value) == address);
                 let joints = known.map_or(0, |known| known.joints);
-                let kind = if joints == 1 {
-                    "lacks-joints-but-one"
-                } else {
-                    "lacks-joints"
-                };
-                format!(
-                    "{command_name}() {}",
-                    text!(kind; count = self.joints, name, joints)
-                )
+                let kind = one_or(joints, "lacks-joints-but-one", "lacks-joints");
+                let lacks = text!(kind; count = protocol.joints, name = to, joints);
+                format!("{name}() {lacks}")
             }
             RequestError::Text(fault) => {
-                let facts = self.protocol.facts.get(command);
+                let facts = protocol.facts.get(command);
                 let form = facts.and_then(|facts| facts.request_text.as_ref());
                 form.map_or(String::new(), |form| unsent_text(form, *fault, texts))
             }
@@ -132,19 +116,27 @@ impl Edition {
         printable(&text)
     }
 
+    /// Return the name of a command.
+    pub(crate) fn command_name(&self, command: usize) -> &str {
+        let command = self.commands.get(command);
+        command.map_or("", |command| &command.name)
+    }
+
     /// Return the text of the error that an edition has no such address.
     #[must_use]
-    pub fn no_address(&self, given: Option<u8>) -> String {
+    pub fn no_address(&self, given: &Shown) -> String {
         let addresses = self.protocol.table.frame().addresses.iter();
         let allowed = addresses.map(|raw| text!("label"; label = self.address_name(*raw), raw));
-        match join(allowed, ", ") {
-            none if none.is_empty() => text!("no-addresses"; edition = self.name),
-            allowed => bad_argument(
-                "address",
-                &Shown::Integer(given.unwrap_or(0).into()),
-                &allowed,
-            ),
+        let allowed = join(allowed, ", ");
+        if allowed.is_empty() {
+            return text!("no-addresses"; edition = self.name);
         }
+        bad_argument("address", given, &allowed)
+    }
+
+    /// The same for a number.
+    pub(crate) fn no_raw_address(&self, given: Option<u8>) -> String {
+        self.no_address(&Shown::Integer(given.unwrap_or(0).into()))
     }
 
     /// Return the name of an address; its number, if it has none.
@@ -154,10 +146,46 @@ impl Edition {
         known.map_or(value.to_string(), |known| known.name.clone())
     }
 
-    /// Return the text of the error that ended a request, which is `call` for people. `None`: that
-    /// of the transport did, which has a text of its own.
+    /// Return the fields of a message as texts show them.
     #[must_use]
-    pub fn failure(&self, call: &str, request: &Request, failure: &Failure) -> Option<String> {
+    pub fn fields(&self, message: &Decoded) -> String {
+        let shown = self.named(message).into_iter().map(|(name, value)| {
+            let value = match value {
+                Shown::Text(text) => text,
+                value => value.to_string(),
+            };
+            format!("{name}={value}")
+        });
+        join(shown, ", ")
+    }
+
+    /// Return the fields of a message with their names.
+    #[must_use]
+    pub fn named<'a>(&'a self, message: &Decoded) -> Vec<(&'a str, Shown)> {
+        let id = message.variant;
+        let command = self.commands.get(id.command);
+        let fields = command.and_then(|command| command.variants(id.direction).get(id.variant));
+        let mut values = message.values.iter().copied();
+        let named = |field: &'a Field| Some((&*field.name, Shown::nested(&mut values)?));
+        fields.into_iter().flatten().map_while(named).collect()
+    }
+
+    /// Return a message as a person writes it: `get_encoder(joint=1)`, `stop() to LEFT`.
+    #[must_use]
+    pub fn message(&self, message: &Decoded) -> String {
+        let name = self.command_name(message.variant.command);
+        let to = |address| format!(" to {}", self.address_name(address));
+        let to = message.address.map(to);
+        format!("{name}({}){}", self.fields(message), to.unwrap_or_default())
+    }
+
+    /// Return the text of the error that ended a request. `None`: that of the transport did, which
+    /// has a text of its own.
+    #[must_use]
+    pub fn failure(&self, request: &Request, failure: &Failure) -> Option<String> {
+        let (table, command) = (&self.protocol.table, request.command);
+        let own = decode(table, Direction::Request, &request.frame, Some(command));
+        let call = &own.map_or_else(|_| String::new(), |own| self.message(&own));
         Some(match failure {
             Failure::Link => return None,
             Failure::Timeout {
@@ -166,8 +194,9 @@ impl Edition {
                 waited_for,
                 received,
             } => {
-                let lines = join(received.iter().map(|each| self.line(each)), "; ");
-                printable(&timeout(call, (*waited, *attempts), *waited_for, lines))
+                let lines = received.iter().map(|each| self.line(each, command));
+                let times = (*waited, *attempts);
+                printable(&timeout(call, times, *waited_for, join(lines, "; ")))
             }
             Failure::Reply {
                 error: ReplyError::Frame(error),
@@ -177,7 +206,7 @@ impl Edition {
                 error: ReplyError::Text(error),
                 data,
             } => {
-                let facts = self.protocol.facts.get(request.command)?;
+                let facts = self.protocol.facts.get(command)?;
                 received_text(facts.text.as_ref()?, *error, data)
             }
             Failure::Refused {
@@ -193,33 +222,27 @@ impl Edition {
         })
     }
 
-    /// Return the line of something that was received while a reply was waited for.
-    fn line(&self, received: &Received) -> String {
-        let (data, size) = (hex(&received.shown, " "), received.size);
-        let cut = size > received.shown.len();
-        let data = if cut {
-            text!("cut-data"; data, size)
-        } else {
-            data
+    /// Return the line of something that was received while a reply to a command was waited for.
+    fn line(&self, received: &Received, of: usize) -> String {
+        let (bytes, size) = (received.event.data(), received.size);
+        let mut data = hex(bytes.get(..SHOWN).unwrap_or(bytes), " ");
+        if size > SHOWN {
+            data = text!("cut-data"; data, size);
+        }
+        let commands = self.protocol.table.commands();
+        let id = |command: usize| commands.get(command).map(|own| own.id);
+        let (kind, command) = match &received.event {
+            Event::Noise { reason, .. } => return text!("noise"; reason = reason.word(), data),
+            Event::Late { command, .. } => ("late-reply", *command),
+            Event::DeviceEvent { command, .. } => ("event", *command),
+            // An acknowledgement has only the command's id, so an earlier request may have caused
+            // it.
+            Event::Ack { command, .. } if id(*command) == id(of) => ("doubtful-ack", *command),
+            Event::Ack { command, .. } => ("ack", *command),
+            Event::Echo { .. } => ("echo", 0),
+            _ => ("frame", 0),
         };
-        let (kind, command) = match received.kind {
-            Kind::Noise(reason) => return text!("noise"; reason = reason.word(), data),
-            Kind::Late { command } => ("late-reply", command),
-            Kind::DeviceEvent { command } => ("event", command),
-            Kind::Ack {
-                command,
-                perhaps_earlier: true,
-            } => ("doubtful-ack", command),
-            Kind::Ack { command, .. } => ("ack", command),
-            Kind::Echo => ("echo", 0),
-            Kind::Unexpected => ("frame", 0),
-            Kind::Unread => ("too-much", 0),
-        };
-        let command = self
-            .commands
-            .get(command)
-            .map_or("", |command| &command.name);
-        text!(kind; command, data)
+        text!(kind; command = self.command_name(command), data)
     }
 }
 
@@ -230,13 +253,7 @@ fn timeout(
     waited_for: Option<WaitedFor>,
     received: String,
 ) -> String {
-    let meanwhile = match waited_for {
-        None => "nothing",
-        Some(WaitedFor::Turn) => "turn",
-        Some(WaitedFor::Hold) => "hold",
-        Some(WaitedFor::Line) => "line",
-        Some(WaitedFor::Reply) => "reply",
-    };
+    let meanwhile = text!(waited_for.map_or("nothing", WaitedFor::word));
     let kind = match (attempts, waited_for) {
         (0, None) => "not-sent",
         (0, _) => "not-sent-by-deadline",
@@ -244,15 +261,13 @@ fn timeout(
         (_, _) => "no-reply-by-deadline",
     };
     let waited = format!("{:.3}", waited as f64 / 1e9);
-    let times = text!(if attempts == 1 { "attempt" } else { "attempts" }; count = attempts);
-    let what = text!(kind; request, waited, attempts = times, meanwhile = text!(meanwhile));
-    if kind == "not-sent-by-deadline" {
-        return what;
-    }
-    let received = if received.is_empty() {
-        text!("nothing")
-    } else {
-        received
+    let times = text!(one_or(attempts, "attempt", "attempts"); count = attempts);
+    let what = text!(kind; request, waited, attempts = times, meanwhile);
+    let received = match kind {
+        "not-sent-by-deadline" => return what,
+        "not-sent" => text!("too-much"),
+        _ if received.is_empty() => text!("nothing"),
+        _ => received,
     };
     text!("meanwhile"; what, received)
 }
@@ -261,46 +276,34 @@ fn timeout(
 fn received_text(form: &TextForm, error: TextError, data: &[u8]) -> String {
     let prefix = |index: usize| form.prefixes.get(index).map_or("", |prefix| prefix);
     let prefix = |index: usize| quoted(prefix(index), is_printable);
-    let (detail, offset) = match error {
-        TextError::NotAscii { offset } => (text!("text-not-ascii"), offset),
-        TextError::Start => (text!("text-start"; prefix = prefix(0)), 0),
-        TextError::End => {
-            let suffix = quoted(&form.suffix, is_printable);
-            (text!("text-end"; suffix), data.len())
+    let detail = match error {
+        TextError::NotAscii { .. } => text!("text-not-ascii"),
+        TextError::Start => text!("text-start"; prefix = prefix(0)),
+        TextError::End => text!("text-end"; suffix = quoted(&form.suffix, is_printable)),
+        TextError::Prefix { index, times, .. } => {
+            text!("text-prefix"; prefix = prefix(index), count = times)
         }
-        TextError::Prefix {
-            index,
-            times,
-            offset,
-        } => (
-            text!("text-prefix"; prefix = prefix(index), count = times),
-            offset,
-        ),
-        TextError::TooLong => (text!("text-length"; most = 4096), 4096),
+        TextError::TooLong => text!("text-length"; most = error.offset(0)),
     };
-    protocol_error(&detail, offset, data)
+    protocol_error(&detail, error.offset(data.len()), data)
 }
 
 /// Return the text of the error of texts that cannot be sent.
 fn unsent_text(form: &TextForm, fault: TextFault, given: &[&str]) -> String {
     let text = |index: usize| Shown::Text((*given.get(index).unwrap_or(&"")).into());
-    match fault {
-        TextFault::NotPrintable(index) => {
-            let name = form.fields.get(index).map_or("", |name| name);
-            bad_argument(name, &text(index), &text!("printable"))
-        }
-        TextFault::Ambiguous => {
-            let words = form.prefixes.iter().skip(1).chain([&form.suffix]);
-            let words = words.filter(|word| !word.is_empty());
-            let words = either(words.map(|word| quoted(word, is_printable)));
-            let given = Shown::Tuple((0..form.fields.len()).map(text).collect());
-            bad_argument(
-                &form.fields.join(", "),
-                &given,
-                &text!("unambiguous"; words),
-            )
-        }
+    if let TextFault::NotPrintable(index) = fault {
+        let name = form.fields.get(index).map_or("", |name| name);
+        return bad_argument(name, &text(index), &text!("printable"));
     }
+    let words = form.prefixes.iter().skip(1).chain([&form.suffix]);
+    let words = words.filter(|word| !word.is_empty());
+    let words = either(words.map(|word| quoted(word, is_printable)));
+    let given = Shown::Tuple((0..form.fields.len()).map(text).collect());
+    bad_argument(
+        &form.fields.join(", "),
+        &given,
+        &text!("unambiguous"; words),
+    )
 }
 
 pub(crate) fn either(words: impl Iterator<Item = String>) -> String {

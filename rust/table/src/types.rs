@@ -9,17 +9,20 @@ use core::cell::Cell;
 use cobotwire_core as core_table;
 use cobotwire_core::Bits;
 use serde::Deserialize;
-use serde_json::Value;
 
 use crate::json::Record;
-use crate::messages::MOST_MEMORY;
 use crate::{BadEdition, Number, Outcome, Within};
+
+/// The most memory of all numbers and fields together, in bytes. Each number repeats the choices of
+/// its type, and a message has as many variants as the product of the sizes of its lists, so a short
+/// file could fill the memory.
+const MOST_MEMORY: usize = 1 << 27;
 
 /// The types of a file, by their names.
 pub(crate) struct Types<'a> {
     wires: BTreeMap<&'a str, Record<'a>>,
     types: BTreeMap<&'a str, Record<'a>>,
-    /// How many bytes more their numbers may take.
+    /// How many bytes more all numbers and fields may take.
     left: Cell<usize>,
 }
 
@@ -49,16 +52,6 @@ impl Kind {
     pub(crate) fn repeats(self) -> bool {
         matches!(self, Self::Bits | Self::Bytes | Self::Text | Self::List)
     }
-
-    /// Return what texts call it.
-    pub(crate) fn word(self) -> &'static str {
-        match self {
-            Self::Flag => "flag",
-            Self::Enum => "enum",
-            Self::Text => "text",
-            _ => "number",
-        }
-    }
 }
 
 /// The numbers of a type in the order of the wire, and what texts need of each.
@@ -87,26 +80,27 @@ impl Numbers {
 
     /// Return about how many bytes of memory they take.
     pub(crate) fn weight(&self) -> usize {
-        let weights = self.wire.iter().map(|number| weight(number.choices.len()));
-        weights.sum()
+        let wire = self.wire.iter();
+        let texts = self.texts.iter();
+        let texts = texts.map(|text| 72 + text.name.len() + text.unit.len() + words(&text.labels));
+        let wire = wire.map(|number| size_of_val(number) + 8 * number.choices.len());
+        wire.chain(texts).sum()
     }
 
     /// Return the number of their bytes.
     pub(crate) fn size(&self) -> usize {
-        let steps = self.wire.iter().map(|number| match number.bits {
+        let size = |number: &core_table::Number| match number.bits {
             Some(Bits { more: true, .. }) => 0,
             _ => number.width,
-        });
-        steps.sum()
+        };
+        self.wire.iter().map(size).sum()
     }
 
     fn push(&mut self, wire: core_table::Number, name: &str, of: Record<'_>) -> Outcome<()> {
         self.wire.push(wire);
-        self.texts.push(Number {
-            name: name.into(),
-            unit: of.any("unit")?,
-            labels: of.any("labels")?,
-        });
+        let text = Number::deserialize(of.0).or_else(BadEdition::because)?;
+        let name = name.into();
+        self.texts.push(Number { name, ..text });
         Ok(())
     }
 }
@@ -129,45 +123,45 @@ impl<'a> Types<'a> {
         referred(&self.types, record.at(key)).within(key, "")
     }
 
+    /// Count memory; it is an error if it is too much.
+    pub(crate) fn spend(&self, bytes: usize) -> Outcome<()> {
+        let left = self.left.get().checked_sub(bytes);
+        let too_much = || BadEdition::because("all types and messages take too much memory");
+        self.left.set(left.map_or_else(too_much, Ok)?);
+        Ok(())
+    }
+
     /// Return the numbers of a type that is one number, or a row of named numbers.
     pub(crate) fn numbers(&self, of: Record<'a>) -> Outcome<Numbers> {
-        let mut numbers = Numbers::default();
-        let name = of.any("name")?;
+        let (mut numbers, name) = (Numbers::default(), of.any("name")?);
+        let mut push = |name, of: Record<'a>| {
+            let mut one = Numbers::default();
+            one.push(self.number(of).within("type", of.any("name")?)?, name, of)?;
+            self.spend(one.weight())?;
+            numbers.wire.append(&mut one.wire);
+            numbers.texts.append(&mut one.texts);
+            Ok(())
+        };
         if kind(of)? != Kind::Value {
-            let number = self.number(of).within("type", name)?;
-            numbers.push(number, "", of)?;
+            push("", of)?;
             return Ok(numbers);
         }
         for item in of.records("items").within("type", name)? {
             let inner = self.get(item, "type").within("type", name)?;
-            let number = self.number(inner).within("type", inner.any("name")?);
-            numbers.push(number.within("type", name)?, item.name()?, inner)?;
+            push(item.name()?, inner).within("type", name)?;
         }
         Ok(numbers)
     }
 
     fn number(&self, of: Record<'a>) -> Outcome<core_table::Number> {
         let wire = referred(&self.wires, of.at("wire")).within("wire", "")?;
-        let scale = match of.some("scale") {
-            Some(_) => of.rational("scale")?,
-            None => (1, 1),
-        };
-        let all = all_choices(of)?;
-        let labels =
-            of.0.get("labels")
-                .and_then(Value::as_array)
-                .map_or(0, Vec::len);
-        let taken = weight(all.len()) + labels * size_of::<String>();
-        let left = self.left.get().checked_sub(taken);
-        // Each number repeats the choices of its type, so a short file could fill the memory.
-        let too_much = || BadEdition::because("the numbers of all types take too much memory");
-        self.left.set(left.map_or_else(too_much, Ok)?);
-        number(wire, of, scale, &all)
+        number(wire, of, of.rational("scale")?, &all_choices(of)?)
     }
 }
 
-fn weight(choices: usize) -> usize {
-    size_of::<core_table::Number>() + choices * size_of::<i64>()
+/// Return about how many bytes words take.
+pub(crate) fn words(labels: &[String]) -> usize {
+    labels.iter().map(|label| 24 + label.len()).sum()
 }
 
 fn referred<'a>(known: &BTreeMap<&str, Record<'a>>, reference: Record<'a>) -> Outcome<Record<'a>> {
@@ -230,7 +224,7 @@ fn number(
         choices: of.any("choices")?,
         ..core_table::Number::default()
     };
-    let (low, high) = natural_range(&number);
+    let (low, high) = number.natural_range();
     (number.minimum, number.maximum) = match (all.iter().min(), all.iter().max()) {
         (Some(low), Some(high)) => (*low, *high),
         _ => (of.or("minimum", low)?, of.or("maximum", high)?),
@@ -253,7 +247,6 @@ pub(crate) fn fitting<'a>(
     }
 }
 
-/// Return the kind of a type.
 pub(crate) fn kind(of: Record<'_>) -> Outcome<Kind> {
     of.get("kind")
 }
@@ -268,21 +261,4 @@ pub(crate) fn all_choices(of: Record<'_>) -> Outcome<Vec<i64>> {
         return of.any("choices");
     }
     members.iter().map(|member| member.get("value")).collect()
-}
-
-/// Return the lowest and the highest raw value that bytes can hold; floats: finite ones.
-fn natural_range(number: &core_table::Number) -> (i64, i64) {
-    let infinite = 0x7FF0_0000_0000_0000;
-    match (number.float, number.width) {
-        (true, 4) => (-0x7F80_0000, 0x7F7F_FFFF),
-        (true, _) => (-infinite, infinite - 1),
-        (false, 0..=4) => {
-            let top = (1 << (8 * number.width)) - 1;
-            let signed = number.signed_at < top;
-            let low = number.signed_at.saturating_sub(top);
-            (if signed { low } else { 0 }, number.signed_at)
-        }
-        // The core takes integers of at most four bytes.
-        _ => (0, i64::MAX),
-    }
 }

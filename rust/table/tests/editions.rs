@@ -125,7 +125,7 @@ fn short_file_cannot_fill_the_memory() {
     assert!(json.len() < 1 << 20);
     let error = Edition::read(&json).unwrap_err().to_string();
     assert!(
-        error.ends_with("the numbers of all types take too much memory"),
+        error.ends_with("all types and messages take too much memory"),
         "{error}"
     );
 }

@@ -48,7 +48,7 @@ def main_twins(most: int) -> int:
     from probe import Probe
     from session.twin_search import TwinSearch, edition
 
-    probe = Probe("exchange")
+    probe = Probe()
     with TemporaryDirectory() as folder:
         path = edition(Path(folder))
         return main(most, lambda topic: TwinSearch(topic, path, probe.ask))

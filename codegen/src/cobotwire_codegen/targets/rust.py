@@ -1,16 +1,14 @@
 """Writes a module in Rust for each edition: typed messages for the crate ``cobotwire``.
 
-Each command is stated once; macros of the crate make its request, its blocking method and its
-asynchronous method. The table comes with it as JSON, which the crate reads on first use.
+The template makes the request, the blocking method and the asynchronous method of each command. The
+table comes with them as JSON, which the crate reads on first use.
 """
 
 from __future__ import annotations
 
-import json
 import re
 from collections.abc import Iterable, Sequence
 from pathlib import Path, PurePosixPath
-from typing import Any
 
 from cobotwire_codegen import lower
 from cobotwire_codegen.model import (
@@ -28,6 +26,7 @@ from cobotwire_codegen.model import (
 )
 from cobotwire_codegen.publish import edition_json
 from cobotwire_codegen.render import Files, environment, with_used_types
+from cobotwire_codegen.render import python_api as api
 from cobotwire_codegen.render.arguments import arguments
 from cobotwire_codegen.render.escape_markdown import escaped
 from cobotwire_codegen.render.parameters import Parameter, parameters, reply_parameters, results
@@ -40,13 +39,10 @@ _WORDS = """
 _KEYWORDS = frozenset(_WORDS.split())
 _NOT_EVEN_RAW = frozenset({"Self", "crate", "self", "super"})
 # What generated modules name without a path, and what every typed client has.
-_TYPES = frozenset({"Async", "Option", "Self", "String", "Value", "Vec"})
+_TYPES = frozenset(
+    {"Async", "From", "Into", "Option", "Result", "Self", "Some", "String", "Typed", "Value", "Vec"}
+)
 _METHODS = frozenset({"acknowledged", "clone", "over", "with", "opened"})
-# What only people read; the editions in the docs site have it.
-_TEXTS = """
-    doc place lines notes disputed changes firmware document generated samples agrees_with
-"""
-_FOR_PEOPLE = frozenset(_TEXTS.split())
 
 
 def render_rust(edition: Edition, templates: Path | None = None) -> Files:
@@ -55,15 +51,17 @@ def render_rust(edition: Edition, templates: Path | None = None) -> Files:
     jinja.filters.update(rustdoc=rustdoc, rust_name=identifier, camel=camel)
     edition = with_used_types(edition)
     shown = escaped(edition)
+    commands = [_Shown(shown, command) for command in shown.commands]
     text = jinja.get_template("rust/edition.rs.j2").render(
         edition=shown,
         name=type_name(shown.class_name),
-        commands=[_Shown(shown, command) for command in shown.commands],
+        commands=commands,
+        requests=[each for each in commands if not each.command.event],
         shape=_Shape(),
     )
     return {
         PurePosixPath(f"{edition.name}.rs"): text,
-        PurePosixPath(f"{edition.name}.json"): stripped(edition_json(edition)),
+        PurePosixPath(f"{edition.name}.json"): edition_json(edition),
     }
 
 
@@ -77,39 +75,8 @@ def render_every_rust(found: Sequence[Edition]) -> Files:
     return made
 
 
-def stripped(table: str) -> str:
-    """Return the text of an ``edition.json`` without what only people read."""
-    document = json.loads(table)
-    mark = {"generated": document["generated"]}
-    lines = []
-    for key, value in (mark | _without(document)).items():
-        if isinstance(value, list):
-            rows = ",\n".join(_compact(_without(row)) for row in value)
-            lines.append(f'"{key}":[\n{rows}\n]')
-        else:
-            lines.append(f'"{key}":{_compact(_without(value))}')
-    return "{\n" + ",\n".join(lines) + "\n}\n"
-
-
-def _without(value: Any) -> Any:
-    """Return a record without texts for people, also in its messages and members."""
-    if not isinstance(value, dict):
-        return value
-    kept = {key: each for key, each in value.items() if key not in _FOR_PEOPLE}
-    for key in ("request", "reply"):
-        if key in kept and isinstance(kept[key], list):
-            kept[key] = [[_without(field) for field in variant] for variant in kept[key]]
-    if isinstance(kept.get("members"), list):
-        kept["members"] = [_without(member) for member in kept["members"]]
-    return kept
-
-
-def _compact(value: Any) -> str:
-    return json.dumps(value, ensure_ascii=False, separators=(",", ":"))
-
-
 def identifier(name: str) -> str:
-    """Return the name of a field or argument; the macros remove what is added to keywords."""
+    """Return the name of a field or argument in Rust; keywords have additions."""
     if name in _NOT_EVEN_RAW:
         return f"{name}_"
     return f"r#{name}" if name in _KEYWORDS else name
@@ -146,13 +113,12 @@ class _Shape:
         left_out = parameter.may_be_none or parameter.default is not None
         return f"Option<{found}>" if left_out else found
 
-    def result(self, parameter: Parameter, *, optional: bool | None = None) -> str:
+    def result(self, parameter: Parameter) -> str:
         """Return the type of a field of a reply."""
         types = parameter.types
         same = len(types) == 1 or not all(isinstance(type, Value) for type in types)
         found = _one(map(self.reported if same else self._given, types))
-        absent = parameter.optional if optional is None else optional
-        return f"Option<{found}>" if absent else found
+        return f"Option<{found}>" if parameter.optional else found
 
     def _given(self, type: Type) -> str:
         if isinstance(type, Value | Bits):
@@ -180,9 +146,12 @@ class _Shape:
         parts = type.items if isinstance(type, Value) else ()
         return [name for name, _ in parts] == [f"j{n}" for n in range(1, len(parts) + 1)]
 
-    def item(self, type: Quantity | Enum | Flag) -> str:
-        """Return the type of a part of a row."""
-        return type_name(type.class_name) if isinstance(type, Enum) else _scalar(type)
+    def items(self, type: Value | Bits) -> list[tuple[str, str, str]]:
+        """Return name, type and description of each part of a row."""
+        return [
+            (name, type_name(item.class_name) if isinstance(item, Enum) else _scalar(item), doc)
+            for name, item, doc in ((name, item, api.item_doc(item)) for name, item in type.items)
+        ]
 
 
 def _array(type: Value | Bits) -> str:
@@ -223,34 +192,28 @@ class _Shown:
         self.method = f"{method}_" if method in _METHODS else identifier(method)
         fields = {parameter.name: parameter for parameter in parameters(command)}
         shape = _Shape()
-        self.arguments = ", ".join(
-            f"{identifier(each.name)}: "
-            + (shape.argument(fields[each.name]) if each.name in fields else "String")
+        self.arguments = [
+            (each.name, shape.argument(fields[each.name]) if each.name in fields else "String")
             for each in arguments(command)
-        )
+        ]
         every = [*fields.values(), *reply_parameters(command)]
-        names = dict.fromkeys(parameter.name for parameter in every if parameter.radians)
-        self.radians = " ".join(map(identifier, names))
-        self.own_result = command.text is not None or len(results(command)) > 1
-
-    @property
-    def reply(self) -> str:
-        """The type of the result, and the fields that it is made of."""
-        found, text, shape = results(self.command), self.command.text, _Shape()
+        self.radians = list(dict.fromkeys(each.name for each in every if each.radians))
+        found, text = results(command), command.text
+        self.own_result = text is not None or len(found) > 1
+        self.result = f"{self.message}Result" if text is None else type_name(text.class_name)
+        self.results = [each.name for each in found]
+        self.items = [(each.name, shape.result(each), each.doc) for each in found]
         if text is not None:
-            names = [name for name, _ in text.fields]
-            return f" -> {type_name(text.class_name)} = {' '.join(map(identifier, names))}"
-        if not found or self.command.event:
-            return ""
-        names = [result.name for result in found]
-        made = f"{self.message}Result" if self.own_result else shape.result(found[0])
-        return f" -> {made} = {' '.join(map(identifier, names))}"
-
-    @property
-    def items(self) -> list[tuple[str, str, str]]:
-        """The fields of a result of several parts, or of an event: name, type and description."""
-        text, shape = self.command.text, _Shape()
-        if text is not None:
-            return [(name, "String", doc) for name, doc in text.fields]
-        found = reply_parameters(self.command) if self.command.event else results(self.command)
-        return [(each.name, shape.result(each), each.doc) for each in found]
+            self.results = [name for name, _ in text.fields]
+            self.items = [(name, "String", doc) for name, doc in text.fields]
+        elif command.event:
+            reported = reply_parameters(command)
+            self.items = [(each.name, shape.result(each), each.doc) for each in reported]
+        parts = [f"{command.title}.", api.description(command)]
+        parts.append("\n".join(f"* {line}" for line in api.argument_lines(command)))
+        parts.append(f"Returns: {api.result_line(command)}" if command.awaits_reply else "")
+        parts.append(f"Safety: {command.safety}. Command id 0x{command.id:02X}.")
+        self.doc = "\n\n".join(filter(None, parts))
+        self.reply = self.result if self.own_result else "()"
+        if found and not self.own_result:
+            self.reply = shape.result(found[0])

@@ -3,15 +3,16 @@
 //! A write may end after a part of a frame. The peer's parser then waits for the rest, and takes the
 //! next request for it: both together can be a legal frame that nobody sent. So fill bytes go out
 //! first. They end the frame that was begun, and make its check wrong, whatever LEN the parser
-//! believes.
+//! accepts.
 //!
 //! Fill bytes cannot help if the part that was written contains a whole legal frame: a parser that
 //! rejects the outer frame finds the inner one. Then the rest of the frame is sent instead, so that
 //! the arm executes what the caller requested, and never something else.
 
+use alloc::sync::Arc;
 use alloc::vec::Vec;
 
-use super::facts::Protocol;
+use super::Protocol;
 use crate::check::Check;
 use crate::direction::{Direction, Listening};
 use crate::frame::{self, FrameFormat};
@@ -19,27 +20,20 @@ use crate::framer::{Event, Framer};
 
 /// The first `written` bytes of a request, which is all that the peer has of it.
 #[derive(Clone, Debug, PartialEq, Eq)]
+#[allow(missing_docs)] // as above
 pub struct Part {
-    /// The request.
-    pub request: Vec<u8>,
-    /// How many of its bytes the peer has.
+    pub request: Arc<[u8]>,
     pub written: usize,
 }
 
 impl Part {
-    fn new(request: &[u8], written: usize) -> Self {
-        let request = request.into();
+    fn new(request: &Arc<[u8]>, written: usize) -> Self {
+        let request = Arc::clone(request);
         Self { request, written }
     }
 
-    /// Return the bytes that the peer has.
-    fn data(&self) -> &[u8] {
-        self.request.get(..self.written).unwrap_or(&self.request)
-    }
-
-    /// Return the bytes that the peer does not have.
-    fn rest(&self) -> &[u8] {
-        self.request.get(self.written..).unwrap_or_default()
+    fn split(&self) -> (&[u8], &[u8]) {
+        self.request.split_at(self.written.min(self.request.len()))
     }
 }
 
@@ -55,7 +49,6 @@ pub(super) struct Alignment {
 }
 
 impl Alignment {
-    /// Note the frame that is sent now.
     pub(super) fn sent(&mut self, request: &[u8]) {
         self.last_request = request.into();
     }
@@ -75,29 +68,29 @@ impl Alignment {
         request: &[u8],
         written: Option<usize>,
     ) -> Option<usize> {
-        let size = frame_size(protocol.table.frame(), request);
+        let (format, mut parts) = (protocol.table.frame(), self.held.clone());
         let Some(written) = written else {
-            let mut parts = self.held.clone();
-            parts.extend(all_parts(request, size));
+            parts.extend(all_parts(format, request));
             self.hold(protocol, parts);
             return None;
         };
-        let begun = written.checked_sub(align.len()).filter(|_| written > 0);
+        if written == 0 {
+            return Some(0);
+        }
+        let begun = written.checked_sub(align.len());
         if let Some(begun) = begun {
             // Text may follow a frame. It is not the beginning of a frame.
-            let within = (1..size).contains(&begun);
-            let part = within.then(|| Part::new(request, begun));
-            self.hold(protocol, part.into_iter().collect());
-            return Some(begun);
-        }
-        if let [part] = self.held.as_slice()
-            && written > 0
-            && self.align == part.rest()
+            let within = (1..frame_size(format, request)).contains(&begun);
+            parts = Vec::from_iter(within.then(|| Part::new(&request.into(), begun)));
+        } else if let [part] = parts.as_mut_slice()
+            && self.align == part.split().1
         {
-            let part = Part::new(&part.request, part.written.saturating_add(written));
-            self.hold(protocol, [part].into());
+            part.written = part.written.saturating_add(written);
+        } else {
+            return Some(0);
         }
-        Some(0)
+        self.hold(protocol, parts);
+        Some(begun.unwrap_or_default())
     }
 
     /// Note that the transport is gone. The last request, and earlier ones that were still on their
@@ -110,73 +103,60 @@ impl Alignment {
         let format = protocol.table.frame();
         let rules = protocol.table.rules(Listening::To(Direction::Request));
         let (_, longest) = rules.legal().lengths().unwrap_or_default();
-        let length = format.layout.length;
         let mut begun = last.clone();
-        begun.resize(length.end(), 0);
-        length.write(&mut begun, longest);
+        begun.resize(format.layout.length.end(), 0);
+        format.layout.length.write(&mut begun, longest);
         let mut parts = core::mem::take(&mut self.held);
-        parts.push(Part::new(&begun, begun.len()));
-        parts.extend(all_parts(&last, frame_size(format, &last)));
+        parts.push(Part::new(&(&*begun).into(), begun.len()));
+        parts.extend(all_parts(format, &last));
         self.hold(protocol, parts);
     }
 
-    /// Note every part that the peer may hold.
     pub(super) fn hold(&mut self, protocol: &Protocol, parts: Vec<Part>) {
-        self.align = match parts.as_slice() {
+        let fill = fill_bytes(protocol.table.frame(), &parts);
+        self.align = match &*parts {
             [] => Vec::new(),
-            parts => ending(protocol, parts),
+            [part] if exposes(protocol, part, &fill) => part.split().1.into(),
+            _ => fill,
         };
         self.held = parts;
-    }
-}
-
-/// Return what ends the part that the peer holds, whichever it is.
-fn ending(protocol: &Protocol, parts: &[Part]) -> Vec<u8> {
-    let data: Vec<&[u8]> = parts.iter().map(Part::data).collect();
-    let fill = fill_bytes(protocol.table.frame(), &data);
-    match parts {
-        [part] if exposes(protocol, part, &fill) => part.rest().into(),
-        _ => fill,
     }
 }
 
 /// Return whether a parser finds another frame once the fill bytes reject this one.
 fn exposes(protocol: &Protocol, part: &Part, fill: &[u8]) -> bool {
     let rules = protocol.table.rules(Listening::To(Direction::Request));
-    let mut framer = Framer::new(rules.clone());
-    let mut found = false;
-    framer.feed(&[part.data(), fill].concat(), |event| {
-        found |= matches!(event, Event::Frame { .. });
-    });
-    framer.flush(|event| found |= matches!(event, Event::Frame { .. }));
+    let (mut framer, mut found) = (Framer::new(rules.clone()), false);
+    let mut look = |event: Event<'_>| found |= matches!(event, Event::Frame { .. });
+    framer.feed(&[part.split().0, fill].concat(), &mut look);
+    framer.flush(&mut look);
     found
 }
 
 /// Return bytes that end any frame that begins in a part, and complete none of them.
 ///
 /// They do so for every LEN, not only for those of the table: a parser may know other commands, or
-/// believe any LEN. They repeat a pair of values that no header or footer has. Equal values would
-/// not do: two of them are command and check of a frame that ends with a sum.
-fn fill_bytes(format: &FrameFormat, parts: &[&[u8]]) -> Vec<u8> {
+/// accept any LEN. They repeat a pair of different values that no header or footer has. Two equal
+/// values could be the command and the check of a frame that ends with a sum.
+fn fill_bytes(format: &FrameFormat, parts: &[Part]) -> Vec<u8> {
     let footer = match &format.check {
         Check::Footer(footer) => core::slice::from_ref(footer),
         Check::Computed(computed) => &computed.footer,
     };
+    let parts: Vec<&[u8]> = parts.iter().map(|part| part.split().0).collect();
     let free = |value: &u8| !format.header.contains(value) && !footer.contains(value);
     let values: Vec<u8> = (0..=u8::MAX).filter(free).collect();
-    let mut pairs = values
-        .iter()
-        .flat_map(|one| values.iter().map(|two| [*one, *two]));
-    let made = pairs.find_map(|pair| {
+    let pairs_of = |one| values.iter().map(move |two| [one, *two]);
+    let pairs = values.iter().copied().flat_map(pairs_of);
+    let fill = |pair: [u8; 2]| {
         let ends = parts.iter().flat_map(|part| {
-            let frames = frames(format, part, pair);
-            frames.map(|(_, end)| end.saturating_sub(part.len()))
+            frames(format, part, pair).map(|(_, end)| end.saturating_sub(part.len()))
         });
         let size = ends.max().unwrap_or_default().max(1);
-        let fill: Vec<u8> = pair.into_iter().cycle().take(size).collect();
-        let mut parts = parts.iter();
-        (!parts.any(|part| completes_one(format, part, &fill))).then_some(fill)
-    });
+        pair.into_iter().cycle().take(size).collect::<Vec<u8>>()
+    };
+    let mut fills = pairs.map(fill);
+    let made = fills.find(|fill| !parts.iter().any(|part| completes_one(format, part, fill)));
     // A frame has one right check, so most pairs do not complete it.
     made.unwrap_or_default()
 }
@@ -187,12 +167,11 @@ fn frames<'a>(
     part: &'a [u8],
     [even, odd]: [u8; 2],
 ) -> impl Iterator<Item = (usize, usize)> + 'a {
-    let header = &format.header;
+    let (header, length) = (&format.header, format.layout.length);
     let begun = (0..part.len()).filter(move |start| {
         let rest = part.get(*start..).unwrap_or_default();
         header.starts_with(rest.get(..header.len()).unwrap_or(rest))
     });
-    let length = format.layout.length;
     begun.map(move |start| {
         let byte = |at: usize| match at.checked_sub(part.len()) {
             None => part.get(at).copied().unwrap_or_default(),
@@ -209,12 +188,10 @@ fn frames<'a>(
 /// Return whether fill bytes complete a frame that begins in the part.
 fn completes_one(format: &FrameFormat, part: &[u8], fill: &[u8]) -> bool {
     let data = [part, fill].concat();
-    let first = fill.first().copied().unwrap_or_default();
-    let pair = [first, fill.get(1).copied().unwrap_or(first)];
+    let pair = core::array::from_fn(|at| fill.get(at).or(fill.first()).copied().unwrap_or(0));
     let layout = format.layout;
     let head = layout.length.end().max(layout.id.end());
-    let mut frames = frames(format, part, pair);
-    frames.any(|(start, end)| {
+    frames(format, part, pair).any(|(start, end)| {
         let check_at = end.saturating_sub(format.check.size());
         if end <= part.len() || check_at < start + head {
             return false;
@@ -225,11 +202,11 @@ fn completes_one(format: &FrameFormat, part: &[u8], fill: &[u8]) -> bool {
     })
 }
 
-fn all_parts(request: &[u8], size: usize) -> impl Iterator<Item = Part> {
-    (1..size).map(|written| Part::new(request, written))
+fn all_parts(format: &FrameFormat, request: &[u8]) -> impl Iterator<Item = Part> + use<> {
+    let (size, request) = (frame_size(format, request), request.into());
+    (1..size).map(move |written| Part::new(&request, written))
 }
 
-/// Return the size of the frame at the start of a request.
 fn frame_size(format: &FrameFormat, request: &[u8]) -> usize {
     let length = format.layout.length.read(request);
     format.layout.overhead + usize::from(length.unwrap_or_default())

@@ -6,8 +6,8 @@
 
 use alloc::vec::Vec;
 
-use super::events::SeenFrame;
 use super::text::find;
+use super::{Request, SeenFrame};
 
 /// A request that was sent; `copies` of it may begin at `offset` of the stream or later.
 #[derive(Clone, Debug)]
@@ -18,15 +18,6 @@ struct Sent {
 }
 
 impl Sent {
-    fn new(frame: &[u8], offset: u64) -> Option<Self> {
-        let (frame, copies) = (frame.into(), 1);
-        Some(Self {
-            frame,
-            offset,
-            copies,
-        })
-    }
-
     /// Take a frame if it is one of the copies; return whether it is.
     fn take(&mut self, frame: &SeenFrame) -> bool {
         let own = self.copies > 0 && frame.bytes() == self.frame && frame.offset >= self.offset;
@@ -48,14 +39,17 @@ pub(super) struct EchoDetector {
 
 impl EchoDetector {
     /// Note a request that goes out; its copy can begin at `offset` of the stream.
-    pub(super) fn sent(&mut self, frame: &[u8], offset: u64) {
-        self.request = Sent::new(frame, offset);
-        self.noise.clear();
-    }
-
-    /// Note a one-way request that goes out, likewise.
-    pub(super) fn sent_one_way(&mut self, frame: &[u8], offset: u64) {
-        self.one_way = Sent::new(frame, offset);
+    pub(super) fn sent(&mut self, request: &Request, offset: u64, is_one_way: bool) {
+        let sent = Some(Sent {
+            frame: request.frame.clone(),
+            offset,
+            copies: 1,
+        });
+        *(if is_one_way {
+            &mut self.one_way
+        } else {
+            &mut self.request
+        }) = sent;
         self.noise.clear();
     }
 
@@ -70,19 +64,15 @@ impl EchoDetector {
     /// Look for copies in noise: most requests are not legal replies, so they come as noise.
     pub(super) fn add_noise(&mut self, offset: u64, data: &[u8]) {
         let watched = || [&self.request, &self.one_way].into_iter().flatten();
-        let Some(first) = watched().map(|sent| sent.offset).min() else {
+        let first = watched().map(|sent| sent.offset).min();
+        let Some(first) = first.filter(|_| !self.proven) else {
             return;
         };
-        if self.proven {
-            return;
-        }
-        let mut noise = self.noise.clone();
-        noise.extend_from_slice(since(first, offset, data));
-        self.proven = watched().any(|sent| find(&noise, &sent.frame).is_some());
+        self.noise.extend_from_slice(since(first, offset, data));
+        self.proven = watched().any(|sent| find(&self.noise, &sent.frame).is_some());
         let longest = watched().map(|sent| sent.frame.len()).max();
-        let old = noise.len().saturating_sub(longest.unwrap_or_default());
-        noise.drain(..old);
-        self.noise = noise;
+        let old = self.noise.len().saturating_sub(longest.unwrap_or_default());
+        self.noise.drain(..old);
     }
 
     /// Return whether a frame is a copy of a request. Each sending has one copy; one that comes

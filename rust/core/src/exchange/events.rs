@@ -3,10 +3,9 @@
 use alloc::string::String;
 use alloc::vec::Vec;
 
-use super::facts::Nanos;
-use super::text::TextError;
+use super::{Nanos, TextError};
 use crate::decode::{DecodeError, Decoded};
-use crate::frame::{Frame, FrameFormat};
+use crate::framer;
 use crate::owned::OwnedFrame;
 use crate::reason::Reason;
 
@@ -24,10 +23,6 @@ impl SeenFrame {
     #[must_use]
     pub fn bytes(&self) -> &[u8] {
         self.frame.bytes()
-    }
-
-    pub(super) fn get(&self, format: &FrameFormat) -> Frame<'_> {
-        self.frame.get(format)
     }
 }
 
@@ -87,4 +82,45 @@ pub enum Event {
         requested_at: Nanos,
         attempts: usize,
     },
+}
+
+impl From<framer::Event<'_>> for Event {
+    /// Return an event that owns its bytes; a frame is unexpected until it is matched.
+    fn from(event: framer::Event<'_>) -> Self {
+        match event {
+            framer::Event::Frame { offset, frame } => {
+                let frame = frame.into();
+                let frame = SeenFrame { offset, frame };
+                Self::Unexpected { frame }
+            }
+            framer::Event::Noise {
+                offset,
+                reason,
+                data,
+            } => Self::Noise {
+                offset,
+                reason,
+                data: data.concat(),
+            },
+        }
+    }
+}
+
+impl Event {
+    /// Return the bytes that no other event reports: noise, or a frame.
+    #[must_use]
+    pub fn data(&self) -> &[u8] {
+        match self {
+            Self::Noise { data, .. } => data,
+            Self::Matched { frame, .. } | Self::Rejected { frame, .. } => {
+                frame.as_ref().map_or(&[], SeenFrame::bytes)
+            }
+            Self::Late { frame, .. }
+            | Self::Ack { frame, .. }
+            | Self::DeviceEvent { frame, .. }
+            | Self::Unexpected { frame }
+            | Self::Echo { frame } => frame.bytes(),
+            Self::Expired { .. } => &[],
+        }
+    }
 }

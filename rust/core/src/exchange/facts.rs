@@ -29,25 +29,24 @@ pub enum Safety {
     Persistent,
 }
 
-/// The name of a field, and whether a reply repeats the argument of that name.
+/// The name of a field, and whether a reply repeats (`echo`) the argument of that name. A `status` is
+/// not a constant, or has labels.
 #[derive(Clone, Debug, PartialEq, Eq)]
+#[allow(missing_docs)] // as above
 pub struct Named {
-    /// The name.
     pub name: Box<str>,
-    /// Whether it repeats an argument of the request.
     pub echo: bool,
+    pub status: bool,
 }
 
-/// A text outside any frame: `prefix field prefix field suffix`.
+/// A text outside any frame: `prefix field prefix field suffix`. A `silence` ends it; 0 for a text
+/// that is sent.
 #[derive(Clone, Debug, PartialEq, Eq)]
+#[allow(missing_docs)] // as above
 pub struct TextForm {
-    /// What precedes each field.
     pub prefixes: Vec<Box<str>>,
-    /// The names of the fields.
     pub fields: Vec<Box<str>>,
-    /// What follows the last field.
     pub suffix: Box<str>,
-    /// How long a silence ends it; 0 for a text that is sent.
     pub silence: Nanos,
 }
 
@@ -73,9 +72,6 @@ pub struct Facts {
     /// The raw values of the last status of its reply that mean success; empty: a field that is 0
     /// reports failure.
     pub accepted: Vec<i64>,
-    /// For each variant of its reply, the indices of the fields that are statuses: those that are
-    /// not constants, or have labels.
-    pub statuses: Vec<Vec<usize>>,
 }
 
 /// Who replies to a request.
@@ -93,23 +89,21 @@ pub enum Replier {
     Nobody,
 }
 
-/// An address of the frame format.
+/// An address of the frame format: its byte, who replies, and how many joints the device has; 0:
+/// those of the protocol.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[allow(missing_docs)] // as above
 pub struct Addressee {
-    /// The byte.
     pub value: u8,
-    /// Who replies to a request to it.
     pub replier: Replier,
-    /// How many joints the device has; 0: those of the protocol.
     pub joints: usize,
 }
 
 /// A table, and what the exchange must know of each of its commands, in the same order.
 #[derive(Clone, Debug)]
+#[allow(missing_docs)] // as above
 pub struct Protocol {
-    /// The table.
     pub table: Table,
-    /// The facts of each command.
     pub facts: Vec<Facts>,
     /// Whether a message of the device reports the end of a motion, so that acknowledgements of
     /// motions come at once.
@@ -117,6 +111,5 @@ pub struct Protocol {
     /// The addresses that the protocol describes. Any other address of the frame format is that of
     /// one device with all joints.
     pub addresses: Vec<Addressee>,
-    /// How many joints the arm has.
     pub joints: usize,
 }

@@ -19,11 +19,8 @@ mod matching;
 mod outcome;
 mod outstanding;
 mod pending;
-mod received;
-mod refusal;
 mod request;
 mod text;
-mod values;
 
 use alloc::collections::BTreeMap;
 use alloc::string::String;
@@ -34,23 +31,21 @@ use core::fmt;
 pub use self::alignment::Part;
 pub use self::events::{Event, ReplyError, SeenFrame};
 pub use self::facts::{Addressee, Facts, Named, Nanos, Protocol, Replier, Safety, TextForm};
-pub use self::outcome::{Answer, Failure, WaitedFor};
+pub use self::outcome::{Answer, Failure, Received, WaitedFor};
 pub use self::outstanding::{LateFrame, PersistedState};
 pub use self::pending::{RetryPolicy, Ticket};
-pub use self::received::{Kind, Received};
 pub use self::request::{Request, RequestError};
 pub use self::text::{TextError, TextFault};
 
 use self::acks::Acks;
 use self::alignment::Alignment;
 use self::echo::{EchoDetector, since};
-use self::matching::{as_event, as_reply};
-use self::outstanding::{OutstandingReplies, late_replies};
-use self::pending::{NEVER, Pending, PendingRequest, not_drained};
-use self::received::ReceivedMeanwhile;
+use self::outstanding::OutstandingReplies;
+use self::pending::{NEVER, Pending, ReceivedMeanwhile};
+use self::text::TextCollector;
 use crate::decode::{DecodeError, Decoded};
 use crate::direction::{Direction, Listening};
-use crate::framer::{self, Framer};
+use crate::framer::Framer;
 
 /// For how long received bytes are read before a request is sent, if they do not end.
 const DRAIN: Nanos = 50_000_000;
@@ -64,15 +59,14 @@ pub struct Exchange {
     outstanding: OutstandingReplies,
     acks: Acks,
     echo: EchoDetector,
-    /// What waits for its turn, oldest first.
-    queue: Vec<PendingRequest>,
+    /// What waits for its turn.
+    queue: Vec<Pending>,
     /// The request that was sent last; it waits for its reply unless it is done.
-    last: Option<PendingRequest>,
+    last: Option<Pending>,
     /// Whether the line took no bytes when the next request was to be sent.
     line_is_full: bool,
     /// How the requests have ended whose callers have not asked yet.
     finished: BTreeMap<Ticket, Result<Answer, Failure>>,
-    /// How many tickets were given.
     tickets: u64,
 }
 
@@ -108,9 +102,8 @@ impl Exchange {
         now: Nanos,
         ends_by: Option<Nanos>,
     ) -> Ticket {
-        let base = self.pending(Arc::new(request), ends_by);
-        let (ticket, facts) = (base.ticket, self.protocol.facts.get(base.request.command));
-        let pending = PendingRequest::new(base, facts, wait, policy, now);
+        let pending = self.pending(&Arc::new(request), wait, policy, now, ends_by);
+        let ticket = pending.ticket;
         self.queue.push(pending);
         ticket
     }
@@ -125,20 +118,23 @@ impl Exchange {
         ends_by: Option<Nanos>,
     ) -> (Vec<u8>, Option<Ticket>) {
         let offset = self.fed();
-        self.echo.sent_one_way(&request.frame, offset);
+        self.echo.sent(&request, offset, true);
         self.alignment.sent(&request.frame);
         let data = [request.frame.as_slice(), &request.text].concat();
         let (request, protocol) = (Arc::new(request), Arc::clone(&self.protocol));
-        let Some((command, facts)) = protocol.command(request.command) else {
-            return (data, None);
-        };
-        if !facts.ack || request.replier == Replier::Nobody {
+        if !protocol.is(request.command, |facts| facts.ack) || request.replier == Replier::Nobody {
             return (data, None);
         }
-        let pending = ack_within.map(|_| self.pending(Arc::clone(&request), ends_by));
+        let policy = RetryPolicy::default();
+        let pending = |within| self.pending(&request, Some(within), policy, now, ends_by);
+        let pending = ack_within.map(pending);
         let ticket = pending.as_ref().map(|pending| pending.ticket);
-        let until = (self.acks).expect(&protocol, &request, (now, offset), ack_within, pending);
-        if protocol.has_query(command.id) {
+        let within = ack_within.unwrap_or_default();
+        let until = self
+            .acks
+            .expect(&protocol, &request, (now, offset), within, pending);
+        if protocol.has_query(protocol.id(request.command)) {
+            self.outstanding.drop_expired(now);
             self.outstanding.expect(request, until);
         }
         (data, ticket)
@@ -146,13 +142,14 @@ impl Exchange {
 
     /// End a request whose caller waits no longer. A reply that still comes is late.
     pub fn give_up(&mut self, ticket: Ticket) {
-        self.queue.retain(|pending| pending.base.ticket != ticket);
-        self.acks.give_up(ticket);
+        self.queue.retain(|pending| pending.ticket != ticket);
+        self.acks.waiting.retain(|pending| pending.ticket != ticket);
+        self.finished.remove(&ticket);
         if let Some(waiting) = waiting(&mut self.last)
-            && waiting.base.ticket == ticket
+            && waiting.ticket == ticket
         {
             self.outstanding.expect_late(waiting, 0);
-            waiting.base.done = true;
+            waiting.done = true;
         }
     }
 
@@ -167,10 +164,9 @@ impl Exchange {
         let events = self.flush(now);
         self.alignment.lose(&self.protocol);
         self.fail_waiting();
-        let queued = self.queue.drain(..).map(|pending| pending.base.ticket);
-        self.finished
-            .extend(queued.map(|ticket| (ticket, Err(Failure::Link))));
-        self.finished.extend(self.acks.fail());
+        let waiting = self.queue.drain(..).chain(self.acks.waiting.drain(..));
+        let failed = waiting.map(|pending| (pending.ticket, Err(Failure::Link)));
+        self.finished.extend(failed);
         events
     }
 
@@ -206,17 +202,13 @@ impl Exchange {
     /// Return what the next session on this port must respect.
     #[must_use]
     pub fn persist(&self, now: Nanos) -> PersistedState {
-        let late = self.outstanding.0.iter().filter(|reply| reply.until > now);
-        let own = self
-            .waiting()
-            .into_iter()
-            .flat_map(|waiting| late_replies(waiting, 0));
-        let late = late.cloned().chain(own).map(|reply| LateFrame {
-            request: reply.request.frame.clone(),
-            until: reply.until,
-        });
+        let mut outstanding = self.outstanding.clone();
+        outstanding.drop_expired(now);
+        if let Some(waiting) = self.waiting() {
+            outstanding.expect_late(waiting, 0);
+        }
         PersistedState {
-            late: late.collect(),
+            late: outstanding.0.into_iter().map(LateFrame::from).collect(),
             parts: self.alignment.held.clone(),
         }
     }
@@ -246,15 +238,14 @@ impl Exchange {
     /// Take received bytes; return what they are.
     pub fn receive(&mut self, data: &[u8], now: Nanos) -> Vec<Event> {
         let (mut received, chunk_at) = (Vec::new(), self.fed());
-        self.framer.feed(data, |event| received.push(owned(event)));
+        self.framer.feed(data, |event| received.push(event.into()));
         self.sort(received, now, chunk_at)
     }
 
     /// Let time pass; return what this ends. Pass received bytes to [`Self::receive`] first.
     pub fn wake(&mut self, now: Nanos) -> Vec<Event> {
-        let over = self
-            .waiting()
-            .is_some_and(|waiting| waiting.ends_at() <= now);
+        let waiting = self.waiting();
+        let over = waiting.is_some_and(|waiting| waiting.ends_at() <= now);
         let mut events = if over { self.end_wait(now) } else { Vec::new() };
         events.extend(self.end_overdue(now));
         events
@@ -264,11 +255,9 @@ impl Exchange {
     pub fn end_overdue(&mut self, now: Nanos) -> Vec<Event> {
         let ended = self.acks.wake(&self.protocol, now, self.echo.proven);
         self.finished.extend(ended);
-        if self.queue.iter().any(|pending| pending.base.ends_by <= now) {
-            self.end_overdue_queued(now);
-        }
+        self.end_overdue_queued(now);
         // A copy of it does not count as its reply: that one still had time to come.
-        let over = self.waiting().filter(|waiting| waiting.base.ends_by <= now);
+        let over = self.waiting().filter(|waiting| waiting.ends_by <= now);
         let waited = over.map(|waiting| now.saturating_sub(waiting.queued_at));
         let expired = waited.and_then(|waited| self.expire(waited, Some(WaitedFor::Reply)));
         expired.into_iter().collect()
@@ -288,19 +277,14 @@ impl Exchange {
         }
     }
 
-    /// Return the bytes of the request to be sent now, for the first time or again.
-    ///
-    /// `drained`: whether everything that has come by now was received. A request is sent on a
-    /// drained line, so that earlier bytes cannot pass for its reply.
+    /// Return the bytes of the request to be sent now, for the first time or again. `drained`:
+    /// whether everything that has come by now was received, so that it cannot pass for its reply.
     pub fn outgoing(&mut self, now: Nanos, drained: bool) -> Vec<u8> {
         if self.waiting().is_some() {
             return self.next_attempt(now).unwrap_or_default();
         }
-        let mut queue = self.queue.iter();
-        let free = |pending: &PendingRequest| {
-            pending.base.ends_by > now && self.free_at(pending, now) <= now
-        };
-        let Some(index) = queue.position(free) else {
+        let free = |pending: &Pending| pending.ends_by > now && self.free_at(pending, now) <= now;
+        let Some(index) = self.queue.iter().position(free) else {
             return Vec::new();
         };
         if !drained && !self.sends_undrained(index, now) {
@@ -313,20 +297,19 @@ impl Exchange {
     /// Return the request that [`Self::outgoing`] gave last; it may have ended by now.
     #[must_use]
     pub fn sent_last(&self) -> Option<Ticket> {
-        self.last.as_ref().map(|last| last.base.ticket)
+        self.last.as_ref().map(|last| last.ticket)
     }
 
-    /// Note that writing the request that was sent last ended only now: its reply may be late from
-    /// now on.
+    /// Note that writing the request that was sent last ended only now.
     pub fn written(&mut self, ticket: Ticket, now: Nanos) {
-        match &mut self.last {
-            Some(last) if last.base.ticket == ticket && last.base.done => {
-                let until = now.saturating_add(last.policy.grace);
-                self.outstanding
-                    .expect(Arc::clone(&last.base.request), until);
-            }
-            Some(last) if last.base.ticket == ticket => last.written(now),
-            _ => {}
+        let Some(last) = self.last.as_mut().filter(|last| last.ticket == ticket) else {
+            return;
+        };
+        if last.done {
+            let until = now.saturating_add(last.policy.grace);
+            self.outstanding.expect(Arc::clone(&last.request), until);
+        } else {
+            last.written(now);
         }
     }
 
@@ -335,12 +318,11 @@ impl Exchange {
     pub fn idle(&self, now: Nanos) -> Option<Nanos> {
         let waiting = self.waiting();
         let own = waiting.map_or(NEVER, |waiting| {
-            let ends = waiting.ends_at().min(waiting.base.ends_by);
-            ends.min(self.repeat_at(waiting))
+            waiting.ends_first().min(self.repeat_at(waiting))
         });
         let queued = self.queue.iter().map(|pending| match waiting {
-            None => self.free_at(pending, now).min(pending.base.ends_by),
-            Some(_) => pending.base.ends_by,
+            None => self.free_at(pending, now).min(pending.ends_by),
+            Some(_) => pending.ends_by,
         });
         let soonest = queued.fold(own.min(self.acks.next_end()), Nanos::min);
         (soonest != NEVER).then(|| soonest.saturating_sub(now))
@@ -354,44 +336,60 @@ impl Exchange {
 
     // Whose turn it is.
 
-    fn pending(&mut self, request: Arc<Request>, ends_by: Option<Nanos>) -> Pending {
+    fn pending(
+        &mut self,
+        request: &Arc<Request>,
+        wait: Option<Nanos>,
+        policy: RetryPolicy,
+        now: Nanos,
+        ends_by: Option<Nanos>,
+    ) -> Pending {
         self.tickets += 1;
+        let facts = self.protocol.facts.get(request.command);
+        let wait = wait.unwrap_or(facts.map_or(0, |facts| facts.deadline));
+        let form = facts.and_then(|facts| facts.text.clone());
         Pending {
             ticket: Ticket(self.tickets),
-            request,
+            request: Arc::clone(request),
             ends_by: ends_by.unwrap_or(NEVER),
             done: false,
             received: ReceivedMeanwhile::default(),
+            policy,
+            queued_at: now,
+            undrained_since: NEVER,
+            attempt_times: Vec::new(),
+            requested_at: 0,
+            offset: 0,
+            candidate: None,
+            text: form.map(TextCollector::new),
+            ack: 0,
+            wait,
+            attempts: facts.map_or(1, |facts| policy.attempts_of(facts, wait)),
+            deadline: NEVER,
         }
     }
 
-    /// Return the number of bytes received so far.
     fn fed(&self) -> u64 {
         self.framer.tally().bytes
     }
 
-    /// Return the request that waits for its reply.
-    fn waiting(&self) -> Option<&PendingRequest> {
-        self.last.as_ref().filter(|last| !last.base.done)
+    fn waiting(&self) -> Option<&Pending> {
+        self.last.as_ref().filter(|last| !last.done)
     }
 
     /// Return from when on no late reply can be mistaken for that of a queued request.
-    fn free_at(&self, pending: &PendingRequest, now: Nanos) -> Nanos {
-        let held = self
-            .outstanding
-            .held_until(&self.protocol, &pending.base.request);
+    fn free_at(&self, pending: &Pending, now: Nanos) -> Nanos {
+        let held = (self.outstanding).held_until(&self.protocol, &pending.request);
         held.unwrap_or(now)
     }
 
     /// Make a queued request the one that waits; return its bytes.
     fn begin(&mut self, index: usize, now: Nanos) -> Vec<u8> {
         let (offset, mut pending) = (self.fed(), self.queue.remove(index));
-        let frame = pending.base.request.frame.clone();
-        self.echo.sent(&frame, offset);
-        self.alignment.sent(&frame);
+        self.echo.sent(&pending.request, offset, false);
+        self.alignment.sent(&pending.request.frame);
         pending.begin(now, offset);
-        self.last = Some(pending);
-        frame
+        self.last.insert(pending).request.frame.clone()
     }
 
     /// Return whether a queued request is sent on a line that brings more than can be read, which is
@@ -400,26 +398,23 @@ impl Exchange {
         let Some(pending) = self.queue.get_mut(index) else {
             return false;
         };
-        pending.note_undrained(now);
+        let held = self
+            .outstanding
+            .held_until(&self.protocol, &pending.request);
+        pending.undrained_since = pending.undrained_since.min(now);
         if now.saturating_sub(pending.undrained_since) < DRAIN {
             return false;
         }
-        let base = &pending.base;
-        if self
-            .outstanding
-            .held_until(&self.protocol, &base.request)
-            .is_none()
-        {
-            return true;
+        if held.is_some() {
+            let mut ended = self.queue.remove(index);
+            let failure = ended.expire(now.saturating_sub(ended.queued_at), None);
+            self.finished.insert(ended.ticket, Err(failure));
         }
-        let failure = not_drained(now.saturating_sub(pending.queued_at));
-        self.finished.insert(base.ticket, Err(failure));
-        self.queue.remove(index);
-        false
+        held.is_none()
     }
 
     /// Return when the request is to be sent again; not while its copy may be its reply.
-    fn repeat_at(&self, waiting: &PendingRequest) -> Nanos {
+    fn repeat_at(&self, waiting: &Pending) -> Nanos {
         if waiting.candidate.is_some() && !self.echo.proven {
             return NEVER;
         }
@@ -427,34 +422,29 @@ impl Exchange {
     }
 
     fn next_attempt(&mut self, now: Nanos) -> Option<Vec<u8>> {
-        let at = self
-            .waiting()
-            .map_or(NEVER, |waiting| self.repeat_at(waiting));
+        let at = self.repeat_at(self.waiting()?);
         let waiting = waiting(&mut self.last)?;
-        if at > now || now >= waiting.base.ends_by {
+        if at > now || now >= waiting.ends_by {
             return None;
         }
         self.echo.sent_again();
         waiting.attempt_times.push(now);
-        Some(waiting.base.request.frame.clone())
+        Some(waiting.request.frame.clone())
     }
 
     fn end_overdue_queued(&mut self, now: Nanos) {
-        for pending in &self.queue {
-            if pending.base.ends_by > now {
-                continue;
-            }
-            let waited_for = match (self.free_at(pending, now) > now, self.line_is_full) {
+        let over = |pending: &mut Pending| pending.ends_by <= now;
+        let ended: Vec<Pending> = self.queue.extract_if(.., over).collect();
+        for mut pending in ended {
+            let waited_for = match (self.free_at(&pending, now) > now, self.line_is_full) {
                 (true, _) => WaitedFor::Hold,
                 (false, true) => WaitedFor::Line,
                 (false, false) => WaitedFor::Turn,
             };
             let waited = now.saturating_sub(pending.queued_at);
-            let mut base = pending.base.clone();
-            let failure = base.expire(&self.protocol, waited, 0, Some(waited_for));
-            self.finished.insert(base.ticket, Err(failure));
+            let failure = pending.expire(waited, Some(waited_for));
+            self.finished.insert(pending.ticket, Err(failure));
         }
-        self.queue.retain(|pending| pending.base.ends_by > now);
     }
 
     // What received bytes are, and how the request that waits ends by them or by silence.
@@ -462,7 +452,7 @@ impl Exchange {
     /// Return what the framer gives up, so that a frame hidden in it still counts.
     fn flush(&mut self, now: Nanos) -> Vec<Event> {
         let (mut received, fed) = (Vec::new(), self.fed());
-        self.framer.flush(|event| received.push(owned(event)));
+        self.framer.flush(|event| received.push(event.into()));
         self.sort(received, now, fed)
     }
 
@@ -480,15 +470,14 @@ impl Exchange {
 
     /// Take noise, which may be the text that a request waits for.
     fn take_noise(&mut self, noise: Event, now: Nanos) -> Event {
-        let Event::Noise { offset, data, .. } = &noise else {
-            return noise;
-        };
-        self.echo.add_noise(*offset, data);
-        if let Some(waiting) = waiting(&mut self.last)
-            && let Some((form, text)) = &mut waiting.text
-        {
-            // A text that began before the request was sent does not belong to it.
-            text.add(since(waiting.offset, *offset, data), form, now);
+        if let Event::Noise { offset, data, .. } = &noise {
+            self.echo.add_noise(*offset, data);
+            if let Some(waiting) = waiting(&mut self.last)
+                && let Some(text) = &mut waiting.text
+            {
+                // A text that began before the request was sent does not belong to it.
+                text.add(since(waiting.offset, *offset, data), now);
+            }
         }
         self.note(noise)
     }
@@ -496,38 +485,31 @@ impl Exchange {
     /// Find out what a frame is; its first byte came at `began_at` or earlier.
     fn match_frame(&mut self, frame: SeenFrame, now: Nanos, began_at: Nanos) -> Event {
         let is_copy = self.echo.take_copy(&frame);
-        let Some(request) = self.request_accepting(&frame) else {
+        let Some((request, reply)) = self.as_reply(&frame) else {
             return self.match_other(frame, now, began_at, is_copy);
         };
-        let reply = match as_reply(&self.protocol, &frame, &request) {
-            Some(Err(error)) => return self.reject(request.command, frame, error, is_copy),
-            Some(Ok(reply)) => reply,
-            None => return self.match_other(frame, now, began_at, is_copy),
+        let reply = match reply {
+            Err(error) => return self.reject(frame, error, is_copy),
+            Ok(reply) => reply,
         };
         let repeats = request.repeated_by(&self.protocol, &reply);
-        if !is_copy {
-            if !repeats {
-                return self.match_other(frame, now, began_at, is_copy);
-            }
-            return self.end(request.command, reply, Some(frame), now);
-        }
-        // A copy that can be the reply is kept; one that cannot proves that the line echoes.
-        match waiting(&mut self.last) {
-            Some(waiting) if repeats => waiting.candidate = Some(reply),
-            _ => self.echo.proven = true,
+        match (is_copy, repeats, waiting(&mut self.last)) {
+            (false, true, _) => return self.end(reply, Some(frame), now),
+            (false, false, _) => return self.match_other(frame, now, began_at, is_copy),
+            // A copy that can be the reply is kept; one that cannot proves that the line echoes.
+            (true, true, Some(waiting)) => waiting.candidate = Some(reply),
+            (true, ..) => self.echo.proven = true,
         }
         self.note(Event::Echo { frame })
     }
 
-    /// Return the request that waits, if a frame has its command id and began after it was sent.
-    fn request_accepting(&self, frame: &SeenFrame) -> Option<Arc<Request>> {
-        let waiting = self.waiting()?;
-        let request = &waiting.base.request;
-        let (_, facts) = self.protocol.command(request.command)?;
-        let accepts = frame.offset >= waiting.offset
-            && !facts.reply.is_empty()
-            && request.can_have_reply(&self.protocol, frame);
-        accepts.then(|| Arc::clone(request))
+    /// Return a frame as the reply to the request that waits, whichever arguments it repeats.
+    fn as_reply(&self, frame: &SeenFrame) -> Option<(Arc<Request>, Result<Decoded, DecodeError>)> {
+        let waiting = self
+            .waiting()
+            .filter(|waiting| frame.offset >= waiting.offset)?;
+        let reply = self.protocol.as_reply(frame, &waiting.request)?;
+        Some((Arc::clone(&waiting.request), reply))
     }
 
     /// Find out what a frame is that does not reply to the request that waits.
@@ -538,42 +520,33 @@ impl Exchange {
         began_at: Nanos,
         is_copy: bool,
     ) -> Event {
-        let protocol = Arc::clone(&self.protocol);
-        if let Some((index, request)) = self.outstanding.find(&protocol, &frame, now) {
-            let command = request.command;
-            if protocol
-                .command(command)
-                .is_some_and(|(_, facts)| facts.requires_reply())
-            {
+        if let Some((index, command)) = self.outstanding.find(&self.protocol, &frame, now) {
+            if self.protocol.is(command, Facts::requires_reply) {
                 // It stays outstanding: this may be a copy, with the reply itself still to come.
                 return self.note(Event::Late { command, frame });
             }
-            self.outstanding.settle(index);
+            self.outstanding.0.remove(index);
         }
         if is_copy {
-            self.acks.note_copy(&protocol, &frame);
+            self.acks.note_copy(&self.protocol, &frame);
             return self.note(Event::Echo { frame });
         }
-        let Some((command, decoded, ended)) = self.acks.take(&protocol, &frame, now, began_at)
-        else {
-            return self.note(as_event(&protocol, frame));
+        let event = match self.acks.take(&self.protocol, &frame, now, began_at) {
+            None => self.protocol.as_event(frame),
+            Some((command, decoded, ended)) => {
+                self.finished.extend(ended);
+                Event::Ack {
+                    command,
+                    decoded,
+                    frame,
+                }
+            }
         };
-        self.finished.extend(ended);
-        self.note(Event::Ack {
-            command,
-            decoded,
-            frame,
-        })
+        self.note(event)
     }
 
     /// End a request with a reply of illegal values, unless the frame is something else.
-    fn reject(
-        &mut self,
-        command: usize,
-        frame: SeenFrame,
-        error: DecodeError,
-        is_copy: bool,
-    ) -> Event {
+    fn reject(&mut self, frame: SeenFrame, error: DecodeError, is_copy: bool) -> Event {
         if is_copy {
             self.echo.proven = true;
             return self.note(Event::Echo { frame });
@@ -584,9 +557,13 @@ impl Exchange {
         if let Some(waiting) = waiting(&mut self.last).filter(|waiting| waiting.repeated()) {
             self.outstanding.expect_late(waiting, 1);
         }
-        let (error, data) = (ReplyError::Frame(error), frame.bytes().into());
-        self.end_waiting(Err(Failure::Reply { error, data }));
-        let frame = Some(frame);
+        let data = frame.bytes().into();
+        self.fail_reply(ReplyError::Frame(error), data, Some(frame))
+    }
+
+    /// End the request that waits with an illegal reply.
+    fn fail_reply(&mut self, error: ReplyError, data: Vec<u8>, frame: Option<SeenFrame>) -> Event {
+        let command = self.end_waiting(Err(Failure::Reply { error, data }));
         Event::Rejected {
             command,
             error,
@@ -595,39 +572,28 @@ impl Exchange {
     }
 
     /// End the request that waits with its reply, of which other copies may come.
-    fn end(
-        &mut self,
-        command: usize,
-        reply: Decoded,
-        frame: Option<SeenFrame>,
-        now: Nanos,
-    ) -> Event {
+    fn end(&mut self, reply: Decoded, frame: Option<SeenFrame>, now: Nanos) -> Event {
         if let Some(waiting) = waiting(&mut self.last) {
-            if waiting.base.request.replier == Replier::Anybody {
+            if waiting.request.replier == Replier::Anybody {
                 // Other devices may reply too.
                 self.outstanding.expect_late(waiting, 0);
             } else if waiting.repeated() {
                 self.outstanding.expect_late(waiting, 1);
             }
         }
-        self.answer(command, Some(reply), Vec::new(), frame, now)
+        self.answer(Some(reply), Vec::new(), frame, now)
     }
 
     fn answer(
         &mut self,
-        command: usize,
         decoded: Option<Decoded>,
         texts: Vec<String>,
         frame: Option<SeenFrame>,
         now: Nanos,
     ) -> Event {
-        let requested_at = self.waiting().map(|waiting| waiting.requested_at);
-        self.end_waiting(Ok(Answer {
-            decoded: decoded.clone(),
-            texts: texts.clone(),
-            requested_at: requested_at.unwrap_or_default(),
-            replied_at: now,
-        }));
+        let answer = |waiting: &Pending| waiting.answer(decoded.clone(), texts.clone(), now);
+        let answer = self.waiting().map(answer).ok_or(Failure::Link);
+        let command = self.end_waiting(answer);
         Event::Matched {
             command,
             decoded,
@@ -636,12 +602,14 @@ impl Exchange {
         }
     }
 
-    /// End the request that waits.
-    fn end_waiting(&mut self, outcome: Result<Answer, Failure>) {
-        if let Some(waiting) = waiting(&mut self.last) {
-            waiting.base.done = true;
-            self.finished.insert(waiting.base.ticket, outcome);
-        }
+    /// End the request that waits; return its command.
+    fn end_waiting(&mut self, outcome: Result<Answer, Failure>) -> usize {
+        let waiting = waiting(&mut self.last);
+        waiting.map_or(0, |waiting| {
+            waiting.done = true;
+            self.finished.insert(waiting.ticket, outcome);
+            waiting.request.command
+        })
     }
 
     /// End the wait by silence after a text, by a copy that counts as reply, or by timeout.
@@ -656,9 +624,8 @@ impl Exchange {
             return events;
         };
         let waited = now.saturating_sub(waiting.requested_at);
-        let command = waiting.base.request.command;
         match waiting.candidate.clone() {
-            Some(reply) if !self.echo.proven => events.push(self.end(command, reply, None, now)),
+            Some(reply) if !self.echo.proven => events.push(self.end(reply, None, now)),
             _ => events.extend(self.expire(waited, None)),
         }
         events
@@ -666,44 +633,34 @@ impl Exchange {
 
     /// End the wait for a text that has begun, and has been silent for long enough.
     fn end_text(&mut self, now: Nanos) -> Option<Event> {
-        let waiting = self.waiting()?;
-        let command = waiting.base.request.command;
-        let (form, text) = waiting.text.as_ref()?;
-        if text.ends_at(form)? > now {
+        let text = self.waiting()?.text.as_ref()?;
+        if text.ends_at()? > now {
             return None;
         }
-        let (error, data) = match text.decode(form) {
-            Ok(texts) => return Some(self.answer(command, None, texts, None, now)),
-            Err((error, data)) => (ReplyError::Text(error), data),
-        };
-        self.end_waiting(Err(Failure::Reply { error, data }));
-        Some(Event::Rejected {
-            command,
-            error,
-            frame: None,
+        Some(match text.decode() {
+            Ok(texts) => self.answer(None, texts, None, now),
+            Err((error, data)) => self.fail_reply(ReplyError::Text(error), data, None),
         })
     }
 
     /// End the request that waits with a timeout; its reply may still come.
     fn expire(&mut self, waited: Nanos, waited_for: Option<WaitedFor>) -> Option<Event> {
         let waiting = waiting(&mut self.last)?;
-        let attempts = waiting.attempt_times.len();
-        let event = Event::Expired {
-            command: waiting.base.request.command,
-            requested_at: waiting.requested_at,
-            attempts,
-        };
+        let (requested_at, attempts) = (waiting.requested_at, waiting.attempt_times.len());
         self.outstanding.expect_late(waiting, 0);
-        let base = &mut waiting.base;
-        let failure = base.expire(&self.protocol, waited, attempts, waited_for);
-        self.end_waiting(Err(failure));
-        Some(event)
+        let failure = waiting.expire(waited, waited_for);
+        let command = self.end_waiting(Err(failure));
+        Some(Event::Expired {
+            command,
+            requested_at,
+            attempts,
+        })
     }
 
-    /// Have everybody who waits remember an event, for the text of a timeout.
+    /// Have everybody who waits remember an event.
     fn note(&mut self, event: Event) -> Event {
         if let Some(waiting) = waiting(&mut self.last) {
-            waiting.base.note(&event);
+            waiting.received.add(&event);
         }
         self.acks.note(&event);
         event
@@ -711,28 +668,8 @@ impl Exchange {
 }
 
 /// Return the request that waits for its reply.
-fn waiting(last: &mut Option<PendingRequest>) -> Option<&mut PendingRequest> {
-    last.as_mut().filter(|last| !last.base.done)
-}
-
-/// Return an event of the framer that owns its bytes; a frame is unexpected until it is matched.
-fn owned(event: framer::Event<'_>) -> Event {
-    match event {
-        framer::Event::Frame { offset, frame } => {
-            let frame = frame.into();
-            let frame = SeenFrame { offset, frame };
-            Event::Unexpected { frame }
-        }
-        framer::Event::Noise {
-            offset,
-            reason,
-            data,
-        } => Event::Noise {
-            offset,
-            reason,
-            data: data.concat(),
-        },
-    }
+fn waiting(last: &mut Option<Pending>) -> Option<&mut Pending> {
+    last.as_mut().filter(|last| !last.done)
 }
 
 impl fmt::Debug for Exchange {

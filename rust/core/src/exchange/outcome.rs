@@ -3,37 +3,55 @@
 use alloc::string::String;
 use alloc::vec::Vec;
 
-use super::events::ReplyError;
-use super::facts::Nanos;
-use super::received::Received;
+use super::matching::{fields, same};
+use super::{Event, Named, Nanos, Protocol, ReplyError};
 use crate::decode::Decoded;
-use crate::message::VariantId;
+use crate::message::{Variant, VariantId};
 use crate::number::Value;
 
 /// What a request that has succeeded has got.
 #[derive(Clone, Debug, PartialEq)]
+#[allow(missing_docs)] // of times, whose names say what they are
 pub struct Answer {
     /// The reply; `None`: it was text, or the request has only an acknowledgement.
     pub decoded: Option<Decoded>,
     /// The fields of a reply that was text, in their order.
     pub texts: Vec<String>,
-    /// When the request was first sent.
     pub requested_at: Nanos,
-    /// When the reply or the acknowledgement was received, or the time of silence after it was over.
     pub replied_at: Nanos,
 }
 
-/// What a request waited for when its caller's deadline passed.
+/// What a request waited for when its caller's deadline passed: its turn, the end of the time in
+/// which a late reply could pass for its own (hold), the line, which took no bytes, or its reply.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[allow(missing_docs)] // as above
 pub enum WaitedFor {
-    /// Its turn.
     Turn,
-    /// The end of the time in which a late reply could pass for its own.
     Hold,
-    /// The line, which took no bytes.
     Line,
-    /// Its reply.
     Reply,
+}
+
+impl WaitedFor {
+    /// Return its name in the API.
+    #[must_use]
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Turn => "turn",
+            Self::Hold => "hold",
+            Self::Line => "line",
+            Self::Reply => "reply",
+        }
+    }
+}
+
+/// A frame, or adjacent noise, that was received while a request waited.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Received {
+    /// What it is; of noise the first 24 bytes.
+    pub event: Event,
+    /// How many bytes it has.
+    pub size: usize,
 }
 
 /// Why a request has no answer.
@@ -43,9 +61,10 @@ pub enum Failure {
     Timeout {
         /// How long it waited: since it was sent; since the call, if `waited_for` is there.
         waited: Nanos,
-        /// How often it was sent.
+        /// How often it was sent. It was never sent, though its caller still waits, if the line
+        /// brings more than can be read, and a late reply may be among it.
         attempts: usize,
-        /// What it waited for when its caller's deadline passed; `None`: the arm's time was over.
+        /// What it waited for when its caller's deadline passed; `None`: it has not passed.
         waited_for: Option<WaitedFor>,
         /// What was received meanwhile, oldest first.
         received: Vec<Received>,
@@ -71,8 +90,7 @@ pub enum Failure {
 }
 
 impl Failure {
-    /// Return the failure of a one-way request whose caller's deadline passed while the line took
-    /// no bytes, so that it was never sent.
+    /// Return the failure of a one-way request that its caller's deadline kept from being sent.
     #[must_use]
     pub fn unsent(waited: Nanos) -> Self {
         Self::Timeout {
@@ -81,5 +99,53 @@ impl Failure {
             waited_for: Some(WaitedFor::Line),
             received: Vec::new(),
         }
+    }
+
+    /// Return the failure that a reply reports by a status; `None`: it reports success.
+    ///
+    /// Without accepted values, each status that is 0 reports it; repeated arguments do not count.
+    pub(super) fn refusal(protocol: &Protocol, reply: &Decoded) -> Option<Self> {
+        let (command, facts) = protocol.command(reply.variant.command)?;
+        let names = facts.reply.get(reply.variant.variant)?;
+        let value = |named: &Named| {
+            let mut found = fields(names, reply);
+            Some(found.find(|(own, _)| own.name == named.name)?.1)
+        };
+        // The last variant with these fields counts.
+        let has_them = |own: &Vec<Named>| {
+            let has = |named: &Named| own.iter().any(|own| own.name == named.name);
+            own.iter().all(|own| !own.status || value(own).is_some())
+                && fields(names, reply).all(|(named, _)| has(named))
+        };
+        let index = facts.reply.iter().rposition(has_them)?;
+        let own = facts.reply.get(index)?.iter().enumerate();
+        let mut statuses = own.filter(|(_, named)| named.status);
+        let is = |value: &[Value], raw: i64| same(value, &[Value::Integer(raw)]);
+        let (field, value) = if facts.accepted.is_empty() {
+            let fields = command.reply.get(index).map_or(&[][..], Variant::fields);
+            let many = |at: usize| fields.get(at).map(|field| field.many);
+            let failed = |(at, named): &(usize, &Named)| {
+                let value = value(named).filter(|_| !named.echo && many(*at) == Some(false));
+                value.is_some_and(|value| is(value, 0))
+            };
+            // It is reported as the integer, whatever the scale of the field is.
+            (statuses.find(failed)?.0, Value::Integer(0))
+        } else {
+            let (last, named) = statuses.next_back()?;
+            let value = value(named)?;
+            if facts.accepted.iter().any(|raw| is(value, *raw)) {
+                return None;
+            }
+            (last, *value.first()?)
+        };
+        let variant = VariantId {
+            variant: index,
+            ..reply.variant
+        };
+        Some(Self::Refused {
+            variant,
+            field,
+            value,
+        })
     }
 }

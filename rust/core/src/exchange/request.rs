@@ -2,14 +2,14 @@
 
 use alloc::vec::Vec;
 
-use super::facts::{Facts, Protocol, Replier};
-use super::text::TextFault;
-use super::values::{Arguments, fields};
+use super::matching::{Arguments, fields};
+use super::{Addressee, Facts, Protocol, Replier, Safety, TextFault};
 use crate::decode::{Decoded, decode};
 use crate::direction::Direction;
 use crate::encode::{Choice, encode};
+use crate::field::Field;
 use crate::given::Given;
-use crate::message::Command;
+use crate::message::{Command, Variant};
 use crate::write::EncodeError;
 
 /// A request as it goes over the line.
@@ -64,35 +64,31 @@ impl Request {
         if address.is_some_and(|address| !format.addresses.contains(&address)) {
             return Err(RequestError::Address);
         }
-        let found = protocol.command(command).ok_or(RequestError::Command)?;
+        let (record, facts) = protocol.command(command).ok_or(RequestError::Command)?;
         let replier = protocol.replier(address);
-        if replier == Replier::Nobody && found.1.requires_reply() {
+        if replier == Replier::Nobody && facts.requires_reply() {
             return Err(RequestError::Unanswered);
         }
-        if protocol.lacks_joints(address, found.0) {
+        if protocol.lacks_joints(address, record) {
             return Err(RequestError::LacksJoints);
         }
-        let (record, facts) = found;
         let choice = Choice { variant, address };
         let frame = encode(format, record, Direction::Request, values, choice);
         let frame = frame.map_err(RequestError::Values)?;
-        let mut request = Self {
+        let form = facts.request_text.as_ref();
+        let text = form.map(|form| form.encode(texts)).transpose();
+        let text = text.map_err(RequestError::Text)?;
+        // Decoding our own frame gives the arguments as a reply would repeat them.
+        let repeats = text.is_none() && facts.can_repeat();
+        let own = || decode(&protocol.table, Direction::Request, &frame, Some(command)).ok();
+        let own = repeats.then(own).flatten();
+        Ok(Self {
+            arguments: own.map_or(Vec::new(), |own| arguments(facts, &own)),
+            text: text.unwrap_or_default(),
             command,
             frame,
-            text: Vec::new(),
             replier,
-            arguments: Vec::new(),
-        };
-        if let Some(form) = &facts.request_text {
-            request.text = form.encode(texts).map_err(RequestError::Text)?;
-        } else if facts.can_repeat() {
-            // Decoding our own frame gives the arguments as a reply would repeat them.
-            let frame = &request.frame;
-            if let Ok(decoded) = decode(&protocol.table, Direction::Request, frame, Some(command)) {
-                request.arguments = arguments(facts, &decoded);
-            }
-        }
-        Ok(request)
+        })
     }
 
     /// Return the request that a frame is; `None`: the protocol has no such request.
@@ -127,6 +123,11 @@ impl Facts {
         (!self.reply.is_empty() && !self.ack && !self.event) || self.text.is_some()
     }
 
+    /// Return whether it moves the arm.
+    pub(super) fn moves(&self) -> bool {
+        self.safety == Safety::Motion
+    }
+
     /// Return whether a reply can repeat arguments of its request.
     fn can_repeat(&self) -> bool {
         self.reply.iter().flatten().any(|named| named.echo)
@@ -134,38 +135,30 @@ impl Facts {
 }
 
 impl Protocol {
-    /// Return a command and its facts.
-    pub(super) fn command(&self, index: usize) -> Option<(&Command, &Facts)> {
-        self.table.commands().get(index).zip(self.facts.get(index))
-    }
-
     /// Return whether a command with this id requires a reply.
-    pub(super) fn has_query(&self, id: u16) -> bool {
-        let mut commands = self.table.commands().iter().zip(&self.facts);
-        commands.any(|(command, facts)| command.id == id && facts.requires_reply())
+    pub(super) fn has_query(&self, id: Option<u16>) -> bool {
+        let mut facts = self.facts.iter().enumerate();
+        facts.any(|(command, facts)| self.id(command) == id && facts.requires_reply())
     }
 
     /// Return who replies to a request to an address.
     fn replier(&self, address: Option<u8>) -> Replier {
-        let Some(address) = address else {
-            return Replier::Unaddressed;
-        };
-        let known = self.addresses.iter().find(|known| known.value == address);
-        known.map_or(Replier::Address(address), |known| known.replier)
+        let known = self.addressee(address).map(|known| known.replier);
+        known.unwrap_or(address.map_or(Replier::Unaddressed, Replier::Address))
+    }
+
+    fn addressee(&self, address: Option<u8>) -> Option<&Addressee> {
+        let mut known = self.addresses.iter();
+        known.find(|known| Some(known.value) == address)
     }
 
     /// Return whether the device of an address has too few joints for a command: rows with a value
     /// for each joint belong to the devices with all joints.
     fn lacks_joints(&self, address: Option<u8>, command: &Command) -> bool {
-        let known = self
-            .addresses
-            .iter()
-            .find(|known| Some(known.value) == address);
-        let joints = known.map_or(0, |known| known.joints);
+        let joints = self.addressee(address).map_or(0, |known| known.joints);
         let variants = command.request.iter().chain(&command.reply);
-        let mut rows = variants
-            .flat_map(|variant| variant.fields())
-            .filter(|field| field.many);
-        joints != 0 && joints != self.joints && rows.any(|row| row.numbers(0).len() == self.joints)
+        let is_row = |field: &Field| field.many && field.numbers(0).len() == self.joints;
+        let mut fields = variants.flat_map(Variant::fields);
+        joints != 0 && joints != self.joints && fields.any(is_row)
     }
 }

@@ -3,7 +3,7 @@
 use alloc::string::String;
 use alloc::vec::Vec;
 
-use super::facts::{Nanos, TextForm};
+use super::{Nanos, TextForm};
 
 /// Names and passwords of a network have at most 32 and 63 characters.
 const LIMIT: usize = 4096;
@@ -111,50 +111,55 @@ impl TextForm {
     }
 }
 
-/// Collects a text reply from noise; only silence shows its end.
-///
-/// Bytes that come before its first prefix do not belong to it.
-#[derive(Clone, Debug, Default)]
+/// Collects a text reply from noise; only silence shows its end. Bytes that come before its first
+/// prefix do not belong to it.
+#[derive(Clone, Debug)]
 pub(super) struct TextCollector {
+    pub(super) form: TextForm,
     data: Vec<u8>,
     /// When the last bytes of a text that has begun came.
     last: Option<Nanos>,
 }
 
 impl TextCollector {
+    pub(super) fn new(form: TextForm) -> Self {
+        let (data, last) = (Vec::new(), None);
+        Self { form, data, last }
+    }
+
     /// Return when the text ends unless more of it comes; `None`: it has not begun.
-    pub(super) fn ends_at(&self, form: &TextForm) -> Option<Nanos> {
-        Some(self.last?.saturating_add(form.silence))
+    pub(super) fn ends_at(&self) -> Option<Nanos> {
+        Some(self.last?.saturating_add(self.form.silence))
     }
 
     /// Take bytes that belong to no frame.
-    pub(super) fn add(&mut self, data: &[u8], form: &TextForm, now: Nanos) {
+    pub(super) fn add(&mut self, data: &[u8], now: Nanos) {
         if data.is_empty() {
             return;
         }
         self.data.extend_from_slice(data);
         if self.last.is_none() {
-            let prefix = form.first_prefix().as_bytes();
-            let Some(start) = find(&self.data, prefix) else {
-                // The prefix may have begun in the last bytes.
-                let kept = self.data.len().saturating_sub(prefix.len());
-                self.data.drain(..kept);
+            let prefix = self.form.first_prefix().as_bytes();
+            let start = find(&self.data, prefix);
+            // The prefix may have begun in the last bytes.
+            let kept = self.data.len().saturating_sub(prefix.len());
+            self.data.drain(..start.unwrap_or(kept));
+            if start.is_none() {
                 return;
-            };
-            self.data.drain(..start);
+            }
         }
         self.last = Some(now);
         self.data.truncate(LIMIT + 1);
     }
 
     /// Return the fields of the text; with an error, the bytes that show it.
-    pub(super) fn decode(&self, form: &TextForm) -> Result<Vec<String>, (TextError, Vec<u8>)> {
+    pub(super) fn decode(&self) -> Result<Vec<String>, (TextError, Vec<u8>)> {
         if self.data.len() > LIMIT {
             let shown = self.data.get(..SHOWN).unwrap_or_default();
             return Err((TextError::TooLong, shown.into()));
         }
-        form.decode(&self.data)
-            .map_err(|error| (error, self.data.clone()))
+        let read = self.form.decode(&self.data);
+        read.map_err(|error| (error, self.data.clone()))
     }
 }
 

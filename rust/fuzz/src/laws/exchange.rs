@@ -3,8 +3,7 @@
 use std::sync::Arc;
 
 use cobotwire_core::exchange::{
-    Event, Exchange, Facts, Named, Nanos, Protocol, Request, RetryPolicy, Safety, SeenFrame,
-    TextForm, Ticket,
+    Event, Exchange, Facts, Named, Nanos, Protocol, Request, RetryPolicy, Safety, TextForm, Ticket,
 };
 use cobotwire_core::{Command, Direction, Event as Received, Framer, Listening, Table, Variant};
 
@@ -112,19 +111,7 @@ impl Run {
     }
 
     fn cover(&mut self, events: &[Event]) {
-        let size = |frame: &SeenFrame| frame.bytes().len();
-        let sizes = events.iter().map(|event| match event {
-            Event::Noise { data, .. } => data.len(),
-            Event::Matched { frame, .. } | Event::Rejected { frame, .. } => {
-                frame.as_ref().map_or(0, size)
-            }
-            Event::Late { frame, .. }
-            | Event::Ack { frame, .. }
-            | Event::DeviceEvent { frame, .. }
-            | Event::Unexpected { frame }
-            | Event::Echo { frame } => size(frame),
-            Event::Expired { .. } => 0,
-        });
+        let sizes = events.iter().map(|event| event.data().len());
         self.covered += sizes.sum::<usize>();
     }
 
@@ -159,6 +146,7 @@ fn facts(bytes: &mut Bytes<'_>, command: &Command) -> Facts {
             let names = (0..variant.fields().len()).map(|index| Named {
                 name: index.to_string().into(),
                 echo: flags >> (index % 8) & 1 == 1,
+                status: true,
             });
             names.collect()
         };
@@ -174,10 +162,5 @@ fn facts(bytes: &mut Bytes<'_>, command: &Command) -> Facts {
         request: named(&command.request),
         reply: named(&command.reply),
         accepted: Vec::from_iter((flags & 2 == 2).then_some(1)),
-        statuses: command
-            .reply
-            .iter()
-            .map(|v| (0..v.fields().len()).collect())
-            .collect(),
     }
 }

@@ -1,0 +1,175 @@
+//! A port with its session: what both clients share.
+
+use std::io::ErrorKind;
+use std::time::{Duration, Instant};
+
+use cobotwire_core::exchange::Nanos;
+
+use crate::encoder::{Handle, Prepared};
+use crate::notes::Note;
+use crate::options::nanos;
+use crate::session::{CallId, Session, Settings};
+use crate::typed::Table;
+use crate::{Error, Options, Port};
+
+/// How long a stop may take when a client is dropped and the line is full.
+pub(crate) const LONGEST_STOP: Duration = Duration::from_secs(1);
+/// How long a full line is left alone.
+const PAUSE: Duration = Duration::from_micros(500);
+
+/// The port with its session; whoever holds it reads and writes for all.
+pub(crate) struct Connection {
+    pub session: Session,
+    /// `None`: it is closed.
+    port: Option<Box<dyn Port>>,
+    /// The limit that the port has.
+    limit: Option<Duration>,
+    /// How long a dropped client may wait until the line takes a stop.
+    patience: Duration,
+    buffer: Vec<u8>,
+    pub begun: Instant,
+    note: Note,
+}
+
+impl Connection {
+    pub fn new(
+        edition: Table,
+        port: Box<dyn Port>,
+        options: &Options,
+        patience: Duration,
+    ) -> Result<(Handle, Self), Error> {
+        let handle = Handle::new(edition, options)?;
+        let url = options.port_name.as_deref();
+        let (begun, (note, left)) = (Instant::now(), Note::of(url));
+        let connection = Self {
+            session: Session::new(&handle, url.unwrap_or("port"), options.on_drop, &left),
+            port: Some(port),
+            limit: None,
+            patience,
+            buffer: vec![0; 4096],
+            begun,
+            note,
+        };
+        Ok((handle, connection))
+    }
+
+    fn now(&self) -> Nanos {
+        nanos(self.begun.elapsed())
+    }
+
+    pub fn submit(&mut self, prepared: &Prepared, settings: &Settings, called: Instant) -> CallId {
+        let called_at = nanos(called.saturating_duration_since(self.begun));
+        self.session
+            .submit(prepared, settings, called_at, self.now())
+    }
+
+    /// Return for how long nothing is to be done unless bytes come.
+    pub fn idle(&self, longest: Duration) -> Duration {
+        let idle = self.session.idle(self.now());
+        idle.map_or(longest, |idle| longest.min(Duration::from_nanos(idle)))
+    }
+
+    /// Read once, let time pass, and write what is to be sent; return whether bytes came.
+    pub fn step(&mut self, longest: Duration) -> bool {
+        let (idle, mut buffer) = (self.idle(longest), std::mem::take(&mut self.buffer));
+        let read = self.port(idle).and_then(|port| port.read(&mut buffer));
+        let lost = match &read {
+            Ok(0) => Some("the peer has closed the connection".to_owned()),
+            Err(error) if !is_wait(error) => Some(format!("cannot be read: {error}")),
+            _ => None,
+        };
+        match lost.filter(|_| self.session.fault().is_none()) {
+            Some(detail) => drop(self.session.lose(&detail, self.now())),
+            None => {
+                let data = buffer.get(..*read.as_ref().unwrap_or(&0));
+                self.session.receive(data.unwrap_or_default(), self.now());
+                self.write(read.is_err());
+            }
+        }
+        self.buffer = buffer;
+        read.is_ok()
+    }
+
+    /// Write until nothing is to be sent, or the line takes no more.
+    fn write(&mut self, drained: bool) {
+        loop {
+            let now = self.now();
+            let bytes = self.session.outgoing(now, drained).to_vec();
+            if bytes.is_empty() {
+                return;
+            }
+            let port = self.port(Duration::ZERO);
+            match port.and_then(|port| port.write_some(&bytes)) {
+                Ok(size) if size > 0 => self.session.wrote(size, self.now()),
+                Err(error) if !is_wait(&error) => {
+                    self.session.fail_write(&error.to_string(), self.now());
+                }
+                _ => return,
+            }
+        }
+    }
+
+    /// Return the port, so that it waits for some time at most.
+    fn port(&mut self, longest: Duration) -> std::io::Result<&mut dyn Port> {
+        let port = self.port.as_mut().ok_or(ErrorKind::NotConnected)?;
+        if self.limit != Some(longest) {
+            port.wait_at_most(longest)?;
+            self.limit = Some(longest);
+        }
+        Ok(&mut **port)
+    }
+
+    /// Close the port when what was written is sent.
+    pub fn close(&mut self) -> Result<(), Error> {
+        let Some(mut port) = self.port.take() else {
+            return Ok(());
+        };
+        let (flushed, now) = (port.finish(), self.now());
+        self.note.leave(self.session.close(now));
+        flushed.map_err(|error| {
+            let detail = format!("cannot be written: {error}");
+            self.session.lose(&detail, now)
+        })
+    }
+}
+
+fn is_wait(error: &std::io::Error) -> bool {
+    matches!(
+        error.kind(),
+        ErrorKind::WouldBlock | ErrorKind::TimedOut | ErrorKind::Interrupted
+    )
+}
+
+impl Drop for Connection {
+    fn drop(&mut self) {
+        let now = self.now();
+        let mut rest = self.session.stops(now);
+        self.note.leave(self.session.persist(now));
+        let limited = self.port(Duration::ZERO).is_ok();
+        let Some(mut port) = self.port.take().filter(|_| limited && !rest.is_empty()) else {
+            return;
+        };
+        let mut stopped_by = move |until| {
+            // Nobody is left who could handle an error.
+            while !rest.is_empty() {
+                let size = match port.write_some(&rest) {
+                    Ok(size) => size.min(rest.len()),
+                    Err(error) if is_wait(&error) => 0,
+                    Err(_) => return true,
+                };
+                rest.drain(..size);
+                if size == 0 && Instant::now() >= until {
+                    return false;
+                } else if size == 0 {
+                    std::thread::sleep(PAUSE);
+                }
+            }
+            true
+        };
+        let now = Instant::now();
+        if !stopped_by(now + self.patience) {
+            // What drops an asynchronous client must not wait.
+            std::thread::spawn(move || stopped_by(now + LONGEST_STOP));
+        }
+    }
+}
