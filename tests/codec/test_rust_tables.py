@@ -16,6 +16,7 @@ from hypothesis import strategies as st
 
 import random_tables
 from cobotwire import codec as codecs
+from cobotwire._native import NativeCodec
 from cobotwire.protocol.errors import CobotwireError
 from cobotwire.protocol.loading import table_of
 from cobotwire.protocol.table import Table, Variant
@@ -88,7 +89,7 @@ def check_texts(data: st.DataObject, probe: Probe, path: Path, table: Table, tim
 
 def native_table(table: Table) -> str:
     """Return the table that the native codec interprets, in Rust's words."""
-    codec: Any = codecs.load(table, "native")
+    codec: Any = NativeCodec(table)
     text: str = codec._core_table()
     return text
 
