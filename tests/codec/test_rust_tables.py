@@ -180,4 +180,4 @@ def test_short_file_cannot_fill_the_memory(probe: Probe, tmp_path: Path) -> None
     path.write_text(json.dumps(document))
     assert path.stat().st_size < 1 << 20
     [why] = probe.ask([["read", str(path)]])
-    assert why.endswith("the numbers of all types take too much memory")
+    assert why.endswith("all types and messages take too much memory")
