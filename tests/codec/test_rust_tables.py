@@ -32,7 +32,7 @@ EDITIONS = sorted((ROOT / "python/cobotwire/editions").glob("*/edition.json"))
 MYCOBOT = ROOT / "python/cobotwire/editions/mycobot/edition.json"
 # Beside the smallest one: with addresses, floats and lists.
 DAMAGED = ["mycobot", "mybuddy", "pro450"]
-OTHERS = [
+OTHERS: list[Any] = [
     *(None, True, -1, 0, 1, 2, 8, 255, 1 << 14, -(1 << 63), (1 << 63) - 1, (1 << 64) - 1, 1e300),
     *(0.5, "1/0", "9223372036854775807/3", "", "text", "bits", "joint", "float"),
     *([], [[]], [0, 1], {}),
