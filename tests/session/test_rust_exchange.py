@@ -49,6 +49,7 @@ def _talk(probe: Probe, codec: Codec, path: str, seed: int, steps: list[tuple[st
         talk = Talk(codec, seed)
         for name, own in steps:
             talk.step(name, own)
+        talk.finish()
     recorder.check(probe.ask)
 
 
