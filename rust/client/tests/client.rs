@@ -375,13 +375,15 @@ fn stop_does_not_wait_for_the_reply_that_another_thread_waits_for() {
     let waiting = arm.clone();
     let waiting = std::thread::spawn(move || waiting.get_angles());
     far.read_exact(&mut [0; 5]).unwrap();
-    let stops = (0..10).map(|_| {
-        let begun = Instant::now();
-        arm.stop().unwrap();
-        begun.elapsed()
-    });
-    let shortest = stops.min().unwrap();
-    assert!(shortest < Duration::from_millis(15), "{shortest:?}");
+    let mut stops: Vec<_> = (0..9)
+        .map(|_| {
+            let begun = Instant::now();
+            arm.stop().unwrap();
+            begun.elapsed()
+        })
+        .collect();
+    stops.sort();
+    assert!(stops[4] < Duration::from_millis(10), "{stops:?}");
     arm.close().unwrap();
     assert_eq!(lost(waiting.join().unwrap()).1, Some(5));
 }
