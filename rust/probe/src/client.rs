@@ -115,7 +115,11 @@ impl Probe {
             timeout: seconds("timeout"),
             deadline: seconds("deadline"),
             retry,
-            address: self.given.get("address").and_then(Json::as_str).map(str::to_owned),
+            address: self
+                .given
+                .get("address")
+                .and_then(Json::as_str)
+                .map(str::to_owned),
             port_name: Some(self.url.clone()),
             ..Options::default()
         }
