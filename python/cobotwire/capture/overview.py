@@ -145,7 +145,7 @@ class Overview:
             return
         if last.truncated_at is not None:
             self.missing = f"truncated: its last block, at byte {last.truncated_at}, is incomplete"
-        # Other programs need not write what tells that a recording is finished.
+        # Other programs need not mark a recording as finished.
         elif last.application.startswith(OURS) and not last.finished:
             self.missing = "unfinished: its recorder was killed, or is still recording"
 
@@ -194,9 +194,9 @@ def overview(
 
 
 def _sections(path: str | os.PathLike[str]) -> int:
-    """Return the number of sections of a file: bytes of a packet may look like one."""
+    """Return the number of sections. Block by block, since a packet's bytes may look like one."""
     found = 0
-    # The reader of the packets has found the damage too.
+    # The reader of the packets reports the damage.
     with suppress(CaptureError), block_file(path) as file:
         for block in file:
             found += block.kind == blocks.SECTION

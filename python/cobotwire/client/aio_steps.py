@@ -142,13 +142,13 @@ class AsyncSteps:
         self.turn()
 
     def _set_timer(self, now: float) -> None:
-        """Have time pass for the session when the next thing is to be done; it is ``now``."""
+        """Set the timer for the next deadline of the session; the time is ``now``."""
         idle = self.exchange.idle_seconds(now)
         if idle is not None:
             self._wake_at(now + idle)
 
     def _wake_at(self, due: float) -> None:
-        # If it goes off earlier, it is set again then.
+        # A timer that goes off earlier is set again then.
         if self._timed.due > due + TIMER_SLACK:
             self.timers.set(self._timed, due)
 

@@ -131,7 +131,7 @@ class Connection:
             finally:
                 steps.leading.resign()
             if not leads:
-                # In real time, whatever the transport's: another thread is waited for.
+                # In real time, not by the transport's clock: another thread is waited for.
                 time.sleep(min(left, CHECK_SECONDS))
 
     def close(self) -> None:

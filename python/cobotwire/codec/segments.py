@@ -134,7 +134,7 @@ def decode_segment(
     last = reader.flush()
     if waiting and end < stream.size:
         # The scan of the stream stands at the end, so no frame crosses it, and the flush was right
-        # to reject what waited. But the reasons lie in the bytes that follow.
+        # to reject what waited. But its reasons depend on the bytes that follow.
         ahead = stream.read(end - waiting, waiting + _reach(codec, listening))
         noise = _with_reasons(counters, _noise_of(codec, listening, ahead, waiting))
         last.counters = last.counters._replace(noise=noise)

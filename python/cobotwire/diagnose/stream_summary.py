@@ -56,7 +56,7 @@ class Lines(Frame):
 
 
 class StreamSummary:
-    """Summarizes a stream: counts everything, and returns what Python has to look at.
+    """Summarizes a stream: counts everything, and returns what Python must diagnose.
 
     Attributes:
         native: the counts.

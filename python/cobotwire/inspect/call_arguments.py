@@ -130,7 +130,8 @@ def _by_name(call: str, sizes: Mapping[str, int], words: Sequence[str]) -> dict[
 
 
 def _gather(words: list[str], sizes: Sequence[int]) -> list[str]:
-    """Return one word for each argument, if the words are just the numbers of the first ones."""
+    """Join numbers into one word for each argument; unless they fill arguments, return the
+    words."""
     ends = list(accumulate(sizes, initial=0))
     if len(words) not in ends:
         return words

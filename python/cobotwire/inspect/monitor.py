@@ -80,7 +80,7 @@ class Monitor:
     """Samples the joints and coordinates of an arm, and listens to the port in between.
 
     A sample with a missing reply is part of the result, so that the user sees that the arm is
-    silent. A client's ``stream()`` skips this sample.
+    silent. A client's ``stream()`` skips such a sample.
     """
 
     def __init__(self, arm: Client, codec: Codec, rate: float) -> None:
@@ -94,7 +94,7 @@ class Monitor:
         self._listener = DiagnosingListener(codec)
         self._answered = 0
         self._error = ""
-        # Why a simulated arm cannot reply, by command: it is not asked again.
+        # Why a simulated arm cannot reply, by command: such a query is not sent again.
         self._refused: dict[str, str] = {}
 
     def samples(self, count: int | None = None) -> Iterator[Observation]:

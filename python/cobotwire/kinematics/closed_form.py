@@ -152,7 +152,7 @@ def _fourth_frame(
 
 
 def _nearest_first(angles: Iterable[float], present: float) -> list[float]:
-    """Sort angles, in radians, by the way from the present one."""
+    """Sort angles, in radians, by their distance from the present one."""
     return sorted(angles, key=lambda one: abs(math.remainder(one - present, math.tau)))
 
 

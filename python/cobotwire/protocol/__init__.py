@@ -1,1 +1,2 @@
-"""Define what an edition is: records, values, limits, errors. Nothing else knows these rules."""
+"""Define what an edition is: records, values, limits, errors. No other package implements these
+rules."""

@@ -23,7 +23,7 @@ def once_per_table(function: Callable[[Table], Result]) -> Callable[[Table], Res
     """Return a function that keeps its results for the tables that were used last.
 
     Tables are told apart by identity: comparing two of them takes longer than most functions. The
-    result is shared by threads, so nobody may change it.
+    result is shared by threads, so it must not be changed.
     """
     recent: deque[tuple[Table, Result]] = deque(maxlen=KEPT)
 

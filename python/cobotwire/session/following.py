@@ -43,15 +43,15 @@ from cobotwire.session.setpoints import Live, OnLines, Path, Ways, evenly
 
 # Setpoints a second, if the line carries them.
 USUAL_RATE, HIGHEST_RATE = 50.0, 500.0
-# Of the time of a tick, so much may go by until a reply comes.
+# The share of a tick that may pass until a reply comes.
 BUSY_SHARE = 0.8
 # How often the joints are read meanwhile.
 FEEDBACK_SECONDS = 0.2
-# The queries before the motion; the quickest says how long a reply takes that is not lost.
+# The number of queries before the motion; the fastest measures how long a reply takes.
 TRIALS = 3
 # With fewer setpoints a second an arm stops at each.
 LEAST_RATE = 5.0
-# After a stall of the process that is longer, the rest of the path is given up.
+# The longest stall of the process; after a longer one the rest of the path is given up.
 STALL_SECONDS = 0.5
 # An arm that stands still for this long at the end of the path does not continue by itself.
 STILL_SECONDS = 1.0

@@ -43,7 +43,7 @@ MOST_VALUES = 255
 # This number of a joint stands for all joints.
 EVERY_JOINT = 254
 
-# The state that begins as the edition's `servos` say.
+# The state that starts with the values of the edition's `servos`.
 REGISTERS = "registers"
 
 Fields = Mapping[str, Any]

@@ -57,7 +57,7 @@ def move(arm: ArmState, now: float, command: Command, effect: Moves, fields: Fie
 def _speed(arm: ArmState, effect: Moves, fields: Fields) -> int:
     given = fields.get(effect.speed)
     if given is None:
-        # A speed that nothing has set yet is no reason to stand still.
+        # The arm also moves if no speed has been set yet.
         usual = arm.kept.get("speed")
         return round(usual) if isinstance(usual, int | float) and usual else USUAL_SPEED
     if isinstance(given, tuple | list):

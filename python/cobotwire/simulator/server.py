@@ -34,7 +34,7 @@ class Server:
     url: str
 
     def __init__(self, clock: RunningClock | None) -> None:
-        """``clock`` is the one that the peers use; None: real time."""
+        """Prepare to serve; ``clock`` is the one that the peers use; None: real time."""
         self._clock = RunningClock() if clock is None else clock
         self._clients: dict[int, _Client] = {}
         self._selector = selectors.DefaultSelector()

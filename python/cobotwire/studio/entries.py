@@ -38,7 +38,7 @@ class LiveEntries:
     """Turns a client's traffic into entries; its memory does not grow with the traffic."""
 
     def __init__(self, codec: Codec, start: float) -> None:
-        """``start`` is the time of the session's start by the client's clock."""
+        """Take the time of the session's start by the client's clock."""
         self._diagnoser = Diagnoser(codec, "reply")
         self._start = start
         # Where each frame and span of noise began in the stream, and when it came. Those of items

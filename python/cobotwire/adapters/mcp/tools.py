@@ -75,7 +75,7 @@ def tools(
 ) -> dict[str, ToolSpec]:
     """Return the tools by name: ``stop`` first, then queries, and with permission the rest.
 
-    Commands that ``limits`` refuse are left out, and the ranges of the others are theirs.
+    Commands that ``limits`` refuse are left out; the others have the ranges of ``limits``.
     """
     shown = limited(table, limits)
     refused = refusals(table, limits)

@@ -1,4 +1,4 @@
-"""Ask an arm, and publish what that shows of its line and its state."""
+"""Query an arm, and publish the diagnostics of its port and its state."""
 
 from __future__ import annotations
 

@@ -12,7 +12,7 @@ from collections.abc import Iterator
 
 from cobotwire.capture.foreign.reader import Chunk, ForeignFile, Line, Reader, starts_with
 
-# What a line ``*`` may stand for.
+# The most bytes that a line ``*`` may stand for.
 MOST_REPEATED = 1 << 24
 BLOCK = 1 << 12
 _OFFSET = "([0-9a-f]{6,16})"

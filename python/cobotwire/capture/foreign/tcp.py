@@ -82,7 +82,8 @@ class _Way:
         return (number - self.next + _HALF & _MASK) - _HALF
 
     def keep(self, segment: Segment) -> None:
-        """Keep a segment until its bytes come next. Of two with one number the longer one stays."""
+        """Keep a segment until its bytes come next. If two have the same number, keep the longer
+        one."""
         other = self.waiting.get(segment.number)
         if other is None or len(segment.payload) > len(other.payload):
             self.waiting[segment.number] = segment

@@ -77,7 +77,7 @@ class Noticed:
 
 
 class Device:
-    """Sends requests, notices what the run has to report, and knows what it has to restore."""
+    """Sends requests, and collects what the run has to report and to restore."""
 
     def __init__(
         self,

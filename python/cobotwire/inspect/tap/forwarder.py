@@ -154,7 +154,7 @@ class Forwarder:
                 self._copies.put("held", decision.data, time.monotonic())
 
     def _greet(self, happened: str, new: bool) -> None:
-        """Let a new program find nothing of the last one: no unread reply, no half a request."""
+        """Discard what the last program left: unread replies, and half a request."""
         if new:
             self._to_program.clear()
             self._decide(self._guard.flush() if self._guard else ())

@@ -20,13 +20,13 @@ from cobotwire.pymycobot.layer.naming import naming
 from cobotwire.pymycobot.layer.ranges import check_range
 from cobotwire.pymycobot.layer.results import plain, tenths
 
-# If the end of a motion is not reported for so long, the arm is asked whether it moves.
+# If the end of a motion is not reported for this long, the arm is asked whether it moves.
 ASK_SECONDS = 1.0
 # The end was lost if the arm then stands still this often.
 STILL_TIMES = 3
 # How often it is asked: for five minutes, as the library waits.
 MOST_TIMES = 300
-# The library waits for so long after the motors got power.
+# The library waits this long after the motors got power.
 POWER_SECONDS = 1.0
 HOME_SPEED = 20
 # The pose of a Mercury at rest; other arms stretch all joints.
@@ -160,7 +160,7 @@ class Reporting(ClosedLoop):
         """Power the arm, and wait a second for its motors."""
         result = self._ask(plain, self.arm.power_on, mode)
         if result == DONE:
-            # The arm has power, whatever becomes of this query.
+            # The arm has power, even if this query fails.
             with suppress(ProtocolError, ReplyTimeout):
                 self._waits = self._waits and bool(self.arm.get_limit_switch().motion_ends)
         self.arm.listen(POWER_SECONDS)

@@ -40,7 +40,7 @@ class Names:
         self._functions: dict[Key, list[cst.FunctionDef]] = defaultdict(list)
         for each in found.functions:
             self._functions[keys.function_key(each)].append(each)
-        # At first, what is not known yet is nothing; in the end it is unknown.
+        # At first, a name without known values has none; in a second pass it is unknown.
         for unbound in (_NOTHING, frozenset({UNKNOWN})):
             before = None
             while before != self._bound:
@@ -89,7 +89,7 @@ class Names:
         return sorted({name for each in self._found.from_imports for name, _ in _kinds(each)})
 
     def is_only(self, node: cst.CSTNode, kind: type[Value]) -> bool:
-        """Return whether an expression is nothing but values of a kind, and perhaps None."""
+        """Return whether an expression has only values of a kind, or None."""
         return all(isinstance(each, kind) for each in self.values(node) - {NONE})
 
     def arm_names(self, methods: frozenset[str]) -> set[str]:

@@ -118,7 +118,7 @@ def _forbidden(probe: Probe) -> None:
     device = probe.device
     for setting in settings_of(device.table, probe.command):
         if setting.place:
-            # What holds for the first part holds for the others.
+            # The first part represents the others.
             continue
         spot = restorable_spot(device, setting, setting.queries[0])
         device.restore_after_body[probe.command.name] = partial(device.request, spot.old)
