@@ -62,7 +62,7 @@ BENCHES = {
     "frames": ["speed.py", "--rounds", "9", "--megabytes", "15", "--rows", "feed|encode"],
     "starts": ["imports.py"],
 }
-# What the lines of a table begin with that have no cells.
+# The first characters of the lines of a table that have no cells.
 RULES = ("┏", "┡", "└")
 
 

@@ -252,8 +252,7 @@ class NativeColumnReader:
 
     @property
     def pending(self) -> int:
-        """The number of fed bytes that are not accounted for yet, less than the longest frame
-        has."""
+        """The number of fed bytes not accounted for yet, less than the longest frame has."""
 
 @final
 class NativeCaptureReader:

@@ -26,8 +26,8 @@ class Leading:
     """
 
     def __init__(self, state: threading.Lock) -> None:
-        """Store the lock that is held while requests end, so that no follower misses that its own
-        is done."""
+        """Store the lock that is held while requests end; it keeps followers from missing the
+        end."""
         self._state = state
         self.leader: int | None = None
         self.turns = 0

@@ -130,8 +130,7 @@ def _by_name(call: str, sizes: Mapping[str, int], words: Sequence[str]) -> dict[
 
 
 def _gather(words: list[str], sizes: Sequence[int]) -> list[str]:
-    """Join numbers into one word for each argument; unless they fill arguments, return the
-    words."""
+    """Join the numbers of each argument into one word, if they fill the first arguments."""
     ends = list(accumulate(sizes, initial=0))
     if len(words) not in ends:
         return words

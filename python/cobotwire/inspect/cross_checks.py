@@ -136,8 +136,7 @@ class CrossChecks:
         return found
 
     def confirmed(self, snapshots: Sequence[Snapshot]) -> Iterator[tuple[Key, str]]:
-        """Yield the confirmed aspects of readings: any mistake about them would break a
-        relation."""
+        """Yield the confirmed aspects of readings: any mistake would break a relation."""
         wrong = {
             key for relation in self._broken(snapshots, self._relations) for key in relation.keys
         }

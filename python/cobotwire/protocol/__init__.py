@@ -1,2 +1,1 @@
-"""Define what an edition is: records, values, limits, errors. No other package implements these
-rules."""
+"""Define what an edition is: records, values, limits, errors. Only this package has these rules."""

@@ -26,7 +26,7 @@ Control = Literal["stop", "halt", "pause", "resume", "forget"]
 
 
 class State(NamedTuple):
-    """One thing that an arm keeps.
+    """One item of the state of an arm.
 
     Attributes:
         name: its name.

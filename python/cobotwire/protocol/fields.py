@@ -166,8 +166,7 @@ class Field(NamedTuple):
         return bool(values[0]) if self.kind == "flag" and self.const is None else values[0]
 
     def meets(self, number: Number, other: Field, other_number: Number) -> bool:
-        """Return whether any raw value is legal in both a number of this field and one of
-        another."""
+        """Return whether a raw value is legal both in a number of this field and in another's."""
         ends = ((self, number, other, other_number), (other, other_number, self, number))
         for one, here, two, there in ends:
             if choices := one.choices or here.choices:

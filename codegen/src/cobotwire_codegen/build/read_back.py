@@ -61,11 +61,11 @@ def _read_back(
             if asked is None or asked.assumed or asked.at != at:
                 continue
             pairs = tuple(_pairs(written, command, query, asked, encoder_zero))
-            # Whether something holds for every index shows in the query of all.
+            # A query without an index can only confirm fixed values.
             if pairs and (at == effect.at or all(isinstance(raw, int) for _, raw in pairs)):
                 found.append((len(reported(query)) - len(pairs), query, pairs))
         if found:
-            # The query that reports little else.
+            # Choose the query that reports the fewest other values.
             _, query, pairs = min(found, key=lambda each: each[0])
             return ReadBack(effect.place, query.name, _short(pairs, command, query))
     return None

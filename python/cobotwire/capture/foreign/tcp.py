@@ -82,8 +82,7 @@ class _Way:
         return (number - self.next + _HALF & _MASK) - _HALF
 
     def keep(self, segment: Segment) -> None:
-        """Keep a segment until its bytes come next. If two have the same number, keep the longer
-        one."""
+        """Keep a segment until its bytes come next. Of two at one number, keep the longer."""
         other = self.waiting.get(segment.number)
         if other is None or len(segment.payload) > len(other.payload):
             self.waiting[segment.number] = segment

@@ -267,8 +267,7 @@ class Survey:
         return tuple(found)
 
     def _first_step(self, probe: Probe) -> None:
-        """Move the joint that is nearest to zero by a degree; stop the arm if a joint goes too
-        far."""
+        """Move the joint nearest to zero by a degree; stop the arm if a joint goes too far."""
         mover, device = Mover(probe.device), probe.device
         start = mover.angles()
         at = min(range(len(start)), key=lambda joint: abs(start[joint]))

@@ -77,9 +77,10 @@ HIDDEN_NAME = "this needs Python's {0}, but the program uses that name for somet
 NOT_ACKNOWLEDGED = ", with ack_within=1.5 also one that the arm does not acknowledge"
 ATTRIBUTE = "{0} is not called here, and only calls are rewritten; write `lambda: {0}()`"
 ESCAPED = (
-    "the arm is passed to code that is not read here, so its calls there are not rewritten; rewrite them there, or annotate the parameter with {0}"
+    "the arm is passed to code that is not read here, so its calls there are not rewritten; "
+    "rewrite them there, or annotate the parameter with {0}"
 )
-INHERITS = "{0} inherits from {1}; its calls of its own methods are not rewritten: hold an arm instead"
+INHERITS = "{0} inherits from {1}; calls of its own methods are not rewritten: hold an arm instead"
 MIXED = (
     "{0} is not always an arm of one class, so the call is left as it is; give each arm a name of "
     "its own"

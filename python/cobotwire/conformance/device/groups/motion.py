@@ -178,8 +178,7 @@ def expect_rest(probe: Probe, query: Command | None) -> None:
 
 
 def under_way(probe: Probe, mover: Mover, target: Pose, case: TestCase) -> bool:
-    """Return whether the arm is still on its way; if it has arrived, drop the test case's
-    verdict."""
+    """Return whether the arm is still on its way; if not, the test case has no verdict."""
     on_the_way = bool(off_by(mover.angles(), target, mover.tolerance))
     if not on_the_way:
         probe.not_timed(case, ARRIVED)
