@@ -60,7 +60,7 @@ def _run(
     marker = item.get_closest_marker("stall")
     limit = marker.args[0] if marker else STALL
     again = failed and not last and stalls.worst_second > limit
-    # Fixtures that tests share stay for the next run: only the test's own end.
+    # Only the test's own fixtures end; shared ones stay for the next run.
     after = item.parent if again else nextitem
     reports.append(call_and_report(item, "teardown", log=False, nextitem=after))
     if hasattr(function, "_request"):

@@ -129,8 +129,7 @@ class Evidence:
         return self._displaced(found, made)
 
     def _displaced(self, found: Found, made: Made) -> str:
-        """Return the known limit because of which the call of a reply took another reply instead of
-        this one."""
+        """Return the known limit that let the call of this reply take another one."""
         for call in self._calls_of(made):
             # Equal values do not show it, but a call cannot take what was delivered after its end.
             took_another = call.value != made.value or call.ended < found.at
@@ -142,8 +141,8 @@ class Evidence:
 
     def _limit_of_taken(self, call: Call) -> str:
         if call.number not in self._limits:
-            # A call may have taken the reply of another call. A call cannot be the reason for its
-            # own.
+            # The chain of calls that took each other's replies may come back to this call: end it
+            # there.
             self._limits[call.number] = ""
             self._limits[call.number] = self._limit_of_query(call, kept=False)
         return self._limits[call.number]

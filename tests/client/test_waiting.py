@@ -23,7 +23,7 @@ REPRESENTATIVE = ("mycobot280", "myarm_m750", "mercury_a1")
 MOTIONS = 200
 # How many queries a wait may send in a second, whenever it begins.
 MOST_QUERIES = 12
-# The rest of the edition's tolerances and a tick of the encoders.
+# How much a joint may move at rest by the edition's tolerances, and a tick of the encoders.
 TICK = 0.05
 
 

@@ -59,7 +59,7 @@ def search(
     limits: list[tuple[float, float]],
     largest_turn: float = math.inf,
 ) -> tuple[float, ...] | None:
-    """Return what a search finds that takes as long as it needs."""
+    """Return the result of a search without a limit of effort."""
     return searches.search(geometry, target, present, limits, largest_turn, Effort(ENOUGH))
 
 

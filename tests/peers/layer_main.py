@@ -62,7 +62,7 @@ def main(names: list[str]) -> int:
 
 
 def _shown(texts: Iterable[str]) -> list[str]:
-    """Print what is open, and return it."""
+    """Print the differences without a ruling, and return them."""
     found = [*texts]
     for text in found:
         print(f"OPEN: {text}", flush=True)

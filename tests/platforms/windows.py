@@ -26,7 +26,7 @@ import types
 from collections.abc import Iterable
 from typing import Any
 
-# What is only imported later would ask sys.platform, and fail for want of the real Windows.
+# If these were imported later, they would check sys.platform, and fail without the real Windows.
 LOADED = (asyncio, concurrent.futures, ctypes, logging.handlers, subprocess, tempfile)
 THIRD_PARTY = ("click", "rich.console", "rich.live", "rich.progress", "serial.tools.list_ports")
 # Only imported in the test that imports all of our modules.

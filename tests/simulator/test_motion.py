@@ -26,7 +26,7 @@ def _speeds(axes: Axes, begin: float, end: float) -> list[tuple[float, ...]]:
 
 
 def _holds_to(speeds: list[tuple[float, ...]], fastest: float) -> None:
-    """Return the speeds and accelerations of each axis, as differences of its positions."""
+    """Assert that speeds, and the differences between them, stay within their limits."""
     for one, two in pairwise(speeds):
         assert all(abs(b - a) <= MOST * STEP * 1.001 + 1e-6 for a, b in zip(one, two))
         assert all(abs(a) <= fastest * 1.001 + 1e-6 for a in one)

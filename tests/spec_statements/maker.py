@@ -48,7 +48,7 @@ def _baudrate(edition: str) -> int | None:
 
 @lru_cache(maxsize=1)
 def _wait_ms() -> int:
-    """Return how long the library waits for the reply to a request, unless it knows better."""
+    """Return how long the library waits for a reply by default."""
     found = re.search(r"\belse:\s+wait_time = ([\d.]+)", inspect.getsource(MAKER._read))
     assert found, "the library states its default wait"
     return round(float(found[1]) * 1000)
@@ -158,7 +158,7 @@ def _limited(edition: Edition) -> Iterator[tuple[str, str, bool, Quantity]]:
 
 
 def limits(edition: Edition) -> Iterator[str]:
-    """Report targets that go to another limit than the library's, or further steps."""
+    """Report targets and steps with another limit than the library's."""
     # The document states no limits of targets.
     ends = _limits(edition.name)[1] if edition.name != "mycobot" else {}
     for name, what, step, type in _limited(edition) if ends else ():

@@ -1,4 +1,4 @@
-"""Many descriptors of one event loop are served as few are."""
+"""Many descriptors of one event loop are served like a few."""
 
 from __future__ import annotations
 

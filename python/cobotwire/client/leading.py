@@ -26,8 +26,7 @@ class Leading:
     """
 
     def __init__(self, state: threading.Lock) -> None:
-        """Store the lock that is held while requests end; it keeps followers from missing the
-        end."""
+        """Store the lock that is held while requests end, so that followers miss no end."""
         self._state = state
         self.leader: int | None = None
         self.turns = 0

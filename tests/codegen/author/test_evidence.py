@@ -1,4 +1,4 @@
-"""``cobotwire-gen evidence``: files of owners are checked, and change what the spec is sure of."""
+"""``cobotwire-gen evidence``: files of owners are checked, and change the confidence of facts."""
 
 from __future__ import annotations
 

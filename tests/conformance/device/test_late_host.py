@@ -61,7 +61,7 @@ def test_report_shows_the_pauses_that_were_made() -> None:
     assert "12 to 12 ms" in found[0].reason
 
 
-def test_arm_that_arrives_at_once_leaves_moving_open_and_passes_it_at_a_slow_motion() -> None:
+def test_case_moving_needs_a_slow_motion_of_an_arm_that_arrives_at_once() -> None:
     report = run("very-fast", 1, 0.02)
     found = {r.command: r for r in report.results if r.case == "moving"}
     assert found["send_angles"].outcome == "inconclusive (not timed)"

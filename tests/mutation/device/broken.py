@@ -177,7 +177,7 @@ class BrokenArm(ArmConnection):
 
     def _after_malformed(self, kind: Stimulus, data: bytes) -> bytes:
         if request := self._fault.forgets(kind):
-            # The arm's own connection, which nobody reads, takes its acknowledgement.
+            # The arm sends its acknowledgement to a connection that is never read.
             self._correct.receive(request)
         return self._fault.malformed(self._arm.codec, kind, data)
 

@@ -156,5 +156,5 @@ def _groups(element: ET.Element) -> bool:
 
 
 def _data(element: ET.Element) -> bytes:
-    # Of some bits of a word, the value is the bits alone.
+    # For a field of some bits, the value is only these bits.
     return bytes.fromhex(element.get("unmaskedvalue") or element.get("value") or "")
