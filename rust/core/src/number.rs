@@ -66,13 +66,13 @@ pub enum Value {
     Integer(i64),
     /// A number with a scale.
     Real(f64),
-    /// That many of the values that follow are the elements of one field.
+    /// This many of the following values are the elements of one field.
     Row(usize),
-    /// The following rows, that many, are the elements of one field.
+    /// This many of the following rows are the elements of one field.
     Rows(usize),
-    /// That many of the values that follow are bytes.
+    /// This many of the following values are bytes.
     Bytes(usize),
-    /// That many of the values that follow are the bytes of a text in this encoding.
+    /// This many of the following values are the bytes of a text in this encoding.
     Text(usize, Encoding),
 }
 

@@ -128,7 +128,7 @@ impl Run {
         self.covered += sizes.sum::<usize>();
     }
 
-    /// Let time pass until nobody waits; check what was received.
+    /// Let time pass until no request waits; check what was received.
     fn end(mut self, received: usize) {
         let most = 200 + 10 * self.tickets.len();
         for _ in 0..most {
@@ -144,7 +144,7 @@ impl Run {
     }
 }
 
-/// Return what any command may be.
+/// Return any facts about a command.
 fn facts(bytes: &mut Bytes<'_>, command: &Command) -> Facts {
     const SAFETIES: [Safety; 3] = [Safety::Query, Safety::Setting, Safety::Motion];
     let flags = bytes.byte();
