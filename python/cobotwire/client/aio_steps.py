@@ -135,7 +135,7 @@ class AsyncSteps:
             self.exchange.fail_waiting(error)
 
     def _written(self, pending: PendingRequest, error: LinkError | None) -> None:
-        """Note that a write ended that was not taken at once."""
+        """Note the end of a write that the transport did not take at once."""
         self.exchange.written(pending, time.monotonic())
         if error is not None:
             self.exchange.fail_waiting(error)
@@ -148,7 +148,7 @@ class AsyncSteps:
             self._wake_at(now + idle)
 
     def _wake_at(self, due: float) -> None:
-        # A timer that goes off earlier is set again then.
+        # A timer that goes off too early is set again when it does.
         if self._timed.due > due + TIMER_SLACK:
             self.timers.set(self._timed, due)
 
