@@ -58,7 +58,7 @@ class ExpectedAck:
         self.until = min(self.until, self.sent_at + seconds)
 
     def count(self, frame: Frame, began_at: float) -> None:
-        """Count an acknowledgement of the command; other requests that can have caused it come
+        """Count an acknowledgement of the command; other requests that may have caused it go
         first."""
         self.doubts = [until for until in self.doubts if until > began_at]
         if self.doubts:
