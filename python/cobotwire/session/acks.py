@@ -58,8 +58,7 @@ class ExpectedAck:
         self.until = min(self.until, self.sent_at + seconds)
 
     def count(self, frame: Frame, began_at: float) -> None:
-        """Count an acknowledgement of the command; other requests that may have caused it go
-        first."""
+        """Count an acknowledgement of the command; it is first counted for other requests."""
         self.doubts = [until for until in self.doubts if until > began_at]
         if self.doubts:
             if self.request.replier != ANYBODY:
