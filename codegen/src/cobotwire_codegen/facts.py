@@ -161,7 +161,7 @@ def facts_of_pages(text: str) -> dict[str, set[str]]:
 
 
 def counts(found: Confirmed) -> dict[str, int]:
-    """Return how many facts each source confirms, how many no source, and how many no arm."""
+    """Return how many facts are confirmed by each source, by no source, and by no arm."""
     made = {source: sum(source in each for each in found.values()) for source in SOURCES}
     made["none"] = sum(not each for each in found.values())
     return {"facts": len(found), **made, "unconfirmed": len(unconfirmed(found))}

@@ -57,7 +57,7 @@ class AsyncConnection:
         self.firmware = ReportedFirmware()
         self.listeners = TrafficListeners(trace, self.url)
         self._exchange = exchange
-        # Taken by the one follow() at a time.
+        # Held by follow(), so that only one runs at a time.
         self.follows = threading.Lock()
         self._deadline = deadline
         self._steps: AsyncSteps | None = None

@@ -45,7 +45,7 @@ class Connection:
         self.firmware = ReportedFirmware()
         self.listeners = TrafficListeners(trace, self.url, self.now)
         self._exchange = exchange
-        # Taken by the one follow() at a time.
+        # Held by follow(), so that only one runs at a time.
         self.follows = threading.Lock()
         self._deadline = deadline
         self._steps = Steps(self._transport, exchange, self.listeners, self.now, deadline)

@@ -27,8 +27,8 @@ LONGEST = 3600
 MOST_ENTRIES = 64
 MOST_BYTES = 65536
 BOOT_ID = "/proc/sys/kernel/random/boot_id"
-# Opening a pipe does not wait, a link is not followed, and no terminal becomes that of the process.
-# Not every system has all of these.
+# Do not wait for a pipe, do not follow a link, and do not make a terminal that of the process. Some
+# systems lack some of these flags.
 READING = os.O_RDONLY | sum(
     getattr(os, name, 0)
     for name in ("O_NONBLOCK", "O_NOFOLLOW", "O_NOCTTY", "O_CLOEXEC", "O_BINARY")
@@ -114,8 +114,7 @@ def _read(note: dict[str, Any], key: str) -> PersistedState:
     parts = [_part(_frame(frame), written) for frame, written in note["parts"]]
     passed = time.monotonic() - written_at
     if note["boot"] != _boot() or passed < 0:
-        # The machine has rebooted, so no late reply can come. The arm has not, so it may still hold
-        # the parts.
+        # The machine has rebooted, so no late reply can come. But the arm may still hold the parts.
         return PersistedState((), tuple(parts))
     if not note["boot"]:
         # Nothing identifies a boot here. If more time has passed by the wall clock, count that.

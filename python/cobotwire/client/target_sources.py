@@ -61,7 +61,7 @@ class Mailbox(Source):
         return targets
 
     def close(self) -> None:
-        """Take no more."""
+        """Stop accepting targets."""
         self.closed = True
 
 

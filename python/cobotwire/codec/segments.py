@@ -1,11 +1,11 @@
 """Divide a stream into segments that can be decoded on their own, and decode one of them.
 
-A scan has no memory: what it finds from a position on depends only on the bytes from there on. So
-two scans that ever stand at the same position agree from there on. A frame that begins before a cut
-ends at most one longest frame after it. So the scan of the whole stream continues after the cut at
-one of a few positions. Where the scans from all of these have met, the scan of the whole stream
-stands too. A segment goes from the meeting point of one cut to that of the next one. Each is found
-from the bytes after its cut only.
+A scan has no state: what it finds from a position on depends only on the bytes from there on. So
+two scans that reach the same position agree from there on. A frame that begins before a cut ends at
+most the length of the longest frame after it. So the scan of the whole stream continues after the
+cut at one of a few positions. Scans from all of these meet at a position, which the scan of the
+whole stream then reaches too. A segment extends from the meeting point of one cut to that of the
+next one. To find a meeting point, only bytes after the cut are needed.
 """
 
 from __future__ import annotations

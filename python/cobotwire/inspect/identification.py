@@ -172,7 +172,7 @@ def _identified(
     evidence: list[Evidence],
     timeout: float | None,
 ) -> Identification:
-    """Find out which of the editions with the same frames an arm speaks that replies to them."""
+    """Find out which of the editions with the same frames the arm that replied speaks."""
     first = editions.load(found.proven[0]).TABLE
     evidence += _narrowed(transport, found, timeout=timeout)
     edition, firmware = found.known, ""

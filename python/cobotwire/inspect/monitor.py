@@ -167,7 +167,7 @@ class FollowingMonitor:
         self._values = {command: (-inf, None) for command in monitored(followed.table)}
         self._times: deque[float] = deque(maxlen=WINDOW)
         self._replied = {each.id for each in followed.table.commands if each.requires_reply}
-        # The ids of requests that have no reply yet; how many got none before they were repeated.
+        # The ids of requests without a reply yet; how many requests were repeated without one.
         self._open: set[int] = set()
         self._unanswered = 0
         self._error = ""

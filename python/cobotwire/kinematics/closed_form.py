@@ -22,7 +22,8 @@ AXES_280 = (90, 0, 0, 90, -90, 0)
 AXES_320 = (90, 0, 0, -90, 90, 0)
 AXES_SPHERICAL = (-90, 0, -90, 90, -90, 0)
 # Below this sine of the fifth joint, the fourth and the sixth turn about the same axis. Below the
-# second sine they nearly do, and the truncation of a pose may decide how far each of them turns.
+# second sine the two axes are nearly the same, and the truncation of a pose may decide how far each
+# joint turns.
 WRIST_STRAIGHT, WRIST_NEARLY_STRAIGHT = 1e-7, 1e-2
 # In that case, the search tries the sixth joint at steps of this many degrees.
 WRIST_STEP = 30

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 Result = TypeVar("Result")
 
-# Results for this many tables are kept. There are as many editions; limits make further tables.
+# Results for this many tables are kept: the number of editions. Limits make further tables.
 KEPT = 16
 
 

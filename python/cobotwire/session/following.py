@@ -149,7 +149,7 @@ class Follow:
         """Yield the steps of following the path.
 
         Raises:
-            UsageError: a target is not allowed; of a path nothing was sent but queries.
+            UsageError: a target is not allowed; if it is one of a path, only queries were sent.
             FollowFailed: the source was silent, the process stalled, or the arm stopped short.
         """
         self._now = self._began = now

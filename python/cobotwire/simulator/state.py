@@ -94,8 +94,8 @@ class ArmState:
         self.minimum = [-HALF_TURN] * self.joints
         self.maximum = [HALF_TURN] * self.joints
 
-    # The declared state that motion and kinematics obey. An edition that does not declare one has
-    # the value that changes nothing.
+    # The declared state that motion and kinematics use. If the edition does not declare it, it has
+    # the value without an effect.
     @property
     def queues(self) -> bool:
         """Whether a new target waits for the end of the present motion."""

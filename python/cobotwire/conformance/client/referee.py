@@ -156,7 +156,7 @@ class Referee:
             self.requests += 1
 
     def _powered_devices(self) -> dict[int | None, tuple[bool, bool]]:
-        """Return for each device whether it has power, and whether it has but holds no joint."""
+        """Return for each device whether it has power, and whether it then holds no joint."""
         return {
             address: (state.powered, state.powered and not any(state.enabled))
             for address, state in self._arm.states.items()

@@ -41,7 +41,7 @@ class Plan:
     """Which steps to run, in which order, and which results to take from an earlier report."""
 
     def __init__(self, earlier: Report | None = None, *, resume: bool = False) -> None:
-        """Plan to run everything; or what a report has, in its order.
+        """Plan to run everything, or the steps of a report in their order.
 
         Args:
             earlier: the report of a run on a device.

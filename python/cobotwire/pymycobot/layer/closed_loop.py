@@ -59,7 +59,7 @@ class ClosedLoop(CompatibleClient):
         command = self.arm.table.in_role("motion ended")
         with self.arm.events(command.reply_type, timeout=ASK_SECONDS) as ends:
             try:
-                # The acceptance may be lost; the end of the motion, or its absence, tells.
+                # The acceptance may be lost; whether the end is reported decides.
                 with suppress(ReplyTimeout):
                     call(*arguments, ack_within=self.ACK_SECONDS)
                 end = self._end_of(call.__name__, ends)

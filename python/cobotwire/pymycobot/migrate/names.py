@@ -40,7 +40,8 @@ class Names:
         self._functions: dict[Key, list[cst.FunctionDef]] = defaultdict(list)
         for each in found.functions:
             self._functions[keys.function_key(each)].append(each)
-        # At first, a name without known values has none; in a second pass it is unknown.
+        # In the first pass, a name without known values has no values; in the second, it is
+        # unknown.
         for unbound in (_NOTHING, frozenset({UNKNOWN})):
             before = None
             while before != self._bound:
@@ -93,7 +94,7 @@ class Names:
         return all(isinstance(each, kind) for each in self.values(node) - {NONE})
 
     def arm_names(self, methods: frozenset[str]) -> set[str]:
-        """Return the last words of the names of arms, and of what these methods are called of."""
+        """Return the last words of the names of arms, and of objects with these methods."""
         arms = (key for key, found in self._bound.items() if any(isinstance(v, Arm) for v in found))
         found = {str(key[-1]) for key in arms}
         for call in self._found.calls:

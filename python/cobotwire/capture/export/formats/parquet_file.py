@@ -9,7 +9,7 @@ import pyarrow.parquet as pq
 from cobotwire.capture.export.batch import Batch, joined
 from cobotwire.capture.export.plan import ExportPlan
 
-# Only names get dictionaries: pyarrow would build and discard those of measured values.
+# Only names get dictionaries: for measured values, pyarrow would build them and discard them.
 NAMES = ["robot", "source"]
 
 

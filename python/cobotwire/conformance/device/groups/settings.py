@@ -180,7 +180,7 @@ def _others_stay(probe: Probe) -> None:
         ]
         call = f"{second.command}({arguments_of(second)})"
         probe.expect(OTHERS, not changed, f"{call} also changes {'; '.join(changed)}")
-        # What has changed with it is set again.
+        # Set again everything that has changed.
         for each in spots.values() if changed else (spot,):
             device.request(each.others[0])
 
