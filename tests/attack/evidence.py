@@ -84,7 +84,7 @@ class Evidence:
         taken = self._record.taken
         place = bisect_right(taken, (handed, b""))
         while place < len(taken) and taken[place][0] <= call.ended:
-            # Of a request that was taken in pieces, the last piece is its end.
+            # A request that was taken in pieces ends with the last piece.
             if call.request.endswith(taken[place][1]):
                 return taken[place][0]
             place += 1

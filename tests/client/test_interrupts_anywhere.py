@@ -143,8 +143,8 @@ class Lines:
     """The numbers of the lines to interrupt, until calls end before them.
 
     Which lines a call runs depends on the other threads, so one short call is not the end. With the
-    reference codec a call runs many lines; every fifth of these is interrupted. Listening for 1 ms
-    runs as many lines as the machine has time for, so it skips none.
+    reference codec a call runs many lines, of which every fifth is interrupted. When it listens for
+    1 ms, the number of lines depends on the machine, so each of them is interrupted.
     """
 
     def __init__(self, codec: str, name: str = "a query") -> None:

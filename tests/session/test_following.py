@@ -64,7 +64,7 @@ def test_path_begins_and_ends_where_it_must_and_stays_within_the_bounds(
 
 @settings(max_examples=25)
 @given(triple, st.lists(triple, min_size=1, max_size=4), bounds, st.floats(0.05, 5))
-def test_path_with_times_is_at_its_points_in_time_or_names_what_does_not_do(
+def test_path_with_times_is_at_its_points_in_time_or_is_refused(
     start: tuple[float, ...], targets: list[tuple[float, ...]], bounds: Bounds, gap: float
 ) -> None:
     points = [(target, gap * (number + 1)) for number, target in enumerate(targets)]

@@ -199,7 +199,7 @@ class Promises:
             raise Broken(f"{call.kind} is sent after its caller stopped waiting")
 
     def wrote(self, call: Call, received: int) -> None:
-        """Check that the arm has received what was just written whole."""
+        """Check that the arm has received the whole request that was just written."""
         if call.received_by_arm == received:
             raise Broken(f"the arm did not receive {call.kind}, which was written whole")
 
