@@ -56,7 +56,8 @@ class Arm:
         return self.clock() - ended
 
     def end(self, target: list[float]) -> float:
-        """Return when the motion will end: for its event the arm has to be at rest."""
+        """Return when the motion will end: at rest for editions with an event, else near the
+        target."""
         axes, time = self.state.angles, self.clock()
         for step in (0.2, 0.02, 0.002):
             ahead = deepcopy(axes)

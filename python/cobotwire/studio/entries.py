@@ -61,7 +61,7 @@ class LiveEntries:
         return self._entries(self._diagnoser.feed([part]))
 
     def idle(self, now: float) -> list[Entry]:
-        """Return what noise is that waits for more bytes, if none have come for a while."""
+        """Return entries for the noise that waits for more bytes, if none have come for a while."""
         if not self._waiting or now < self._received_at + IDLE_SECONDS:
             return []
         self._waiting = False

@@ -103,7 +103,8 @@ pub enum Misfit {
     Scale,
     /// A bound is beyond the integers that a double holds exactly.
     Bounds,
-    /// A field has no case, cases of different sizes, or not one number where it takes one.
+    /// A field has no case, cases of different sizes, or several numbers although it takes only
+    /// one.
     Cases,
     /// A selector is not the index of a field of one number.
     Selector,

@@ -32,7 +32,7 @@ class Watching:
         on_packet: Callable[[Packet], None],
         on_other: Callable[[Copy], None],
     ) -> None:
-        """Read ``copies``; ``on_other`` gets those of what is not on the arm's line."""
+        """Read ``copies``; ``on_other`` gets copies that are not of the arm's line."""
         self._pipe, self._recording = copies, recording
         self._on_packet, self._on_other = on_packet, on_other
         self._sides = {

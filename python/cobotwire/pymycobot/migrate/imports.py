@@ -21,7 +21,7 @@ KEPT = {
 
 
 def rewritten(node: cst.ImportFrom) -> tuple[list[cst.ImportFrom], list[str]]:
-    """Return the lines for ours instead of one for the library, and the names that stay."""
+    """Return the imports that replace one of the library, and the names that are not replaced."""
     module = (get_full_name_for_node(node.module) or "") if node.module else ""
     rest = module.partition(".")[2]
     if isinstance(node.names, cst.ImportStar):

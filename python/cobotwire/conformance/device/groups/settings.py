@@ -90,7 +90,8 @@ def _try(probe: Probe, spot: Spot, spots: list[Spot]) -> None:
         reason = f"{spot} reports failure, but {wanted} is read back"
         probe.expect(REPLIED, not failed, reason)
         for other in spots if index == 0 else ():
-            # A setting that cannot be restored was changed before and has lost its old value.
+            # A setting with an obstacle was changed earlier and not restored, so it no longer has
+            # its old value.
             if other.index != spot.index and not other.obstacle:
                 _expect(probe, NEIGHBOURS, other, other.old, f"after {spot}: ")
     if not spot.obstacle:
