@@ -86,7 +86,7 @@ def decompressed(
 
     Raises:
         UsageError: zstd is not installed.
-        CaptureError: the compressed data is damaged; the offset is that of decompressed bytes.
+        CaptureError: the compressed data is damaged; the offset counts decompressed bytes.
     """
     offset = 0
     try:
@@ -112,7 +112,7 @@ def _gzip_part() -> Any:
 
 
 def _zstd_parts(name: str) -> Callable[[], Any]:
-    """Return what makes a decompressor for one part of a zstd file."""
+    """Return a function that makes a decompressor for one part of a zstd file."""
     if sys.version_info >= (3, 14):
         from compression import zstd
 

@@ -83,10 +83,9 @@ class Overview:
         messages: the messages by interface and label, such as ``get_angles.reply``.
         rejected: frames with a value that the edition does not allow; they are not among the
             messages.
-        times: those of the messages, rejected frames and noise; None for an empty recording.
-        gaps: the longest pauses, longest first.
-        gap_count, gap_ns: the number of all pauses, and their sum.
-        missing: what the recording lacks at its end; empty if it is whole.
+        times: the range of times of messages, rejected frames and noise; None for an empty
+        recording. gaps: the longest pauses, longest first. gap_count, gap_ns: the number of all
+        pauses, and their sum. missing: what the recording lacks at its end; empty if it is whole.
         error: why it cannot be read to its end.
     """
 
@@ -107,7 +106,7 @@ class Overview:
     error: CaptureError | None = None
 
     def add(self, batch: CapturedColumns, gaps: dict[int, Gaps], gap_ns: int) -> None:
-        """Count a batch of the recording; ``gaps`` are those of each interface."""
+        """Count a batch of the recording; ``gaps`` has the gaps of each interface."""
         arrived: dict[int, list[int]] = {}
         for stream in batch.streams:
             times = arrived.setdefault(stream.interface, [])

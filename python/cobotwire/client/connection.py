@@ -94,7 +94,7 @@ class Connection:
     ) -> PendingRequest:
         """Send a request and wait until it is done.
 
-        ``deadline`` limits this call further than those of the client.
+        ``deadline`` limits this call in addition to the deadline of the client.
 
         Raises:
             LinkError: the transport is gone.
@@ -111,7 +111,7 @@ class Connection:
         return pending
 
     def poller(self, closed: Callable[[], bool]) -> Poller:
-        """Return what sends the requests of a stream until ``closed`` returns True."""
+        """Return a poller, which sends the requests of a stream until ``closed`` returns True."""
         return Poller(self.now, self.sleep, self.request, closed)
 
     def listen(self, seconds: float, done: Callable[[], bool] | None = None) -> None:

@@ -22,7 +22,7 @@ class Leading:
     Attributes:
         leader: which thread leads; None: no thread does.
         turns: how often leaders have read; if it no longer increases, the leader is gone.
-        followers: what wakes the threads that wait for the leader.
+        followers: the locks that wake the threads that wait for the leader.
     """
 
     def __init__(self, state: threading.Lock) -> None:

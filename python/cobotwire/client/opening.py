@@ -43,7 +43,7 @@ class Settings(NamedTuple):
     limits: Limits = Limits()
 
     def encoder(self, address: Address | None) -> RequestEncoder:
-        """Return what encodes the requests to an address, within the limits."""
+        """Return the encoder of requests to an address, within the limits."""
         if self.limits.speed is None and self.limits.workspace is None:
             return RequestEncoder(self.codec, address)
         # Few clients have such limits, and kinematics take long to import.

@@ -23,7 +23,7 @@ class Writer:
     """
 
     def __init__(self, transport: Transport, alignment: Alignment, deadline: float = inf) -> None:
-        """Store what writes, and the number of seconds that a call may take."""
+        """Store the transport, its alignment, and the number of seconds that a call may take."""
         self._transport = transport
         # Checking the transport's type takes longer than a write, so it is done once.
         self._pollable = transport if isinstance(transport, PollableTransport) else None

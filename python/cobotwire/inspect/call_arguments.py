@@ -79,7 +79,7 @@ def _variant(command: Command, given: Mapping[str, Any]) -> Variant:
 def parse_method(
     method: Callable[..., Any], sizes: Mapping[str, int], words: Sequence[str]
 ) -> dict[str, Any]:
-    """Return the arguments of a method of a client; ``sizes`` has those of its lists by name.
+    """Return the arguments of a method of a client; ``sizes`` has the sizes of its lists by name.
 
     Raises:
         UsageError: as :func:`parse`.

@@ -62,7 +62,7 @@ class FollowedRecording:
     Attributes:
         source: what is followed, ``follow:FILE``.
         url, baudrate: of the arm's port, as the recording states them.
-        edition: that of the recording, if it is installed.
+        edition: the edition of the recording, if it is installed.
         table: the table of the edition.
         problem: why nothing comes any more; empty while the recording may grow.
     """

@@ -155,8 +155,8 @@ class Monitor:
 class FollowingMonitor:
     """Shows the joints and coordinates that another program queries, and sends nothing.
 
-    A value is that of the newest reply; None if none came for ``FRESH_SECONDS``. The rate is that
-    of the replies with joints. A reply belongs to the newest request of its id, so none is late.
+    A value is from the newest reply; None if none came for ``FRESH_SECONDS``. The rate counts
+    replies with joints. A reply belongs to the newest request of its id, so none is late.
     """
 
     def __init__(self, followed: FollowedRecording, rate: float) -> None:

@@ -25,7 +25,7 @@ ON_AXIS = 1e-9
 class Axis(NamedTuple):
     """The z axis of a frame that joints turn, and the frame of the next axis relative to it.
 
-    ``turned_by`` is that of a ``Link``; ``offset`` is added, in degrees.
+    ``turned_by`` is as in a ``Link``; ``offset`` is added, in degrees.
     """
 
     turned_by: Shares

@@ -33,7 +33,7 @@ def completed(
     result: Mapping[str, Any],
     usual: int | None = None,
 ) -> dict[str, Any]:
-    """Return all fields of a reply: the result, echoes of the request, and what is usual.
+    """Return all fields of a reply: the result, echoes of the request, and usual values.
 
     Args:
         command: the command.

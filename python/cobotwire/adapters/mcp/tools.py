@@ -33,7 +33,7 @@ class ToolSpec(NamedTuple):
     """A tool.
 
     Attributes:
-        name: that of the command, or of the client's method that waits for its motion.
+        name: the name of the command, or of the client's method that waits for its motion.
         description: what it does, for a model.
         schema: the JSON schema of its arguments.
         command: what it sends.

@@ -37,7 +37,7 @@ class Diagnostics:
         self._parts: dict[str, Message] = {}
 
     def note(self, part: str, level: int, text: str, values: Mapping[Any, object] = {}) -> None:
-        """Publish the new status of a part, with those of the others."""
+        """Publish the new status of a part, with the status of the other parts."""
         pairs = [{"key": key, "value": str(value)} for key, value in values.items()]
         named = {"level": level, "name": f"cobotwire: {part}", "message": text}
         self._parts[part] = {**named, "hardware_id": self._url, "values": pairs}

@@ -56,7 +56,7 @@ class Piece(NamedTuple):
 
 
 def divide(inputs: Inputs, size: int, read_as: str = "") -> tuple[Piece, ...]:
-    """Return the pieces of all inputs, in their order; ``read_as`` is that of the plan.
+    """Return the pieces of all inputs, in their order; ``read_as`` is as in the plan.
 
     Raw bytes are divided. Recordings, compressed files and files of other programs are read whole,
     one task for each.

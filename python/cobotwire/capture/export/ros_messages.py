@@ -106,7 +106,7 @@ def header(time_ns: int, frame: str = "") -> Message:
 
 
 def unit_in_ros(number: Number) -> float:
-    """Return the unit of a joint in that of ROS: radians, or metres."""
+    """Return how many radians or metres, the units of ROS, one unit of a joint is."""
     return _RADIANS_OR_METRES.get(number.unit, 1.0)
 
 

@@ -38,7 +38,7 @@ BY_PLACE = ("reached", "arrives", "stops", "moving", "agrees")
 WORDS = 8
 # A reason lists at most this many relations that do not hold.
 MOST_SHOWN = 3
-# If at least this many commands without a reply share an argument, its value is what is wrong.
+# If at least this many commands without a reply share an argument, its value must be wrong.
 SEVERAL = 2
 
 

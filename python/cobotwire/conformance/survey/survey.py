@@ -203,7 +203,7 @@ class Survey:
                 self._on_private(False)
             silent = (result.reason for result in found if result.cause is Cause.RUN_ENDED)
             self._ended = next(silent, "").rstrip(".")
-            # The bytes of what names a device are no evidence for others.
+            # Bytes that identify a device are not published as evidence.
             self._results += [replace(r, evidence=()) if private else r for r in found]
 
     def _read_now(self, progress: Progress) -> None:

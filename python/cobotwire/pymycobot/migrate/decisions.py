@@ -126,7 +126,7 @@ def why_left(kind: LibraryClass, method: str) -> str:
 
 
 def why_other(call: Call) -> str:
-    """Return how the result of our method differs from that of the library's."""
+    """Return how the result of our method differs from the library's."""
     if call.gives == "nothing":
         waits = call.by_hand or call.result == "done"
         return NO_RESULT.format(call.calls) + ("" if waits else NOT_ACKNOWLEDGED)

@@ -139,7 +139,7 @@ def _jogs(probe: Probe, motion: Moves) -> None:
         one, other = (_jog(parts, part, at, way) for way in ways)
         went = went or bool(one or other)
         if one and other and at is not None and not motion.about:
-            # Of a joint, the edition does not state the direction.
+            # The edition does not state the direction of a joint.
             reason = (
                 f"{parts.call(part)}): expected the directions {ways[0]} and {ways[1]} to be "
                 f"opposite; it moved by {one[at]:.2f} and by {other[at]:.2f} degrees"

@@ -157,7 +157,7 @@ def _others_stay(probe: Probe) -> None:
     device = probe.device
     spots: dict[str, Spot] = {}
     for command in device.table.commands:
-        # Of two settings that the same query reads, one is enough.
+        # One of two settings that the same query reads is enough.
         settings = settings_of(device.table, command) if command.safety == "setting" else []
         for setting in settings[:1]:
             spot = read_spot(device, setting, setting.queries[0])
