@@ -151,7 +151,7 @@ def _timed(call: Call, floor: Call) -> Turn:
 
 @contextmanager
 def _exchange(url: str) -> Iterator[Call]:
-    """Open a port; yield what makes the system calls of one exchange."""
+    """Open a port; yield a function that makes the system calls of one exchange."""
     descriptor = os.open(url, os.O_RDWR | os.O_NOCTTY)
 
     def call() -> None:

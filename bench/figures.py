@@ -69,7 +69,7 @@ RULES = ("┏", "┡", "└")
 def ours_and_theirs(page: str, *outcomes: str) -> tuple[int, int]:
     """Return the sums of outcomes on a page: of our client with its defaults, and of pymycobot."""
     text = (DOCS / page).read_text(encoding="utf-8")
-    # The first row of each outcome is that of the summary.
+    # The first row of each outcome belongs to the summary.
     found = [re.search(rf"^\| {re.escape(each)} \|(.*)\|$", text, re.M) for each in outcomes]
     rows = [row[1].split("|") for row in found if row]
     if len(rows) != len(outcomes):

@@ -73,7 +73,7 @@ class PtyEnd:
         if self.descriptor < 0:
             return 0
         filled = 0
-        # The space that the first read frees differs in size from that of later reads.
+        # The first read frees another amount of space than later reads.
         for _ in range(2):
             filled += self._fill_up(LARGE)
             read = 0

@@ -1,4 +1,4 @@
-"""Ctrl-C at any line of a call delays neither calls of other threads nor later calls."""
+"""Ctrl-C at any line of a call does not delay calls of other threads, or later calls."""
 
 from __future__ import annotations
 

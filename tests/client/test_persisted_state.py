@@ -145,7 +145,7 @@ def test_note_of_another_boot_expects_no_reply(
     this_boot = folder.parent / "boot_id"
     this_boot.write_text("this\n")
     monkeypatch.setattr(port_notes, "BOOT_ID", str(this_boot))
-    # The monotonic clock of this boot is ahead of that of the other boot.
+    # The monotonic clock of this boot is ahead of the other boot's clock.
     _damage(memory, folder, boot=boot)
     assert memory.recall() == PersistedState((), (Part(MOTION, 8),)), "the arm may hold the part"
 

@@ -108,7 +108,7 @@ def _plain_size(packet: bytes) -> int | None:
         return 0
     if (len(packet) > 2 and packet[2] == 0xFF) or (len(packet) > 3 and packet[3] < 2):
         return 0
-    # The spec limits the data of a status packet to 252 bytes; LEN 255 is that of instructions.
+    # The spec limits the data of a status packet to 252 bytes; only instructions can have LEN 255.
     if packet[3:4] == b"\xff" and len(packet) > 4 and packet[4] not in (3, 4, 0x82, 0x83):
         return 0
     if len(packet) < 4 or len(packet) < 4 + packet[3]:

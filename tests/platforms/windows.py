@@ -66,7 +66,7 @@ def pretend(extras: Iterable[str] = ()) -> None:
     for name in (*THIRD_PARTY, *extras):
         importlib.import_module(name)
     sysconfig.get_config_vars()
-    # pyserial is that of this system, which waits for the port with select().
+    # This system's pyserial waits for the port with select().
     posix: Any = importlib.import_module("serial.serialposix")
     posix.select = types.SimpleNamespace(select=_select)
     # Any: what is replaced has more precise types than its replacement.

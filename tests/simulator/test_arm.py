@@ -229,7 +229,7 @@ def test_gripper_does_not_move_without_power(bench: Bench) -> None:
 
 
 def test_in_position_has_a_tolerance_for_millimetres_and_one_for_degrees(bench: Bench) -> None:
-    # Of degrees 0.1, and half a tick for each of six joints.
+    # The tolerance of 0.1 degrees, and half a tick for each of six joints.
     there = list(bench.query("get_coords"))
     for index, off, reached in [(0, 4.8, 1), (2, 5.2, 0), (3, 0.3, 1), (5, 0.5, 0), (5, 4.0, 0)]:
         target = [*there]

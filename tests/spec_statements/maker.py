@@ -152,7 +152,7 @@ def _limited(edition: Edition) -> Iterator[tuple[str, str, bool, Quantity]]:
             cases = [(member.name, part) for member, t in field.cases for _, part in t.parts]
             for label, part in cases or field.type.parts:
                 what = f"j{label}" if label.isdigit() else label.lower()
-                # Of a single number, nothing says which joint or axis it is for.
+                # A single number may be for any joint or axis.
                 if isinstance(part, Quantity) and part.unit in ("degree", "millimetre"):
                     yield f"{command.name} {label}", AXES.get(what, what), False, part
 

@@ -104,7 +104,7 @@ def case_units(edition: Edition) -> Iterator[str]:
 
 
 def cases(edition: Edition) -> Iterator[str]:
-    """Report cases of a joint or rotation with a type that the others beside it do not have."""
+    """Report cases of a joint or rotation with another type than the neighbouring cases."""
     for command in edition.commands:
         for field in command.fields:
             rows: dict[str, set[str]] = {}

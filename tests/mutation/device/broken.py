@@ -100,8 +100,8 @@ def mutant_of(kind: str, text: str, command: Command, change: Change, field: str
 class BrokenArm(ArmConnection):
     """A connection to a simulated arm with a fault; a peer.
 
-    The times and the order of its replies, acknowledgements and events are those of the
-    correct arm. A fault changes single requests and replies.
+    The times and the order of its replies, acknowledgements and events are as on the correct arm. A
+    fault changes single requests and replies.
     """
 
     def __init__(self, table: Table, fault: Fault, clock: Clock) -> None:

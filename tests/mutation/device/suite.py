@@ -42,7 +42,8 @@ class DeviceSuite(Suite):
         """Return the first failure; empty if every test case passes.
 
         The test cases of the broken command run first, on a separate device, because they kill
-        most mutants; a whole run follows. A command may be that of one address.
+        most mutants; a whole run follows. Each address is run, because some commands exist at one
+        address only.
         """
         addresses = tested_addresses(self.table)
         runs = [(mutant.command, address) for address in addresses]

@@ -111,7 +111,7 @@ def events_of(codec: Codec, direction: Listening, chunks: Iterable[tuple[bytes, 
 
 
 def summary(truth: Truth, data: bytes) -> list[tuple[str, bytes]]:
-    """Return the codec's events as :func:`joined` represents those of the dissector."""
+    """Return the codec's events in the form of :func:`joined`."""
     events, pending = truth
     found: list[tuple[str, bytes]] = [
         ("frame" if isinstance(event, Frame) else event.reason, event.data)

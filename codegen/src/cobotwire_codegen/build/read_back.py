@@ -18,12 +18,12 @@ from cobotwire_codegen.wire import raw_values
 
 # The state of a part that moves.
 MOVED = {"joints": "angles", "joint": "angles", "end": "coords", "gripper": "opening"}
-# What a control of the motion sets.
+# The state that a control of the motion sets.
 _CONTROLLED = {"pause": True, "resume": False}
 
 
 class _Written(NamedTuple):
-    """The value that a command stores in a state: that of an argument, or a fixed one."""
+    """The value that a command stores in a state: an argument, or a fixed value."""
 
     state: str
     argument: str = ""
@@ -40,7 +40,7 @@ def with_read_back(families: Sequence[Family], encoder_zero: int | None) -> tupl
     queries = [c for family in families for c in family.commands if c.safety == "query"]
     found = []
     for family in families:
-        # Of queries that report the same, one of the command's own family comes first.
+        # If several queries report the same, those of the command's own family come first.
         near = sorted(queries, key=lambda query: query not in family.commands)
         commands = (replace(c, read_by=_read_back(c, near, encoder_zero)) for c in family.commands)
         found.append(replace(family, commands=tuple(commands)))

@@ -13,7 +13,7 @@ from cobotwire_codegen.diff.types import Known, shape
 from cobotwire_codegen.model import Command, Field, Variant
 
 Direction = Literal["request", "reply"]
-# What a field is to callers, by the direction of its message.
+# The word for a field, by the direction of its message.
 PART: dict[Direction, str] = {"request": "argument", "reply": "result"}
 
 

@@ -162,7 +162,7 @@ class DeltaEdition(_Edition):
     changes = optional(InFiles(_CHANGES), "The changes, in order.")
 
 
-# The keys that describe the robot. Those of `JOINT_KEYS` fit one number of joints only.
+# The keys that describe the robot. The values of `JOINT_KEYS` fit only one number of joints.
 JOINT_KEYS = ("geometry", "motion", "encoders", "error_codes", "joint_limits", "start_angles")
 ROBOT_KEYS = (*JOINT_KEYS, "gripper", "servos")
 

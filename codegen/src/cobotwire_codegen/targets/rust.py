@@ -39,7 +39,7 @@ _WORDS = """
 """
 _KEYWORDS = frozenset(_WORDS.split())
 _NOT_EVEN_RAW = frozenset({"Self", "crate", "self", "super"})
-# What generated modules name without a path, and what every typed client has.
+# The names that generated modules use without a path, and the methods of every typed client.
 _TYPES = frozenset({"Async", "Option", "Self", "String", "Value", "Vec"})
 _METHODS = frozenset({"acknowledged", "clone", "over", "with", "opened"})
 # What only people read; the editions in the docs site have it.
