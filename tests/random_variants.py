@@ -83,7 +83,7 @@ def _selects(field: Field, variant: tuple[Field, ...]) -> bool:
 def _stay_apart(
     full: tuple[tuple[Field, ...], ...], needed: list[set[str]], index: int, field: Field
 ) -> bool:
-    """Return whether each call still fits only one variant if a field of one has a default."""
+    """Return whether each call fits only one variant, also if ``field`` of one has a default."""
     names = [{f.name for f in variant if f.const is None and not f.counts} for variant in full]
     rest = needed[index] - {field.name}
     return all(

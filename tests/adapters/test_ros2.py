@@ -257,7 +257,7 @@ def test_any_bytes_are_a_message_or_damaged() -> None:
 
     @given(st.binary(max_size=100), st.integers(4, len(right)))
     def read(data: bytes, at: int) -> None:
-        # Cyclone DDS drops what no message can be; the rest is in our hands.
+        # Cyclone DDS drops bytes that cannot be a message; our code gets all others.
         with suppress(DDSException):
             writer.write(sample(ros.JOINT_TRAJECTORY, right[:at] + data + right[at + len(data) :]))
         for message, _ in reader.take():

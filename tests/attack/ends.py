@@ -66,7 +66,7 @@ class PtyEnd:
             self.descriptor = self._slave = -1
 
     def fill(self, room: int, receive: Callable[[bytes], None]) -> int:
-        """Fill the unread line but for some room; return with how many bytes.
+        """Fill the unread line except for ``room`` bytes; return how many bytes that took.
 
         ``receive`` is called with what is read meanwhile.
         """

@@ -129,7 +129,7 @@ class Evidence:
         return self._displaced(found, made)
 
     def _displaced(self, found: Found, made: Made) -> str:
-        """Return the known limit that let the call of this reply take another one."""
+        """Return the known limit because of which the call took another reply than this."""
         for call in self._calls_of(made):
             # Equal values do not show it, but a call cannot take what was delivered after its end.
             took_another = call.value != made.value or call.ended < found.at
@@ -160,7 +160,7 @@ class Evidence:
         return ""
 
     def _last_handed(self, request: bytes, before: float) -> float:
-        """Return when a request was last handed to the system before a time; the time: never."""
+        """Return when a request was last handed to the system before that time; else that time."""
         handed = self._record.handed
         for place in range(bisect_right(handed, (before, b"\xff")) - 1, -1, -1):
             if handed[place][1].endswith(request):

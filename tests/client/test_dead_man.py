@@ -1,4 +1,4 @@
-"""A dead man's switch stops the arm once for each silence, and never while it is fed."""
+"""A dead man's switch stops the arm once for each silence, and never while signs of life come."""
 
 from __future__ import annotations
 

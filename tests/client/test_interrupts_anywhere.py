@@ -98,7 +98,7 @@ class OtherThreads:
             try:
                 value = arm.get_joint_max_angle(joint)
             except ReplyTimeout:
-                # Honest, and in time: the interrupt lost the bytes that were just read.
+                # A correct error, in time: the interrupt lost the bytes that were just read.
                 pass
             except Exception as error:
                 self.wrong.append(error)

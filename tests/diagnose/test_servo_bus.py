@@ -98,7 +98,7 @@ def test_starts_are_the_header_and_each_id_of_the_table() -> None:
     ),
     st.integers(0, 300),
 )
-def test_size_is_that_of_a_plain_statement_of_the_frame(data: bytes, cut: int) -> None:
+def test_size_equals_the_size_that_plain_rules_give(data: bytes, cut: int) -> None:
     for part in (data, data[:cut], data * 2):
         assert packet_size(part, 0) == _plain_size(part)
 

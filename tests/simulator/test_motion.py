@@ -58,7 +58,7 @@ def test_lagging_axes_are_where_others_were_before(
 ) -> None:
     lag, now, times = 0.125, 1.0, []
     prompt, late = Axes((0.0, 0.0, 0.0), MOST), Axes((0.0, 0.0, 0.0), MOST, lag)
-    # Where the prompt axes are, at the times at which the others are there.
+    # Where the prompt axes are, each with the time at which the late axes must be there.
     expected: list[tuple[float, tuple[float, ...], tuple[float, ...]]] = []
     for wait, command, target, rate in orders:
         for _ in range(3):

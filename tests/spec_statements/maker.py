@@ -25,7 +25,7 @@ WAITS_MS = {
     "myarm_": {"get_robot_error_status": 90000},
     "mycobot320": {"get_robot_status": 75000},
 }
-# Arguments that the edition must be given, or gives, unlike the library; each has its ruling there.
+# Arguments whose default differs from the library's; tests/peers has the reasons.
 RULED_DEFAULTS = (
     r"(mercury|pro)\S+ (pause|resume|stop) deceleration|(mercury|pro)\S+ write_move_c_r arc"
     r"|(mercury|pro)\S+ [sg]et_pro_gripper address|mycobot280_rdkx5 get_gripper_value gripper"
@@ -104,7 +104,7 @@ TABLES = {
     "mycobot280_rdkx5": "MyCobot280RDK-X5",
 }
 LIMITED = r"(j\d+|s\d|arm|flange|([xy]_)?reach|height)(_step)?(_angle|_radian|_limit|_encoder)?"
-# What the arguments of commands with a role go to.
+# The roles of commands whose arguments are targets.
 TARGETS = ("joint target", "joint targets", "coordinate target", "coordinate targets")
 AXES = {"x": "x_reach", "y": "y_reach", "z": "height"}
 AXES |= dict.fromkeys(("rx", "ry", "rz", "theta"), "turn")

@@ -26,7 +26,7 @@ OPEN_SECONDS, NEW_SECONDS = 2.0, 5.0
 
 @contextmanager
 def holding(studio: Studio, count: int, way: str) -> Iterator[None]:
-    """Hold as many connections; open another one for each that the server closes."""
+    """Hold ``count`` connections; open another one for each that the server closes."""
     sent = WAYS[way].replace(b"PORT", str(studio.port).encode())
     held: list[socket.socket] = []
     ended = threading.Event()

@@ -89,7 +89,7 @@ class Steps:
                 self.listeners.received(events, now)
 
     def leave(self, pending: Pending) -> None:
-        """Have Ctrl-C and a vanished transport leave everything ready for the next call."""
+        """Leave everything ready for the next call, also if Ctrl-C or a lost port ends this."""
         if not pending.done:
             with self.state:
                 self.exchange.give_up(pending)

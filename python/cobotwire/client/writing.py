@@ -16,7 +16,7 @@ TRY_SECONDS = 0.001
 
 
 class Writer:
-    """Writes requests, and before them what ends an earlier request that was cut.
+    """Writes requests; if an earlier one was cut, first the bytes that end it.
 
     Attributes:
         lock: held by the caller of each method that writes, so that frames do not mix.

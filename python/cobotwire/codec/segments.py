@@ -41,7 +41,7 @@ class Stream(Protocol):
 
 
 class Segment(NamedTuple):
-    """The bytes from ``start`` to before ``end``, which the scan of the stream visits both."""
+    """The bytes from ``start`` to before ``end``; the scan of the stream reaches both positions."""
 
     start: int
     end: int
@@ -84,7 +84,7 @@ class Divider:
         return Segment(start, end)
 
     def meeting_point(self, cut: int) -> int | None:
-        """Return the first position from ``cut`` on at which all scans from before it stand.
+        """Return the first position from ``cut`` on that all scans from before it reach.
 
         None: they do not meet within the patience.
         """

@@ -171,8 +171,8 @@ class ReplyTimeout(CobotwireError, TimeoutError):
         attempts: how often the request was sent; 0 if it was not sent, and never will be.
         request: the call with its arguments, for example ``get_encoder(joint=1)``.
         waited_for: what the call waited for when the ``deadline`` of the client passed: ``turn``,
-            ``hold``, ``line`` or ``reply``; empty if the time was over in which the arm has to
-            reply, or in which a line is read before a request.
+            ``hold``, ``line`` or ``reply``; empty if not the deadline passed but the timeout of the
+            reply, or of the reading before a request.
         refusal: why the arm, which is simulated, cannot reply; empty if it did not say so. It will
             not reply if it is sent again.
     """
@@ -249,7 +249,7 @@ class ArmState(NamedTuple):
     error_meaning: str = ""
 
     def sentences(self) -> list[str]:
-        """Return what explains that an arm is not where it should be."""
+        """Return reported facts that explain why an arm is not at its target."""
         found = []
         if self.position is not None:
             found.append(f"it is at {list(self.position)}")

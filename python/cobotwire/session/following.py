@@ -216,7 +216,7 @@ class Follow:
         return path
 
     def _make_fresh(self) -> Steps:
-        """Let new targets replace old ones; keep what restores the mode."""
+        """Let new targets replace old ones; keep the request that restores the mode."""
         setting, argument, query = self._fresh
         fresh, usual = (setting.request_type(**{argument: mode}) for mode in (1, 0))
         if query is not None and (yield from self._ask(query.request_type())):

@@ -265,7 +265,8 @@ def _computes(asked: Asked, effect: Computes) -> dict[str, Any]:
     arm, given = asked.arm, tuple(asked.fields[effect.source])
     name = asked.command.reply[0].fields[-1].name
     if effect.what == "coords":
-        # Joints rest on ticks, so the reply for the angles of get_angles is that of get_coords.
+        # Joints rest on ticks, so for angles from get_angles the reply is the same as from
+        # get_coords.
         coords = arm.reported_coords(arm.on_ticks(given))
         if coords is None:
             raise Unanswerable

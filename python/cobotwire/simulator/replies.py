@@ -39,7 +39,7 @@ def completed(
         command: the command.
         request: the fields of the request.
         result: the fields of the reply that the behaviour states.
-        usual: the value of fields without another one; None: 1 for acknowledgements and for flags
+        usual: the value of all other fields; None: 1 for acknowledgements and for flags
             of commands that are no queries, else 0.
     """
     if command.text is not None:

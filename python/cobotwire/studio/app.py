@@ -1,4 +1,4 @@
-"""The routes of the server. What a page sends is checked here, and nowhere trusted."""
+"""The routes of the server. What a page sends is checked here before it is used."""
 
 from __future__ import annotations
 

@@ -181,7 +181,7 @@ def serve(options: Options) -> None:
 
 
 async def _lines() -> AsyncIterator[str]:
-    """Yield the lines of stdin; the thread that waits for one delays no end of the program."""
+    """Yield the lines of stdin; a thread waits for them, but does not keep the program alive."""
     loop, lines = asyncio.get_running_loop(), asyncio.Queue[str | None]()
 
     def read() -> None:

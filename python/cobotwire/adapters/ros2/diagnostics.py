@@ -64,7 +64,7 @@ class Diagnostics:
         return result
 
     async def problems(self) -> str:
-        """Return why the arm does not obey a motion, as far as it replies; empty: it does."""
+        """Return why the arm would not obey a motion; empty if its replies name no reason."""
         table = self._arm.table
         asked = [(role, query) for role in ROLES if (query := table.find_role(role)) is not None]
         states = {role: await self.ask(query) for role, query in asked}

@@ -85,5 +85,5 @@ def _is_raw(input: Input, read_as: str) -> bool:
         with closing(InputStream(input, lambda size: None, read_as or None)) as stream:
             return stream.found.reader is None and not stream.found.recording
     except UnreadableInput:
-        # The task that reads it reports that.
+        # The task that reads this input reports the error.
         return False

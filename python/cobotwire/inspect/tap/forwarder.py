@@ -37,8 +37,8 @@ def check_pollable(arm: OpenedTransport) -> int:
 class Forwarder:
     """Forwards until :meth:`stop` or until the arm's port is gone.
 
-    Without a guard every byte is forwarded as soon as it is read. What the arm sends while no
-    program has the port open is copied and lost, as on a serial port that nobody has open.
+    Without a guard every byte is forwarded as soon as it is read. While no program has the port
+    open, bytes from the arm are copied but not delivered, as on a closed serial port.
     """
 
     def __init__(

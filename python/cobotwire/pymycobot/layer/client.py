@@ -39,7 +39,7 @@ class CompatibleClient:
     # How long an acknowledgement is waited for, and what a call returns that does not wait for it.
     ACK_SECONDS: ClassVar[float] = ACK_SECONDS
     QUIET: ClassVar[int | None] = None
-    # What a one-way request returns, and when. Older classes serve arms of every age, and older
+    # What a one-way request returns, and when. Older classes serve firmware of any age, and old
     # firmware acknowledges nothing: then the request returns 1, or a list with 1, once it is sent.
     ORDERS: ClassVar[str] = "acknowledged"
 

@@ -22,7 +22,7 @@ from cobotwire.pymycobot.layer.results import plain, tenths
 
 # If the end of a motion is not reported for this long, the arm is asked whether it moves.
 ASK_SECONDS = 1.0
-# The end was lost if the arm then stands still this often.
+# The report was lost if this many queries in a row find the arm at rest.
 STILL_TIMES = 3
 # How often it is asked: for five minutes, as the library waits.
 MOST_TIMES = 300
@@ -47,7 +47,7 @@ class ClosedLoop(CompatibleClient):
 
     QUIET: ClassVar[int | None] = DONE
     ACK_SECONDS: ClassVar[float] = 3.0
-    # Whether motions are waited for, and whether one was sent that was not waited for.
+    # Whether calls wait for the ends of motions; whether the end of an earlier one may still come.
     _waits = True
     _others = False
 
@@ -59,7 +59,7 @@ class ClosedLoop(CompatibleClient):
         command = self.arm.table.in_role("motion ended")
         with self.arm.events(command.reply_type, timeout=ASK_SECONDS) as ends:
             try:
-                # The acceptance may be lost; whether the end is reported decides.
+                # The acceptance may be lost; only the report of the end counts.
                 with suppress(ReplyTimeout):
                     call(*arguments, ack_within=self.ACK_SECONDS)
                 end = self._end_of(call.__name__, ends)

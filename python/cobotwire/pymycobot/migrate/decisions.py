@@ -105,7 +105,7 @@ BY_HAND = {
     "power_on": "it waits for the motors; call power_on(), and then time.sleep(1)",
     "get_coords": "for coordinates now call get_coords(), for those of angles angles_to_coords()",
     "set_servos_calibration": "call set_servo_calibration for each joint",
-    "set_limit_switch": "it asks is_power_on() before, and motions wait or not from then on",
+    "set_limit_switch": "it asks is_power_on() before, and decides whether later motions wait",
     "drag_teach_execute": "it asks is_drag_fifo_empty() before, and waits for the end",
 }
 

@@ -24,7 +24,7 @@ from cobotwire.pymycobot.migrate.values import (
 
 LIBRARY = "pymycobot"
 _NOTHING: Values = frozenset()
-# With these a rewritten program makes the library's result of ours.
+# A rewritten program calls these to convert a result of ours to the library's.
 _CONVERSIONS = {"int", "list", "map"}
 
 
@@ -74,7 +74,7 @@ class Names:
         return self._of_call(node) if isinstance(node, cst.Call) else frozenset({UNKNOWN})
 
     def arms(self, node: cst.CSTNode) -> list[str]:
-        """Return the classes of the library that an expression may be an object of."""
+        """Return the classes of the library whose objects an expression may be."""
         return sorted(each.kind for each in self.values(node) if isinstance(each, Arm))
 
     def kinds(self, node: cst.CSTNode) -> list[str]:
