@@ -39,7 +39,7 @@ class Pair(NamedTuple):
 
     @property
     def turned(self) -> Pair:
-        """The pair, as if the other number were right."""
+        """The pair with its two numbers exchanged."""
         return self._replace(right=self.came, came=self.right)
 
 
@@ -80,7 +80,7 @@ def _is_other_order(wrong: Sequence[Pair]) -> bool:
 
 
 def _is_one_behind(pairs: Sequence[Pair]) -> bool:
-    """Return whether each number but the first is the right one of the part before it."""
+    """Return whether each number that came, except the first, was right in the pair before it."""
     return all(_close(now.came, old.right, now.near) for old, now in pairwise(pairs))
 
 

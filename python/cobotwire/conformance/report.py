@@ -90,7 +90,7 @@ class Result:
 
     @property
     def explained(self) -> str:
-        """The reason, with the load of the host if that may be one."""
+        """The reason, with the load of the host if that may be a cause."""
         beside = self.load and self.verdict is not Verdict.PASS
         return f"{self.reason} (host load {self.load:.2f} a processor)" if beside else self.reason
 

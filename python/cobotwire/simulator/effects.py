@@ -195,7 +195,7 @@ def _keep(arm: ArmState, state: State, index: tuple[int, ...], value: Any) -> No
     elif state.kind != "value" and isinstance(value, tuple):
         kept.update({(*index, n): each for n, each in enumerate(value, 1)})
     else:
-        # The value of every index stands under the indices before the last one.
+        # A value for every last index is stored under the indices before it.
         others = {key: each for key, each in kept.items() if key[: len(index)] != index}
         arm.kept[state.name] = others | {index: value}
 

@@ -163,7 +163,7 @@ class Referee:
         }
 
     def _power_of(self, now: Received) -> tuple[bool, bool]:
-        """Return whether a device that receives a request had power, and whether all were loose."""
+        """Return whether a receiver of a request had power, and whether all joints were loose."""
         address = self._arm.table.frame.address(now.data) if now.is_frame else None
         powered, released = zip(*(self._power[each] for each in self._arm.receivers(address)))
         return any(powered), all(released)

@@ -56,7 +56,7 @@ class MalformedSender:
             self.expect_kept(what, data, partial(self._again, what, data))
 
     def _reply_after(self, what: str, data: bytes, query: Request[Any]) -> Reply[Any] | None:
-        """Return the reply to a query of another id right after; None if it is not all that comes.
+        """Send a query of another id at once; return its reply, None if anything else comes too.
 
         The other id shows that the reply is not to the malformed request.
         """
@@ -78,7 +78,7 @@ class MalformedSender:
         return silent and good.only_valid
 
     def _good(self, data: bytes) -> EncodedRequest:
-        """Return a request to send next; after half a request, it is too short to complete that."""
+        """Return a good request that is too short to complete half a request before it."""
         frame = self._device.table.frame
         missing = frame.read_length(data) + frame.overhead - len(data)
         query = self._device.command("powered")
