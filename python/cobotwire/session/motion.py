@@ -1,7 +1,7 @@
 """When a motion is over: what to request, and when to give up; times are numbers.
 
-A generator yields the next step and is sent how it went. So the blocking and the asyncio client
-wait in their own ways, and decide nothing.
+A generator yields the next step and receives its outcome. The blocking and the asyncio client only
+carry out the steps.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from cobotwire.session.request import EncodedRequest
 # A moving arm replies to 10 to 20 queries a second. A wait sends at most 12 queries in any second:
 # these, and two repeats of a query whose reply is lost.
 MOST_QUERIES = 10
-# Queries near the end are this far apart, divided by how many more this second allows.
+# The interval of queries near the end, times the number of queries that this second still allows.
 SPACING_SECONDS = 0.1
 # The position is read a second time after this time; each later interval is twice the one before.
 FIRST_SECONDS = 0.05
@@ -96,8 +96,8 @@ class Goal(NamedTuple):
         place: the role of the query that reports where the arm is, in the same numbers.
         query: reports whether the target is reached, or else where the arm is.
         decides: whether the arm reports by itself whether the target is reached.
-        tolerances: how far each number may be from the target where the arm does not; empty if the
-            edition does not report where it is.
+        tolerances: how far each number may be from the target if the arm does not report this;
+            empty if the edition does not report where the arm is.
         turns: for each number, whether a whole turn makes no difference.
     """
 
