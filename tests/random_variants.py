@@ -16,7 +16,7 @@ Record = dict[str, Any]
 def several_variants(draw: st.DrawFn, direction: str, kinds: list[str]) -> list[list[Record]]:
     """Draw two or three variants of a message with different arguments.
 
-    A constant marks each, or else only their lengths differ.
+    Each has another constant, or else another length.
     """
     if draw(st.integers(0, 2)) == 0:
         return [[{"name": "a", "type": "joint"}], [{"name": "b", "type": "wide"}]]

@@ -15,9 +15,8 @@ from mutation.oracle.reasons import reason
 from mutation.suite import Suite
 
 RUNS = 20
-# The noise on the line of a healthy arm, before one reply in twelve and after one reply in twelve.
-# Four pieces in seven are servo packets. The class "text" is left out: it also draws panics, and a
-# device that panics does not conform.
+# The noise on the line of a healthy arm. Four pieces in seven are servo packets. The class "text"
+# is left out, since it includes panics, and a device that panics does not conform.
 NOISE = (*4 * ("servo",), "command error", "log", "nuls")
 LIGHT_NOISE = Scenario(
     name="light noise",
