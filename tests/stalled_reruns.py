@@ -18,7 +18,7 @@ from _pytest.runner import call_and_report
 
 from machine_stalls import MachineStalls, machine_stalls
 
-# Half of the deadline that a client gives a reply: stalls within a second that add up to more.
+# Seconds of stalls within a second after which a test is run again: half of a reply's deadline.
 STALL = 0.25
 RUNS = 3
 PERIOD = 0.02

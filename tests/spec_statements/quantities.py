@@ -23,7 +23,7 @@ FIELDS = (
     (r"baud", {"baud"}),
     (r"timeout", {"millisecond"}),
 )
-# Fields that the maker's names call otherwise: the edition's base or name, command and field.
+# Fields with other units than their names tell: the edition or a base of it, command and field.
 OTHERWISE = (
     # The class has a method of its own for coordinates.
     (r"(mercury_a1|myarm300) is_in_position target", {"degree"}),
@@ -49,7 +49,7 @@ OTHERWISE = (
 )
 
 
-# The first servo is beside them, or joints follow in the order of a page.
+# Types with these prefixes are not checked: the numbers of their parts need not start at 1.
 OTHER_NUMBERS = ("further_", "right_")
 PARTS = (
     (r"[xyz]", "millimetre"),

@@ -58,7 +58,7 @@ def test_survey_names_what_is_wrong_with_an_arm(wrong: WrongArm) -> None:
     # An arm may lack a gripper: that contradicts nothing.
     assert fact.verdict == ("not seen" if wrong.name == "gripper id" else "contradicted")
     assert fact.frames
-    # Only commands of the same id or kind are contradicted too, in the same aspect.
+    # The only other contradicted facts are the same aspect of similar commands.
     others = {f.fact for f in survey.facts.with_verdict("contradicted")} - {fact.fact}
     aspect = fact.fact.rpartition("/")[2]
     assert all(other.endswith(aspect) for other in others)
@@ -74,7 +74,7 @@ def tenths(number: Number) -> Number:
 
 
 def in_tenths(*names: str) -> WrongArm:
-    """Return an arm that sends and receives angles in tenths; without names, in all commands."""
+    """Return an arm that sends and receives the angles of commands in tenths; no names: of all."""
 
     def change(table: Table) -> Table:
         chosen = (c.name in names or not names for c in table.commands)

@@ -57,7 +57,7 @@ def build_library(path: Path, root: Path, editions: Iterable[Edition]) -> Librar
 
 
 def _absent(groups: tuple[Node, ...], problems: list[Problem]) -> tuple[tuple[str, str], ...]:
-    """Return names that have no counterpart, each with why."""
+    """Return the names that have no counterpart, each with the reason."""
     return tuple(
         (name, group.get(language.Absent.why))
         for node in groups
