@@ -44,7 +44,7 @@ class Page(HTMLParser):
 
 
 def _left_out(path: Path) -> bool:
-    """Return whether a page of the site is that of an edition outside of the sample."""
+    """Return whether a page of the site is about an edition outside of the sample."""
     return path.parts[0] in ("reference", "robots") and Path(path.parts[1]).stem in LEFT_OUT
 
 

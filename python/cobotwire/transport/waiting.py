@@ -62,7 +62,7 @@ class Waiter:
         self._alarms: list[Alarm] = []
 
     def wait(self, descriptor: int, timeout: float, *, writing: bool = False) -> bool:
-        """Return whether it is ready, or gone: reading or writing it tells that.
+        """Return whether it is ready or gone; a read or write tells which.
 
         A timeout of zero or less does not wait. After :meth:`wake` every wait ends at once; its
         result means nothing then.

@@ -1,4 +1,4 @@
-"""A simulated arm conforms from any start pose; calculations that are wrong are found from any.
+"""A simulated arm conforms from any start pose; a wrong calculation is found from any.
 
 A straight elbow or wrist hides the angles from rounded coordinates. ``POSES=500`` draws more poses
 (``make conform`` does).

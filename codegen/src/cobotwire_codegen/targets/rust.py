@@ -38,7 +38,7 @@ _WORDS = """
 """
 _KEYWORDS = frozenset(_WORDS.split())
 _NOT_EVEN_RAW = frozenset({"Self", "crate", "self", "super"})
-# What generated modules name without a path, and what every typed client has.
+# The names that generated modules use without a path, and the methods of every typed client.
 _TYPES = frozenset(
     {"Async", "From", "Into", "Option", "Result", "Self", "Some", "String", "Typed", "Value", "Vec"}
 )
