@@ -97,7 +97,7 @@ ABOUT = (
     (r"[sg]et_world_reference", "world"),
     (r"set_hand_gripper_angles", "finger_positions hand_positions"),
     (r"tool_serial_restore", "tool_baud tool_timeout"),
-    (r"is_in_position\w*", "reached"),
+    (r"is_(waist_)?in_position\w*", "reached"),
     (r"set_gripper_state", "gripper_held"),
     (r"[sg]et_servo(_system)?_data", "registers head_registers"),
     (r"[sg]et_communication_mode", "robot_protocol"),
