@@ -45,7 +45,7 @@ def attack(chosen: Plan, change: Callable[[Any], Any] | None = None) -> Tally:
         if change is not None:
             setting.client = change(setting.client)
         settle, failed = partial(_settle, line, setting), ""
-        if chosen.profile.fresh and change is None and not chosen.rust:
+        if chosen.profile.fresh and change is None and not chosen.apart:
             failed = run_fresh(setting, settle)
         else:
             run_threads(setting, partial(_happen, line, setting), settle)

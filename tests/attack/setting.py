@@ -15,7 +15,7 @@ from cobotwire import LinkError, ProtocolError, ReplyTimeout, RetryPolicy
 from cobotwire import codec as codecs
 from cobotwire.protocol.table import Table
 from cobotwire.transport.descriptor import WRITE_SECONDS
-from probe_client import ProbeClient, Stopped
+from probe_client import NODE, ProbeClient, Stopped
 
 CLASSES = {
     ("mycobot280", "blocking"): "MyCobot280",
@@ -50,7 +50,7 @@ class Setting:
         self.stops: list[tuple[float, float]] = []
         edition = import_module(f"cobotwire.editions.{plan.edition}")
         self.client: Any = (
-            self._open_probe if plan.rust else getattr(edition, CLASSES[plan.edition, plan.client])
+            self._open_probe if plan.apart else getattr(edition, CLASSES[plan.edition, plan.client])
         )
         self.table = table_of(plan)
         self.baudrate = self.table.baudrate
@@ -69,12 +69,13 @@ class Setting:
         self._numbers = itertools.count(1)
 
     def _open_probe(self) -> ProbeClient:
-        """Start a Rust client in a process, whose writes and times are recorded."""
+        """Start a client in a process of its own, whose writes and times are recorded."""
         client = ProbeClient(
             self.url,
             self.plan.edition,
             written=self.record.note_write,
             ended=self.record.note_times,
+            command=NODE if self.plan.client == "node" else (),
             tasks=self.plan.client == "rust async",
             small=self.plan.profile.stalls,
             timeout=self.plan.timeout,
