@@ -3,6 +3,10 @@
 PYTHON ?= python3
 BIN := .venv/bin
 RUST_SOURCES := $(shell find rust/core rust/py rust/simd -name '*.rs' -o -name Cargo.toml) Cargo.toml
+# Made after what Rust tests and examples need, and git does not have.
+RUST_DATA := .venv/.rust-data
+# The module has no Rust tests, and its dependencies need features that theirs do not have.
+TESTED := --workspace --exclude cobotwire-native
 # The Python tests run in five lanes at once, which should end together. The first only computes. It
 # lets the others go first (nice), because they also have tests that wait for a reply until a
 # deadline. The last lane has all tests that no other lane names.
@@ -40,7 +44,7 @@ test: set-up front-end-if-reachable ## run everything: linters, types, generated
 # Compile while pip fetches the tools. Only one pip at a time may install.
 set-up: .venv/.base
 	+$(MAKE) --no-print-directory --jobs 2 .venv/.tools .venv/.compiled
-	+$(MAKE) --no-print-directory .venv/.native spec/schema.json
+	+$(MAKE) --no-print-directory .venv/.native spec/schema.json $(RUST_DATA)
 
 lint: .venv/.tools .venv/.native ## check formatting, types, stubs against the binary, generated files
 	$(BIN)/cobotwire-gen --check
@@ -52,8 +56,9 @@ lint: .venv/.tools .venv/.native ## check formatting, types, stubs against the b
 	$(BIN)/python -m mypy.stubtest cobotwire._native cobotwire.pymycobot.layer.classes --mypy-config-file pyproject.toml
 	cargo fmt --all --check
 	cargo fmt --manifest-path rust/fuzz/Cargo.toml --check
-# In release mode, because the dependencies are compiled in it already, for the native module.
-	+cargo clippy --release --workspace --lib --tests --quiet -- -D warnings
+# Each in the mode in which its dependencies are compiled anyway: for the module, for the tests.
+	+cargo clippy --release --package cobotwire-native --lib --quiet -- -D warnings
+	+cargo clippy $(TESTED) --lib --bins --tests --quiet -- -D warnings
 	+if [ -d "$$(rustc --print target-libdir --target $(WASM))" ]; then $(CHECK_WASM) && $(CHECK_WASM) --no-default-features; \
 		else echo "skipped: the check of the core for $(WASM), which is not installed" >&2; fi
 
@@ -70,9 +75,8 @@ npm-package: .venv/.tools .venv/.native ## build the npm package; use it in a cl
 	PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/python tools/npm_package.py
 	node clients/typescript/examples/round_trip.mjs
 
-rust-test: .venv/.tools ## run the Rust tests
-	$(BIN)/cobotwire-gen --rust-data
-	+cargo test --workspace --quiet
+rust-test: $(RUST_DATA) ## run the Rust tests
+	+cargo test $(TESTED) --quiet
 
 ASAN := target/asan
 ASAN_TESTS := $(addprefix tests/codec/test_,native_frames.py agreement.py reused_columns.py segments.py shared_reader.py buffer_protocol.py workers.py) tests/transport/test_native_calls.py
@@ -268,6 +272,10 @@ clean: ## remove the environment and all build products
 
 .venv/.tools: .venv/.base codegen/pyproject.toml Cargo.toml
 	$(BIN)/python -m pip install --quiet --no-compile -e codegen --group test
+	touch $@
+
+$(RUST_DATA): .venv/.tools $(shell find spec codegen/src -type f -not -name '*.pyc')
+	$(BIN)/cobotwire-gen --rust-data
 	touch $@
 
 # For editors; `make gen` keeps it up to date.

@@ -17,13 +17,17 @@ needed = pytest.mark.skipif(shutil.which("cargo") is None, reason="needs cargo: 
 
 
 @lru_cache
-def path() -> str:
-    """Return the path of the program; it is compiled once for each test run."""
+def path(program: str = "cobotwire-probe") -> str:
+    """Return the path of the probe or an example; all are compiled once for each test run."""
+    # One command, since programs with other features of the dependencies would not share them.
     command = ["cargo", "build", "--quiet", "--package", "cobotwire-probe"]
+    if (ROOT / "rust/client/src/editions/mycobot280.rs").exists():
+        command += ["--package", "cobotwire", "--features", "cobotwire/mycobot280"]
+        command += ["--bins", "--example", "first"]
     done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
     target = Path(os.environ.get("CARGO_TARGET_DIR", "target"))
-    return str(ROOT / target / "debug" / "cobotwire-probe")
+    return str(ROOT / target / "debug" / program)
 
 
 class Probe:

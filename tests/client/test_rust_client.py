@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import os
 import re
 import subprocess
 import tomllib
-from functools import lru_cache
 from pathlib import Path
 
 import pytest
@@ -20,32 +18,24 @@ from cobotwire.protocol.errors import LinkError, UsageError
 from cobotwire.session.request import RequestEncoder
 from cobotwire.simulator import SimulatedArm, TcpServer
 from cobotwire_codegen.targets.rust import camel, identifier, rustdoc
-from probe import needed
+from probe import needed, path
 from probe_client import ProbeClient
 
 ROOT = Path(__file__).parent.parent.parent
 CRATE = ROOT / "rust/client"
 
 
-@lru_cache
-def example(name: str) -> str:
-    """Return the path of a compiled example of the crate."""
+def first() -> str:
+    """Return the path of the example."""
     if not (CRATE / "src/editions/mycobot280.rs").exists():
         pytest.skip("needs the generated editions: cobotwire-gen --rust-data")
-    words = ("cargo", "build", "--quiet", "-p", "cobotwire", "--features", "mycobot280")
-    done = subprocess.run(
-        [*words, "--example", name], cwd=ROOT, capture_output=True, text=True, check=False
-    )
-    assert done.returncode == 0, done.stderr
-    return str(ROOT / os.environ.get("CARGO_TARGET_DIR", "target") / "debug/examples" / name)
+    return path("examples/first")
 
 
 @needed
 def test_first_program_moves_simulated_arm() -> None:
     with TcpServer(SimulatedArm(TABLE).connect) as server:
-        done = subprocess.run(
-            [example("first"), server.url], capture_output=True, text=True, check=False
-        )
+        done = subprocess.run([first(), server.url], capture_output=True, text=True, check=False)
     assert (done.returncode, done.stderr) == (0, "")
     assert re.fullmatch(r"\[(-?[\d.]+(, )?){6}\]\n", done.stdout)
 
@@ -54,7 +44,7 @@ def test_first_program_moves_simulated_arm() -> None:
 def test_first_program_names_port_that_cannot_be_opened() -> None:
     with TcpServer(SimulatedArm(TABLE).connect) as server:
         url = server.url
-    done = subprocess.run([example("first"), url], capture_output=True, text=True, check=False)
+    done = subprocess.run([first(), url], capture_output=True, text=True, check=False)
     assert done.returncode == 1
     assert f'LinkError {{ message: "{url}: cannot be opened: Connection refused' in done.stderr
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 import json
 from collections.abc import Callable
 from pathlib import Path
+from random import Random
 from typing import Any
 
 import pytest
@@ -16,6 +17,7 @@ from hypothesis import strategies as st
 
 import random_tables
 from cobotwire import codec as codecs
+from cobotwire._native import NativeCodec
 from cobotwire.protocol.errors import CobotwireError
 from cobotwire.protocol.loading import table_of
 from cobotwire.protocol.table import Table, Variant
@@ -27,7 +29,17 @@ from vectors import ROOT
 
 pytestmark = needed
 EDITIONS = sorted((ROOT / "python/cobotwire/editions").glob("*/edition.json"))
-MYCOBOT = next(path for path in EDITIONS if path.parent.name == "mycobot")
+MYCOBOT = ROOT / "python/cobotwire/editions/mycobot/edition.json"
+# Beside the smallest one: with addresses, floats and lists.
+DAMAGED = ["mycobot", "mybuddy", "pro450"]
+OTHERS: list[Any] = [
+    *(None, True, -1, 0, 1, 2, 8, 255, 1 << 14, -(1 << 63), (1 << 63) - 1, (1 << 64) - 1, 1e300),
+    *(0.5, "1/0", "9223372036854775807/3", "", "text", "bits", "joint", "float"),
+    *([], [[]], [0, 1], {}),
+]
+# Each of 3,000 numbers repeats 100,000 choices: 2.4 GB.
+WIDE = {"name": "wide", "kind": "quantity", "wire": "byte", "choices": [1] * 100_000}
+ROW = {"name": "row", "kind": "value", "items": [{"name": "x", "type": "wide"}] * 3000}
 RANDOM = [HealthCheck.function_scoped_fixture, HealthCheck.too_slow]
 
 
@@ -88,7 +100,7 @@ def check_texts(data: st.DataObject, probe: Probe, path: Path, table: Table, tim
 
 def native_table(table: Table) -> str:
     """Return the table that the native codec interprets, in Rust's words."""
-    codec: Any = codecs.load(table, "native")
+    codec: Any = NativeCodec(table)
     text: str = codec._core_table()
     return text
 
@@ -118,3 +130,54 @@ def test_random_edition_has_same_table_and_texts(
     table = table_of(json.loads(path.read_text("utf-8")))
     assert probe.ask([["table", str(path)]]) == [native_table(table)]
     check_texts(data, probe, path, table, 10)
+
+
+def changed(document: Any, dice: Random) -> Any:
+    """Return a document in which a random value is another one."""
+    keys = [*range(len(document))] if isinstance(document, list) else []
+    keys = [*document] if isinstance(document, dict) else keys
+    if not keys or dice.random() < 0.1:
+        return dice.choice(OTHERS)
+    copy, key = document.copy(), dice.choice(keys)
+    copy[key] = changed(copy[key], dice)
+    return copy
+
+
+@pytest.mark.parametrize("name", DAMAGED)
+def test_damaged_file_gives_table_or_sentence(probe: Probe, tmp_path: Path, name: str) -> None:
+    dice, data = Random(name), MYCOBOT.parent.with_name(name).joinpath("edition.json").read_bytes()
+    document = json.loads(data)
+    for number in range(80):
+        at, path = dice.randrange(len(data)), tmp_path / f"{number}.json"
+        cut = data[:at] + dice.choice([b"", data[at + 9 :], dice.randbytes(1) + data[at + 1 :]])
+        path.write_bytes(dice.choice([cut, json.dumps(changed(document, dice)).encode()]))
+        sent = [(size, dice.choice(document["commands"])["id"]) for size in (2, 3, 5) * 9]
+        frames = [f"fefe{size:02x}{command:02x}" + "fa" * (size - 1) for size, command in sent]
+        ways = dice.choices(random_tables.WAYS, k=len(frames))
+        steps = [["decode", str(path), way, frame] for way, frame in zip(ways, frames)]
+        assert all(text is None or " " in text for text in probe.ask(steps))
+
+
+def test_mistake_is_named_with_its_place(probe: Probe, tmp_path: Path) -> None:
+    text, deadline = MYCOBOT.read_text("utf-8"), '"deadline_ms": 500, "reply"'
+    version, wrong = '"version": 3', deadline.replace("500", '"x"')
+    why = 'command is_power_on: deadline_ms: invalid type: string "x", expected u64'
+    files = {
+        "the file has version 4 of the format, not 3": text.replace(version, '"version": 4', 1),
+        why: text.replace(deadline, wrong, 1),
+        "the file is not JSON: recursion limit exceeded at line 1 column 128": "[" * 100_000,
+    }
+    paths = [tmp_path / f"{number}.json" for number in range(len(files))]
+    for path, file in zip(paths, files.values()):
+        path.write_text(file, encoding="utf-8")
+    assert probe.ask([["read", str(path)] for path in paths]) == [*files]
+
+
+def test_short_file_cannot_fill_the_memory(probe: Probe, tmp_path: Path) -> None:
+    document, path = json.loads(MYCOBOT.read_text("utf-8")), tmp_path / "edition.json"
+    document["types"] += [WIDE, ROW]
+    document["commands"][0]["reply"] = [[{"name": "row", "type": "row"}]]
+    path.write_text(json.dumps(document))
+    assert path.stat().st_size < 1 << 20
+    [why] = probe.ask([["read", str(path)]])
+    assert why.endswith("all types and messages take too much memory")

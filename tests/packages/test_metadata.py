@@ -130,7 +130,7 @@ def test_extra_all_has_every_other_extra(name: str) -> None:
 
 @pytest.mark.parametrize("name", ADDED)
 def test_long_description_links_to_absolute_addresses_of_existing_files(name: str) -> None:
-    """That of cobotwire is the README: tests/docs/test_readme.py."""
+    """The long description of cobotwire is the README: tests/docs/test_readme.py."""
     repository = project(name)["urls"]["Repository"]
     links = LINK.findall(PROJECTS[name].with_name("README.md").read_text(encoding="utf-8"))
     assert links

@@ -13,6 +13,7 @@ from cobotwire.protocol.fields import Field, RawRows, Variant
 from cobotwire.protocol.numbers import Number
 from cobotwire.protocol.table import Command
 from cobotwire.session import EncodedRequest, Exchange, Pending, PendingRequest, RetryPolicy
+from cobotwire.session.events import SessionEvent, as_traffic
 from cobotwire.session.request import RequestEncoder
 
 # Exact as a float and in nanoseconds; the fractions of a second in the exchange are no multiples.
@@ -32,12 +33,30 @@ class Talk:
         self._pending: list[Pending] = []
         self._to = [None, *addresses_of(self._table)]
         self._commands = self._chosen()
+        # How many bytes were received, and how many of them were in events.
+        self._received = self._covered = 0
 
     def step(self, name: str, seed: int) -> None:
         """Play one step."""
         self._dice = Random(seed)
         step: Callable[[], None] = getattr(self, f"_{name}")
         step()
+
+    def finish(self) -> None:
+        """Let time pass until nobody waits; check that each byte was in one event."""
+        for _ in range(100 + 10 * len(self._pending)):
+            if not self.exchange.busy:
+                break
+            self.now += max(self.exchange.idle_seconds(self.now) or 0.0, TICK)
+            self._cover(self.exchange.advance(b"", self.now))
+            self.exchange.outgoing(self.now, drained=True)
+        assert not self.exchange.busy, "a request waits without end"
+        self._lose()
+        assert self._covered == self._received
+
+    def _cover(self, events: list[SessionEvent]) -> None:
+        found = (as_traffic(event, self.now) for event in events)
+        self._covered += sum(len(traffic.data) for traffic in found if traffic)
 
     def _chosen(self) -> list[Command]:
         """Return a few commands; those that share an id are chosen together."""
@@ -140,19 +159,20 @@ class Talk:
     def _wake(self) -> None:
         self._wait()
         dice, exchange = self._dice, self.exchange
-        dice.choice([exchange.wake, exchange.wake, exchange.end_overdue])(self.now)
+        self._cover(dice.choice([exchange.wake, exchange.wake, exchange.end_overdue])(self.now))
         exchange.note_full(dice.random() < 0.3)
         if dice.random() < 0.7:
             self._turn()
 
     def _lose(self) -> None:
-        self.exchange.fail(LINK_ERROR, self.now)
+        self._cover(self.exchange.fail(LINK_ERROR, self.now))
 
     def _reopen(self) -> None:
         state = self.exchange.persist(self.now)
         self.exchange = Exchange(self._codec)
         self.exchange.restore(state)
         self._pending.clear()
+        self._received = self._covered = 0
 
     # What the line brings.
 
@@ -170,9 +190,10 @@ class Talk:
             data = dice.randbytes(dice.randrange(4)) + data + self._bytes()
         cut = dice.choice([0, 0, dice.randrange(len(data) + 1)])
         if cut:
-            self.exchange.receive(data[:cut], self.now)
+            self._cover(self.exchange.receive(data[:cut], self.now))
             self.now += dice.choice([0.0, self._span()])
-        self.exchange.advance(data[cut:], self.now)
+        self._cover(self.exchange.advance(data[cut:], self.now))
+        self._received += len(data)
 
     def _bytes(self) -> bytes:
         dice = self._dice

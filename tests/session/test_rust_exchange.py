@@ -1,4 +1,4 @@
-"""The exchange of the Rust core decides as the one of Python does, its specification."""
+"""The exchange of the Rust core decides as the one of Python, which is its specification."""
 
 from __future__ import annotations
 
@@ -49,6 +49,7 @@ def _talk(probe: Probe, codec: Codec, path: str, seed: int, steps: list[tuple[st
         talk = Talk(codec, seed)
         for name, own in steps:
             talk.step(name, own)
+        talk.finish()
     recorder.check(probe.ask)
 
 

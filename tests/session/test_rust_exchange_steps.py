@@ -10,6 +10,7 @@ from typing import Any
 import pytest
 
 from cobotwire import codec as codecs
+from cobotwire.codec.interface import Codec
 from cobotwire.protocol.loading import table_of
 from cobotwire.session import (
     AckReceived,
@@ -34,7 +35,7 @@ PIN_1, PIN_2 = ("get_digital_input", (1,)), ("get_digital_input", (2,))
 class Both:
     """An exchange in Python; its steps are repeated in Rust."""
 
-    def __init__(self, recorder: Recorder, codec: codecs.Codec) -> None:
+    def __init__(self, recorder: Recorder, codec: Codec) -> None:
         self.codec, self.recorder = codec, recorder
         self.encode = RequestEncoder(codec).encode
         self.exchange = Exchange(codec)
@@ -47,7 +48,8 @@ class Both:
         assert self.exchange.outgoing(now, True)
 
     def reply(self, command: str, *values: Any) -> bytes:
-        return self.codec.encode(command, "reply", values)
+        frame: bytes = self.codec.encode(command, "reply", values)
+        return frame
 
     def receive(self, data: bytes, now: float) -> type[SessionEvent]:
         [event] = self.exchange.receive(data, now)

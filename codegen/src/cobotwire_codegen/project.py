@@ -197,7 +197,7 @@ def _robots(root: Path, found: Sequence[Edition]) -> Files:
     return robot_pages([(each, confirmed(each, sources[each.name])) for each in found])
 
 
-# What the crates of this project need to be tested.
+# The files that tests of this project's crates need.
 RUST_DATA = "rust/core/tests/data"
 RUST_EDITIONS = "rust/client/src/editions"
 TYPESCRIPT_EDITIONS = "clients/typescript/editions"

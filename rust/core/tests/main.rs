@@ -11,6 +11,7 @@
 mod bulk;
 mod capture;
 mod common;
+mod exchange;
 mod formats;
 mod found;
 mod framing;

@@ -12,12 +12,10 @@ pub mod common;
 pub mod records;
 #[path = "../../core/tests/replay/mod.rs"]
 pub mod replay;
-// The reader's own.
-#[path = "../../table/tests/damage/mod.rs"]
-pub mod damage;
 
 pub mod bytes;
 pub mod capture_script;
+pub mod damage;
 pub mod input;
 pub mod laws;
 pub mod oracle;

@@ -57,12 +57,12 @@ pub fn serve(mut arguments: impl Iterator<Item = String>) -> io::Result<()> {
 
 impl Probe {
     fn obey(&mut self, line: &Json) {
-        let id = line.get("id").and_then(Json::as_u64).unwrap_or_default();
-        if let Some(id) = line.get("give_up").and_then(Json::as_u64) {
+        let id = line["id"].as_u64().unwrap_or_default();
+        if let Some(id) = line["give_up"].as_u64() {
             self.tasks.remove(&id).inspect(AbortHandle::abort);
-        } else if let Some(name) = line.get("call").and_then(Json::as_str) {
+        } else if let Some(name) = line["call"].as_str() {
             self.call(id, name, line);
-        } else if line.get("open").is_some() {
+        } else if line["open"] == true {
             let opened = self.open().map(|arm| self.arm = Some(arm));
             let lost = |error: io::Error| json!({"error": "LinkError", "text": error.to_string()});
             say(id, opened.map_or_else(lost, |()| json!({})));
@@ -81,7 +81,7 @@ impl Probe {
         let (edition, options) = (self.edition.clone(), self.options());
         let socket = self.url.strip_prefix("socket://");
         let socket = socket.map(|address| self.connect(address)).transpose()?;
-        if self.is_given("tasks") {
+        if self.given["tasks"] == true {
             let file = match socket {
                 Some(stream) => File::from(OwnedFd::from(stream)),
                 None => File::options().read(true).write(true).open(&self.url)?,
@@ -102,7 +102,7 @@ impl Probe {
     }
 
     fn options(&self) -> Options {
-        let number = |name| self.given.get(name).and_then(Json::as_f64);
+        let number = |name: &str| self.given[name].as_f64();
         let seconds = |name| number(name).map(Duration::from_secs_f64);
         let nanos = |name| number(name).map(|seconds| (seconds * 1e9) as u64);
         let usual = RetryPolicy::default();
@@ -115,28 +115,23 @@ impl Probe {
             timeout: seconds("timeout"),
             deadline: seconds("deadline"),
             retry,
-            address: self.given.get("address").and_then(Json::as_str).map(str::to_owned),
+            address: self.given["address"].as_str().map(str::to_owned),
             port_name: Some(self.url.clone()),
             ..Options::default()
         }
     }
 
-    fn is_given(&self, name: &str) -> bool {
-        self.given.get(name).and_then(Json::as_bool) == Some(true)
-    }
-
     fn connect(&self, address: &str) -> io::Result<TcpStream> {
         let stream = TcpStream::connect(address)?;
         stream.set_nodelay(true)?;
-        if self.is_given("small") {
+        if self.given["small"] == true {
             rustix::net::sockopt::set_socket_send_buffer_size(&stream, 1024)?;
         }
         Ok(stream)
     }
 
     fn call(&mut self, id: u64, name: &str, line: &Json) {
-        let within = line.get("ack_within").and_then(Json::as_f64);
-        let within = within.map(Duration::from_secs_f64);
+        let within = line["ack_within"].as_f64().map(Duration::from_secs_f64);
         let (name, line) = (name.to_owned(), line.clone());
         let task = match self.arm.clone() {
             None => return,
@@ -166,10 +161,11 @@ impl Probe {
 struct Observed<P>(P);
 
 impl<P> Observed<P> {
-    fn observe<W>(&mut self, data: &[u8], write: W) -> io::Result<usize>
-    where
-        W: FnOnce(&mut P) -> io::Result<usize>,
-    {
+    fn observe(
+        &mut self,
+        data: &[u8],
+        write: impl FnOnce(&mut P) -> io::Result<usize>,
+    ) -> io::Result<usize> {
         let handed = now();
         let outcome = write(&mut self.0);
         let size = outcome.as_ref().copied().unwrap_or_default();
@@ -242,14 +238,17 @@ fn now() -> f64 {
 
 fn answer(began: f64, outcome: Result<Vec<(String, Value)>, Error>) -> Json {
     let ended = now();
-    let shown = |(name, value)| (name, shown(&value));
-    match outcome.map(|fields| fields.into_iter().map(shown).collect::<Map<_, _>>()) {
-        Ok(result) => json!({"result": result, "began": began, "ended": ended}),
-        Err(error) => {
-            let (name, text) = (error.name(), error.to_string());
-            json!({"error": name, "text": text, "began": began, "ended": ended})
+    let mut answer = match outcome {
+        Ok(fields) => {
+            let shown = fields
+                .iter()
+                .map(|(name, value)| (name.clone(), shown(value)));
+            json!({"result": shown.collect::<Map<_, _>>()})
         }
-    }
+        Err(error) => json!({"error": error.name(), "text": error.to_string()}),
+    };
+    (answer["began"], answer["ended"]) = (json!(began), json!(ended));
+    answer
 }
 
 fn say(id: u64, mut line: Json) {

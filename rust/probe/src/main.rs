@@ -10,7 +10,7 @@ mod exchange;
 mod values;
 
 use std::collections::BTreeMap;
-use std::io::{BufRead, Result, Write, stdin, stdout};
+use std::io::{self, BufRead, Write, stdin, stdout};
 use std::sync::Arc;
 
 use cobotwire::Value;
@@ -22,15 +22,18 @@ use serde_json::{Value as Json, json};
 use crate::exchange::Open;
 use crate::values::{from_hex, index, value_of};
 
+/// An edition, or why it was rejected.
+type Read = Result<Arc<Edition>, String>;
+
 /// What earlier steps have read and opened.
 #[derive(Default)]
 struct Probe {
-    editions: BTreeMap<String, Arc<Edition>>,
+    editions: BTreeMap<String, Read>,
     exchanges: BTreeMap<u64, Open>,
     left: PersistedState,
 }
 
-fn main() -> Result<()> {
+fn main() -> io::Result<()> {
     #[cfg(unix)]
     if std::env::args().nth(1).as_deref() == Some("client") {
         return client::serve(std::env::args().skip(2));
@@ -76,14 +79,12 @@ impl Probe {
         }
     }
 
-    fn edition(&mut self, path: &str) -> std::result::Result<Arc<Edition>, String> {
-        if let Some(edition) = self.editions.get(path) {
-            return Ok(Arc::clone(edition));
-        }
-        let edition = Edition::read(&std::fs::read(path).unwrap());
-        let edition = Arc::new(edition.map_err(|why| why.to_string())?);
-        self.editions.insert(path.into(), Arc::clone(&edition));
-        Ok(edition)
+    fn edition(&mut self, path: &str) -> Read {
+        let known = self.editions.entry(path.into()).or_insert_with(|| {
+            let edition = Edition::read(&std::fs::read(path).unwrap());
+            edition.map(Arc::new).map_err(|why| why.to_string())
+        });
+        known.clone()
     }
 }
 

@@ -74,12 +74,7 @@ pub(crate) fn frame_format(record: Record<'_>, json: &[u8]) -> Outcome<FrameForm
     use Place::{Address, Check as CheckBytes, Command, Data, Footer, Header, Length};
     let (header, footer) = (hex(record, "header", 1..=4)?, hex(record, "footer", 0..=2)?);
     let addresses = address_bytes(record)?;
-    let algorithm = algorithm(record, json)?;
-    let check_width = if algorithm.is_some() {
-        record.get("check_width")?
-    } else {
-        0
-    };
+    let (algorithm, check_width) = algorithm(record, json)?;
     let (length, id) = (record.at("length"), record.at("command"));
     let sizes = Sizes {
         sizes: [
@@ -187,19 +182,19 @@ const ALGORITHMS: [(&str, Algorithm, &[usize]); 6] = [
     ("fletcher-16", Algorithm::Fletcher(255), &[2]),
 ];
 
-/// Return how the check is computed; `None`: it is only a footer.
-fn algorithm(record: Record<'_>, json: &[u8]) -> Outcome<Option<Algorithm>> {
+/// Return how the check is computed, and its bytes; `None`: it is only a footer.
+fn algorithm(record: Record<'_>, json: &[u8]) -> Outcome<(Option<Algorithm>, usize)> {
     let word: &str = record.get("check")?;
     if word == "footer" {
-        return Ok(None);
+        return Ok((None, 0));
     }
     let width = record.get("check_width")?;
     if record.some("crc").is_some() {
-        return crc(json, width).map(Some);
+        return Ok((Some(crc(json, width)?), width));
     }
     let mut known = ALGORITHMS.into_iter();
     match known.find(|(name, ..)| *name == word) {
-        Some((_, algorithm, widths)) if widths.contains(&width) => Ok(Some(algorithm)),
+        Some((_, algorithm, widths)) if widths.contains(&width) => Ok((Some(algorithm), width)),
         Some((.., widths)) => BadEdition::because(format!("check_width must be one of {widths:?}")),
         None => {
             let names = ALGORITHMS.map(|(name, ..)| name).join(", ");

@@ -86,8 +86,6 @@ impl Command {
 #[allow(missing_docs)] // as above
 pub struct Field {
     pub name: String,
-    /// Its kind: `number`, `enum`, `flag`, `bytes` or `text`.
-    pub kind: &'static str,
     /// Whether a reply repeats an argument in it.
     pub echo: bool,
     /// The words of its choices, in their order; empty: they have none.

@@ -175,7 +175,7 @@ impl<'a> Messages<'a> {
             of
         };
         let kind = kind(of)?;
-        (field.many, text.kind) = (true, kind.word());
+        field.many = true;
         let numbers = match (shape, kind) {
             (Kind::Bits, _) => bits(of)?,
             (Kind::Bytes, _) => {
@@ -242,7 +242,7 @@ impl<'a> Messages<'a> {
         for number in field.cases.iter().flat_map(|case| &case.numbers) {
             fitting(number, &field.choices)?;
         }
-        (text.kind, text.constant) = (kind.word(), fixed.is_some());
+        text.constant = fixed.is_some();
         if fixed.is_none() {
             text.labels = labels(first)?;
         }

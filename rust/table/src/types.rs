@@ -52,17 +52,6 @@ impl Kind {
     pub(crate) fn repeats(self) -> bool {
         matches!(self, Self::Bits | Self::Bytes | Self::Text | Self::List)
     }
-
-    /// Return what texts call it.
-    pub(crate) fn word(self) -> &'static str {
-        match self {
-            Self::Flag => "flag",
-            Self::Enum => "enum",
-            Self::Bytes => "bytes",
-            Self::Text => "text",
-            _ => "number",
-        }
-    }
 }
 
 /// The numbers of a type in the order of the wire, and what texts need of each.

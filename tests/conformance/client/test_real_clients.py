@@ -14,7 +14,7 @@ from machine_stalls import PtyMeter
 from stalls import unstalled
 from targets.typescript.comparison import package
 
-# A client repeats a query after about 170 ms. A referee that stands still for as long receives both
+# A client repeats a query after about 170 ms. A referee that pauses for that long receives both
 # requests at once.
 ALLOWED_STALL = 0.1
 

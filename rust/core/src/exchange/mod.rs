@@ -277,10 +277,8 @@ impl Exchange {
         }
     }
 
-    /// Return the bytes of the request to be sent now, for the first time or again.
-    ///
-    /// `drained`: whether everything that has come by now was received. A request is sent on a
-    /// drained line, so that earlier bytes cannot pass for its reply.
+    /// Return the bytes of the request to be sent now, for the first time or again. `drained`:
+    /// whether everything that has come by now was received, so that it cannot pass for its reply.
     pub fn outgoing(&mut self, now: Nanos, drained: bool) -> Vec<u8> {
         if self.waiting().is_some() {
             return self.next_attempt(now).unwrap_or_default();
@@ -302,8 +300,7 @@ impl Exchange {
         self.last.as_ref().map(|last| last.ticket)
     }
 
-    /// Note that writing the request that was sent last ended only now: its reply may be late from
-    /// now on.
+    /// Note that writing the request that was sent last ended only now.
     pub fn written(&mut self, ticket: Ticket, now: Nanos) {
         let Some(last) = self.last.as_mut().filter(|last| last.ticket == ticket) else {
             return;
@@ -382,12 +379,8 @@ impl Exchange {
 
     /// Return from when on no late reply can be mistaken for that of a queued request.
     fn free_at(&self, pending: &Pending, now: Nanos) -> Nanos {
-        self.held_until(pending).unwrap_or(now)
-    }
-
-    fn held_until(&self, pending: &Pending) -> Option<Nanos> {
-        let request = &pending.request;
-        self.outstanding.held_until(&self.protocol, request)
+        let held = (self.outstanding).held_until(&self.protocol, &pending.request);
+        held.unwrap_or(now)
     }
 
     /// Make a queued request the one that waits; return its bytes.
@@ -402,21 +395,22 @@ impl Exchange {
     /// Return whether a queued request is sent on a line that brings more than can be read, which is
     /// never drained. It ends if the late reply that has held it may be among the unread bytes.
     fn sends_undrained(&mut self, index: usize, now: Nanos) -> bool {
-        let held = |pending: &Pending| self.held_until(pending).is_some();
-        let held = self.queue.get(index).is_some_and(held);
         let Some(pending) = self.queue.get_mut(index) else {
             return false;
         };
+        let held = self
+            .outstanding
+            .held_until(&self.protocol, &pending.request);
         pending.undrained_since = pending.undrained_since.min(now);
         if now.saturating_sub(pending.undrained_since) < DRAIN {
             return false;
         }
-        if held {
+        if held.is_some() {
             let mut ended = self.queue.remove(index);
             let failure = ended.expire(now.saturating_sub(ended.queued_at), None);
             self.finished.insert(ended.ticket, Err(failure));
         }
-        !held
+        held.is_none()
     }
 
     /// Return when the request is to be sent again; not while its copy may be its reply.

@@ -1,5 +1,4 @@
-//! Damages the file of an edition, and uses what is read from it. The fuzz target `editions` does so
-//! too.
+//! Damages the file of an edition, and uses what is read from it.
 
 use cobotwire_core::{Direction, Event, Framer, Listening, decode};
 use cobotwire_table::Edition;
