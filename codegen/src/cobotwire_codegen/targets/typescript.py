@@ -46,9 +46,12 @@ _WORDS = """
     void while with yield
 """
 _KEYWORDS = frozenset(_WORDS.split())
-# What only people read; a page would load it.
-_TEXTS = "agrees_with changes disputed doc document firmware generated lines notes place samples"
-_FOR_PEOPLE = frozenset(_TEXTS.split())
+# What a client does not read, because it is for people or simulators; a page would load it.
+_WORDS_OF_OTHERS = """
+    agrees_with changes disputed doc document encoders error_codes families firmware gripper
+    joint_limits lines motion notes place samples servos title
+"""
+_FOR_OTHERS = frozenset(_WORDS_OF_OTHERS.split())
 
 
 def render_typescript(edition: Edition, templates: Path | None = None) -> Files:
@@ -73,7 +76,7 @@ def _rendered(edition: Edition, templates: Path | None, package: str) -> Files:
         "edition": shown,
         "package": package,
         "name": type_name(shown.class_name),
-        "table": literal(_without_texts(json.loads(edition_json(edition)))),
+        "table": literal(_for_clients(json.loads(edition_json(edition)))),
         "commands": [_Shown(command, taken) for command in shown.commands],
         "item": _reported,
     }
@@ -85,14 +88,14 @@ def _rendered(edition: Edition, templates: Path | None, package: str) -> Files:
     }
 
 
-def _without_texts(value: Any) -> Any:
-    """Return a part of a table without texts for people. The keys of an effect are states."""
+def _for_clients(value: Any) -> Any:
+    """Return a part of a table without what a client does not read. Keys of effects are states."""
     if isinstance(value, list):
-        return [_without_texts(each) for each in value]
+        return [_for_clients(each) for each in value]
     if not isinstance(value, dict):
         return value
-    kept = ((key, each) for key, each in value.items() if key not in _FOR_PEOPLE)
-    return {key: each if key == "effect" else _without_texts(each) for key, each in kept}
+    kept = ((key, each) for key, each in value.items() if key not in _FOR_OTHERS)
+    return {key: each if key == "effect" else _for_clients(each) for key, each in kept}
 
 
 def camel(name: str) -> str:
