@@ -29,7 +29,7 @@ WASM := wasm32-unknown-unknown
 CHECK_WASM := RUSTFLAGS=-Dwarnings cargo check --release --package cobotwire-core --target $(WASM) --quiet
 CARGO_FUZZ := .cargo-tools/bin/cargo-fuzz
 
-.PHONY: set-up spec-mutants help demo test lint lint-and-rust python-test computing-tests simulating-tests calling-tests waiting-tests other-tests rust-test products gen targets docs bench plots smoothness picture answers table fuzz figures clean faults conform defects attack archives lerobot bench-archive bench-compare rust-asan robots layer demos front-end front-end-if-reachable four-hours studio-pictures explore nightly rust-package release-check figures-page every-edition urdf
+.PHONY: set-up spec-mutants help demo test lint lint-and-rust python-test computing-tests simulating-tests calling-tests waiting-tests other-tests rust-test products gen targets docs bench plots smoothness picture answers table fuzz figures clean faults conform defects attack archives lerobot bench-archive bench-compare rust-asan robots layer demos front-end front-end-if-reachable four-hours studio-pictures explore nightly rust-package npm-package release-check figures-page every-edition urdf
 .DEFAULT_GOAL := help
 
 help: ## list the targets
@@ -70,6 +70,10 @@ lint-and-rust: lint
 rust-package: .venv/.tools .venv/.native ## package the Rust crates; use them in a clean folder; run the tests of the client
 	$(BIN)/cobotwire-gen --rust-data
 	PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/python tools/rust_package.py
+
+npm-package: .venv/.tools .venv/.native ## build the npm package; use it in a clean folder; compare a call with a bare round trip
+	PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/python tools/npm_package.py
+	node clients/typescript/examples/round_trip.mjs
 
 rust-test: $(RUST_DATA) ## run the Rust tests
 	+cargo test $(TESTED) --quiet
@@ -192,7 +196,7 @@ conform: .venv/.tools .venv/.native ## break subjects of EDITIONS (all) on purpo
 defects: .venv/.tools .venv/.native ## test independent subjects with planted defects
 	PYTHONPATH=tests:tests/peers $(BIN)/python -m defects $(DEFECTS)
 
-attack: .venv/.tools .venv/.native ## attack the clients for ATTACK_SECONDS (180) with a hostile peer; CLIENT=rust: those in Rust
+attack: .venv/.tools .venv/.native ## attack the clients for ATTACK_SECONDS (180) with a hostile peer; CLIENT=rust or CLIENT=node: those in Rust or Node
 	PYTHONPATH=tests $(BIN)/python -m attack --seconds $(ATTACK_SECONDS) $(if $(CLIENT),--client $(CLIENT)) $(ATTACK)
 
 explore: .venv/.tools .venv/.native ## explore every order of events of an exchange until STATES (1000000) were seen; RUST=1: in Rust too
@@ -248,6 +252,7 @@ figures: .venv/.tools .venv/.native ## count files and lines of each room, and t
 clean: ## remove the environment and all build products
 	git clean -dfqX docs spec
 	rm -rf .venv target targets rust/core/tests/data rust/client/src/editions .cargo-tools rust/fuzz/target
+	cd clients/typescript && rm -rf dist editions node_modules
 
 .venv/.base: pyproject.toml
 	$(PYTHON) -c 'import sys; sys.exit("cobotwire needs Python 3.11 or newer" if sys.version_info < (3, 11) else 0)'

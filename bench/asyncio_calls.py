@@ -38,7 +38,7 @@ while True:
             key.fileobj.close()
 """
 TURNS, CALLS, WARM_UP = 8, 3000, 20
-# Of 10 arms against bare asyncio.
+# The limit of the ratio to bare asyncio, with 10 arms.
 LIMIT = 2.5
 
 

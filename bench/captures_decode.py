@@ -1,9 +1,8 @@
-"""Measure ``cobotwire decode`` on large captures: summaries against the scan, lines against Python.
+"""Measure ``cobotwire decode`` on large captures.
 
-The scan reuses its memory, so that it clears no pages. The peer of the lines is the decoding frame
-by frame, which the program used for all input before, and still uses for the reference codec. It
-reads a small part, and its time is scaled. Each round runs each program once; a ratio is the median
-over the rounds.
+Summaries are compared with the scan, which reuses its memory, so that it clears no pages. Lines are
+compared with decoding frame by frame, as for the reference codec; this decodes a small part of the
+file, and its time is scaled. Each round runs each program once; a ratio is the median of them.
 """
 
 from __future__ import annotations

@@ -53,7 +53,7 @@ TURNS, CALLS, WARM_UP = 40, 50, 5
 SETTERS = 1000
 FASTEST_BAUD = 1_000_000
 LIMITS = {"blocking": 1.35, "asyncio": 3.0, "simulated arm": 3.0}
-# Microseconds of the floor from which the limit of the blocking client holds.
+# The limit of the blocking client applies from this floor on, in microseconds.
 LEAST_FLOOR = 30.0
 TIMES_FASTER = 5.0
 # The layer with the maker's names against the client that it calls.
@@ -151,7 +151,7 @@ def _timed(call: Call, floor: Call) -> Turn:
 
 @contextmanager
 def _exchange(url: str) -> Iterator[Call]:
-    """Open a port; yield what makes the system calls of one exchange."""
+    """Open a port; yield a function that makes the system calls of one exchange."""
     descriptor = os.open(url, os.O_RDWR | os.O_NOCTTY)
 
     def call() -> None:

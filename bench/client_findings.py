@@ -32,6 +32,7 @@ CLIENTS = {
     "cobotwire rust tcp": ("rust", TcpServer),
     "cobotwire rust async": ("rust async", PtyServer),
     "cobotwire rust async tcp": ("rust async", TcpServer),
+    "cobotwire node tcp": ("node", TcpServer),
 }
 
 
@@ -65,7 +66,7 @@ def play(library: str, url: str) -> list[str]:
         for call in SESSION:
             # The probe calls by name, with the values of the request: degrees, where methods take
             # radians.
-            by_name = library.startswith("rust") and call.fields
+            by_name = library.startswith(("rust", "node")) and call.fields
             try:
                 result = getattr(arm, call.name)(*(by_name or call.arguments))
             except Exception as error:  # any exception is listed, and the session continues

@@ -26,7 +26,7 @@ from speed_table import human
 
 ROOT = Path(__file__).parents[1]
 MODULE = Path("python", "cobotwire", "_native.abi3.so")
-# Two processes that run the same program differ by as much, because their memory lies elsewhere.
+# Two processes that run the same program differ by this much, by where their memory lies.
 SAME = 0.02
 
 

@@ -3,8 +3,8 @@
     make figures-page                            all blocks; takes minutes
     make figures-page FIGURES="compared starts"  these
 
-The counts come from the tables that `make table` and `make faults` write; each other block is
-what a bench prints, below the machine that it ran on.
+The counts come from the tables that `make table` and `make faults` write; each other block
+names the machine, and has the output of a bench.
 """
 
 from __future__ import annotations
@@ -62,14 +62,14 @@ BENCHES = {
     "frames": ["speed.py", "--rounds", "9", "--megabytes", "15", "--rows", "feed|encode"],
     "starts": ["imports.py"],
 }
-# What the lines of a table begin with that have no cells.
+# The first characters of the lines of a table that have no cells.
 RULES = ("┏", "┡", "└")
 
 
 def ours_and_theirs(page: str, *outcomes: str) -> tuple[int, int]:
     """Return the sums of outcomes on a page: of our client with its defaults, and of pymycobot."""
     text = (DOCS / page).read_text(encoding="utf-8")
-    # The first row of each outcome is that of the summary.
+    # The first row of each outcome is in the summary of the page.
     found = [re.search(rf"^\| {re.escape(each)} \|(.*)\|$", text, re.M) for each in outcomes]
     rows = [row[1].split("|") for row in found if row]
     if len(rows) != len(outcomes):

@@ -2,9 +2,9 @@
 
 The arms are TCP connections to the process of `asyncio_calls.py`, which compares a call with bare
 asyncio. A sample is late by the time from the begin of its period until the consumer has it. On
-Linux, one core is the client's and another the arms'. The CPU time is that of the client's process.
-Memory is the growth of the process for each open arm with a stream, and the allocations of Python
-for it (tracemalloc, measured with few arms).
+Linux, one core is the client's and another the arms'. The CPU time is measured in the client's
+process. Memory is the growth of the process for each open arm with a stream, and the allocations of
+Python for it (tracemalloc, measured with few arms).
 """
 
 from __future__ import annotations

@@ -55,10 +55,10 @@ STARTS: dict[str, tuple[str, float | None]] = {
     "cobotwire decode HEX": (START.format(["decode", "FE FE 02 12 FA"]), 8.0),
     "cobotwire decode HEX, noise": (START.format(["decode", "FF FE 02 12 FA"]), 8.0),
     OUR_CLIENT: (OPEN, 7.0),
-    # Without a limit of their own.
+    # These have no limit of their own.
     THE_LAYER: (OPEN_LAYER, None),
     "import and open an asyncio client": (OPEN_ASYNC, None),
-    # What a part of that takes.
+    # Parts of the time that imports take.
     "import typing": ("import typing", None),
     "import typing, dataclasses": ("import typing, dataclasses", None),
     "import typing, logging": ("import typing, logging", None),
@@ -131,7 +131,7 @@ def _cpu(code: str) -> float:
     """Run code in a process of its own; return its processor time in seconds."""
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
     result = subprocess.run([sys.executable, "-c", code], stdout=subprocess.DEVNULL, check=False)
-    # 1 says that bytes are noise.
+    # The exit code is 1 if bytes are noise.
     assert result.returncode in (0, 1), code
     after = resource.getrusage(resource.RUSAGE_CHILDREN)
     return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime

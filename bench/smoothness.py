@@ -4,7 +4,7 @@
 
 The arm moves in stepped time; the speeds of its joints are computed every 5 ms. A loop of
 ``move_angles`` waits at each point; ``send_angles`` without waiting fills the arm's queue;
-``follow`` sends setpoints. The share is that of the lowest speed inside the path, of the lowest
+``follow`` sends setpoints. The share is the lowest ratio, inside the path, of a speed to the lowest
 speed that was commanded in the 0.3 s before. Inside the path is where at least 80 % of the highest
 speed is commanded before and after.
 """
@@ -25,7 +25,7 @@ from cobotwire.simulator import MemoryTransport, SimulatedArm, SteppedClock
 
 LOOK_SECONDS, BEFORE_SECONDS, HIGH = 0.005, 0.3, 0.8
 PATH = [[20.0 * step, 10 * math.sin(step), -5.0 * step, 0, 0, 0] for step in range(1, 6)]
-# A joint at less than that, in degrees a second, stands still.
+# A joint that is slower than this, in degrees a second, stands still.
 STILL = 1.0
 SET_NEWEST, SEND_ANGLES = 0x16, 0x22
 
@@ -42,7 +42,7 @@ class Watched(SteppedClock):
         self.speeds: list[float] = []
 
     def sleep(self, seconds: float) -> None:
-        """Step the clock, and look."""
+        """Step the clock, and read the joints."""
         while seconds > 0:
             super().sleep(min(seconds, LOOK_SECONDS))
             seconds -= LOOK_SECONDS

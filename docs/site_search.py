@@ -12,7 +12,7 @@ from sphinx.search.en import SearchEnglish
 
 from cobotwire_codegen.model import Command
 
-# What users write, and the word of these pages.
+# Words that users write, with the words of these pages.
 SAME = {"color": "colour", "led": "light", "wifi": "network", "drag": "hand"}
 # A name is split at underscores and before a number: "Pro450" is found by "pro 450".
 NUMBERED = "[a-z]{3,}(?=[0-9]{3})"

@@ -1,4 +1,4 @@
-"""Lead the arm by hand, then let it repeat the way: teach_and_replay.py PORT [SECONDS]."""
+"""Lead the arm by hand, then let it repeat the path: teach_and_replay.py PORT [SECONDS]."""
 
 import sys
 from collections.abc import Sequence
@@ -12,7 +12,7 @@ SPEED = 50  # percent
 
 
 def main(port: str, seconds: float = 10.0) -> list[Angles]:
-    """Teach for some seconds, then replay. Return the way."""
+    """Teach for some seconds, then replay. Return the path."""
     with MyCobot280(port) as arm:
         # The arm has no brakes: hold it before its servos let go.
         arm.release_all_servos()

@@ -39,7 +39,7 @@ settings.register_profile(
 settings.register_profile(
     "deep",
     settings.get_profile("quick"),
-    # `make fuzz` sets as many as its time allows (deep.py).
+    # `make fuzz` sets the number that its time allows (deep.py).
     max_examples=int(os.environ.get("HYPOTHESIS_EXAMPLES", "20000")),
 )
 settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "quick"))

@@ -1,4 +1,4 @@
-"""Run a command line in this process: the start of another costs more than most tests."""
+"""Run a command line in this process: to start another takes longer than most tests."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Measure stalls of single processors and of pseudo-terminals, which spare other threads."""
+"""Measure stalls of single processors and of pseudo-terminals, which do not delay other threads."""
 
 from __future__ import annotations
 

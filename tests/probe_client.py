@@ -1,7 +1,8 @@
-"""A Rust client in a process of its own, with the methods of a blocking client.
+"""A client in a process of its own, with the methods of a blocking client: in Rust or in Node.
 
-``rust/probe/src/client.rs`` is the other end of the pipe: one JSON object a line. Each call has a
-number; the answer has the same number, and the times at which the Rust client began and ended it.
+``rust/probe/src/client.rs`` or ``tests/clients/driver.mjs`` is the other end of the pipe: one JSON
+object a line. Each call has a number; the answer has the same number, and the times at which the
+client began and ended it.
 """
 
 from __future__ import annotations
@@ -17,6 +18,7 @@ from concurrent.futures import CancelledError, Future
 from importlib import import_module
 from importlib.resources import as_file, files
 from itertools import count
+from pathlib import Path
 from typing import Any, Self
 
 import probe
@@ -26,6 +28,8 @@ from cobotwire.protocol.table import Table
 JSON = dict[str, Any]
 # The process has ended if it does not open or close its client within this time.
 CONTROL_SECONDS = 10.0
+# Starts a client in Node; its package must have been built (tools/npm_package.py).
+NODE = ("node", str(Path(__file__).parent / "clients/driver.mjs"))
 
 
 class ProbeClient:

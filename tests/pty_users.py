@@ -20,7 +20,7 @@ USES = re.compile(
     re.MULTILINE,
 )
 IMPORTS = re.compile(r"^\s*(?:from|import) ([\w.]+)(?: import \(?([\w, \n]+))?", re.MULTILINE)
-# Those of conftest.py that open a pty.
+# The fixtures of conftest.py that open a pty.
 FIXTURES = {"arm", "server"}
 
 

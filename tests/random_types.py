@@ -12,7 +12,7 @@ from random_values import decimal
 
 Record = dict[str, Any]
 
-# What a drawn protocol may have. An output target that lacks some of it draws the others.
+# The features of drawn protocols. Tests of an output target draw those that it can express.
 FEATURES = frozenset({"float", "bits", "bytes", "text", "list", "event", "ack"})
 PLAIN: frozenset[str] = frozenset()
 # Scales with finite decimals as multiples, so that a vector can state them exactly.

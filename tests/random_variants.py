@@ -16,7 +16,7 @@ Record = dict[str, Any]
 def several_variants(draw: st.DrawFn, direction: str, kinds: list[str]) -> list[list[Record]]:
     """Draw two or three variants of a message with different arguments.
 
-    A constant marks each, or else only their lengths differ.
+    Each has another constant, or else another length.
     """
     if draw(st.integers(0, 2)) == 0:
         return [[{"name": "a", "type": "joint"}], [{"name": "b", "type": "wide"}]]
@@ -83,7 +83,7 @@ def _selects(field: Field, variant: tuple[Field, ...]) -> bool:
 def _stay_apart(
     full: tuple[tuple[Field, ...], ...], needed: list[set[str]], index: int, field: Field
 ) -> bool:
-    """Return whether no call would fit two variants if a field of one had a default."""
+    """Return whether each call fits only one variant, also if ``field`` of one has a default."""
     names = [{f.name for f in variant if f.const is None and not f.counts} for variant in full]
     rest = needed[index] - {field.name}
     return all(

@@ -18,7 +18,7 @@ from _pytest.runner import call_and_report
 
 from machine_stalls import MachineStalls, machine_stalls
 
-# Half of the deadline that a client gives a reply: stalls within a second that add up to more.
+# Seconds of stalls within a second after which a test is run again: half of a reply's deadline.
 STALL = 0.25
 RUNS = 3
 PERIOD = 0.02
@@ -60,7 +60,7 @@ def _run(
     marker = item.get_closest_marker("stall")
     limit = marker.args[0] if marker else STALL
     again = failed and not last and stalls.worst_second > limit
-    # Fixtures that tests share stay for the next run: only the test's own end.
+    # Only the test's own fixtures end; shared ones stay for the next run.
     after = item.parent if again else nextitem
     reports.append(call_and_report(item, "teardown", log=False, nextitem=after))
     if hasattr(function, "_request"):

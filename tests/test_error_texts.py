@@ -124,7 +124,7 @@ def test_error_of_an_argument_has_the_units_and_names_of_the_caller(
 
 
 @pytest.mark.parametrize("codec", get_args(CodecName))
-def test_bounds_in_radians_are_allowed_themselves(codec: CodecName) -> None:
+def test_bounds_in_radians_are_allowed_values(codec: CodecName) -> None:
     encoder = RequestEncoder(codecs.load(TABLE, codec))
     for bound in (-2.9321, 2.9321):
         encoder.encode_request(SendRadians([bound, 0, 0, 0, 0, 0], 30))

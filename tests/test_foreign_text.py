@@ -74,7 +74,7 @@ def _errors() -> Iterator[type[errors.CobotwireError]]:
         yield kind
 
 
-# What an error is made of, by the annotation of the parameter.
+# A value for a parameter of an error, by its annotation.
 VALUES: dict[str, Any] = {
     "str": HOSTILE,
     "Any": HOSTILE,
@@ -282,7 +282,7 @@ def test_comparison_of_reports_is_printable(tmp_path: Path) -> None:
 
 
 GREETING = {"protocol": 1, "edition": "mycobot", "name": CONTROLS, "can": ["encode request"]}
-# What a codec under test does at its second question.
+# Code that a codec under test runs at its second question.
 ENDS = {
     "replies": "print(json.dumps({'id': 2, 'bytes': CONTROLS, 'error': CONTROLS}), flush=True)",
     "prints something else": "print(CONTROLS, flush=True)",

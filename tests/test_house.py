@@ -160,7 +160,8 @@ def test_unsafe_rust_code_is_only_in_the_files_for_it() -> None:
     }
     instructions = {name for name in found if name.startswith("simd/src/")}
     assert instructions
-    assert found - instructions == {"py/src/memory.rs", "py/src/descriptor.rs"}
+    # The attribute of an exported function is unsafe; the module has no other unsafe code.
+    assert found - instructions == {"py/src/memory.rs", "py/src/descriptor.rs", "wasm/src/lib.rs"}
 
 
 def test_native_classes_are_never_borrowed_mutably() -> None:
@@ -173,7 +174,7 @@ def test_native_classes_are_never_borrowed_mutably() -> None:
         assert "try_borrow" not in text, path
 
 
-def test_native_module_knows_nothing_of_the_exchange() -> None:
+def test_native_module_does_not_use_the_exchange() -> None:
     # The Python session alone owns an exchange. A native call that reads or sets its attributes
     # would be a second owner.
     stub = (PACKAGE / "_native.pyi").read_text("utf-8")

@@ -26,7 +26,8 @@ def edition(name: str = "mycobot") -> Edition:
     return editions()[name]
 
 
-# These editions have tests of their own for much; a further edition is a difference from another.
+# These editions have many tests of their own; most further ones are stated as differences from
+# them.
 ONE_BY_ONE = ("mycobot", "mycobot280")
 
 
@@ -40,7 +41,7 @@ SAMPLE = (*ONE_BY_ONE, "mybuddy", "mercury_a1", "mercury_b1", "pro450")
 
 
 def sampled() -> list[str]:
-    """Return the editions that stand for all where a law is the same for each edition.
+    """Return the editions that represent all in tests of a law that every edition has.
 
     ``make every-edition`` tests all of them.
     """

@@ -4,7 +4,7 @@
     make release-check SINCE=HEAD~9    # compare with a revision, as if it were the last release
 
 docs/compatibility.md says what a release promises, a row for each entry of ``PROMISES``. The exit
-code is 1 if this tree's version (Cargo.toml) promises more than the differences permit.
+code is 1 if this tree's version (Cargo.toml) is too low for the differences.
 """
 
 from __future__ import annotations
@@ -125,7 +125,7 @@ def python_api(old: Path, new: Path) -> Iterator[Finding]:
         raise Failed(f"the last release promises names that it lacks: {sorted(missing)}")
     for broken in griffe.find_breaking_changes(before, after):
         yield _finding("api", broken.kind.name.lower().replace("_", "-"), _place_of(broken))
-    # What the old API lacks was added.
+    # In the other direction, a removed object is one that was added.
     for added in griffe.find_breaking_changes(after, before):
         if added.kind is griffe.BreakageKind.OBJECT_REMOVED:
             yield _finding("addition", "object-added", _place_of(added))

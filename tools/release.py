@@ -126,7 +126,7 @@ def check_files(folder: Path) -> str:
         raise Failed(f"expected three source distributions and wheels of {version()}: {files}")
     _run(sys.executable, "-m", "twine", "check", "--strict", *map(str, files))
     wheels = [str(file) for file in files if file.suffix == ".whl"]
-    # W002: duplicate files. Editions of like robots have modules with the same text.
+    # W002: duplicate files. Editions of similar robots have modules with the same text.
     _run(sys.executable, "-m", "check_wheel_contents", "--ignore", "W002", *wheels)
     return ", ".join(file.name for file in files)
 

@@ -13,9 +13,9 @@ from importlib import import_module
 
 from cobotwire.editions.clients import EDITIONS
 
-# Where each name is. It is imported when it is first used, so a program that uses another edition,
-# or only the codec, imports no client of this one. asyncio takes longer to import than the rest.
-# Type checkers read ``__init__.pyi``.
+# The module of each name. It is imported when the name is first used, so a program that uses
+# another edition, or only the codec, does not import this edition's client. asyncio takes longer to
+# import than the rest. Type checkers read ``__init__.pyi``.
 _PLACES = {
     **{name: f"editions.{edition}" for name, edition in EDITIONS.items()},
     "AsyncDeadMan": "client.aio_dead_man",
@@ -51,7 +51,7 @@ __all__ = sorted([*_PLACES, "__version__"])
 
 def __getattr__(name: str) -> object:
     if name == "__version__":
-        # That of the installed distribution; Cargo.toml states it once for all parts.
+        # The version of the installed distribution; Cargo.toml states it once for all parts.
         try:
             from cobotwire._native import __version__ as version
         except ImportError:

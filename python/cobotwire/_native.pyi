@@ -83,7 +83,7 @@ class NativeCodec:
         """Read ``data``, which must be one frame and nothing else.
 
         If commands share an id and a size, the result is the first that allows the values; ``of``
-        names the only command that it may be.
+        restricts the result to one command.
 
         Raises:
             UsageError: ``of`` names no command.
@@ -154,7 +154,7 @@ class NativeFramer:
 
     @property
     def pending(self) -> int:
-        """How many fed bytes no event covers yet; fewer than the longest frame has."""
+        """The number of fed bytes that no event covers yet, less than the longest frame has."""
 
     @property
     def fed(self) -> int:
@@ -169,7 +169,7 @@ class AlarmClock:
     """A descriptor that becomes readable at a given time, for event loops. Only on Linux."""
 
     def __new__(cls) -> AlarmClock:
-        """Make one that is not set.
+        """Create a clock that is not set.
 
         Raises:
             OSError: the process has too many descriptors.
@@ -252,7 +252,7 @@ class NativeColumnReader:
 
     @property
     def pending(self) -> int:
-        """How many fed bytes are not accounted for yet; fewer than the longest frame has."""
+        """The number of fed bytes not accounted for yet, less than the longest frame has."""
 
 @final
 class NativeCaptureReader:
@@ -318,11 +318,11 @@ class NativeSummary:
         """Start a stream."""
 
     def feed(self, data: bytes, rest: Rest) -> list[Noise | tuple[int, int, str]]:
-        """Take bytes; return what is certain and not only counted, in the order of the stream.
+        """Take bytes; return the certain items that are not merely counted, in stream order.
 
-        A part is noise to diagnose, or ``(offset, size, lines)`` of frames and of noise that was
-        diagnosed. ``rest`` does what is left to Python; it takes the parts before each noise whose
-        end has come.
+        An item is noise to diagnose, or ``(offset, size, lines)`` of frames and of diagnosed noise.
+        ``rest`` does the work that is left to Python; it is called with the items before each
+        complete span of noise.
         """
 
     def flush(self, rest: Rest) -> list[Noise | tuple[int, int, str]]:

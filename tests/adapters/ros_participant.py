@@ -1,4 +1,4 @@
-"""A participant of ROS 2 that knows nothing of ours: types and bytes are those of rosbags."""
+"""A participant of ROS 2 that uses none of our code: types and bytes are those of rosbags."""
 
 from __future__ import annotations
 
@@ -86,7 +86,7 @@ class Received:
 
 
 def sample(kind: str, data: bytes) -> Any:
-    """Return a message that has these bytes, right or wrong."""
+    """Return a message that is sent as these bytes, even if they are malformed."""
     made: Any = object.__new__(struct(kind))
     made.serialize = lambda **options: data
     return made
@@ -95,7 +95,7 @@ def sample(kind: str, data: bytes) -> Any:
 async def received(
     reader: DataReader[Any], wanted: Callable[[Any], Any] = lambda each: each
 ) -> Any:
-    """Return what is wanted of the first message that has it."""
+    """Return the first result of ``wanted`` that is not empty, of the messages in turn."""
     until = time.monotonic() + SECONDS
     seen = None
     while time.monotonic() < until:

@@ -45,7 +45,7 @@ from cobotwire.adapters.ros2.motion import waypoints_of
 ANGLES = [10.0, -20.0, 30.0, -40.0, 50.0, -60.0]
 NAMES = ["j1", "j2", "j3", "j4", "j5", "j6"]
 STOP = bytes.fromhex("FE FE 02 29 FA")
-# DDS keeps the configuration of a domain as long as a participant lives: each test has its own.
+# DDS keeps the configuration of a domain while a participant lives: each test has its own domain.
 DOMAINS = count(100)
 
 
@@ -257,7 +257,7 @@ def test_any_bytes_are_a_message_or_damaged() -> None:
 
     @given(st.binary(max_size=100), st.integers(4, len(right)))
     def read(data: bytes, at: int) -> None:
-        # Cyclone DDS drops what no message can be; the rest is in our hands.
+        # Cyclone DDS drops bytes that cannot be a message; our code gets all others.
         with suppress(DDSException):
             writer.write(sample(ros.JOINT_TRAJECTORY, right[:at] + data + right[at + len(data) :]))
         for message, _ in reader.take():

@@ -7,19 +7,25 @@ PYTHONPATH=tests python -m attack --profile late --seed 7   one profile, from se
 from __future__ import annotations
 
 import argparse
+import subprocess
 import sys
 import time
 from pathlib import Path
 
-from attack.profiles import PROFILES, RUST_PROFILES
+from attack.profiles import NODE_PROFILES, PROFILES, RUST_PROFILES
 from attack.running import campaign
 from attack.tally import Tally, markdown, text, total
+
+ROOT = Path(__file__).parent.parent.parent
+KNOWN = {"python": PROFILES, "rust": RUST_PROFILES, "node": NODE_PROFILES}
 
 
 def main() -> int:
     """Run the campaign and print its table; return 1 if something forbidden happened."""
     given = _arguments()
-    known = RUST_PROFILES if given.client == "rust" else PROFILES
+    known = KNOWN[given.client]
+    if given.client == "node":
+        subprocess.run([sys.executable, ROOT / "tools/npm_package.py", "--build"], check=True)
     profiles = [known[name] for name in given.profile or known if name in known]
     tallies = {profile.name: Tally(profile.name) for profile in profiles}
     began = time.monotonic()
@@ -45,7 +51,7 @@ def _arguments() -> argparse.Namespace:
         prog="attack", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
     parser.add_argument("--profile", action="append", choices=list(PROFILES))
-    parser.add_argument("--client", choices=("python", "rust"), default="python")
+    parser.add_argument("--client", choices=list(KNOWN), default="python")
     parser.add_argument("--seed", type=int, default=1, help="of the first run; 1")
     parser.add_argument("--seconds", type=float, default=180.0, help="after which no run begins")
     parser.add_argument("--processes", type=int, default=4)
@@ -56,6 +62,7 @@ def _arguments() -> argparse.Namespace:
 BEGIN = {
     "python": "<!-- begin: make attack -->",
     "rust": "<!-- begin: make attack CLIENT=rust -->",
+    "node": "<!-- begin: make attack CLIENT=node -->",
 }
 END = "<!-- end -->"
 

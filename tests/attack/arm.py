@@ -150,7 +150,7 @@ class LabellingOutlet(Outlet):
         return data
 
     def drop(self) -> int:
-        # Of a reply that is being sent, the rest never comes.
+        # The rest of a reply that is being sent never comes.
         unsent = sum(len(span.data) for span in self.sent) - self._taken
         while unsent > 0:
             span = self.sent.pop()

@@ -66,14 +66,14 @@ class PtyEnd:
             self.descriptor = self._slave = -1
 
     def fill(self, room: int, receive: Callable[[bytes], None]) -> int:
-        """Fill the unread line but for some room; return with how many bytes.
+        """Fill the unread line except for ``room`` bytes; return how many bytes that took.
 
         ``receive`` is called with what is read meanwhile.
         """
         if self.descriptor < 0:
             return 0
         filled = 0
-        # The space that the first read frees differs in size from that of later reads.
+        # The first read frees another amount of space than later reads.
         for _ in range(2):
             filled += self._fill_up(LARGE)
             read = 0

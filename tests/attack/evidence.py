@@ -84,7 +84,7 @@ class Evidence:
         taken = self._record.taken
         place = bisect_right(taken, (handed, b""))
         while place < len(taken) and taken[place][0] <= call.ended:
-            # Of a request that was taken in pieces, the last piece is its end.
+            # A request that was taken in pieces ends with the last piece.
             if call.request.endswith(taken[place][1]):
                 return taken[place][0]
             place += 1
@@ -129,8 +129,7 @@ class Evidence:
         return self._displaced(found, made)
 
     def _displaced(self, found: Found, made: Made) -> str:
-        """Return the known limit because of which the call of a reply took another reply instead of
-        this one."""
+        """Return the known limit because of which the call took another reply than this."""
         for call in self._calls_of(made):
             # Equal values do not show it, but a call cannot take what was delivered after its end.
             took_another = call.value != made.value or call.ended < found.at
@@ -142,8 +141,8 @@ class Evidence:
 
     def _limit_of_taken(self, call: Call) -> str:
         if call.number not in self._limits:
-            # A call may have taken the reply of another call. A call cannot be the reason for its
-            # own.
+            # The chain of calls that took each other's replies may come back to this call: end it
+            # there.
             self._limits[call.number] = ""
             self._limits[call.number] = self._limit_of_query(call, kept=False)
         return self._limits[call.number]
@@ -161,7 +160,7 @@ class Evidence:
         return ""
 
     def _last_handed(self, request: bytes, before: float) -> float:
-        """Return when a request was last handed to the system before a time; the time: never."""
+        """Return when a request was last handed to the system before that time; else that time."""
         handed = self._record.handed
         for place in range(bisect_right(handed, (before, b"\xff")) - 1, -1, -1):
             if handed[place][1].endswith(request):

@@ -18,7 +18,7 @@ class Plan:
         profile: what happens.
         seed: repeats the draws of the run, not its timing.
         tcp: whether the line is TCP or a pty.
-        client: blocking or asyncio, or the Rust client that resembles it.
+        client: blocking or asyncio, the Rust client that resembles it, or the one in Node.
         codec: native or reference; it is Python's.
         edition: the edition's package.
         users: how many threads or tasks share the client.
@@ -54,9 +54,9 @@ class Plan:
         return tuple(_scaled(fault, self.grace) for fault in self.profile.faults)
 
     @property
-    def rust(self) -> bool:
-        """Whether a Rust client is attacked."""
-        return self.client.startswith("rust")
+    def apart(self) -> bool:
+        """Whether a client in a process of its own is attacked: in Rust or in Node."""
+        return self.client.startswith(("rust", "node"))
 
     @property
     def _way(self) -> str:
@@ -90,7 +90,9 @@ def plan(profile: Profile, seed: int, seconds: float | None = None, calls: int =
         profile,
         seed,
         # Only a pty takes half a frame. TCP may lose what is written just before it is closed.
-        tcp=random.random() < (0.2 if profile.stalls else 0.5) and not profile.signals,
+        # Serial ports in Node need a package of others.
+        tcp=(random.random() < (0.2 if profile.stalls else 0.5) and not profile.signals)
+        or client == "node",
         client=client,
         codec=random.choice(("native", "reference")),
         edition=random.choice(("mycobot280", "mycobot280", "mycobot")),

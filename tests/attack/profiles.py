@@ -21,7 +21,7 @@ from cobotwire.simulator.faults import (
     Truncated,
 )
 
-Clients = Literal["blocking", "asyncio", "rust", "rust async"]
+Clients = Literal["blocking", "asyncio", "rust", "rust async", "node"]
 
 
 @dataclass(frozen=True)
@@ -192,3 +192,4 @@ RUST_PROFILES = {
     for name, profile in PROFILES.items()
     if not profile.interrupts
 }
+NODE_PROFILES = {name: replace(each, clients=("node",)) for name, each in RUST_PROFILES.items()}

@@ -54,11 +54,12 @@ class Record:
     Attributes:
         calls: the calls that have ended.
         running: the calls that have not, by user.
-        handed: when which bytes were handed to the system.
+        handed: the time before each write, and its bytes.
+        taken: the time after each write that was taken whole, and its bytes.
+        bytes_taken: how many bytes the system has taken.
         filling: held while the run fills the line, which must not come between parts of a request.
         measured: when the call of a thread began and ended by the client's own measure, if it is in
             another process.
-        taken: when the system took the rest of those bytes, and how many bytes it has taken.
     """
 
     def __init__(self) -> None:

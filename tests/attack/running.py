@@ -29,7 +29,7 @@ from stalls import StallMeter
 
 
 def attack(chosen: Plan, change: Callable[[Any], Any] | None = None) -> Tally:
-    """Run a plan and validate it; ``change`` makes another client of the edition's."""
+    """Run a plan and validate it; ``change`` replaces the edition's client by another."""
     codec = codecs.load(table_of(chosen), "reference")
     peer = HostilePeer(codec, chosen.faults, chosen.seed)
     end = TcpEnd(small=chosen.profile.stalls) if chosen.tcp else PtyEnd()
@@ -45,7 +45,7 @@ def attack(chosen: Plan, change: Callable[[Any], Any] | None = None) -> Tally:
         if change is not None:
             setting.client = change(setting.client)
         settle, failed = partial(_settle, line, setting), ""
-        if chosen.profile.fresh and change is None and not chosen.rust:
+        if chosen.profile.fresh and change is None and not chosen.apart:
             failed = run_fresh(setting, settle)
         else:
             run_threads(setting, partial(_happen, line, setting), settle)
@@ -91,7 +91,7 @@ def _stall(line: HostileLine, setting: Setting, random: Random) -> None:
         line.fill(random.randint(10, 200))
     setting.flood, setting.flooding = "", True
     time.sleep(random.uniform(0.1, 1.0) if random.random() < 0.2 else random.uniform(1.05, 1.3))
-    # They may complete the one that was cut.
+    # These bytes may complete the request that was cut.
     setting.flood = random.choice(SHORT)
     time.sleep(0.02)
     line.stalled = False

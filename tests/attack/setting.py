@@ -15,7 +15,7 @@ from cobotwire import LinkError, ProtocolError, ReplyTimeout, RetryPolicy
 from cobotwire import codec as codecs
 from cobotwire.protocol.table import Table
 from cobotwire.transport.descriptor import WRITE_SECONDS
-from probe_client import ProbeClient, Stopped
+from probe_client import NODE, ProbeClient, Stopped
 
 CLASSES = {
     ("mycobot280", "blocking"): "MyCobot280",
@@ -32,11 +32,11 @@ class Setting:
     Attributes:
         over: whether users are to stop.
         flooding: whether users send only one-way requests, to fill a line that nobody reads.
-        flood: which ones; empty: any.
+        flood: the name of these requests; if empty, any are drawn.
         longest: seconds that a call can take by its rules, the wait for its turn included.
         options: the arguments of the clients.
         processes: where the ids of the processes that clients start are written down.
-        stops: when the run had stopped such a process, and for how many seconds.
+        stops: when the run had stopped the process of a client, and for how many seconds.
     """
 
     def __init__(self, plan: Plan, url: str) -> None:
@@ -50,7 +50,7 @@ class Setting:
         self.stops: list[tuple[float, float]] = []
         edition = import_module(f"cobotwire.editions.{plan.edition}")
         self.client: Any = (
-            self._open_probe if plan.rust else getattr(edition, CLASSES[plan.edition, plan.client])
+            self._open_probe if plan.apart else getattr(edition, CLASSES[plan.edition, plan.client])
         )
         self.table = table_of(plan)
         self.baudrate = self.table.baudrate
@@ -69,12 +69,13 @@ class Setting:
         self._numbers = itertools.count(1)
 
     def _open_probe(self) -> ProbeClient:
-        """Start a Rust client in a process, whose writes and times are recorded."""
+        """Start a client in a process of its own, whose writes and times are recorded."""
         client = ProbeClient(
             self.url,
             self.plan.edition,
             written=self.record.note_write,
             ended=self.record.note_times,
+            command=NODE if self.plan.client == "node" else (),
             tasks=self.plan.client == "rust async",
             small=self.plan.profile.stalls,
             timeout=self.plan.timeout,

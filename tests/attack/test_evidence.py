@@ -14,17 +14,17 @@ NAME = "is_in_position"
 
 
 def request(x: float) -> bytes:
-    """Return the bytes of a question about the position (x, 0, 0)."""
+    """Return the bytes of a query about the position (x, 0, 0)."""
     return CODEC.encode(NAME, "request", [(x, 0.0, 0.0, 0.0, 0.0, 0.0), 0])
 
 
 def reply(x: float, arrived: float, value: bool) -> Made:
-    """Return the arm's reply to that question."""
+    """Return the arm's reply to that query."""
     return Made(CODEC.encode(NAME, "reply", [value]), request(x), arrived, False, value)
 
 
 def call(number: int, x: float, began: float, ended: float, value: bool) -> Call:
-    """Return a call that asks that question, and ended with a value."""
+    """Return a call that sent that query, and ended with a value."""
     return Call(number, 1, NAME, request(x), None, True, began, ended, "value", value)
 
 

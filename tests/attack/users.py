@@ -62,7 +62,7 @@ class Shared:
         """End the loops of asyncio clients, in which no call runs any more, or the process."""
         for loop in self._loops:
             loop.end()
-        if self.setting.plan.rust:
+        if self.setting.plan.apart:
             self.client.end()
 
     @property
@@ -73,7 +73,7 @@ class Shared:
 
     def _open(self) -> None:
         setting = self.setting
-        if setting.plan.rust:
+        if setting.plan.apart:
             if self.client is None:
                 self.client = self._transport = setting.client()
             else:
@@ -205,7 +205,7 @@ def _call(shared: Shared, user: int, random: Random, interrupts: Interrupts | No
     options = {} if drawn.ack_within is None else {"ack_within": drawn.ack_within}
     if setting.plan.profile.cancels and random.random() < 0.3:
         seconds = random.choice((0.0, 0.0005, 0.002, 0.02, 0.2)) * random.random()
-        if setting.plan.rust:
+        if setting.plan.apart:
             method = shared.client.cancelled_after(seconds, drawn.name)
         else:
             method = _cancelled_after(seconds, shared.client, drawn.name)

@@ -29,7 +29,7 @@ class Scene(NamedTuple):
         setting: the plan and the record of the users.
         line: what arrived and what was delivered.
         peer: what the arm received and sent.
-        stalls: when the machine stalled, and for how many seconds; each measure by itself.
+        stalls: for each measure, when the machine stalled, and for how many seconds.
     """
 
     setting: Setting
@@ -131,7 +131,7 @@ class Validator:
         self._fail(call, f"late by {excess:.3f} s; the machine stalled for {stalled:.3f} s")
 
     def _due(self, call: Call) -> float:
-        """Return when a call must have ended; from its writing, where that is certain."""
+        """Return when a call must have ended; counted from its write if its time is certain."""
         handed = self._evidence.handed_at(call)
         alike = self._of_request[call.request]
         uncontended = sum(c.began <= call.ended and call.began <= c.ended for c in alike) == 1

@@ -112,7 +112,7 @@ def test_repaired_file_is_whole_and_keeps_what_can_be_read(damaged: bytes) -> No
             assert not before
             return
         after: list[Packet] = []
-        # Of a link type that is damaged, say.
+        # The link type may be damaged, for example.
         with suppress(CaptureError):
             after.extend(read(out))
         assert after[: len(before)] == before
@@ -132,7 +132,7 @@ def test_arbitrary_bytes_are_an_error_that_leaves_no_file(data: bytes) -> None:
             except DAMAGE:
                 assert not out.exists()
             out.unlink(missing_ok=True)
-        # The edition that it names may be none.
+        # It may name an unknown edition.
         with suppress(UsageError):
             assert overview(source, recorded_codecs()).size <= len(data)
 

@@ -172,7 +172,7 @@ def test_list_over_several_lines_is_one() -> None:
         ("00000000: fefe 02  ...\n00000004: 21  !\n", "file:2: expected the offset 00000003"),
         ("00000000: fefe 02  ...\n00000003: zz  .\n", "file:2: expected a line of a dump by xxd"),
         ("00000000: 6162  ax\n", "file:1: expected 'ab' after the bytes"),
-        ("00000000: 6162  ab\n*\n00000005: 61  a\n", "file:3: expected an offset that the"),
+        ("00000000: 6162  ab\n*\n00000005: 61  a\n", "file:3: expected an offset after whole"),
         ("b'\\xfe'\nb'\\xzz'\n", "file:2: expected Python literals"),
         ("[254, 300]\n", "file:1: expected bytes from 0 to 255"),
         ("[254,\n", "file:1: expected the end of a list"),

@@ -100,7 +100,7 @@ def test_standard_input_is_exported(tmp_path: Path) -> None:
         (["--from", "yesterday"], "give a time in ISO 8601, such as 2026-11-23T14:30:00Z"),
         (["--from", "2026-11-24", "--to", "2026-11-23"], "the time range is empty"),
         (["--partition", "robots"], "did you mean robot?"),
-        (["--as", "mcap", "--wide"], "not wide"),
+        (["--as", "mcap", "--wide"], "wide columns are for tables"),
         (["none.bin"], "none.bin: no such file"),
     ],
 )

@@ -39,7 +39,7 @@ def _counts(report: str) -> dict[str, Any]:
 @pytest.mark.parametrize(
     ("words", "sentence"),
     [
-        (["--scheduler", "tcp://127.0.0.1:1"], "a scheduler is that of a Dask cluster"),
+        (["--scheduler", "tcp://127.0.0.1:1"], "a scheduler needs a Dask cluster"),
         (["--workers", "2"], "--workers needs --engine threads or --engine dask"),
         (
             ["--engine", "dask", "--scheduler", "tcp://127.0.0.1:1", "--workers", "2"],

@@ -78,7 +78,7 @@ def test_joints_have_names(codec: str) -> None:
         arm.send_angle(Joint.J7, 0, 50)
 
 
-def test_target_of_the_mode_that_other_clients_send_is_moved_to() -> None:
+def test_arm_moves_to_a_target_with_the_mode_of_other_clients() -> None:
     driven = Driven()
     driven.arm.send_coords([150, -60, 250, 180, 0, -90], 80, 2)
     assert driven.arm.is_moving()

@@ -1,4 +1,4 @@
-"""A dead man's switch stops the arm once for each silence, and never while it is fed."""
+"""A dead man's switch stops the arm once for each silence, and never while signs of life come."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ class SteppedTransport(RecordingTransport):
 
 
 def _stops(dead_man: DeadMan, count: int) -> bool:
-    """Return whether the arm was stopped so often within two seconds."""
+    """Return whether the arm was stopped ``count`` times within two seconds."""
     ends = time.monotonic() + 2
     while dead_man.stops < count and time.monotonic() < ends:
         time.sleep(0.005)
@@ -42,7 +42,7 @@ def test_silence_ends_once_and_only_after_its_seconds(events: list[tuple[float, 
     silence, now, fed, stops, expected = Silence(1.0), 0.0, inf, 0, 0
     for gap, event in events:
         now += gap
-        # A driver looks when the time has come, which is before the event.
+        # A driver acts when the time is over, which comes before the event.
         if silence.left(now) <= 0:
             silence.rest()
             stops += 1

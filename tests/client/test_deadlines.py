@@ -161,7 +161,7 @@ def fill(arm: Any) -> int:
     raise AssertionError
 
 
-def test_full_line_delays_no_call_and_gets_none_of_it_later_but_the_stop_of_a_failed_block(
+def test_full_line_delays_no_call_and_gets_only_the_stop_of_a_failed_block_later(
     open_arm: Opener,
 ) -> None:
     pty, received = PtyEnd(), list[bytes]()

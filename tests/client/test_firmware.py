@@ -68,7 +68,7 @@ def test_command_needs_only_firmware_that_the_arm_lacks(
     assert bool(found) is bool(needs)
 
 
-def test_versions_of_one_robot_are_not_those_of_robots_that_are_stated_by_it() -> None:
+def test_deltas_do_not_inherit_the_firmware_versions_of_their_base() -> None:
     stating = {
         name
         for name in editions.names()

@@ -195,7 +195,7 @@ def test_missing_library_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
         arm.follow(PATH)
 
 
-def test_iterators_are_read_aside_and_their_end_and_errors_arrive() -> None:
+def test_iterators_are_read_meanwhile_and_their_end_and_errors_arrive() -> None:
     def targets(error: bool) -> Iterator[Sequence[float]]:
         for step in range(20):
             yield [step / 4, 0, 0, 0, 0, 0]

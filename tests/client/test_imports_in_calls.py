@@ -92,7 +92,7 @@ def test_calls_import_nothing_in_their_thread(table: Table, kind: str, codec: st
     assert json.loads(done.stdout) == []
 
 
-def test_ctrl_c_does_not_end_an_import_aside(
+def test_ctrl_c_does_not_interrupt_an_import_in_another_thread(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     (tmp_path / "slow_to_import.py").write_text("import time\ntime.sleep(0.3)\nDONE = True\n")

@@ -1,4 +1,4 @@
-"""Ctrl-C at any line of a call delays neither calls of other threads nor later calls."""
+"""Ctrl-C at any line of a call does not delay calls of other threads, or later calls."""
 
 from __future__ import annotations
 
@@ -98,7 +98,7 @@ class OtherThreads:
             try:
                 value = arm.get_joint_max_angle(joint)
             except ReplyTimeout:
-                # Honest, and in time: the interrupt lost the bytes that were just read.
+                # A correct error, in time: the interrupt lost the bytes that were just read.
                 pass
             except Exception as error:
                 self.wrong.append(error)
@@ -143,8 +143,8 @@ class Lines:
     """The numbers of the lines to interrupt, until calls end before them.
 
     Which lines a call runs depends on the other threads, so one short call is not the end. With the
-    reference codec a call runs many lines; every fifth of these is interrupted. Listening for 1 ms
-    runs as many lines as the machine has time for, so it skips none.
+    reference codec a call runs many lines, of which every fifth is interrupted. When it listens for
+    1 ms, the number of lines depends on the machine, so each of them is interrupted.
     """
 
     def __init__(self, codec: str, name: str = "a query") -> None:

@@ -40,7 +40,7 @@ def test_limbs_move_apart_over_a_port(robot: SimulatedArm, asynchronous: bool) -
             arm.waist.send_angle(1, 15, 100)
             arm.left.wait_until_reached(LEFT)
             arm.right.wait_until_reached(RIGHT)
-            # What is reached may still move by as much.
+            # A joint that has reached its target may still move by this much.
             near = TOLERANCES["degree"]
             assert arm.left.get_angles() == pytest.approx(LEFT, abs=near)
             assert arm.right.get_angles() == pytest.approx(RIGHT, abs=near)

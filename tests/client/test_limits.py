@@ -215,7 +215,7 @@ def test_edition_without_geometry_refuses_targets_of_joints_in_a_workspace() -> 
 
 @given(st.sampled_from(sorted(EVERY)), SPEED, st.none() | st.tuples(SIDE, SIDE, SIDE), st.data())
 @settings(max_examples=150)
-def test_nothing_that_is_encoded_exceeds_a_speed_or_leaves_a_workspace(
+def test_no_encoded_request_exceeds_a_speed_or_leaves_a_workspace(
     name: str, speed: float | None, workspace: Any, data: st.DataObject
 ) -> None:
     table = EVERY[name]

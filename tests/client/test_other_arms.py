@@ -129,7 +129,7 @@ def test_arm_moves_as_its_edition_states(tmp_path: Path) -> None:
         assert arm.read_joints()[0] == pytest.approx(70.0, abs=5)
 
 
-def test_speed_of_nothing_is_reported(tmp_path: Path) -> None:
+def test_motion_at_speed_0_is_reported(tmp_path: Path) -> None:
     stated = "motion: {speed: 0, fastest: 400, acceleration: 100, doc: None.}\nframe:"
     with pytest.raises(SpecError, match="must be above 0"):
         edition_of(SPECS["four joints"].replace("frame:", stated, 1), tmp_path)

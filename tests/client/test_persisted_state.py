@@ -57,7 +57,7 @@ def test_late_reply_to_a_closed_client_is_not_used_by_the_next_one(who: Callable
 
 
 def test_late_reply_to_one_program_is_not_printed_by_the_next_one(folder: Path) -> None:
-    # So late that the next program has started by then.
+    # The reply comes after the next program has started.
     with faulty_arm(Late(seconds=0.95, nth=ATTEMPTS)) as (url, _):
         first = run_program("call", url, "get_encoder", "1")
         assert "no reply" in first.stderr
@@ -145,7 +145,7 @@ def test_note_of_another_boot_expects_no_reply(
     this_boot = folder.parent / "boot_id"
     this_boot.write_text("this\n")
     monkeypatch.setattr(port_notes, "BOOT_ID", str(this_boot))
-    # The monotonic clock of this boot is ahead of that of the other boot.
+    # The monotonic clock of this boot is ahead of the other boot's clock.
     _damage(memory, folder, boot=boot)
     assert memory.recall() == PersistedState((), (Part(MOTION, 8),)), "the arm may hold the part"
 

@@ -23,7 +23,7 @@ POWER = bytes.fromhex("FE FE 03 12 01 FA")
 NO_GRACE = RetryPolicy(attempts=1, grace=0.0)
 # Far longer than a test takes.
 LONG = RetryPolicy(attempts=1, grace=60.0)
-# A reply that comes so late leaves time to act before it.
+# A reply that is this late leaves time to act before it.
 SLOW = 0.2
 # A test that takes longer hangs, in seconds.
 LONGEST = 15
@@ -106,7 +106,7 @@ def test_silence_after_a_cancelled_period_holds_the_next_call_for_the_grace_time
     assert run(peer, drive, timeout=2 * LONGEST, retry=retry) == (1.4, REQUEST * 2)
 
 
-def test_period_that_is_cancelled_before_its_period_sends_nothing() -> None:
+def test_sample_that_is_cancelled_before_its_period_sends_nothing() -> None:
     async def drive(arm: AsyncMyCobot) -> Any:
         stream = arm.stream(GetAngles(), rate=25)
         await anext(stream)

@@ -21,7 +21,7 @@ def methods(client: type) -> dict[str, Any]:
 
 
 def shape(method: Any) -> inspect.Signature:
-    """Return a signature, without the `Async` of a stream's class, and asynchronous sources."""
+    """Return a signature without the asynchronous sources and the `Async` of a result."""
     found = inspect.signature(method)
     parameters = [
         each.replace(annotation=str(each.annotation).removesuffix(" | AsyncTargets"))

@@ -48,7 +48,7 @@ def test_stop_is_sent_and_the_port_is_closed_whatever_stop_and_close_raise(
     with pytest.raises(ValueError, match="the user's own") as raised:
         leave_by(error, open_arm(transport))
     assert raised.value is error
-    # A thread writes for asyncio: there any error of the transport is one of the line.
+    # For asyncio a thread writes, and counts any error of the transport as a lost line.
     repeated = open_arm is MyCobot
     sent = failures == 0 or (failures == 1 and repeated)
     # The bytes before it end what the arm may have of the first one.

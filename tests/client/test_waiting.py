@@ -23,7 +23,7 @@ REPRESENTATIVE = ("mycobot280", "myarm_m750", "mercury_a1")
 MOTIONS = 200
 # How many queries a wait may send in a second, whenever it begins.
 MOST_QUERIES = 12
-# The rest of the edition's tolerances and a tick of the encoders.
+# How much a joint may move at rest by the edition's tolerances, and a tick of the encoders.
 TICK = 0.05
 
 
@@ -56,7 +56,8 @@ class Arm:
         return self.clock() - ended
 
     def end(self, target: list[float]) -> float:
-        """Return when the motion will end: for its event the arm has to be at rest."""
+        """Return when the motion will end: at rest for editions with an event, else near the
+        target."""
         axes, time = self.state.angles, self.clock()
         for step in (0.2, 0.02, 0.002):
             ahead = deepcopy(axes)

@@ -1,4 +1,4 @@
-"""The choices of a quantity hold alone, in a case, and in a value type."""
+"""The choices of a quantity are checked in a field, in a case, and in a value type."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ def test_value_between_choices_is_refused_and_named(edition: Any, name: Any) -> 
     codec = codec_of_edition(edition, name)
     right = codec.encode("set_x", "request", (4, 1, 4, (4, 3)))
     assert codec.decode("request", right).values == (4, 1, 4, (4, 3))
-    # In the other case the range of the percentage holds.
+    # In the other case the range of the percentage applies.
     codec.encode("set_x", "request", (4, 0, 3, (4, 3)))
     wrong = {(3, 1, 4, (4, 3)): "plain", (4, 1, 3, (4, 3)): "picked", (4, 1, 4, (3, 3)): "both"}
     for values, argument in wrong.items():

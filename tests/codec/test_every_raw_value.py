@@ -33,7 +33,7 @@ def _kinds() -> list[Number]:
 
 
 KINDS = _kinds()
-# Without limits, what the bytes hold.
+# Without limits: all values that the bytes can hold.
 WIDE = {
     kind._replace(minimum=kind.raw_range[0], maximum=kind.raw_range[1], choices=())
     for kind in KINDS

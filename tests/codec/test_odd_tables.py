@@ -67,7 +67,7 @@ def test_zero_of_a_negative_scale_has_the_sign_that_the_reference_gives_it(
 
 @pytest.mark.parametrize("listening", ["request", "reply", "both"])
 @pytest.mark.parametrize("way", [None, "request", "reply"])
-def test_frame_with_an_unknown_id_is_missed_in_the_direction_that_was_meant(
+def test_error_about_an_unknown_id_names_the_direction_that_was_asked_for(
     listening: Listening, way: Any
 ) -> None:
     empty = (Variant(()),)

@@ -125,7 +125,7 @@ def test_pieces_cut_at_any_bytes_hold_what_one_scan_finds(
 
 @EACH_CODEC
 def test_chain_of_frames_within_frames_is_read_from_its_start(name: codecs.CodecName) -> None:
-    """Scans from inside a chain never meet its true scan, so the pieces belong to the first."""
+    """No scan from inside the chain meets the scan from its start, so one segment has all of it."""
     # A frame at 0, 17, 34 and so on, and one across the end of each: two readings that never meet.
     link = bytes.fromhex("FE FE 0E 20 00 00 00 FA FE FE 0E 20 00 00 00 00 FA")
     stream = b"\0" + link * 400 + b"\0\0" + FLAG

@@ -1,4 +1,4 @@
-"""pandas, polars, DuckDB and Parquet agree on the types of tables, also of those without rows."""
+"""pandas, polars, DuckDB and Parquet agree on the types of tables, also of empty ones."""
 
 from __future__ import annotations
 

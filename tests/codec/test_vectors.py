@@ -15,7 +15,7 @@ EACH_EDITION = pytest.mark.parametrize("edition", vectors.editions())
 
 
 def _of(edition: str) -> list[Vector]:
-    """Return the vectors of an edition; there are some."""
+    """Return the vectors of an edition, of which there is at least one."""
     found = vectors.edition(edition).vectors
     assert found
     return list(found)

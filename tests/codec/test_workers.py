@@ -148,7 +148,7 @@ print(len(found[0]))
 
 @pytest.mark.skipif(sys.platform != "linux", reason="other systems refuse in other ways")
 def test_one_thread_reads_if_the_system_refuses_others() -> None:
-    # Rust takes the size of a thread's stack from there; no system has so much memory.
+    # Rust takes the size of a thread's stack from RUST_MIN_STACK; no system has this much memory.
     environment = {**os.environ, "RUST_MIN_STACK": str(sys.maxsize // 8)}
     result = subprocess.run(
         [sys.executable, "-c", NO_STACK],

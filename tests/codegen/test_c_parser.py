@@ -1,4 +1,4 @@
-"""The C parser, where it gives a result, gives that of the parser in Python."""
+"""Where the C parser gives a result, it is that of the parser in Python."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ commands:
 
 
 def _told(node: Node | None) -> Any:
-    """Return what the generator reads of a node: kind, tag, place, content."""
+    """Return what the generator reads from a node: kind, tag, place, content."""
     if node is None:
         return None
     place = (node.start_mark.line, node.start_mark.column)

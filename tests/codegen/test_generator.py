@@ -120,7 +120,7 @@ def test_products_are_written_only_with_their_option(generated: Path) -> None:
     assert run(generated, "--products", "--check").returncode == 1
 
 
-def test_what_rust_crates_need_is_written_alone(generated: Path) -> None:
+def test_files_of_the_rust_crates_are_written_alone(generated: Path) -> None:
     stale = generated / GENERATED[0] / "values.py"
     stale.write_text("")
     assert run(generated, "--rust-data", "--check").returncode == 1

@@ -108,7 +108,7 @@ def _prose() -> set[str]:
 
 
 def _all_prose_replaced(payloads: list[str]) -> dict[str, Any]:
-    """Return the spec with a payload in every free text; each has a number, so none is equal."""
+    """Return the spec with a payload in every free text; a number in each makes them unique."""
     prose, whole = _prose(), SPEC
     for number, (path, is_key) in enumerate(SLOTS):
         key = next(step for step in reversed(path) if isinstance(step, str))

@@ -191,7 +191,7 @@ def test_unknown_base_of_a_package_is_reported_with_its_place(
     assert message in result.output
 
 
-def test_delta_with_unknown_geometry_inherits_none(file: Path) -> None:
+def test_delta_with_unknown_geometry_inherits_no_geometry(file: Path) -> None:
     assert built(file).robot.geometry is not None
     unknown = built(file, "geometry_unknown: No source gives the links.\n")
     assert unknown.robot.geometry is None

@@ -29,7 +29,7 @@ def leaves(value: Any) -> Iterator[str]:
             yield from leaves(part)
     elif is_dataclass(value) and not isinstance(value, type):
         for field in fields(value):
-            # ``gone`` says where the delta takes a command away; its changes hold the fact.
+            # ``gone`` is the place where the delta removes a command; its changes say so too.
             if field.name == "gone":
                 continue
             if field.name != "place" or type(value).__name__ not in WITHOUT_PLACE:

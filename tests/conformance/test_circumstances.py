@@ -80,7 +80,7 @@ def test_report_states_tester_serial_number_clocks_and_load(tmp_path: Path) -> N
     assert (timed[0].load > 0) == (host.load() > 0)
 
 
-def test_load_is_beside_verdicts_on_time_only(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_load_is_shown_only_with_verdicts_on_time(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("cobotwire.conformance.tally.load", lambda: 1.5)
     tally, timed, other = Tally(), TestCase("a", "", timed=True), TestCase("b", "")
     for case in (timed, other):

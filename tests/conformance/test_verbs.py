@@ -151,7 +151,7 @@ def test_interrupted_run_is_resumed_and_a_run_is_repeated_from_its_report(tmp_pa
     assert _run("device", "--simulated", *options, "--json", first).returncode == 0
     report = json.loads(Path(first).read_text())
     assert report["options"] == {"allow": "setting", "retries": "1"}
-    # As a run leaves it that ended before the settings.
+    # The report of a run that ended before the settings.
     settings = [r for r in report["results"] if r["group"] == "settings"]
     for result in settings:
         result |= {"cause": "run ended", "verdict": "not run"}

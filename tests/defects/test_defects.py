@@ -16,8 +16,8 @@ from defects.listing import figures, line
 from defects.verdicts import Message, messages_of, verdict_on
 
 KEY = {(defect.subject, defect.switch): defect for defect in defects()}
-# One defect for each rule that alone finds a defect, and for each way to name a cause. For wrong
-# bytes and wrong parts there is one defect each; tests/mutation has a mutant of each kind.
+# For each rule one defect that only this rule finds, and one for each way to name a cause. For
+# wrong bytes and wrong parts there is one defect each; tests/mutation has a mutant of each kind.
 ARM = (
     *("reply-of-the-request-before", "echo", "replies-in-reverse", "settings-coupled"),
     *("stores-forbidden-values", "never-gives-up-half-a-request", "any-instead-of-all", "dies"),

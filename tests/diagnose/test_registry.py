@@ -21,7 +21,7 @@ DOCS = Path(__file__).parents[2] / "docs/diagnosis.md"
 
 
 def test_every_class_of_noise_is_listed_once_under_its_own_kind() -> None:
-    # By name: a dataclass with slots is made twice.
+    # Compare names: a dataclass with slots is created twice.
     made = {c.__name__ for c in Finding.__subclasses__() if c.__module__ != __name__}
     assert {each.__name__ for each in CLASSES} == made
     assert len({each.kind for each in CLASSES}) == len(CLASSES)

@@ -98,7 +98,7 @@ def test_starts_are_the_header_and_each_id_of_the_table() -> None:
     ),
     st.integers(0, 300),
 )
-def test_size_is_that_of_a_plain_statement_of_the_frame(data: bytes, cut: int) -> None:
+def test_size_equals_the_size_that_plain_rules_give(data: bytes, cut: int) -> None:
     for part in (data, data[:cut], data * 2):
         assert packet_size(part, 0) == _plain_size(part)
 
@@ -108,7 +108,7 @@ def _plain_size(packet: bytes) -> int | None:
         return 0
     if (len(packet) > 2 and packet[2] == 0xFF) or (len(packet) > 3 and packet[3] < 2):
         return 0
-    # The spec limits the data of a status packet to 252 bytes; LEN 255 is that of instructions.
+    # The spec limits the data of a status packet to 252 bytes; only instructions can have LEN 255.
     if packet[3:4] == b"\xff" and len(packet) > 4 and packet[4] not in (3, 4, 0x82, 0x83):
         return 0
     if len(packet) < 4 or len(packet) < 4 + packet[3]:

@@ -92,8 +92,8 @@ def check(
 ) -> None:
     """Compare both for a stream that comes twice.
 
-    Python sees the first noise of each class. The second time all classes are known, if frames
-    of more bytes than noise can reach over come in between.
+    Python sees the first noise of each class. The second time all classes are known, because the
+    frames in between are too long to be inside one noise.
     """
     accept = data.draw(st.booleans())
     twice = stream + frame * (1 + 130 // len(frame)) + stream
@@ -179,7 +179,7 @@ def test_survey_names_same_registers_if_python_diagnoses_noise_in_between(
     packets = st.builds(_read_of, servo, st.sampled_from([0x38, 0x3C]), size)
     packets |= st.builds(_status_of, servo, size)
     packets |= st.just(servo_packet(bytes.fromhex("FE 06 82 38 02 01 02")))
-    # Python diagnoses panics and boots, and what is near them.
+    # Python diagnoses panics and boots, and the noise near them.
     noise = st.sampled_from([b"", PANIC, BOOT, bytes(64)])
     apart = st.sampled_from([0, 20]).map(lambda count: count * codec.encode("stop", "request", []))
     pieces = data.draw(st.lists(st.tuples(packets, noise, packets, apart), min_size=2, max_size=6))

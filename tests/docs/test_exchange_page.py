@@ -1,4 +1,4 @@
-"""The page about the exchange names the test that holds each promise."""
+"""The page about the exchange names a test for each promise."""
 
 from __future__ import annotations
 

@@ -31,7 +31,8 @@ def printed(edition: str) -> list[Any]:
 
 
 def test_first_program_of_each_robot_runs_on_its_simulated_arm(site: Path) -> None:
-    # At once: a Mercury needs eight seconds for power_on(), whose reply may be an echo.
+    # All programs run at the same time: on a Mercury, power_on() takes eight seconds, since its
+    # reply may be an echo.
     with ThreadPoolExecutor(len(names())) as pool:
         found = dict(zip(names(), pool.map(printed, names())))
     first = {edition: round(angles.j1) for edition, [angles] in found.items()}

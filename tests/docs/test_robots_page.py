@@ -44,7 +44,7 @@ def test_geometry_is_unknown_where_the_edition_has_none() -> None:
 
 @pytest.mark.parametrize("peer", ROBOTS)
 def test_every_class_has_a_row_of_agreement(peer: str) -> None:
-    # `make robots` compares all calls, and fails if another number of this table is not true.
+    # `make robots` compares all calls, and fails if any other number of this table is wrong.
     [row] = [cells for cells in rows("| class | edition | methods |") if cells[0] == peer]
     robot, (edition, *counts) = ROBOTS[peer], row[1:]
     methods, equal, ruled, opened = map(int, counts)

@@ -82,7 +82,7 @@ def test_command_and_guide_are_the_first_two_results(tab: Tab, site: Path) -> No
     ("page", "most"),
     [
         *[(page, 15) for page in ("index", "guide/drive", "simulation", "framing", "api/client")],
-        # These list the overview, and all robots or one robot with the families of its commands.
+        # These also list all robots, or one robot with the families of its commands.
         *[("robots", 17), ("robots/mycobot280", 16), ("reference/mercury_b1/body", 17)],
     ],
 )

@@ -44,7 +44,7 @@ class Page(HTMLParser):
 
 
 def _left_out(path: Path) -> bool:
-    """Return whether a page of the site is that of an edition outside of the sample."""
+    """Return whether a page of the site is about an edition outside of the sample."""
     return path.parts[0] in ("reference", "robots") and Path(path.parts[1]).stem in LEFT_OUT
 
 
@@ -63,7 +63,7 @@ def test_every_markdown_file_becomes_a_page(site: Path) -> None:
 
 
 def test_generated_pages_have_no_commands_and_no_programs(site: Path) -> None:
-    assert site.is_dir()  # now they are there
+    assert site.is_dir()  # building the site writes the pages
     texts = [path.read_text("utf-8") for path in (ROOT / "docs" / "reference").rglob("*.md")]
     assert len(texts) > 100
     assert [line for text in texts for line in commands(text)] == []

@@ -38,8 +38,8 @@ BY_GEOMETRY |= {
 }
 BY_GEOMETRY |= {"is_in_position_base_coords", "get_base_coords", "get_quick_move_info"}
 
-# No source says what the simulated robot should reply: in the base of two arms, for the gripper, or
-# for the whole robot.
+# No source says what the simulated robot should reply about the gripper, about the whole robot, or
+# in the frame of the base.
 UNKNOWN = {
     "mybuddy": {
         *("get_coord", "get_base_coord", "get_base_coords", "collision", "get_angle"),
@@ -70,7 +70,7 @@ def calls(table: Table) -> Iterator[tuple[Command, dict[str, Any]]]:
 
 
 def unanswered(table: Table) -> set[str]:
-    """Return the commands to which a simulated arm does not reply, for want of a geometry."""
+    """Return the commands to which a simulated arm without a geometry does not reply."""
     known = table.robot.geometry is not None
     return set() if known else BY_GEOMETRY | UNKNOWN.get(table.edition, set())
 
@@ -137,8 +137,8 @@ def test_client_conforms(edition: str) -> None:
 def in_order(table: Table) -> list[tuple[Command, dict[str, Any]]]:
     """Return calls in an order in which a client makes no mistake.
 
-    A motion without power is a mistake, so commands that switch the power off come last. The same
-    request twice is one too, so the second name of a message comes after other requests.
+    A motion without power is a mistake, so commands that switch the power off come last. To repeat
+    a request is a mistake too, so a second command with the same id comes after other requests.
     """
     known = list(calls(table))
     ids = [command.id for command, _ in known]

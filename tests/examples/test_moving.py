@@ -18,7 +18,7 @@ from vectors import ROOT
 
 FOLDER = ROOT / "examples"
 MOVING = ("pick_and_place", "teach_and_replay", "two_arms")
-# The arm's seconds in one of ours.
+# The seconds of the arm's clock in a real second.
 RATE = 50.0
 
 

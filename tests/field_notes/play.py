@@ -12,7 +12,7 @@ from both_ways import InLoop
 from cobotwire import CobotwireError
 from cobotwire.editions.mycobot280 import AsyncMyCobot280, MyCobot280
 from field_notes.case import DONE, Call, Case
-from probe_client import ProbeClient
+from probe_client import NODE, ProbeClient
 
 RIGHT, WRONG = "right", "wrong, silently"
 
@@ -61,6 +61,11 @@ def open_rust_async(url: str) -> Any:
     return ProbeClient(url, "mycobot280", tasks=True)
 
 
+def open_node(url: str) -> Any:
+    """Open the client in Node, in a process of its own."""
+    return ProbeClient(url, "mycobot280", command=NODE)
+
+
 def _opened(library: Any, url: str) -> Any:
     if url.startswith("socket://"):
         host, port = url.removeprefix("socket://").split(":")
@@ -75,6 +80,7 @@ OPENERS: dict[str, Callable[[str], Any]] = {
     "asyncio": open_asyncio,
     "rust": open_rust,
     "rust async": open_rust_async,
+    "node": open_node,
     "layer": open_layer,
     "pymycobot": open_pymycobot,
 }

@@ -31,10 +31,10 @@ SPEED = bytes.fromhex("FE FE 03 40 32 FA")
 
 # One edition for each kind of evidence: queries, frames, or a limit. Another test has all editions.
 KINDS = [("mycobot", "pty"), ("mycobot280", "pty"), ("mybuddy", "tcp"), ("mecharm270", "pty")]
-# Their simulated arms reply to the same queries: what differs needs a geometry, or an argument.
+# Their simulated arms reply to the same queries: the others need a geometry, or an argument.
 ALIKE = ("mercury_a1", "mercury_b1", "mercury_x1")
 CANDIDATES: dict[str, tuple[str, ...]] = dict.fromkeys(ALIKE, ALIKE)
-# The M750 has every query of the C650, so only what is missing speaks for the C650.
+# The M750 has every query of the C650, so only missing replies show a C650.
 CANDIDATES["myarm_c650"] = ("myarm_c650", "myarm_m750")
 
 
@@ -222,6 +222,6 @@ def test_late_reply_to_a_query_is_left_to_the_next_client_on_the_port() -> None:
         identify_on(transport, timeout=0.05)
         late = [frame.request for frame in PortMemory(transport).recall().late]
         transport.close()
-    # One for each frame format that was tried.
+    # One query for each frame format that was tried.
     assert bytes.fromhex("FE FE 02 12 FA") in late
     assert bytes.fromhex("FE FE 00 02 12 12") in late

@@ -159,7 +159,7 @@ def test_next_program_finds_no_reply_that_the_last_one_did_not_read(tap: Tap) ->
         os.write(tap.arm, b"unread")
         select.select([program], [], [], SECONDS)
     tap.until("closed")
-    # Nobody has the port open: this is lost, as on a serial port.
+    # No program has the port open, so this is lost, as on a serial port.
     os.write(tap.arm, b"lost")
     while b"lost" not in b"".join(copy.data for copy in tap.copies()):
         pass

@@ -50,7 +50,7 @@ def _by_scipy(geometry: Geometry, target: Pose, guess: Sequence[float]) -> tuple
     return tuple(map(float, found.x))
 
 
-def test_targets_at_the_edge_of_the_reach_are_those_of_another_least_squares() -> None:
+def test_angles_at_the_edge_of_the_reach_are_as_near_as_those_of_scipy() -> None:
     chance, reached = random.Random(3), []
     for _ in range(40):
         # Joints 2 to 4 are nearly stretched out; the target is up to 0.5 mm from the flange.

@@ -59,7 +59,7 @@ def search(
     limits: list[tuple[float, float]],
     largest_turn: float = math.inf,
 ) -> tuple[float, ...] | None:
-    """Return what a search finds that takes as long as it needs."""
+    """Return the result of a search without a limit of effort."""
     return searches.search(geometry, target, present, limits, largest_turn, Effort(ENOUGH))
 
 
@@ -127,7 +127,7 @@ def test_search_finds_what_the_closed_form_finds() -> None:
         assert max(flange(MYCOBOT_280, found).distance(target)) <= 1e-3
 
 
-def test_link_that_no_joint_of_its_own_turns_keeps_the_end_level() -> None:
+def test_link_without_a_joint_of_its_own_keeps_the_end_level() -> None:
     rng = random.Random(4)
     limits = [(-160.0, 160.0), (0.0, 90.0), (-90.0, 60.0), (-180.0, 180.0)]
     for _ in range(20):

@@ -132,7 +132,9 @@ def test_simulated_arm_reports_ends_only_while_that_is_on() -> None:
         ("drag_teach_execute", (), "no points are recorded"),
     ],
 )
-def test_order_that_cannot_work_says_why(method: str, arguments: tuple[Any, ...], why: str) -> None:
+def test_command_that_cannot_work_says_why(
+    method: str, arguments: tuple[Any, ...], why: str
+) -> None:
     arm, _ = made("Mercury", "mercury_a1", powered=False)
     with pytest.raises(ArmNotReady) as raised:
         getattr(arm, method)(*arguments)

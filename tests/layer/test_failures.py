@@ -15,7 +15,7 @@ from layer.arms import made
 from memory_peer import MemoryPeer
 
 
-def test_order_without_acknowledgement_raises_or_returns_minus_one() -> None:
+def test_setter_without_acknowledgement_raises_or_returns_minus_one() -> None:
     for errors in ("raise", None):
         with pytest.raises(ReplyTimeout):
             made("MyCobot280", errors=errors, acks=False)[0].set_color(1, 2, 3)
@@ -30,7 +30,7 @@ def test_query_without_reply_raises_or_returns_minus_one() -> None:
     assert made("MyCobot280", errors="return", peer=lambda _: MemoryPeer())[0].get_angles() == -1
 
 
-def test_quiet_order_waits_for_nothing() -> None:
+def test_asynchronous_motion_waits_for_nothing() -> None:
     found, _ = made("MyCobot280", acks=False)
     assert found.send_angles([0] * 6, 50, _async=True) is None
     assert found.clock() < 0.1

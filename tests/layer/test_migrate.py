@@ -143,7 +143,7 @@ def test_constructor_opens_what_the_library_opens_by_default(name: str) -> None:
         assert str(number) == str(kind.usual) or str(number) in opened
 
 
-def test_default_that_ours_lacks_is_written() -> None:
+def test_default_argument_of_the_library_is_written_if_our_method_requires_it() -> None:
     head = "from pymycobot import MyCobot280RDKX5\nmc = MyCobot280RDKX5(port)\n"
     assert migrate(f"{head}mc.get_gripper_value()\n").text.endswith("mc.get_gripper_value(1)\n")
 

@@ -18,7 +18,7 @@ HEAD = "from pymycobot import MyCobot280\n"
 OPENED = "mc = MyCobot280(port)\n"
 ROW = "[1, 2, 3, 4, 5, 6]"
 
-# The result of an order, which only the library has.
+# The result of a request without a reply, which only the library has.
 LISTED = [
     f"ok = mc.send_angles({ROW}, 50)\nif ok == 1:\n    mc.set_color(1, 2, 3)",
     f"if mc.send_angles({ROW}, 50):\n    mc.set_color(1, 2, 3)",
@@ -70,7 +70,7 @@ LISTED = [
     "int = float\nout.append(mc.is_power_on())",
     "mc = out\nmc.append(1)",
 ]
-# What is the same, as it is or after a conversion of the result.
+# Programs that do the same, unchanged or with a conversion of the result.
 SAME = [
     "row = mc.get_angles()\nrow.append(7)\nout.append(row)",
     "row = mc.get_angles()\nrow[0] = 7\nout.append(row)",

@@ -10,7 +10,7 @@ from layer.arms import made
 
 @pytest.mark.parametrize("edition", ["mycobot", "mycobot280"])
 @pytest.mark.parametrize(("name", "result"), [("MyCobot", 1), ("MyCobotSocket", [1])])
-def test_order_returns_at_once_whether_or_not_the_arm_acknowledges(
+def test_setter_returns_at_once_whether_or_not_the_arm_acknowledges(
     name: str, result: object, edition: str
 ) -> None:
     arm, _ = made(name, robot=edition)

@@ -146,7 +146,7 @@ def test_every_class_that_is_not_offered_is_refused_with_its_reason() -> None:
                 exec(f"from {source} import {name}", {})
 
 
-# Likewise.
+# It reads the language of the system in a way that Python deprecates.
 @pytest.mark.filterwarnings("ignore:.*getdefaultlocale:DeprecationWarning")
 def test_installed_library_is_the_same_before_and_after() -> None:
     import pymycobot

@@ -21,7 +21,7 @@ TESTERS: dict[str, Callable[[Table], Suite]] = {
     "client without a script": ScriptlessSuite,
     "codec": CodecSuite,
 }
-# Without a script, the referee checks only whether requests are legal: one edition shows that.
+# Without a script, the referee checks only whether requests are legal: one edition is enough.
 WITHOUT_SCRIPT = "mycobot280"
 # Mutants per task: few, so that all processes end at about the same time.
 CHUNK = 8

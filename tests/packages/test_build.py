@@ -21,9 +21,7 @@ NO_REGISTRY = "http://127.0.0.1:1"
 
 
 @pytest.mark.parametrize("fetched", [True, False], ids=["fetched before", "registry not reachable"])
-def test_source_distribution_has_the_page_or_the_build_says_that_it_lacks_it(
-    tmp_path: Path, fetched: bool
-) -> None:
+def test_source_distribution_has_the_page_or_the_build_warns(tmp_path: Path, fetched: bool) -> None:
     clone = tmp_path / "clone"
     ignored = shutil.ignore_patterns("target", "vendor", "*.so", "__pycache__", "corpus")
     for folder in ("python", "rust", "spec", "tools"):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import json
 import re
 import subprocess
 import sys
@@ -43,6 +44,8 @@ def test_version_is_stated_once_and_is_that_of_all_distributions() -> None:
     ours = [crate["version"] for crate in crates if crate["name"].startswith("cobotwire-")]
     assert len(ours) > 3
     assert {*ours} == {stated}
+    for name in ("package.json", "package-lock.json"):
+        assert json.loads((ROOT / "clients/typescript" / name).read_text())["version"] == stated
 
 
 def test_stub_names_what_the_package_has() -> None:
@@ -94,6 +97,8 @@ def declared() -> set[str]:
         for part in (table, *table.get("target", {}).values()):
             found |= {*part.get("dependencies", {}), *part.get("dev-dependencies", {})}
     found |= {package.name for package in front_end.PACKAGES}
+    npm = json.loads((ROOT / "clients/typescript/package.json").read_text("utf-8"))
+    found |= {*npm.get("dependencies", {}), *npm["devDependencies"], *npm["peerDependencies"]}
     texts = [path.read_text("utf-8") for path in (ROOT / ".github/workflows").glob("*.yml")]
     for pattern in (r"uses: ([\w-]+/[\w-]+)@", r"pipx run ([\w-]+)", r"go run \S+/([\w-]+)@"):
         found |= {*re.findall(pattern, "".join(texts))}
@@ -125,7 +130,7 @@ def test_extra_all_has_every_other_extra(name: str) -> None:
 
 @pytest.mark.parametrize("name", ADDED)
 def test_long_description_links_to_absolute_addresses_of_existing_files(name: str) -> None:
-    """That of cobotwire is the README: tests/docs/test_readme.py."""
+    """The long description of cobotwire is the README: tests/docs/test_readme.py."""
     repository = project(name)["urls"]["Repository"]
     links = LINK.findall(PROJECTS[name].with_name("README.md").read_text(encoding="utf-8"))
     assert links

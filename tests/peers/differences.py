@@ -69,7 +69,7 @@ def unruled(name: str, found: Iterable[Difference]) -> list[str]:
 def stale(
     name: str, found: Collection[Difference], compared: Mapping[str, Collection[str]]
 ) -> list[str]:
-    """Return the rulings that no difference of a class needs any more.
+    """Return the rulings that fit no difference of a class.
 
     ``compared`` has the compared methods, by what was compared: ``values``, ``calls``, ``replies``.
     If all three were compared, a ruling can be stale even if some of its methods were not compared.
@@ -87,7 +87,7 @@ def stale(
 
 
 def unused(found: Collection[tuple[str, Difference]]) -> Iterator[str]:
-    """Yield methods and parts of rulings that no difference of any class needs any more."""
+    """Yield methods and parts of rulings that fit no difference of any class."""
     for ruling in rulings():
         needed = [each for name, each in found if ruling.rules(name, each)]
         methods = ruling.methods - {each.method for each in needed}

@@ -111,7 +111,7 @@ def stated(kind: Any, method: str, name: str, index: int | None = None) -> froze
 
 @cache
 def _limits(kind: Any, index: int | None) -> set[float]:
-    """Return the numbers of the library's table of limits for a class, or those of an index."""
+    """Return the numbers of the library's table of limits for a class, or for an index."""
     rows = [r for r in RobotLimit.robot_limit.get(kind.__name__, {}).values() if _is_row(r)]
     which = slice(None) if index is None else slice(index, index + 1)
     return {float(each) for row in rows for each in row[which]}

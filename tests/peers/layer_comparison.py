@@ -27,11 +27,11 @@ REJECTED = "rejected"
 ITSELF = "the arm itself"
 # The result of a call that waits for bytes that never come.
 ENDLESS = "waits for ever"
-# Our call raised an error after it wrote; the library fails by a mistake of its own.
+# Our call raised an error after it wrote; the library's call fails by a mistake in the library.
 FAILED, MISTAKE = "fails", "fails by mistake"
 
 
-# Of processor time, for a call of the maker's class: on a simulated arm, and with one reply.
+# The limits of processor time for a call of the maker's class: on a simulated arm, with one reply.
 MOST_SECONDS, MOST_FOR_REPLY = 10.0, 0.5
 
 

@@ -28,7 +28,7 @@ COMPARISONS: dict[str, Callable[..., Compared]] = {
 
 
 def main(names: list[str]) -> int:
-    """Print what each comparison of each class found; return 1 if a ruling lacks or is stale.
+    """Print what each comparison of each class found; return 1 if a ruling is missing or stale.
 
     With names of classes, compare these only.
     """
@@ -62,7 +62,7 @@ def main(names: list[str]) -> int:
 
 
 def _shown(texts: Iterable[str]) -> list[str]:
-    """Print what is open, and return it."""
+    """Print the differences without a ruling, and return them."""
     found = [*texts]
     for text in found:
         print(f"OPEN: {text}", flush=True)

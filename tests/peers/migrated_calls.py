@@ -19,7 +19,7 @@ from robots.robot import Robot
 
 ROBOTS = {robot.peer: robot for robot in [*LAYER_ROBOTS.values(), *CLOSED_LOOP.values()]}
 ROBOTS |= {"MyPalletizer": PALLETIZER, "Mercury": LAYER_ROBOTS["Mercury (A1)"]}
-# Classes that the comparison with the library leaves out, and those of the same methods.
+# Classes that the comparison with the library leaves out, with the class that has the same methods.
 SAME_METHODS = {
     "MyCobot280Socket": "MyCobot280",
     "MyCobot280RDKX5Socket": "MyCobot280RDKX5",
@@ -36,7 +36,7 @@ REJECTED, FAILED, MISTAKE, ABSENT = "rejected", "failed", "fails by mistake", "n
 
 
 class Done(NamedTuple):
-    """What a line wrote, what it kept, and the types of that."""
+    """The bytes that a line wrote, the value that it kept, and its types."""
 
     written: bytes
     kept: Any

@@ -102,7 +102,7 @@ def test_sample_differs_from_the_makers_class_exactly_as_ruled(name: str, part: 
     compared = COMPARISONS[part](ALL_ROBOTS[name], EVERY[part])
     assert unruled(name, compared.found) == []
     assert stale(name, compared.found, {part: compared.methods}) == []
-    # Some methods have no argument to draw.
+    # Some methods have no arguments.
     assert compared.compared > 0 or (part == "values" and compared.methods)
 
 

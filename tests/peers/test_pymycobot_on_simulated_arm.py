@@ -1,6 +1,6 @@
 """The maker's unmodified classes drive simulated arms, which acknowledge setters or do not.
 
-Of the document's edition, an arm acknowledges no setter. The classes wait for a reply all the same.
+An arm of the document's edition acknowledges no setter. The classes wait for a reply all the same.
 So they send each setter three times, take 1.5 s and return -1, although the arm obeys.
 """
 
@@ -80,7 +80,7 @@ def test_angle_between_steps_is_truncated_where_ours_is_rounded() -> None:
 
 @pytest.mark.parametrize("which", ["tool", "world"])
 @pytest.mark.parametrize(("edition", "factor"), [("mycobot", 0.1), ("mycobot280", 1.0)])
-def test_reference_reads_back_as_sent_also_where_a_tenth_arrives(
+def test_reference_reads_back_as_sent_although_a_tenth_of_it_may_arrive(
     which: str, edition: str, factor: float
 ) -> None:
     # Disputed: the class writes and reads x, y and z in tenths, the document has hundredths.

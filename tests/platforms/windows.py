@@ -26,7 +26,7 @@ import types
 from collections.abc import Iterable
 from typing import Any
 
-# What is only imported later would ask sys.platform, and fail for want of the real Windows.
+# If these were imported later, they would check sys.platform, and fail without the real Windows.
 LOADED = (asyncio, concurrent.futures, ctypes, logging.handlers, subprocess, tempfile)
 THIRD_PARTY = ("click", "rich.console", "rich.live", "rich.progress", "serial.tools.list_ports")
 # Only imported in the test that imports all of our modules.
@@ -66,7 +66,7 @@ def pretend(extras: Iterable[str] = ()) -> None:
     for name in (*THIRD_PARTY, *extras):
         importlib.import_module(name)
     sysconfig.get_config_vars()
-    # pyserial is that of this system, which waits for the port with select().
+    # This system's pyserial waits for the port with select().
     posix: Any = importlib.import_module("serial.serialposix")
     posix.select = types.SimpleNamespace(select=_select)
     # Any: what is replaced has more precise types than its replacement.

@@ -81,7 +81,7 @@ def test_acknowledgement_at_the_end_of_a_motion_is_not_that_of_the_next_one(load
     first = arm.send(0.0, lost=True)
     with pytest.raises(ReplyTimeout):
         first.result()
-    # Its end, 20 s later, while the next motion has been sent.
+    # The first motion ends 20 s later, when the next one has been sent.
     _, second = exchange.send_one_way(arm._request, 20.0, WITHIN)
     exchange.receive(arm._ack, 20.1)
     exchange.wake(20.5)

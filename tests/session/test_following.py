@@ -57,14 +57,14 @@ def test_path_begins_and_ends_where_it_must_and_stays_within_the_bounds(
     assert rows[0] == pytest.approx(start, abs=1e-6)
     assert rows[-1] == pytest.approx(targets[-1], abs=1e-6)
     stays_within(rows, bounds, 1 / RATE)
-    # It passes each point, to within the way of a tick.
+    # It passes each point at a distance of at most the way of a tick.
     for target in targets:
         assert min(math.dist(target, row) for row in rows) <= 2 * max(bounds.speed) / RATE
 
 
 @settings(max_examples=25)
 @given(triple, st.lists(triple, min_size=1, max_size=4), bounds, st.floats(0.05, 5))
-def test_path_with_times_is_at_its_points_in_time_or_names_what_does_not_do(
+def test_path_with_times_is_at_its_points_in_time_or_is_refused(
     start: tuple[float, ...], targets: list[tuple[float, ...]], bounds: Bounds, gap: float
 ) -> None:
     points = [(target, gap * (number + 1)) for number, target in enumerate(targets)]
@@ -113,7 +113,7 @@ def drive(
 ) -> list[tuple[float, EncodedRequest]]:
     """Take the steps of a call with an arm that is always at its last target; return what it sent.
 
-    ``late`` has by how much each pause is too long, in turn.
+    ``late`` has the excess of each pause, in turn.
     """
     now, mode, at = 100.0, 0, (0.0,) * 6
     sent: list[tuple[float, EncodedRequest]] = []

@@ -1,4 +1,4 @@
-"""The exchange of the Rust core decides as the one of Python does, its specification."""
+"""The exchange of the Rust core decides as the one of Python, which is its specification."""
 
 from __future__ import annotations
 

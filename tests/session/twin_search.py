@@ -17,7 +17,7 @@ from session.exploring.world import LATEST, World
 from session.twins import Recorder
 from vectors import ROOT
 
-# What does not change, or only an outcome shows it; what is a time; and a position in the stream.
+# Attributes that never change, or that only an outcome shows; times; positions in the stream.
 LEFT_OUT = re.compile(
     r"queued_at: \d+, |requested_at: \d+, |, count: \d+|policy: RetryPolicy {[^}]*}, "
     r"|received: ReceivedMeanwhile\(\[.*?\]\), (?=policy: )"

@@ -46,7 +46,7 @@ ROUNDING = 1e-6
 
 
 def getter_of(table: Table, setter: str) -> Command | None:
-    """Return the command that reads a setting back in a frame; None if there is no such one."""
+    """Return the command that reads a setting back in a frame; None if no command does."""
     what = setter.removeprefix("set_")
     wanted = READ_BY.get(setter), f"get_{what}", f"is_{what}"
     if not setter.startswith("set_") or table.command(setter).safety == "motion":

@@ -18,8 +18,9 @@ def bench() -> Bench:
     return Bench(TABLE)
 
 
-# Their effect is stated, and code adds what the language cannot say: the size of a reply, the group
-# of an error, a motion without known lengths, an unknown frame, and two ways to state a speed.
+# Commands with a stated effect, to which code adds what the language cannot say: the size of a
+# reply, the group of an error, a motion without known lengths, an unknown frame, and two ways to
+# state a speed.
 REFINED = {
     *("get_servo_data", "get_error_information", "set_solution_angles"),
     *("get_base_coords", "is_in_position_base_coords", "is_waist_in_position", "set_encoders"),
@@ -27,7 +28,7 @@ REFINED = {
 
 
 @pytest.mark.parametrize("name", editions.names())
-def test_what_only_code_can_say_has_a_behaviour_and_nothing_else_has_one(name: str) -> None:
+def test_exactly_the_commands_whose_effect_is_code_have_a_behaviour(name: str) -> None:
     table = editions.load(name).TABLE
     said_by_code = {c.name for c in table.commands if isinstance(effect_of(c), Code)}
     with_behaviour = {c.name for c in table.commands if own(table, c) is not None}
@@ -228,7 +229,7 @@ def test_gripper_does_not_move_without_power(bench: Bench) -> None:
 
 
 def test_in_position_has_a_tolerance_for_millimetres_and_one_for_degrees(bench: Bench) -> None:
-    # Of degrees 0.1, and half a tick for each of six joints.
+    # The tolerance of 0.1 degrees, and half a tick for each of six joints.
     there = list(bench.query("get_coords"))
     for index, off, reached in [(0, 4.8, 1), (2, 5.2, 0), (3, 0.3, 1), (5, 0.5, 0), (5, 4.0, 0)]:
         target = [*there]

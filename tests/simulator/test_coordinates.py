@@ -189,7 +189,7 @@ def test_arm_outside_its_limits_stays_there_until_it_is_sent_inside(
     assert bench.query("get_angles")[1] > -148.35
 
 
-def test_arm_of_which_nothing_is_stated_moves_joints_and_rejects_coordinates() -> None:
+def test_arm_without_stated_facts_moves_joints_and_rejects_coordinates() -> None:
     clock = SteppedClock()
     arm = SimulatedArm(TABLE._replace(robot=UNSTATED), clock=clock)
 

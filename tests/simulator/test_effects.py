@@ -1,4 +1,4 @@
-"""Effects on a simulated arm that no shipped edition has, and rare cases of those that one has."""
+"""Effects on a simulated arm: some that no shipped edition has, and rare cases of the others."""
 
 from __future__ import annotations
 

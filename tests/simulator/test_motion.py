@@ -26,7 +26,7 @@ def _speeds(axes: Axes, begin: float, end: float) -> list[tuple[float, ...]]:
 
 
 def _holds_to(speeds: list[tuple[float, ...]], fastest: float) -> None:
-    """Return the speeds and accelerations of each axis, as differences of its positions."""
+    """Assert that speeds, and the differences between them, stay within their limits."""
     for one, two in pairwise(speeds):
         assert all(abs(b - a) <= MOST * STEP * 1.001 + 1e-6 for a, b in zip(one, two))
         assert all(abs(a) <= fastest * 1.001 + 1e-6 for a in one)
@@ -58,7 +58,7 @@ def test_lagging_axes_are_where_others_were_before(
 ) -> None:
     lag, now, times = 0.125, 1.0, []
     prompt, late = Axes((0.0, 0.0, 0.0), MOST), Axes((0.0, 0.0, 0.0), MOST, lag)
-    # Where the prompt axes are, at the times at which the others are there.
+    # Where the prompt axes are, each with the time at which the late axes must be there.
     expected: list[tuple[float, tuple[float, ...], tuple[float, ...]]] = []
     for wait, command, target, rate in orders:
         for _ in range(3):

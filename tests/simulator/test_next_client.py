@@ -1,4 +1,4 @@
-"""Test that nothing of a client that has left reaches the next one, on a real pty and over TCP."""
+"""Test that no bytes of a client that has left reach the next one, on a real pty and over TCP."""
 
 from __future__ import annotations
 

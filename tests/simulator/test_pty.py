@@ -64,8 +64,14 @@ def test_next_client_is_served_after_one_that_never_read() -> None:
     requests = _Requests()
     with PtyServer(SimulatedArm(TABLE, on_event=requests)) as server:
         _send_without_reading(server, 400)
-        # The terminal holds requests that the arm has yet to take: the next client waits for them.
+        # Wait until the arm has taken all requests from the terminal, and the server has dropped
+        # the unread replies. A client that reads meanwhile would report that another program reads
+        # from its port.
         requests.wait_for(8000)
+        deadline = time.monotonic() + 20
+        while server._opened and time.monotonic() < deadline:
+            time.sleep(0.02)
+        time.sleep(0.1)
         with MyCobot(server.url) as arm:
             arm.power_on()
             assert arm.is_power_on() is True

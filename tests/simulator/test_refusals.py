@@ -1,4 +1,4 @@
-"""Test that what a simulated arm cannot know reaches every user with the reason, and is asked once.
+"""Test that each user learns why a simulated arm cannot reply, and sends such a query once.
 
 A real arm of the same edition replies, so nothing may be left out before the arm has refused.
 """
@@ -95,7 +95,7 @@ def test_silence_without_a_reason_is_reported_as_before() -> None:
     assert error.value.refusal == ""
 
 
-def test_stream_of_what_the_arm_cannot_know_ends_with_the_reason() -> None:
+def test_stream_of_a_query_that_the_arm_refuses_ends_with_the_reason() -> None:
     async def sample(url: str) -> None:
         async with EDITION.ASYNC_CLIENT(url) as arm:
             async for _ in arm.stream(EDITION.messages.GetCoords(), rate=20):
@@ -118,7 +118,7 @@ def test_monitor_asks_again_only_if_the_arm_did_not_refuse(silent: bool, unanswe
     assert (REASON in last.error) is not silent
 
 
-def test_studio_stops_polling_what_the_arm_cannot_know() -> None:
+def test_studio_stops_polling_a_query_that_the_arm_refuses() -> None:
     simulated, received = _counting()
     with PtyServer(simulated) as server, ArmLine(EDITION, PortOptions(server.url), 50.0):
         until = time.monotonic() + 20

@@ -101,7 +101,7 @@ def test_next_reply_of_the_320_does_not_wait_for_unreachable_targets() -> None:
             arm.get_angles()
             times.append(time.perf_counter() - started)
     assert {note.command for note in simulated.notes} == {"send_coords"}
-    # Some of them may wait for other processes.
+    # A call may be late because of other processes, so compare the median.
     assert statistics.median(times) < SECONDS
 
 
@@ -123,7 +123,7 @@ def test_search_that_is_too_long_ends_and_says_so() -> None:
     edition: Any = load("mycobot320")
     stated = geometry_of(edition.TABLE)
     assert stated is not None
-    # No axes of another arm are those of a closed form.
+    # With other angles between the axes there is no closed form.
     skew = Geometry(tuple(replace(link, alpha=link.alpha + 7) for link in stated.links))
     arm = SimulatedArm(edition.TABLE, powered=True, geometry=skew)
     with PtyServer(arm) as server, edition.CLIENT(server.url) as client:

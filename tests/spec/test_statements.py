@@ -43,7 +43,7 @@ DIFFER = {
 
 @pytest.mark.parametrize("edition", EDITIONS)
 def test_edition_agrees_with_independent_statements(edition: str) -> None:
-    # Of requests, the next test states more.
+    # The next test covers requests.
     independent = [each for each in STATEMENTS if each not in requests.RULES]
     said = [text for statement in independent for text in statement(vectors.edition(edition))]
     assert said == []

@@ -25,7 +25,7 @@ from cobotwire_codegen.language.shapes import Known, Lines, Shape, Text, Texts
 from cobotwire_codegen.load import Mapping, Node, Sequence
 from spec_mutants.nodes import Path
 
-# These are facts although they are written as text; other texts and names are prose and names.
+# The texts and names that state facts.
 STATED = {
     language.RequestText.text,
     language.Frame.length_counts,
@@ -35,7 +35,7 @@ STATED = {
     *(Moves.by, Moves.about, Moves.direction, Moves.speed),
     *(Lists.list, Lists.append, Computes.from_, Computes.near, ByCase.selector),
 }
-# Other files, and what the facts are compared with.
+# These are no facts: names of other files, and the lines that facts are compared with.
 BESIDE = (InFile, InFiles, Lines)
 DEFINITIONS = {language.Command, *language.SECTIONS.values()}
 EVIDENCE = {language.Dispute, language.Evidence}

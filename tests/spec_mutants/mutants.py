@@ -33,9 +33,9 @@ from cobotwire_codegen.model import Edition, Quantity, Type
 from spec_mutants.facts import Fact, facts_of
 from spec_mutants.nodes import Path, changed, with_value
 
-# What a longer list of words is reduced to: the neighbours in the list.
+# A list with more words is reduced to the nearest ones.
 MOST_WORDS = 6
-# What names state.
+# The keys whose values name state.
 STATED_STATES = ("reports.reports", "stores.stores")
 Wrong = Iterator[tuple[str, Node | None]]
 

@@ -21,7 +21,7 @@ from spec_statements import STATEMENTS
 ROOT = Path(__file__).resolve().parent.parent.parent
 # The files by edition. A change may be noticed in each edition that uses the file.
 PATHS = {path.stem: path for path in spec_files(ROOT)}
-# What explains a fact, and where it stands.
+# The keys of texts that explain a fact, and of its place in the file.
 PROSE = {"doc", "title", "notes", "place"}
 FACTS = ("frame", "types", "commands", "changes")
 
@@ -77,7 +77,7 @@ def _without_prose(value: object) -> object:
 
 
 def verdict_on(edition: str, path: Path, node: Node) -> Verdict:
-    """Return what notices that a file of an edition has other content."""
+    """Return what notices a change of a file of an edition."""
     equal = True
     for name in {edition: 0, **dict.fromkeys(_users(path))}:
         try:

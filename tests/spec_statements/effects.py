@@ -80,7 +80,7 @@ SAYS: dict[str, str] = {
     "read": r"get|reads",
     "written": r"set|writes",
 }
-# Commands whose words also name other state: the state that they are about.
+# The state that commands are about whose words name other state, too.
 ABOUT = (
     (r"power_on", "powered held free connected"),
     (r"get_robot_power_status", "powered"),
@@ -97,7 +97,7 @@ ABOUT = (
     (r"[sg]et_world_reference", "world"),
     (r"set_hand_gripper_angles", "finger_positions hand_positions"),
     (r"tool_serial_restore", "tool_baud tool_timeout"),
-    (r"is_in_position\w*", "reached"),
+    (r"is_(waist_)?in_position\w*", "reached"),
     (r"set_gripper_state", "gripper_held"),
     (r"[sg]et_servo(_system)?_data", "registers head_registers"),
     (r"[sg]et_communication_mode", "robot_protocol"),
@@ -105,7 +105,7 @@ ABOUT = (
     (r"check_async_or_sync", "synchronous_mode"),
     (r"set_pro_gripper_stop", "bus_paused"),
 )
-# The same where an edition has such state.
+# The same for commands that are about this state only in editions that have it.
 ABOUT_ITS_OWN = {
     "head_deviation": (r"[sg]et_servo_cw", "head_deviation"),
     "encoders": (r"[sg]et_servos?_encoder(_drag)?", "encoders servo_speeds"),
@@ -228,7 +228,7 @@ def states(edition: Edition) -> Iterator[str]:
 
 
 def speeds(edition: Edition) -> Iterator[str]:
-    """Report motions that take no notice of the speed in their request, or have another type."""
+    """Report motions that ignore the speed in their request, or whose speed has another type."""
     for command in edition.commands:
         arguments = {f.name: f.type.name for variant in command.requests for f in variant}
         effect = command.effect

@@ -25,7 +25,7 @@ WAITS_MS = {
     "myarm_": {"get_robot_error_status": 90000},
     "mycobot320": {"get_robot_status": 75000},
 }
-# Arguments that the edition must be given, or gives, unlike the library; each has its ruling there.
+# Arguments whose default differs from the library's; tests/peers has the reasons.
 RULED_DEFAULTS = (
     r"(mercury|pro)\S+ (pause|resume|stop) deceleration|(mercury|pro)\S+ write_move_c_r arc"
     r"|(mercury|pro)\S+ [sg]et_pro_gripper address|mycobot280_rdkx5 get_gripper_value gripper"
@@ -48,7 +48,7 @@ def _baudrate(edition: str) -> int | None:
 
 @lru_cache(maxsize=1)
 def _wait_ms() -> int:
-    """Return how long the library waits for the reply to a request, unless it knows better."""
+    """Return how long the library waits for a reply by default."""
     found = re.search(r"\belse:\s+wait_time = ([\d.]+)", inspect.getsource(MAKER._read))
     assert found, "the library states its default wait"
     return round(float(found[1]) * 1000)
@@ -104,7 +104,7 @@ TABLES = {
     "mycobot280_rdkx5": "MyCobot280RDK-X5",
 }
 LIMITED = r"(j\d+|s\d|arm|flange|([xy]_)?reach|height)(_step)?(_angle|_radian|_limit|_encoder)?"
-# What the arguments of commands with a role go to.
+# The roles of commands whose arguments are targets.
 TARGETS = ("joint target", "joint targets", "coordinate target", "coordinate targets")
 AXES = {"x": "x_reach", "y": "y_reach", "z": "height"}
 AXES |= dict.fromkeys(("rx", "ry", "rz", "theta"), "turn")
@@ -152,13 +152,13 @@ def _limited(edition: Edition) -> Iterator[tuple[str, str, bool, Quantity]]:
             cases = [(member.name, part) for member, t in field.cases for _, part in t.parts]
             for label, part in cases or field.type.parts:
                 what = f"j{label}" if label.isdigit() else label.lower()
-                # Of a single number, nothing says which joint or axis it is for.
+                # A single number may be for any joint or axis.
                 if isinstance(part, Quantity) and part.unit in ("degree", "millimetre"):
                     yield f"{command.name} {label}", AXES.get(what, what), False, part
 
 
 def limits(edition: Edition) -> Iterator[str]:
-    """Report targets that go to another limit than the library's, or further steps."""
+    """Report targets and steps with another limit than the library's."""
     # The document states no limits of targets.
     ends = _limits(edition.name)[1] if edition.name != "mycobot" else {}
     for name, what, step, type in _limited(edition) if ends else ():

@@ -200,7 +200,7 @@ def read_back(edition: Edition) -> Iterator[str]:
 def agreement(edition: Edition) -> Iterator[str]:
     """Report queries that agree with others than their names tell."""
     known = {command.name for command in edition.commands}
-    # There, one servo may be the gripper, which the list does not have.
+    # There, one servo may be that of the gripper, which the list does not contain.
     known -= {"get_encoders"} if edition.name == "mycobot280_rdkx5" else set()
     for command in edition.commands:
         wanted: tuple[str, ...] = ()
@@ -220,7 +220,7 @@ ABOUT = {"joint", "pin", "servo", "register", "address", "gripper", "gripper_id"
 def echoes(edition: Edition) -> Iterator[str]:
     """Report fields that a reply repeats from its request, but not as an echo.
 
-    A later layout stands beside one without the field, so the field is not optional in it.
+    If an earlier layout lacks the field, it is not optional in the later one.
     """
     for command in edition.commands:
         given = {field.name for variant in command.requests for field in variant}

@@ -23,7 +23,7 @@ FIELDS = (
     (r"baud", {"baud"}),
     (r"timeout", {"millisecond"}),
 )
-# Fields that the maker's names call otherwise: the edition's base or name, command and field.
+# Fields with other units than their names tell: the edition or a base of it, command and field.
 OTHERWISE = (
     # The class has a method of its own for coordinates.
     (r"(mercury_a1|myarm300) is_in_position target", {"degree"}),
@@ -49,7 +49,7 @@ OTHERWISE = (
 )
 
 
-# The first servo is beside them, or joints follow in the order of a page.
+# Types with these prefixes are not checked: the numbers of their parts need not start at 1.
 OTHER_NUMBERS = ("further_", "right_")
 PARTS = (
     (r"[xyz]", "millimetre"),
@@ -104,7 +104,7 @@ def case_units(edition: Edition) -> Iterator[str]:
 
 
 def cases(edition: Edition) -> Iterator[str]:
-    """Report cases of a joint or rotation with a type that the others beside it do not have."""
+    """Report cases of a joint or rotation with another type than the neighbouring cases."""
     for command in edition.commands:
         for field in command.fields:
             rows: dict[str, set[str]] = {}

@@ -1,6 +1,6 @@
 """Compares requests, and which values they accept, with the maker's classes.
 
-A call counts as a second source where the class and the edition as it is agree: they send the same
+A call counts as a second source where the class and the unchanged edition agree: they send the same
 bytes, or both reject the call. The other calls differ for reasons that ``tests/peers`` lists.
 """
 
@@ -39,7 +39,7 @@ def requests(edition: Edition) -> Iterator[str]:
 
 @lru_cache(maxsize=32)
 def compared(name: str) -> tuple[tuple[Expected, ...], int]:
-    """Return the calls in which the class and the edition as it is agree, and how many differ."""
+    """Return the calls in which the class and the unchanged edition agree, and how many differ."""
     robot = next((each for each in ROBOTS.values() if each.edition == name), None)
     if robot is None:
         return (), 0

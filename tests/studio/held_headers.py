@@ -26,7 +26,7 @@ OPEN_SECONDS, NEW_SECONDS = 2.0, 5.0
 
 @contextmanager
 def holding(studio: Studio, count: int, way: str) -> Iterator[None]:
-    """Hold as many connections; open another one for each that the server closes."""
+    """Hold ``count`` connections; open another one for each that the server closes."""
     sent = WAYS[way].replace(b"PORT", str(studio.port).encode())
     held: list[socket.socket] = []
     ended = threading.Event()
@@ -52,7 +52,7 @@ def holding(studio: Studio, count: int, way: str) -> Iterator[None]:
 def _opened(studio: Studio, sent: bytes) -> socket.socket:
     opened = socket.socket()
     opened.setblocking(False)
-    # A full queue of the server must not hold up the attack.
+    # A full queue of the server must not delay the attack.
     opened.connect_ex(("127.0.0.1", studio.port))
     with suppress(OSError):
         opened.sendall(sent)
@@ -101,7 +101,7 @@ def _tried(what: str, limit: float, action: Callable[[], None]) -> str:
 def _stop_over(feed: Feed) -> None:
     feed.wish("stop", number=1)
     assert feed.state("stopped") == {"number": 1, "error": ""}
-    # A feed that nobody reads takes ten seconds to close.
+    # A feed that is never read takes ten seconds to close.
     feed.connection.close()
 
 

@@ -108,7 +108,7 @@ def test_refusal_arrives_although_the_body_comes_late(studio: Studio) -> None:
         "Content-Length: 2",
     )
     # If the server closes while the body is on its way, the system resets the connection, and the
-    # answer can be lost. Of 300 attempts, 83 ended so before the server read the body first.
+    # answer can be lost. Before the server read the body first, 83 of 300 attempts ended like this.
     for _ in range(60):
         with socket.create_connection(("127.0.0.1", studio.port), 20) as raw:
             raw.sendall("\r\n".join([*lines, "", ""]).encode())

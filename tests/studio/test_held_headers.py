@@ -46,6 +46,8 @@ def studio() -> Iterator[Studio]:
         yield server
 
 
+# The limit holds for four requests and a feed in turn.
+@pytest.mark.stall(0.1)
 @pytest.mark.parametrize("way", WAYS)
 def test_page_stops_the_arm_and_another_opens_while_connections_are_held(
     studio: Studio, way: str

@@ -41,7 +41,7 @@ EDITIONS = editions.names()
 
 
 def _filled(argument: dict[str, Any], given: dict[str, str], end: str) -> str | None:
-    """Return what a user of the page writes who takes one end of each range."""
+    """Return the words that a user of the page writes for one end of each range."""
     elements = argument.get("elements") or []
     for case in argument.get("cases", ()):
         if given[argument["selector"]] in map(str, case["when"]):

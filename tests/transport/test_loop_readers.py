@@ -1,4 +1,4 @@
-"""Many descriptors of one event loop are served as few are."""
+"""An event loop serves many descriptors as correctly as a few."""
 
 from __future__ import annotations
 

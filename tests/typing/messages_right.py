@@ -75,6 +75,6 @@ def matched(decoded: DecodedMessage) -> object:
 
 
 def shared(client: Client) -> None:
-    """Check that two editions share the message classes on which they agree."""
+    """Check that two editions share the classes of messages that are equal in both."""
     request: mycobot.GetAngles = mycobot280.GetAngles()
     assert_type(client._call(request), mycobot.Angles)

@@ -27,7 +27,7 @@ ASPECTS = (
     *("id", "length", "scale", "unit", "sign", "order", "range", "limits", "byte-order"),
     *("effect", "agreement", "deadline", "present"),
 )
-# Where a fact can be confirmed, from the farthest of a real arm to the nearest.
+# The kinds of sources that confirm a fact, from the farthest of a real arm to the nearest.
 SOURCES = {
     "library": "the maker's library sends and reads the same bytes (`make robots`, `make layer`)",
     "page": "the maker's document or page states it",
@@ -161,7 +161,7 @@ def facts_of_pages(text: str) -> dict[str, set[str]]:
 
 
 def counts(found: Confirmed) -> dict[str, int]:
-    """Return how many facts each source confirms, how many none, and how many no arm."""
+    """Return how many facts are confirmed by each source, by no source, and by no arm."""
     made = {source: sum(source in each for each in found.values()) for source in SOURCES}
     made["none"] = sum(not each for each in found.values())
     return {"facts": len(found), **made, "unconfirmed": len(unconfirmed(found))}
@@ -173,7 +173,7 @@ def unconfirmed(found: Confirmed) -> list[str]:
 
 
 def bar(part: int, whole: int) -> str:
-    """Return a share as a bar of ten blocks with its percentage; only nothing is 0 %."""
+    """Return a share as a bar of ten blocks with its percentage; 0 % means exactly none."""
     percent = part * 100 // whole if whole else 0
     blocks = (percent + 5) // 10
     shown = f"{percent}" if percent or not part else "<1"

@@ -124,7 +124,7 @@ def parsed(text: str, name: str) -> Parsed:
     """Return the content of YAML text; ``name`` stands for the file in messages.
 
     Parsing takes most of the time of a build, and the files of a base are read again for each of
-    its deltas. So equal text gets the same nodes; nobody may change them.
+    its deltas. So equal text gets the same nodes, which must not be changed.
 
     Raises:
         SpecError: the text is not YAML, gives a key twice, or exceeds a limit.

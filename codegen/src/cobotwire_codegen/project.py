@@ -29,6 +29,7 @@ from cobotwire_codegen.suite_pages import suite_pages
 from cobotwire_codegen.targets.c import render_c
 from cobotwire_codegen.targets.decoder import render_decoder
 from cobotwire_codegen.targets.rust import render_every_rust
+from cobotwire_codegen.targets.typescript import render_every_typescript
 from cobotwire_codegen.targets.vectors import render_shared_vectors
 from cobotwire_codegen.targets.wireshark import render_wireshark
 
@@ -196,9 +197,10 @@ def _robots(root: Path, found: Sequence[Edition]) -> Files:
     return robot_pages([(each, confirmed(each, sources[each.name])) for each in found])
 
 
-# What the crates of this project need to be tested.
+# The files that tests of this project's crates need.
 RUST_DATA = "rust/core/tests/data"
 RUST_EDITIONS = "rust/client/src/editions"
+TYPESCRIPT_EDITIONS = "clients/typescript/editions"
 REFERENCE = "docs/reference"
 ROBOTS = "docs/robots"
 # What docs/conf.py writes before it builds the site.
@@ -210,6 +212,7 @@ PRODUCTS: dict[str, Callable[[Path, Sequence[Edition]], Files]] = {
     "docs/_static/decoder/editions": lambda _, found: render_decoder(found),
     RUST_DATA: lambda _, found: _every_vectors(found),
     RUST_EDITIONS: lambda _, found: render_every_rust(found),
+    TYPESCRIPT_EDITIONS: lambda _, found: render_every_typescript(found),
     "targets/c": lambda _, found: _every_c(found),
     "targets/vectors": lambda _, found: render_shared_vectors(found),
     "targets/wireshark": lambda _, found: render_wireshark(found),

@@ -31,7 +31,7 @@ class Truncated(EOFError):
 
 
 class Closable(Protocol):
-    """What can be closed."""
+    """An object that can be closed."""
 
     def close(self) -> None:
         """Close the file."""

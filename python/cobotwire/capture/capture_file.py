@@ -25,7 +25,7 @@ def open_capture(
     """Open a capture for reading; gzip and zstd are decompressed, whatever the name of the file.
 
     Files of other programs that state times or directions become recordings; ``format`` and
-    ``ports`` are those of :func:`~cobotwire.capture.foreign.recognising.recognise`.
+    ``ports`` are as in :func:`~cobotwire.capture.foreign.recognising.recognise`.
 
     Raises:
         UsageError: the file does not exist, or it cannot be read, or zstd is not installed.

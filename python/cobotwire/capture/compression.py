@@ -15,8 +15,8 @@ _MAGIC: dict[bytes, Compression] = {b"\x1f\x8b\x08": "gzip", b"\x28\xb5\x2f\xfd"
 # Compressed bytes to decompress at a time. gzip may expand a byte to 1,032, and zstd a block of
 # four to 128 KiB: so no step makes more than 17 MB.
 _SLICES: dict[Compression, int] = {"gzip": 1 << 12, "zstd": 1 << 9}
-# The longest distance that zstd may refer back to, as a power of two: what its own tool allows.
-# The decompressor keeps as many bytes.
+# The longest distance that zstd may refer back to, as a power of two: the limit of its own tool.
+# The decompressor buffers that number of bytes.
 _WINDOW = 27
 # The error of compressed data that ends too early; it follows the name of the file.
 CUT_OFF = "has compressed data that is cut off"
@@ -86,7 +86,7 @@ def decompressed(
 
     Raises:
         UsageError: zstd is not installed.
-        CaptureError: the compressed data is damaged; the offset is that of decompressed bytes.
+        CaptureError: the compressed data is damaged; the offset counts decompressed bytes.
     """
     offset = 0
     try:
@@ -112,7 +112,7 @@ def _gzip_part() -> Any:
 
 
 def _zstd_parts(name: str) -> Callable[[], Any]:
-    """Return what makes a decompressor for one part of a zstd file."""
+    """Return a function that makes a decompressor for one part of a zstd file."""
     if sys.version_info >= (3, 14):
         from compression import zstd
 

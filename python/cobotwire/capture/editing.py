@@ -142,7 +142,7 @@ def by_command(
     not_commands: Collection[str],
     noise: bool,
 ) -> Choose:
-    """Return what chooses requests and replies of ``commands``, or of all but ``not_commands``.
+    """Return a chooser of requests and replies of ``commands``, or of all but ``not_commands``.
 
     ``noise`` is whether noise is kept. A packet with several frames is kept for any of them.
     """

@@ -21,7 +21,7 @@ class Gaps:
             ordered = [self._last_ns, *ordered]
         at, last = 0, len(ordered) - 1
         while at < last:
-            # No pause within a range that is not longer than one.
+            # A range of times that is not longer than the limit contains no pause: skip it.
             near = bisect_right(ordered, ordered[at] + self._longest_ns, at) - 1
             if near == at:
                 near += 1

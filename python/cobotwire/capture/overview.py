@@ -83,10 +83,9 @@ class Overview:
         messages: the messages by interface and label, such as ``get_angles.reply``.
         rejected: frames with a value that the edition does not allow; they are not among the
             messages.
-        times: those of the messages, rejected frames and noise; None for an empty recording.
-        gaps: the longest pauses, longest first.
-        gap_count, gap_ns: the number of all pauses, and their sum.
-        missing: what the recording lacks at its end; empty if it is whole.
+        times: the range of times of messages, rejected frames and noise; None for an empty
+        recording. gaps: the longest pauses, longest first. gap_count, gap_ns: the number of all
+        pauses, and their sum. missing: what the recording lacks at its end; empty if it is whole.
         error: why it cannot be read to its end.
     """
 
@@ -107,7 +106,7 @@ class Overview:
     error: CaptureError | None = None
 
     def add(self, batch: CapturedColumns, gaps: dict[int, Gaps], gap_ns: int) -> None:
-        """Count a batch of the recording; ``gaps`` are those of each interface."""
+        """Count a batch of the recording; ``gaps`` has the gaps of each interface."""
         arrived: dict[int, list[int]] = {}
         for stream in batch.streams:
             times = arrived.setdefault(stream.interface, [])
@@ -145,7 +144,7 @@ class Overview:
             return
         if last.truncated_at is not None:
             self.missing = f"truncated: its last block, at byte {last.truncated_at}, is incomplete"
-        # Other programs need not write what tells that a recording is finished.
+        # Other programs need not mark a recording as finished.
         elif last.application.startswith(OURS) and not last.finished:
             self.missing = "unfinished: its recorder was killed, or is still recording"
 
@@ -194,9 +193,9 @@ def overview(
 
 
 def _sections(path: str | os.PathLike[str]) -> int:
-    """Return the number of sections of a file: bytes of a packet may look like one."""
+    """Return the number of sections. Block by block, since a packet's bytes may look like one."""
     found = 0
-    # The reader of the packets has found the damage too.
+    # The reader of the packets reports the damage.
     with suppress(CaptureError), block_file(path) as file:
         for block in file:
             found += block.kind == blocks.SECTION

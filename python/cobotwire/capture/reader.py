@@ -103,7 +103,7 @@ class CaptureReader:
             )
         if self._origin and self._origin.file.missing:
             return "; ".join(f"{name} {text}" for text in self._origin.file.missing)
-        # Other programs need not write what tells that a recording is finished.
+        # Other programs need not mark a recording as finished.
         done = self.finished or not self.application.startswith(OURS)
         return "" if done else f"the recording {name} was not finished"
 

@@ -115,5 +115,6 @@ class Recording:
 
     def leave_to_parent(self) -> None:
         """Close a forked child's copy of the file, and write nothing to it."""
-        # Not by close() of the buffer: in a fork within a write it holds half a block.
+        # close() would write the buffer, which may hold half a block if the fork came within a
+        # write.
         self._file.raw.close()

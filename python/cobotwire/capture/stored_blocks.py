@@ -59,7 +59,8 @@ class BlockFile:
         self.name, self.incomplete = name, ""
         self._file, self._progress, self._lose = file, progress, lose
         self._order, self._ended = "", False
-        # What was read and not passed yet: it begins at the offset ``_start`` of the file.
+        # Bytes that were read but not passed on yet; they begin at the offset ``_start`` of the
+        # file.
         self._data = b""
         self._start = self._at = 0
 

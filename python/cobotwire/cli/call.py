@@ -112,7 +112,7 @@ def call(
     if done.result is not None:
         click.echo(format_result(done.result))
     if done.remark:
-        # Not with the results, which programs read.
+        # Not on standard output, where programs read the results.
         click.echo(done.remark, err=True)
 
 

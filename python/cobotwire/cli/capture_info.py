@@ -37,8 +37,8 @@ DAMAGED = 6
 def info(edition: str, files: tuple[str, ...], gap: float, as_json: bool) -> None:
     """Show what each FILE holds, and the sum of several.
 
-    A rate is that from the first to the last message of its kind. Noise is bytes that belong to no
-    frame. A gap is a pause in which no byte came on an interface. An interface is read with the
+    A rate is counted from the first to the last message of its kind. Noise is bytes that belong to
+    no frame. A gap is a pause in which no byte came on an interface. An interface is read with the
     edition that it names; otherwise with that of --edition.
 
     \b

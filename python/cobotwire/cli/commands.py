@@ -58,7 +58,7 @@ def _print_reference(frame: FrameFormat, command: Command) -> None:
     for direction in _DIRECTIONS:
         every = command.variants(direction)
         for index, variant in enumerate(every):
-            # Of the sizes of a list, the least and the most show the others.
+            # The smallest and the largest list suffice; the sizes between them look alike.
             if 0 < index < len(every) - 1 and any(field.sizes for field in variant.fields):
                 continue
             console.print(f"\n{direction}", style="bold")

@@ -18,7 +18,7 @@ from cobotwire.diagnose.explain import DIRECTIONS, FrameReader, Reading, format_
 from cobotwire.editions.mycobot import TABLE
 from cobotwire.inspect.demo import Result, run
 
-# Polling repeats the same messages. Of each kind the first ones, this many, and the last are shown.
+# Polling repeats the same messages: only this many of each kind, and the last one, are shown.
 SHOWN_FIRST = 2
 
 

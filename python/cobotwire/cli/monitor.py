@@ -96,7 +96,7 @@ def _print(port: str, samples: Iterator[Observation], as_json: bool) -> None:
 
 @contextmanager
 def _signals_wait() -> Iterator[None]:
-    """Let Ctrl-C wait while the table is written: otherwise a part of it would stay there twice."""
+    """Delay Ctrl-C while the table is written; otherwise a part of it would appear twice."""
     if sys.platform == "win32":
         yield
         return

@@ -57,7 +57,7 @@ class AsyncConnection:
         self.firmware = ReportedFirmware()
         self.listeners = TrafficListeners(trace, self.url)
         self._exchange = exchange
-        # Taken by the one follow() at a time.
+        # Held by follow(), so that only one runs at a time.
         self.follows = threading.Lock()
         self._deadline = deadline
         self._steps: AsyncSteps | None = None
@@ -121,7 +121,7 @@ class AsyncConnection:
     ) -> PendingRequest:
         """Send a request and wait until it is done.
 
-        ``deadline`` limits this call further than those of the client.
+        ``deadline`` limits this call in addition to the deadline of the client.
 
         Raises:
             LinkError: the connection is not open.
@@ -139,7 +139,7 @@ class AsyncConnection:
         return pending
 
     def poller(self, closed: Callable[[], bool]) -> AsyncPoller:
-        """Return what sends the requests of a stream until ``closed`` returns True."""
+        """Return a poller, which sends the requests of a stream until ``closed`` returns True."""
         return AsyncPoller(self._opened, closed)
 
     async def listen(self, seconds: float, done: Callable[[], bool] | None = None) -> None:

@@ -29,7 +29,7 @@ class AsyncEventStream(Generic[EventT]):
 
     @property
     def lost(self) -> int:
-        """How many events were dropped, because the queue was full: always the oldest."""
+        """How many events were dropped because the queue was full; the oldest is dropped first."""
         return self._queue.lost
 
     def close(self) -> None:

@@ -26,7 +26,7 @@ class AsyncPoller:
     """
 
     def __init__(self, opened: Callable[[], AsyncSteps], closed: Callable[[], bool]) -> None:
-        """Take what returns the steps of the open connection, and whether the stream is closed."""
+        """Store functions that return the connection's steps, and whether the stream is closed."""
         self._opened, self._closed = opened, closed
         self._timed = Timed(self._send)
         # The request that was sent; None: it was not.
@@ -67,7 +67,7 @@ class AsyncPoller:
         return readings
 
     async def _answered(self, poll: Poll, at: float) -> PendingRequest | None:
-        """Have a request sent at a given time, or at once if that has passed; wait for its end.
+        """Send a request at a given time, or at once if that has passed; wait until it is done.
 
         Returns:
             None if the stream was closed by then.
@@ -85,7 +85,7 @@ class AsyncPoller:
         """Send the request, unless the stream is closed."""
         over = self._over
         if over.done():
-            # The consumer was cancelled, and did not have its turn yet.
+            # The consumer was cancelled, but its task has not run yet.
             return
         if self._closed():
             over.set_result(None)

@@ -135,20 +135,20 @@ class AsyncSteps:
             self.exchange.fail_waiting(error)
 
     def _written(self, pending: PendingRequest, error: LinkError | None) -> None:
-        """Note that a write ended that was not taken at once."""
+        """Note the end of a write that the transport did not take at once."""
         self.exchange.written(pending, time.monotonic())
         if error is not None:
             self.exchange.fail_waiting(error)
         self.turn()
 
     def _set_timer(self, now: float) -> None:
-        """Have time pass for the session when the next thing is to be done; it is ``now``."""
+        """Set the timer for the next deadline of the session; the time is ``now``."""
         idle = self.exchange.idle_seconds(now)
         if idle is not None:
             self._wake_at(now + idle)
 
     def _wake_at(self, due: float) -> None:
-        # If it goes off earlier, it is set again then.
+        # A timer that goes off too early is set again when it does.
         if self._timed.due > due + TIMER_SLACK:
             self.timers.set(self._timed, due)
 

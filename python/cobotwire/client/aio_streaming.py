@@ -15,7 +15,7 @@ from cobotwire.session.sampling import Poll, Sampler, check_requests
 
 
 class AsyncStream:
-    """Samples, one for each turn of a loop; :mod:`cobotwire.session.sampling` says when.
+    """Samples, one for each iteration; :mod:`cobotwire.session.sampling` decides their times.
 
     It sends its requests in the consumer's task, and only when the consumer wants a sample: it has
     no task and no queue of its own. Leaving the loop needs no cleanup, nor does cancellation, and

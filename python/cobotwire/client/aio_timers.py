@@ -19,8 +19,8 @@ from weakref import WeakValueDictionary
 
 from cobotwire.transport.alarm_clock import AlarmClock, new_alarm_clock
 
-# The least time between two rounds of calls: this for each waiting call, up to the longest. So a
-# large fleet does not wake the loop for each arm.
+# The least time between two rounds of calls: the first number times the waiting calls, but at most
+# the second. So a large fleet does not wake the loop for each arm.
 SECONDS_FOR_EACH, LONGEST_SECONDS = 2e-6, 1e-3
 
 
@@ -42,7 +42,7 @@ class Timed:
         self.due = due
 
     def cancel(self) -> None:
-        """Do not call it, unless it was called."""
+        """Cancel the call, if it was not made yet."""
         self.due = inf
 
 

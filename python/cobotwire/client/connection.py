@@ -45,7 +45,7 @@ class Connection:
         self.firmware = ReportedFirmware()
         self.listeners = TrafficListeners(trace, self.url, self.now)
         self._exchange = exchange
-        # Taken by the one follow() at a time.
+        # Held by follow(), so that only one runs at a time.
         self.follows = threading.Lock()
         self._deadline = deadline
         self._steps = Steps(self._transport, exchange, self.listeners, self.now, deadline)
@@ -94,7 +94,7 @@ class Connection:
     ) -> PendingRequest:
         """Send a request and wait until it is done.
 
-        ``deadline`` limits this call further than those of the client.
+        ``deadline`` limits this call in addition to the deadline of the client.
 
         Raises:
             LinkError: the transport is gone.
@@ -111,7 +111,7 @@ class Connection:
         return pending
 
     def poller(self, closed: Callable[[], bool]) -> Poller:
-        """Return what sends the requests of a stream until ``closed`` returns True."""
+        """Return a poller, which sends the requests of a stream until ``closed`` returns True."""
         return Poller(self.now, self.sleep, self.request, closed)
 
     def listen(self, seconds: float, done: Callable[[], bool] | None = None) -> None:
@@ -131,7 +131,7 @@ class Connection:
             finally:
                 steps.leading.resign()
             if not leads:
-                # In real time, whatever the transport's: another thread is waited for.
+                # In real time, not by the transport's clock: another thread is waited for.
                 time.sleep(min(left, CHECK_SECONDS))
 
     def close(self) -> None:

@@ -1,4 +1,4 @@
-"""A dead man's switch: it stops an arm when nobody says any longer that the arm may move.
+"""A dead man's switch: it stops an arm when the signs of life end.
 
 Use it where the source of motions can hang or disappear: a person at a page, a program on another
 computer, a policy.
@@ -55,7 +55,7 @@ class DeadMan:
     """
 
     def __init__(self, arm: Client, seconds: float) -> None:
-        """Take the seconds of the clock of the arm's transport.
+        """Count seconds by the clock of the arm's transport.
 
         Raises:
             UsageError: ``seconds`` is not above 0 and below 3600, or the edition has no stop.
@@ -109,7 +109,7 @@ class DeadMan:
         """Wait until the arm must be stopped; return False if the block is left before."""
         with self._changed:
             while not self._ended and (left := self._silence.left(self._connection.now())) > 0:
-                # A transport may have a clock of its own, which wakes nobody.
+                # A transport may have a clock of its own, which cannot wake this thread.
                 longest = left if self._connection.real else CHECK_SECONDS
                 self._changed.wait(None if left == inf else longest)
             self._silence.rest()

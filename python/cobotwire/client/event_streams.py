@@ -28,7 +28,7 @@ class EventStream(Generic[EventT]):
 
     @property
     def lost(self) -> int:
-        """How many events were dropped, because the queue was full: always the oldest."""
+        """How many events were dropped because the queue was full; the oldest is dropped first."""
         return self._queue.lost
 
     def close(self) -> None:

@@ -143,7 +143,7 @@ def end_signs(
     address: Address | None,
     add: Callable[[Callable[[Traffic], None]], Callable[[], None]],
 ) -> Iterator[EndSigns]:
-    """Yield what collects the signs of a motion's end.
+    """Yield a collector of the signs of a motion's end.
 
     ``add`` adds a traffic listener, and returns a function that removes it.
     """

@@ -21,12 +21,12 @@ class Leading:
 
     Attributes:
         leader: which thread leads; None: no thread does.
-        turns: how often leaders have read; a leader that does not count on is gone.
-        followers: what wakes the threads that wait for the leader.
+        turns: how often leaders have read; if it no longer increases, the leader is gone.
+        followers: the locks that wake the threads that wait for the leader.
     """
 
     def __init__(self, state: threading.Lock) -> None:
-        """Note the lock that is held while requests end, so that no follower misses its own end."""
+        """Store the lock that is held while requests end, so that followers miss no end."""
         self._state = state
         self.leader: int | None = None
         self.turns = 0
@@ -42,7 +42,7 @@ class Leading:
         return self.leader == me
 
     def count_turn(self) -> None:
-        """Note that this thread, which leads, reads now."""
+        """Count a read of this thread, which leads."""
         self.turns += 1
 
     def resign(self) -> None:
@@ -67,7 +67,8 @@ class Leading:
         if not baton.acquire(timeout=min(longest, CHECK_SECONDS)) and longest >= CHECK_SECONDS:
             with self._state:
                 if (leader, turns) == (self.leader, self.turns):
-                    # Ctrl-C took it out of its loop before it could resign, or it is very slow.
+                    # Ctrl-C ended the leader's loop before it could resign, or the leader is very
+                    # slow.
                     self.leader = None
 
     def wake_followers(self) -> None:

@@ -20,7 +20,7 @@ class LimitedEncoder(RequestEncoder):
     """Encodes requests that stay within a speed and a workspace, and refuses the others."""
 
     def __init__(self, codec: Codec, address: Address | None, limits: Limits) -> None:
-        """The ranges of the codec's table are those of ``limits`` already."""
+        """Store a codec; its table already has the ranges of ``limits``."""
         super().__init__(codec, address)
         self._refused = refusals(codec.table, limits)
         self._workspace = limits.workspace

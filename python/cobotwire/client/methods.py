@@ -23,8 +23,8 @@ def asynchronous(
 ) -> Callable[Concatenate[Any, P], Coroutine[Any, Any, R]]:
     """Return the method of an asyncio client that does what a generated blocking method does.
 
-    A generated method returns what ``_call`` or ``_send`` of its client returns, which an asyncio
-    client's callers wait for.
+    A generated method returns what ``_call`` or ``_send`` of its client returns, which callers of
+    an asyncio client await.
     """
     generated: Callable[..., Any] = method
 

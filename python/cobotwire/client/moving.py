@@ -202,8 +202,8 @@ class MovingClient(FollowingClient):
             return
         except MotionTimeout as error:
             if error.stopped:
-                # This arm was stopped for the error. Other arms that the error ends are still to be
-                # stopped.
+                # This arm was stopped for the error. Other arms in the same block still need a
+                # stop.
                 self._stopped_for = error
             raise
 

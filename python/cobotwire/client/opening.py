@@ -43,7 +43,7 @@ class Settings(NamedTuple):
     limits: Limits = Limits()
 
     def encoder(self, address: Address | None) -> RequestEncoder:
-        """Return what encodes the requests to an address, within the limits."""
+        """Return the encoder of requests to an address, within the limits."""
         if self.limits.speed is None and self.limits.workspace is None:
             return RequestEncoder(self.codec, address)
         # Few clients have such limits, and kinematics take long to import.
@@ -87,16 +87,16 @@ def settings(
         raise UsageError("limits", limits, "Limits")
     if limits != Limits():
         table = limited(table, limits)
-    # No call imports anything: Ctrl-C in an import could leave one of its locks held.
+    # Import this now, not in a call: Ctrl-C in an import could leave one of its locks held.
     package = table.commands[0].package if table.commands else ""
     if package:
         load_parts(f"{package}.messages")
-    # Made again: _replace() of a policy checks nothing.
+    # Build the policy again, because its _replace() validates nothing.
     return Settings(codecs.load(table, codec), timeout, RetryPolicy(*(retry or ())), limits)
 
 
 def check_seconds(argument: str, value: float | None) -> None:
-    """Check a time limit; None is one as well.
+    """Check a time limit; None is allowed.
 
     Raises:
         UsageError: it is not a number of seconds above 0 and below 3600.
@@ -117,7 +117,7 @@ def check_deadline(seconds: float | None) -> float:
 
 
 def check_on_error(value: OnError) -> OnError:
-    """Check what becomes of a moving arm when the program fails.
+    """Check the choice for a moving arm when the program fails.
 
     Raises:
         UsageError: it is neither "stop" nor "leave".

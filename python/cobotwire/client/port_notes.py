@@ -21,14 +21,14 @@ from cobotwire.session.alignment import Part
 from cobotwire.session.outstanding import LateFrame, PersistedState
 from cobotwire.transport.log import Log
 
-# No reply is expected for longer: every grace is shorter (``RetryPolicy``).
+# The longest time for which a late reply is expected; every grace of ``RetryPolicy`` is shorter.
 LONGEST = 3600
 # A note has at most this many entries of each kind, and this many bytes.
 MOST_ENTRIES = 64
 MOST_BYTES = 65536
 BOOT_ID = "/proc/sys/kernel/random/boot_id"
-# Opening a pipe does not wait, a link is not followed, and no terminal becomes that of the process.
-# Not every system has all of these.
+# Do not wait for a pipe, do not follow a link, and do not make a terminal that of the process. Some
+# systems lack some of these flags.
 READING = os.O_RDONLY | sum(
     getattr(os, name, 0)
     for name in ("O_NONBLOCK", "O_NOFOLLOW", "O_NOCTTY", "O_CLOEXEC", "O_BINARY")
@@ -69,7 +69,7 @@ def take_note(key: str) -> PersistedState:
         return _unusable(error)
     try:
         return _read(json.loads(text), key)
-    # Nothing that a file can hold may keep a port from being opened.
+    # No content of a file may keep a port from being opened.
     except Exception as error:
         return _unusable(ValueError(f"{path} is not a note of a session: {error!r:.200}"))
 
@@ -99,7 +99,7 @@ def _take(path: str) -> bytes:
         finally:
             os.close(descriptor)
     finally:
-        # Whatever it is, it is in the place of the next note. A folder stays.
+        # Whatever it is, it occupies the path of the next note. A folder is not removed.
         with suppress(OSError):
             os.unlink(path)
 
@@ -107,18 +107,17 @@ def _take(path: str) -> bytes:
 def _read(note: dict[str, Any], key: str) -> PersistedState:
     """Return what a note says; raise anything if it is damaged."""
     if note["port"] != key:
-        # Two ports have the same name of a file.
+        # Another port has the same file name.
         return PersistedState()
     written_at, wall = map(float, note["clocks"])
     late = [_late(_frame(frame), until, written_at) for frame, until in note["late"]]
     parts = [_part(_frame(frame), written) for frame, written in note["parts"]]
     passed = time.monotonic() - written_at
     if note["boot"] != _boot() or passed < 0:
-        # The machine was started again since: no reply comes any more. The arm, which was not,
-        # may still hold the parts.
+        # The machine has rebooted, so no late reply can come. But the arm may still hold the parts.
         return PersistedState((), tuple(parts))
     if not note["boot"]:
-        # Nothing identifies a boot here, so the clock decides by which more time has passed.
+        # Nothing identifies a boot here. If more time has passed by the wall clock, count that.
         hidden = max(0.0, time.time() - wall - passed)
         late = [reply._replace(until=reply.until - hidden) for reply in late]
     return PersistedState(tuple(late), tuple(parts))
@@ -147,7 +146,7 @@ def _frame(text: str) -> bytes:
 
 def _part(request: bytes, written: object) -> Part:
     if not isinstance(written, int) or not 0 < written <= len(request):
-        raise ValueError("a part is a part of its request")
+        raise ValueError("a part is longer than its request, or empty")
     return Part(request, written)
 
 

@@ -52,7 +52,7 @@ class Steps:
         now: Callable[[], float],
         deadline: float = inf,
     ) -> None:
-        """Take what the steps use, and how many seconds a call may take."""
+        """Store what the steps use, and the number of seconds that a call may take."""
         self._transport = transport
         self.exchange = exchange
         self.listeners = listeners
@@ -83,13 +83,13 @@ class Steps:
             elif (left := pending.ends_by - self.now()) > 0:
                 self.leading.follow(pending, left)
             else:
-                # Whatever keeps the leader, no other thread waits longer than it may.
+                # Even if the leader hangs, no other thread waits longer than it may.
                 with self.state:
                     events = self.exchange.end_overdue(now := self.now())
                 self.listeners.received(events, now)
 
     def leave(self, pending: Pending) -> None:
-        """Have Ctrl-C and a vanished transport leave everything ready for the next call."""
+        """Leave everything ready for the next call, also if Ctrl-C or a lost port ends this."""
         if not pending.done:
             with self.state:
                 self.exchange.give_up(pending)
@@ -162,7 +162,7 @@ class Steps:
     ) -> bytes | None:
         """Write a request that the exchange gave at ``now``; the caller holds the writer's lock.
 
-        Neither its caller nor that of this thread, which waits until ``ends_by``, waits longer.
+        The write ends in time for its caller, and by ``ends_by`` for the caller of this thread.
 
         Returns:
             As :meth:`Writer.write`; None if the request was not written.

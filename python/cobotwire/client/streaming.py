@@ -16,7 +16,7 @@ from cobotwire.session.sampling import Poll, Sampler, check_requests
 
 
 class Stream:
-    """Samples, one for each turn of a loop; :mod:`cobotwire.session.sampling` says when.
+    """Samples, one for each iteration; :mod:`cobotwire.session.sampling` decides their times.
 
     It sends its requests in the consumer's thread, and only when the consumer wants a sample: it
     has no thread and no queue of its own. Leaving the loop needs no cleanup, nor does Ctrl-C, and

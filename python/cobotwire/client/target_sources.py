@@ -47,7 +47,7 @@ class Mailbox(Source):
         self._targets.append(target)
 
     def end(self, error: BaseException | None = None) -> None:
-        """Say that no further target comes, because of an error if one is given."""
+        """Note that no further target comes; ``error`` is the reason, if there is one."""
         self._error = error
         self._ended = True
 
@@ -61,7 +61,7 @@ class Mailbox(Source):
         return targets
 
     def close(self) -> None:
-        """Take no more."""
+        """Stop accepting targets."""
         self.closed = True
 
 

@@ -1,4 +1,4 @@
-"""Write requests whole, or remember what the peer has of one that was cut."""
+"""Write whole requests; if one is cut, remember which of its bytes the peer has."""
 
 from __future__ import annotations
 
@@ -16,16 +16,16 @@ TRY_SECONDS = 0.001
 
 
 class Writer:
-    """Writes requests, and before them what ends an earlier request that was cut.
+    """Writes requests; if an earlier one was cut, first the bytes that end it.
 
     Attributes:
         lock: held by the caller of each method that writes, so that frames do not mix.
     """
 
     def __init__(self, transport: Transport, alignment: Alignment, deadline: float = inf) -> None:
-        """Take what writes, and how many seconds a call may take."""
+        """Store the transport, its alignment, and the number of seconds that a call may take."""
         self._transport = transport
-        # Checking for the protocol takes longer than to write.
+        # Checking the transport's type takes longer than a write, so it is done once.
         self._pollable = transport if isinstance(transport, PollableTransport) else None
         self._alignment = alignment
         self._deadline = deadline
@@ -38,8 +38,8 @@ class Writer:
     def is_free(self) -> bool:
         """Return whether a request may be written now: no thread writes.
 
-        If calls have a deadline, the line also takes bytes: to wait for that would take time, and
-        would leave half a request.
+        If calls have a deadline, the line must also take bytes now: waiting for that would take
+        time, and could leave half a request.
         """
         return not self.lock.locked() and (self._deadline == inf or has_room(self._transport))
 

@@ -1,11 +1,11 @@
 """Divide a stream into segments that can be decoded on their own, and decode one of them.
 
-A scan has no memory: what it finds from a position on depends only on the bytes from there on. So
-two scans that ever stand at the same position agree from there on. A frame that begins before a cut
-ends at most one longest frame after it. So the scan of the whole stream continues after the cut at
-one of a few positions. Where the scans from all of these have met, the scan of the whole stream
-stands too. A segment goes from the meeting point of one cut to that of the next one. Each is found
-from the bytes after its cut only.
+A scan has no state: what it finds from a position on depends only on the bytes from there on. So
+two scans that reach the same position agree from there on. A frame that begins before a cut ends at
+most the length of the longest frame after it. So the scan of the whole stream continues after the
+cut at one of a few positions. Scans from all of these meet at a position, which the scan of the
+whole stream then reaches too. A segment extends from the meeting point of one cut to that of the
+next one. To find a meeting point, only bytes after the cut are needed.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ class Stream(Protocol):
 
 
 class Segment(NamedTuple):
-    """The bytes from ``start`` to before ``end``, which the scan of the stream visits both."""
+    """The bytes from ``start`` to before ``end``; the scan of the stream reaches both positions."""
 
     start: int
     end: int
@@ -84,7 +84,7 @@ class Divider:
         return Segment(start, end)
 
     def meeting_point(self, cut: int) -> int | None:
-        """Return the first position from ``cut`` on at which all scans from before it stand.
+        """Return the first position from ``cut`` on that all scans from before it reach.
 
         None: they do not meet within the patience.
         """
@@ -134,7 +134,7 @@ def decode_segment(
     last = reader.flush()
     if waiting and end < stream.size:
         # The scan of the stream stands at the end, so no frame crosses it, and the flush was right
-        # to reject what waited. But the reasons lie in the bytes that follow.
+        # to reject what waited. But its reasons depend on the bytes that follow.
         ahead = stream.read(end - waiting, waiting + _reach(codec, listening))
         noise = _with_reasons(counters, _noise_of(codec, listening, ahead, waiting))
         last.counters = last.counters._replace(noise=noise)

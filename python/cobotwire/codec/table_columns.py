@@ -27,7 +27,7 @@ class TableColumn(NamedTuple):
     part: str = ""
 
     def find(self, variant: Variant) -> tuple[int, int | None] | None:
-        """Return the index of the field in a variant, and that of its part.
+        """Return the index of the field in a variant, and the index of its part.
 
         The second index is None for a whole field. Return None if the variant lacks the column.
         """

@@ -23,7 +23,8 @@ from cobotwire.protocol.errors import UsageError
 class Expectation:
     """A line of the file.
 
-    ``met`` counts what it matched and what did not pass; ``passed`` has the names of the rest.
+    ``met`` counts the failures that it matches; ``passed`` has the names of its matches that
+    passed.
     """
 
     pattern: str
@@ -58,7 +59,7 @@ def read_expectations(text: str, name: str) -> list[Expectation]:
 
 
 def excuse(expectations: Sequence[Expectation], name: str, *, failed: bool) -> str:
-    """Return why a failure is known, and count it; empty: it is not, or nothing failed."""
+    """Return the reason of a known failure, and count it; empty for anything else."""
     known = next((e for e in expectations if fnmatchcase(name, e.pattern)), None)
     if known is None:
         return ""

@@ -39,7 +39,7 @@ class Pair(NamedTuple):
 
     @property
     def turned(self) -> Pair:
-        """The pair, as if the other number were right."""
+        """The pair with its two numbers exchanged."""
         return self._replace(right=self.came, came=self.right)
 
 
@@ -80,7 +80,7 @@ def _is_other_order(wrong: Sequence[Pair]) -> bool:
 
 
 def _is_one_behind(pairs: Sequence[Pair]) -> bool:
-    """Return whether each number but the first is that of the part before."""
+    """Return whether each number that came, except the first, was right in the pair before it."""
     return all(_close(now.came, old.right, now.near) for old, now in pairwise(pairs))
 
 
@@ -91,7 +91,7 @@ def _is_times(pair: Pair, factor: float) -> bool:
     if pair.number is not None and pair.number.encoding == "integer" and not pair.number.bits:
         turn = abs(pair.number.physical(256**pair.number.width))
         apart -= round(apart / turn) * turn
-        # Nearly every number is near one that is so large.
+        # The tolerance of a huge number would accept nearly every number.
         most = min(most, turn / 16)
     return abs(apart) <= most
 

@@ -16,7 +16,7 @@ from cobotwire.conformance.privacy import hashed
 from cobotwire.conformance.report import Environment, Report
 from cobotwire.protocol.loading import stored_file
 
-# What writes and shows results does not change them.
+# The digest omits modules that only write or show results.
 NO_TESTERS = ("reports", "catalogue")
 
 

@@ -90,7 +90,7 @@ class Result:
 
     @property
     def explained(self) -> str:
-        """The reason, with the load of the host if that may be one."""
+        """The reason, with the load of the host if that may be a cause."""
         beside = self.load and self.verdict is not Verdict.PASS
         return f"{self.reason} (host load {self.load:.2f} a processor)" if beside else self.reason
 
@@ -102,9 +102,9 @@ class Result:
 
 @dataclass(frozen=True, slots=True)
 class Environment:
-    """The machine and the programs of a run; ``port`` is what leads to the subject.
+    """The machine and the programs of a run; ``port`` is the port or program of the subject.
 
-    ``host`` is a hash of the machine's name, which is often that of a person.
+    ``host`` is a hash of the machine's name, which often is a person's.
     """
 
     host: str = ""

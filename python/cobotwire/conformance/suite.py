@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 # Exercises or checks the test cases of a group; each kind of subject has its own type.
 Body = TypeVar("Body", covariant=True)
 
-# The subject of a group: None, or what its body needs to know of the command.
+# Returns what the body of a group needs to know of a command; None if it does not run for it.
 Selects = Callable[["Table", "Command"], object]
 
 

@@ -54,7 +54,7 @@ class DamagedFrames(FrameStarts):
 
     def __init__(self, codec: Codec, listening: Listening) -> None:
         super().__init__(codec, listening)
-        # Every LEN that is legal with an id, in any direction; with None that of any message.
+        # Every LEN that is legal with an id, in any direction; for the id None, every legal LEN.
         self._lengths: dict[int | None, set[int]] = {}
         # The frame does not show which of the commands that share an id it belongs to.
         self._all_names: dict[int, str] = {}

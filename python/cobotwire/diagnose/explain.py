@@ -57,7 +57,7 @@ class FrameReader:
         fitting = [i.direction for i in self._indexes if complete and i.find(*heading)]
         found = tuple(self._read_as(d, data) for d in fitting or self._directions)
         messages = tuple(reading for reading in found if reading.message is not None)
-        # A bad value in one direction says more than a LEN that does not fit the other.
+        # A bad value in one direction explains more than a LEN that does not fit the other.
         bad_values = tuple(
             r for r in found if r.error is not None and r.error.reason == "bad-value"
         )

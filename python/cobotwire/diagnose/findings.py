@@ -72,7 +72,7 @@ class Finding:
 
     @property
     def ordinary(self) -> bool:
-        """Return whether the line of an arm that works carries it too."""
+        """Return whether a working arm sends it, too."""
         return False
 
     def describe(self) -> str:

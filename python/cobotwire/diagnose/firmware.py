@@ -11,7 +11,7 @@ from cobotwire.diagnose.panic import PANIC, READABLE, recognise_panic
 from cobotwire.diagnose.recogniser import Recogniser
 from cobotwire.diagnose.residue import Residue, Verdict, Wait
 
-# This many readable bytes in a row are text; in random bytes one place in 300 starts as many.
+# This many readable bytes in a row are text; random bytes have such a run at one place in 300.
 TEXT_MINIMUM = 6
 # Longer lines are cut.
 LINE_LIMIT = 1024

@@ -32,8 +32,8 @@ class LineTexts(NamedTuple):
     Attributes:
         first: follows the brace that starts a line: nothing, or a key with its value and a comma.
         commands: the names of all commands.
-        requests: the names of the fields, by command, variant and field.
-        replies: those of the replies.
+        requests: the names of the fields of requests, by command, variant and field.
+        replies: the names of the fields of replies, likewise.
         describe: returns the text and the facts of a finding, as two members of an object.
     """
 
@@ -56,7 +56,7 @@ class Lines(Frame):
 
 
 class StreamSummary:
-    """Summarizes a stream: counts everything, and returns what Python has to look at.
+    """Summarizes a stream: counts everything, and returns what Python must diagnose.
 
     Attributes:
         native: the counts.

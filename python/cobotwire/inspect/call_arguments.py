@@ -79,7 +79,7 @@ def _variant(command: Command, given: Mapping[str, Any]) -> Variant:
 def parse_method(
     method: Callable[..., Any], sizes: Mapping[str, int], words: Sequence[str]
 ) -> dict[str, Any]:
-    """Return the arguments of a method of a client; ``sizes`` has those of its lists by name.
+    """Return the arguments of a method of a client; ``sizes`` has the sizes of its lists by name.
 
     Raises:
         UsageError: as :func:`parse`.
@@ -130,7 +130,7 @@ def _by_name(call: str, sizes: Mapping[str, int], words: Sequence[str]) -> dict[
 
 
 def _gather(words: list[str], sizes: Sequence[int]) -> list[str]:
-    """Return one word for each argument, if the words are just the numbers of the first ones."""
+    """Join the numbers of each argument into one word, if they fill the first arguments."""
     ends = list(accumulate(sizes, initial=0))
     if len(words) not in ends:
         return words

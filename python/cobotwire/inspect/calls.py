@@ -46,7 +46,7 @@ class Call(NamedTuple):
         """Send it; first check that the arm obeys it if it is a motion, unless ``force``.
 
         Returns:
-            What it did. An error: nothing was sent, so nothing is to be stopped either.
+            The outcome; or an error if nothing was sent, so that no motion has to be stopped.
 
         Raises:
             CobotwireError: the call failed.

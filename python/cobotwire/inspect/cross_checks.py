@@ -2,7 +2,8 @@
 
 A hypothesis is a mistake of the edition, such as tenths taken for hundredths, with what corrects
 the readings. It explains them if all relations of the corrected readings hold. If the relations
-hold as the edition is, and no hypothesis about an aspect keeps them, that aspect is confirmed.
+hold for the edition as it is, and each hypothesis about an aspect breaks one, that aspect is
+confirmed.
 """
 
 from __future__ import annotations
@@ -76,7 +77,7 @@ def hypotheses(numbers: Sequence[Number]) -> Iterator[Hypothesis]:
 def doubts(table: Table, results: Mapping[str, Any]) -> list[str]:
     """Return the mistakes that explain the results of a few queries, by name, of an arm at rest.
 
-    Without a mistake that explains them nothing is said: the arm may use another reference frame.
+    If no mistake explains them, the result is empty: the arm may use another reference frame.
     """
     row: dict[Key, Row] = {}
     for source in sources(table):
@@ -135,7 +136,7 @@ class CrossChecks:
         return found
 
     def confirmed(self, snapshots: Sequence[Snapshot]) -> Iterator[tuple[Key, str]]:
-        """Yield the aspects of readings for which every mistake would show, and none does."""
+        """Yield the confirmed aspects of readings: any mistake would break a relation."""
         wrong = {
             key for relation in self._broken(snapshots, self._relations) for key in relation.keys
         }
@@ -146,7 +147,7 @@ class CrossChecks:
             excluded: dict[str, list[bool]] = {}
             for each in self._hypotheses[key] if own else ():
                 verdicts = excluded.setdefault(each.aspect, [])
-                # One that is not excluded decides: the rest of the aspect need not be compared.
+                # One mistake that is not excluded leaves the aspect open: skip the rest.
                 if all(verdicts):
                     changed = [_corrected(row, (key,), each) for row in snapshots]
                     verdicts.append(any(self._broken(changed, own)))

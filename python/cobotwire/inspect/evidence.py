@@ -115,7 +115,7 @@ class Candidates:
 
     Attributes:
         proven: the editions that have every query that was replied to.
-        likely: those of them that lack every query that was not replied to.
+        likely: the proven editions that lack every query without a reply.
     """
 
     def __init__(self, names: Iterable[str]) -> None:
@@ -141,8 +141,8 @@ class Candidates:
     def next_query(self) -> tuple[str, Command] | None:
         """Return an edition, and a query of it that some of the likely editions lack; or None.
 
-        First the version, then queries that about half of the editions have. Of a single likely
-        edition, a query that few others have.
+        The version comes first, then queries that about half of the editions have. For a single
+        likely edition, it is a query that few others have.
         """
         among = self.likely if len(self.likely) > 1 else self.proven
         wanted = len(among) / 2 if among is self.likely else 1

@@ -24,14 +24,14 @@ from cobotwire.session import Traffic, UnexpectedFrame
 SCHEME = "follow:"
 # A recording describes its first interface in its second block, which is written at once.
 HEAD_BLOCKS, HEAD_SECONDS = 2, 1.0
-# The end of the file is looked at this often.
+# The seconds between two reads at the end of the file.
 WAIT_SECONDS = 0.05
-# Traffic that was not taken yet; beyond that the oldest is lost.
+# The most items of traffic that wait to be taken; then the oldest is dropped.
 QUEUED = 20_000
 
 
 class _GrowingFile:
-    """Waits at the end of a file for more, until it is stopped or a time has come."""
+    """Waits at the end of a file for more, until it is stopped or a deadline has passed."""
 
     def __init__(self, path: str) -> None:
         if not Path(path).is_file():
@@ -39,7 +39,7 @@ class _GrowingFile:
         self._file = open(path, "rb", buffering=0)  # noqa: SIM115  (closed by close())
         self._stopped = threading.Event()
         self.give_up_at = time.monotonic() + HEAD_SECONDS
-        # Whether everything was read that was there at the beginning.
+        # Whether the initial contents of the file were read.
         self.at_end = False
 
     def read(self, size: int, /) -> bytes:
@@ -62,7 +62,7 @@ class FollowedRecording:
     Attributes:
         source: what is followed, ``follow:FILE``.
         url, baudrate: of the arm's port, as the recording states them.
-        edition: that of the recording, if it is installed.
+        edition: the edition of the recording, if it is installed.
         table: the table of the edition.
         problem: why nothing comes any more; empty while the recording may grow.
     """

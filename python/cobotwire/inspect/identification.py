@@ -82,7 +82,7 @@ def other_edition(
     Raises:
         LinkError: the transport is gone.
     """
-    # A device whose frames differ is no arm of the others, and is not sent their frames.
+    # An edition with other frames is excluded, so the device is not sent its frames.
     names = with_same_frames(newest_first(), table)
     others = [editions.load(name).TABLE for name in names if name != table.edition]
     command = own_query(table, others)
@@ -172,7 +172,7 @@ def _identified(
     evidence: list[Evidence],
     timeout: float | None,
 ) -> Identification:
-    """Find out which of the editions with the same frames an arm speaks that replies to them."""
+    """Find out which of the editions with the same frames the arm that replied speaks."""
     first = editions.load(found.proven[0]).TABLE
     evidence += _narrowed(transport, found, timeout=timeout)
     edition, firmware = found.known, ""
@@ -250,7 +250,7 @@ def identify(
 
 
 def _doubts(found: Identification, transport: Transport, timeout: float | None) -> list[str]:
-    """Return what does not fit in the place that an arm of a known edition reports."""
+    """Return the mistakes of a known edition that explain the position that its arm reports."""
     table = editions.load(found.edition).TABLE if found.edition else None
     if table is None or table.robot.geometry is None:
         return []
@@ -328,7 +328,7 @@ def _known(found: Identification) -> str:
 def _found(
     port: str, baudrate: int | None, timeout: float | None
 ) -> tuple[Identification, Transport]:
-    """Identify the arm at a port; return the open transport with the rate of its reply, too."""
+    """Identify the arm at a port; return the open transport and the baud rate of its reply, too."""
     evidence: list[Evidence] = []
     rates = _rates(port, baudrate)
     while True:
@@ -347,10 +347,10 @@ def _found(
 
 
 def _rates(port: str, baudrate: int | None) -> list[tuple[int, list[str]]]:
-    """Return the baud rates to try, each with the editions to ask for; none twice.
+    """Return the baud rates to try, without duplicates, each with the editions to look for.
 
-    At first all are asked for, since a pseudo-terminal or an adapter has its own rate. At another
-    rate, only queries with the frames of an edition that states this rate are sent.
+    The first rate looks for all editions, since a pseudo-terminal or an adapter has its own rate.
+    At another rate, only queries with the frames of an edition that states this rate are sent.
     """
     tables = {name: editions.load(name).TABLE for name in editions.names()}
     usual = tables[editions.DEFAULT].baudrate

@@ -80,7 +80,7 @@ class Monitor:
     """Samples the joints and coordinates of an arm, and listens to the port in between.
 
     A sample with a missing reply is part of the result, so that the user sees that the arm is
-    silent. A client's ``stream()`` skips this sample.
+    silent. A client's ``stream()`` skips such a sample.
     """
 
     def __init__(self, arm: Client, codec: Codec, rate: float) -> None:
@@ -94,7 +94,7 @@ class Monitor:
         self._listener = DiagnosingListener(codec)
         self._answered = 0
         self._error = ""
-        # Why a simulated arm cannot reply, by command: it is not asked again.
+        # Why a simulated arm cannot reply, by command: such a query is not sent again.
         self._refused: dict[str, str] = {}
 
     def samples(self, count: int | None = None) -> Iterator[Observation]:
@@ -155,8 +155,8 @@ class Monitor:
 class FollowingMonitor:
     """Shows the joints and coordinates that another program queries, and sends nothing.
 
-    A value is that of the newest reply; None if none came for ``FRESH_SECONDS``. The rate is that
-    of the replies with joints. A reply belongs to the newest request of its id, so none is late.
+    A value is from the newest reply; None if none came for ``FRESH_SECONDS``. The rate counts
+    replies with joints. A reply belongs to the newest request of its id, so none is late.
     """
 
     def __init__(self, followed: FollowedRecording, rate: float) -> None:
@@ -167,7 +167,7 @@ class FollowingMonitor:
         self._values = {command: (-inf, None) for command in monitored(followed.table)}
         self._times: deque[float] = deque(maxlen=WINDOW)
         self._replied = {each.id for each in followed.table.commands if each.requires_reply}
-        # The ids of requests that have no reply yet; how many got none before they were repeated.
+        # The ids of requests without a reply yet; how many requests were repeated without one.
         self._open: set[int] = set()
         self._unanswered = 0
         self._error = ""

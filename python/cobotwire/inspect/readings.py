@@ -84,13 +84,13 @@ class Relation(NamedTuple):
     exact: bool = True
 
     def fails(self, snapshot: Snapshot) -> bool:
-        """Return whether it does not hold; False if a reading is missing."""
+        """Return whether the readings contradict it; False if one is missing."""
         rows = [snapshot.get(key) for key in (*self.keys, *self.conditions)]
         return None not in rows and not self.holds(*rows)
 
 
 def sources(table: Table) -> list[Source]:
-    """Return what the queries of an edition report, as far as one request for all or each joint."""
+    """Return the state that each query of an edition reports, for all joints or joint by joint."""
     found = []
     for query in table.commands:
         effect = effect_of(query)

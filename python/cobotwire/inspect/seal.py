@@ -28,7 +28,7 @@ Signer = Callable[[str], dict[str, str]]
 class Seal(NamedTuple):
     """What the seal of a document shows.
 
-    ``digest`` is that of the contents, and ``stated`` the one that the document has. ``key`` is the
+    ``digest`` is computed from the contents, and ``stated`` is in the document. ``key`` is the
     public key that signed it, in hex; empty: it is not signed.
     """
 

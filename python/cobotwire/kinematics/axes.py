@@ -23,9 +23,9 @@ ON_AXIS = 1e-9
 
 
 class Axis(NamedTuple):
-    """The z axis of a frame that joints turn, and from there the frame of the next axis.
+    """The z axis of a frame that joints turn, and the frame of the next axis relative to it.
 
-    ``turned_by`` is that of a ``Link``; ``offset`` is added, in degrees.
+    ``turned_by`` is as in a ``Link``; ``offset`` is added, in degrees.
     """
 
     turned_by: Shares
@@ -75,7 +75,7 @@ def _between(pose: Pose) -> tuple[list[Link], float, float]:
     c, s = math.cos(turn), math.sin(turn)
     left = math.atan2(math.cos(alpha) * (xy * c - xx * s) + math.sin(alpha) * xz, xx * c + xy * s)
     if abs(left) > math.pi / 2 + 1e-9:
-        # The other direction of the common normal, which leaves less.
+        # With the other direction of the common normal, a smaller turn is left.
         turn, alpha, a, left = turn + math.pi, -alpha, -a, left + math.pi
     links.append(Link(math.degrees(turn - begun), math.degrees(alpha), a, pz - way * zz, ()))
     return links, math.degrees(left), way

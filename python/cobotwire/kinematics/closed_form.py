@@ -22,7 +22,8 @@ AXES_280 = (90, 0, 0, 90, -90, 0)
 AXES_320 = (90, 0, 0, -90, 90, 0)
 AXES_SPHERICAL = (-90, 0, -90, 90, -90, 0)
 # Below this sine of the fifth joint, the fourth and the sixth turn about the same axis. Below the
-# second sine they nearly do, and the truncation of a pose may decide how far each of them turns.
+# second sine the two axes are nearly the same, and the truncation of a pose may decide how far each
+# joint turns.
 WRIST_STRAIGHT, WRIST_NEARLY_STRAIGHT = 1e-7, 1e-2
 # In that case, the search tries the sixth joint at steps of this many degrees.
 WRIST_STEP = 30
@@ -152,7 +153,7 @@ def _fourth_frame(
 
 
 def _nearest_first(angles: Iterable[float], present: float) -> list[float]:
-    """Sort angles, in radians, by the way from the present one."""
+    """Sort angles, in radians, by their distance from the present one."""
     return sorted(angles, key=lambda one: abs(math.remainder(one - present, math.tau)))
 
 

@@ -34,7 +34,7 @@ NEAR_MILLIMETRES, NEAR_DEGREES = 10.0, 3.0
 GUESSES = 8
 # How many solutions in closed form take as long as a step of a descent. A straight wrist has 96.
 SOLUTIONS_A_STEP = 2
-# How many solutions may continue a way, before all are compared.
+# How many solutions may continue a path, before all are compared.
 CONTINUING = 4
 # A turn is weighted by the distance that it moves the ends of the three axes: 7.07 mm for a degree.
 # This is nearly the ratio of the two tolerances, so least squares come near to both alike.
@@ -55,7 +55,7 @@ def nearest(
         geometry: the arm.
         target: the flange's pose in the frame of the base.
         present: the angles to stay close to, in degrees. The nearest solution takes the least
-            time: the joint with the longest way counts, then the sum of all ways. Without a closed
+            time: the largest turn of a joint counts, then the sum of all turns. Without a closed
             form, it is the nearest of those that the search finds.
         limits: the lowest and the highest angle of each joint, in degrees.
         largest_turn: solutions in which a joint turns further than this, in degrees, are of no
@@ -67,7 +67,7 @@ def nearest(
     if not is_solved(geometry):
         return search(geometry, target, present, limits, largest_turn, effort)
     if largest_turn < math.inf:
-        # The next point of a way: nearly always the first solution continues it.
+        # The next point of a path: nearly always the first solution continues it.
         for one in islice(solutions(geometry, target, present), CONTINUING):
             near = within(one, present, limits, ROUNDING)
             if (

@@ -66,7 +66,7 @@ class Along:
         ruckig.Ruckig(1).calculate(wanted, self._law)
         self._slower = 1.0
         self.seconds: float = self._law.duration
-        # Bends and changes of speed come together; slowed down, the motion obeys all bounds.
+        # A bend and a change of speed may coincide; a slower motion obeys all bounds.
         self._slower = max(1.0, *(each.slower for each in excesses(self, bounds)))
         self.seconds *= self._slower
 
@@ -123,7 +123,7 @@ class Chase:
     """Joints that run after a target that may change at each step, and stop at it."""
 
     def __init__(self, start: Point, bounds: Bounds, step: float) -> None:
-        """``step`` is the time of a step in seconds."""
+        """Rest at first; ``step`` is the time of a step in seconds."""
         ruckig = load_ruckig()
         joints = len(start)
         self._finished = ruckig.Result.Finished
@@ -144,7 +144,7 @@ class Chase:
 
 
 def paced(points: Sequence[Point], bounds: Bounds) -> Curve:
-    """Return a curve through points on which a speed of 1 is within the bounds everywhere, nearly.
+    """Return a curve through points on which a speed of 1 is nearly within the bounds everywhere.
 
     The speed is constant where possible: the fastest joint determines the time between points.
     Around sharper bends they are made longer, until the joints can follow.

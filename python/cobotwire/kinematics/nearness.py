@@ -27,7 +27,7 @@ def misses(
 
 
 def way_between(angles: Sequence[float], present: Sequence[float]) -> tuple[float, float]:
-    """Return the longest way of a joint, then the sum of all ways: the smaller, the nearer."""
+    """Return the largest turn of a joint, then the sum of all turns: the smaller, the nearer."""
     ways = [abs(a - b) for a, b in zip(angles, present)]
     return max(ways), sum(ways)
 

@@ -64,7 +64,7 @@ def search(
 
 
 def _turn(start: Sequence[float], present: Sequence[float]) -> float:
-    """Return how far the joint with the longest way turns."""
+    """Return the largest turn of a joint."""
     return max((abs(one - other) for one, other in zip(start, present)), default=0.0)
 
 

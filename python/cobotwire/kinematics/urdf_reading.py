@@ -123,7 +123,7 @@ def _continue(axes: list[Axis], joint: Element, own: list[str]) -> None:
     following = axes[-1].following.then(Pose.of([*place, *turned]))
     axes[-1] = axes[-1]._replace(following=following)
     if kind == "fixed":
-        # Its axis says nothing: files of the maker have 0 0 0.
+        # Its axis has no meaning: files of the maker have 0 0 0.
         return
     x, y, z = _numbers(joint, "axis", "xyz", "1 0 0")
     beside = math.hypot(x, y)

@@ -1,1 +1,1 @@
-"""Define what an edition is: records, values, limits, errors. Nothing else knows these rules."""
+"""Define what an edition is: records, values, limits, errors. Only this package has these rules."""

@@ -43,7 +43,7 @@ NAMES_OF_JSON |= {bool: "true or false", float: "a number", type(None): "null"}
 def damage_of(data: bytes, read: Callable[[Any], object]) -> str:
     """Return what is wrong with the bytes of an ``edition.json``, and at which JSON path.
 
-    ``read`` makes a table of the document: its keys that are missing are found so.
+    ``read`` makes a table of the document, which finds missing keys.
     """
     try:
         document = json.loads(data.decode())

@@ -26,7 +26,7 @@ Control = Literal["stop", "halt", "pause", "resume", "forget"]
 
 
 class State(NamedTuple):
-    """One thing that an arm keeps.
+    """One item of the state of an arm.
 
     Attributes:
         name: its name.
@@ -116,7 +116,7 @@ class Zeroes(NamedTuple):
 
 
 class Does(NamedTuple):
-    """A command controls the motion that goes on."""
+    """A command controls the motion under way."""
 
     what: Control
     at: tuple[str, ...] = ()
@@ -226,7 +226,7 @@ def empty_value(field: Field) -> int:
 
 
 def states_of(table: Table) -> dict[str, State]:
-    """Return what an edition declares that its arm keeps, by name."""
+    """Return the state that an edition declares for its arm, by name."""
     return {
         name: State(
             name,

@@ -71,7 +71,7 @@ class UsageError(CobotwireError, ValueError):
     def renamed(self, names: Mapping[str, str]) -> UsageError:
         """Return the error for an interface that has other names for some arguments.
 
-        ``names`` has these names by ours. Names inside of a row (``coords.x``) stay.
+        ``names`` maps our names to these names. Names inside of a row (``coords.x``) stay.
         """
         argument = _FIRST_NAME.sub(lambda found: names.get(found[0], found[0]), self.argument)
         usual = str(UsageError(self.argument, self.value, self.allowed))
@@ -94,7 +94,7 @@ class UnreadableInput(UsageError):
 
 
 class EmptyInput(UnreadableInput):
-    """An error of an input file: it holds no byte, or it is a recording that holds none."""
+    """An error of an input file: it is empty, or it is a recording without packets."""
 
     def __init__(self, name: str) -> None:
         super().__init__("standard input" if name == "-" else name, "is empty")
@@ -171,8 +171,8 @@ class ReplyTimeout(CobotwireError, TimeoutError):
         attempts: how often the request was sent; 0 if it was not sent, and never will be.
         request: the call with its arguments, for example ``get_encoder(joint=1)``.
         waited_for: what the call waited for when the ``deadline`` of the client passed: ``turn``,
-            ``hold``, ``line`` or ``reply``; empty if another time was over: that of the arm to
-            reply, or of a line to be read before a request.
+            ``hold``, ``line`` or ``reply``; empty if another timeout passed: that of the reply, or
+            of the reading before a request.
         refusal: why the arm, which is simulated, cannot reply; empty if it did not say so. It will
             not reply if it is sent again.
     """
@@ -249,7 +249,7 @@ class ArmState(NamedTuple):
     error_meaning: str = ""
 
     def sentences(self) -> list[str]:
-        """Return what explains that an arm is not where it should be."""
+        """Return reported facts that explain why an arm is not at its target."""
         found = []
         if self.position is not None:
             found.append(f"it is at {list(self.position)}")

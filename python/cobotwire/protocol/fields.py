@@ -37,14 +37,13 @@ class Field(NamedTuple):
     ``const`` is the only raw value of a constant, which is no argument and no result. ``default``
     are the raw values of an argument that the caller leaves out.
 
-    A field of ``bytes`` or ``text`` has a number for each byte. ``encoding`` is that of a text, and
-    ``padding`` the byte after a text that is shorter than its field (-1: none). If ``each`` is not
-    0, the value is a tuple of elements of that many numbers: tuples, or texts.
+    A field of ``bytes`` or ``text`` has a number for each byte. ``encoding`` is the encoding of a
+    text, and ``padding`` the byte after a text that is shorter than its field (-1: none). If
+    ``each`` is not 0, the value is a tuple of elements of that many numbers: tuples, or texts.
     ``sizes`` are the least and the most elements of a list whose number varies; a variant has one
     of these numbers, and other variants have the others. A field that ``counts`` the elements of
-    another one has the same ``sizes``; callers pass ``...`` for it.
-    ``meanings`` describe ranges of raw values, each with its first and last; other values are legal
-    too.
+    another one has the same ``sizes``; callers pass ``...`` for it. ``meanings`` describe ranges of
+    raw values, each with its first and last; other values are legal too.
     """
 
     name: str
@@ -166,7 +165,7 @@ class Field(NamedTuple):
         return bool(values[0]) if self.kind == "flag" and self.const is None else values[0]
 
     def meets(self, number: Number, other: Field, other_number: Number) -> bool:
-        """Return whether a raw value is legal in a number of this field and in one of another."""
+        """Return whether a raw value is legal both in a number of this field and in another's."""
         ends = ((self, number, other, other_number), (other, other_number, self, number))
         for one, here, two, there in ends:
             if choices := one.choices or here.choices:

@@ -47,8 +47,9 @@ SHAPED = ("bits", "bytes", "text", "list")
 def load_table(package: str, checksum: str | None = "") -> Table:
     """Return the table of a generated package, which is given by its full name.
 
-    ``checksum`` is that of ``edition.json``, as cobotwire-gen wrote it: a damaged table could move
-    an arm in a way that nobody meant. None: the package is hand-written, and states none.
+    ``checksum`` is the checksum of ``edition.json``, as cobotwire-gen wrote it: a damaged table
+    could move an arm in a way that nobody meant. None: the package is hand-written, and states
+    none.
 
     Raises:
         UsageError: the file is missing or damaged, or another version of cobotwire-gen made it.

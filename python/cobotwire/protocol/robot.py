@@ -148,7 +148,7 @@ class Robot(NamedTuple):
         servos: what its servos report.
         error_codes: the numbers of rejected motions.
         joint_limits: the lowest and the highest angle of each joint.
-        start_angles: where each joint of a simulated arm is at first.
+        start_angles: the joint angles at which a simulated arm starts.
         state: what the arm keeps, by name (:func:`cobotwire.protocol.effects.states_of`).
         geometry_unknown: why the links are not known, where they are not.
     """

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 Result = TypeVar("Result")
 
-# Results for this many tables are kept. There are as many editions; limits make further tables.
+# Results for this many tables are kept: the number of editions. Limits make further tables.
 KEPT = 16
 
 
@@ -23,7 +23,7 @@ def once_per_table(function: Callable[[Table], Result]) -> Callable[[Table], Res
     """Return a function that keeps its results for the tables that were used last.
 
     Tables are told apart by identity: comparing two of them takes longer than most functions. The
-    result is shared by threads, so nobody may change it.
+    result is shared by threads, so it must not be changed.
     """
     recent: deque[tuple[Table, Result]] = deque(maxlen=KEPT)
 

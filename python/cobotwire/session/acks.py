@@ -58,11 +58,11 @@ class ExpectedAck:
         self.until = min(self.until, self.sent_at + seconds)
 
     def count(self, frame: Frame, began_at: float) -> None:
-        """Count an acknowledgement of the command: of another request, as long as it can be."""
+        """Count an acknowledgement of the command; it is first counted for other requests."""
         self.doubts = [until for until in self.doubts if until > began_at]
         if self.doubts:
             if self.request.replier != ANYBODY:
-                # Of a broadcast several devices may acknowledge each other request.
+                # After broadcasts, each other request may have several acknowledgements.
                 self.doubts = self.doubts[1:]
         elif frame.offset >= self.offset:
             self.certain = True
@@ -170,7 +170,7 @@ class _CommandAcks:
                 ack.count(received.frame, began_at)
 
     def doubts_of(self, request: EncodedRequest, ack: ExpectedAck | None = None) -> list[float]:
-        """Return the doubts of a request, by all that is expected except for its own ``ack``."""
+        """Return until when other acknowledgements than ``ack`` may look like that of a request."""
         others = (other for other in self.expected if other is not ack)
         return [each.until for each in others if not replies_differ(each.request, request)]
 
@@ -250,7 +250,7 @@ class Acks:
         if oldest is None or message is None or frame.offset < oldest.offset:
             return None
         self._learn(acks, received, now)
-        # What learning has shortened may be over by now.
+        # By what was learned, some expected acknowledgements may have expired.
         acks.take(received, began_at)
         self._end_certain(message)
         return Acknowledged(oldest.request, message)
@@ -258,9 +258,9 @@ class Acks:
     def _learn(self, acks: _CommandAcks, received: _Received, now: float) -> None:
         """Learn whether motions are acknowledged at once.
 
-        They are if the acknowledgement of a single motion comes at once. They also are if, for
-        longer than a motion may take, the newest motion always seems to be the acknowledged one:
-        then an earlier acknowledgement was lost.
+        They are if the acknowledgement of a single motion comes at once. They also are if one has
+        come soon after its motion, and acknowledgements have been expected without a break for
+        longer than a motion may take: then an earlier one was lost.
         """
         newest = next(ack for ack in reversed(acks.expected) if received.of(ack.request))
         if newest.request.command.safety != "motion" or now - newest.sent_at >= GRACE_SECONDS:

@@ -47,7 +47,7 @@ def _longest(table: Table) -> int:
 
 
 class Alignment:
-    """Knows which parts of a request the peer may hold, and what ends them.
+    """Keeps the parts of a request that the peer may hold, and the bytes that end them.
 
     Attributes:
         align: what must be written before the next request; empty on an aligned line.

@@ -43,15 +43,15 @@ from cobotwire.session.setpoints import Live, OnLines, Path, Ways, evenly
 
 # Setpoints a second, if the line carries them.
 USUAL_RATE, HIGHEST_RATE = 50.0, 500.0
-# Of the time of a tick, so much may go by until a reply comes.
+# The share of a tick that may pass until a reply comes.
 BUSY_SHARE = 0.8
 # How often the joints are read meanwhile.
 FEEDBACK_SECONDS = 0.2
-# The queries before the motion; the quickest says how long a reply takes that is not lost.
+# The number of queries before the motion; the fastest measures how long a reply takes.
 TRIALS = 3
 # With fewer setpoints a second an arm stops at each.
 LEAST_RATE = 5.0
-# After a stall of the process that is longer, the rest of the path is given up.
+# The longest stall of the process; after a longer one the rest of the path is given up.
 STALL_SECONDS = 0.5
 # An arm that stands still for this long at the end of the path does not continue by itself.
 STILL_SECONDS = 1.0
@@ -149,7 +149,7 @@ class Follow:
         """Yield the steps of following the path.
 
         Raises:
-            UsageError: a target is not allowed; of a path nothing was sent but queries.
+            UsageError: a target is not allowed; if it is one of a path, only queries were sent.
             FollowFailed: the source was silent, the process stalled, or the arm stopped short.
         """
         self._now = self._began = now
@@ -216,7 +216,7 @@ class Follow:
         return path
 
     def _make_fresh(self) -> Steps:
-        """Let new targets replace old ones; keep what restores the mode."""
+        """Let new targets replace old ones; keep the request that restores the mode."""
         setting, argument, query = self._fresh
         fresh, usual = (setting.request_type(**{argument: mode}) for mode in (1, 0))
         if query is not None and (yield from self._ask(query.request_type())):

@@ -1,7 +1,7 @@
 """When a motion is over: what to request, and when to give up; times are numbers.
 
-A generator yields the next step and is sent how it went. So the blocking and the asyncio client
-wait in their own ways, and decide nothing.
+A generator yields the next step and receives its outcome. The blocking and the asyncio client only
+carry out the steps.
 """
 
 from __future__ import annotations
@@ -22,14 +22,14 @@ from cobotwire.session.request import EncodedRequest
 # A moving arm replies to 10 to 20 queries a second. A wait sends at most 12 queries in any second:
 # these, and two repeats of a query whose reply is lost.
 MOST_QUERIES = 10
-# Queries near the end are this far apart, divided by how many more this second allows.
+# The interval of queries near the end, times the number of queries that this second still allows.
 SPACING_SECONDS = 0.1
-# The second look at where the arm is comes after this time, later ones after twice the time before.
+# The position is read a second time after this time; each later interval is twice the one before.
 FIRST_SECONDS = 0.05
-# The longest time between two looks. If the device reports the end of a motion, the queries only
-# make up for an event that was lost.
+# The longest time between two readings of the position. If the device reports the end of a motion,
+# the queries only make up for an event that was lost.
 LOOK_SECONDS, CONFIRM_SECONDS = 0.5, 1.0
-# Near the end the arm is looked at again after this time.
+# Near the end the position is read again after this time.
 AGAIN_SECONDS = 0.15
 # How long the event of the end is awaited before the arm is asked.
 EVENT_SECONDS = 0.15
@@ -39,7 +39,7 @@ SLOWEST = 2.0
 STILL_SECONDS = 1.0
 # How long each query after a failed motion may take.
 STATE_SECONDS = 0.2
-# Within the time of a query it is repeated, after this time at the earliest.
+# A query is repeated within its time, at the earliest after this time.
 REPEAT_SECONDS = 0.1
 
 
@@ -96,8 +96,8 @@ class Goal(NamedTuple):
         place: the role of the query that reports where the arm is, in the same numbers.
         query: reports whether the target is reached, or else where the arm is.
         decides: whether the arm reports by itself whether the target is reached.
-        tolerances: how far each number may be from the target where the arm does not; empty if the
-            edition does not report where it is.
+        tolerances: how far each number may be from the target if the arm does not report this;
+            empty if the edition does not report where the arm is.
         turns: for each number, whether a whole turn makes no difference.
     """
 
@@ -183,7 +183,7 @@ def until_reached(table: Table, goal: Goal, limit: float, started: float) -> Ste
 
 
 class _Wait:
-    """What a wait knows about the motion, and when it sent its queries."""
+    """The state of a wait: the motion as far as it was observed, and the times of the queries."""
 
     def __init__(self, table: Table, goal: Goal, limit: float, started: float) -> None:
         self._table, self._goal = table, goal
@@ -192,10 +192,10 @@ class _Wait:
         self._ended, self._moving = table.find_role("motion ended"), table.find_role("moving")
         # None: nothing reports where the arm is.
         self._where = table.find_role(goal.place) if goal.tolerances else None
-        # The time and the result of the last look at where the arm is.
+        # The time and the result of the last reading of the position.
         self._before: tuple[float, Any] | None = None
         self._still_since: float | None = None
-        # From when on the arm may be there, and when it is looked at again even then.
+        # When the arm may be there at the earliest, and when its position is read again.
         self._due = self._look_at = started
         self._sent: deque[float] = deque()
 

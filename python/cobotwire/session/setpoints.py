@@ -21,7 +21,7 @@ from cobotwire.protocol.errors import UsageError
 HERE_DEGREES = 1.0
 # Two points that are nearer than this are one point of a path.
 SAME_DEGREES = 1e-6
-# The longest time over which the way to a new target is spread.
+# The longest time over which the motion to a new target is spread.
 SPREAD_SECONDS = 0.25
 
 

@@ -255,7 +255,7 @@ class SimulatedArm:
         return self._found[command.name]
 
     def _is_elsewhere(self, fields: Mapping[str, Any]) -> bool:
-        """Return whether a request is for a joint that is not in the arm, as those of a waist."""
+        """Return whether a request is for a joint that is not in the arm, such as a waist joint."""
         joint = fields.get("joint")
         # The servo after the last joint is the gripper's.
         return isinstance(joint, int) and self.table.joints + 1 < joint < EVERY_JOINT

@@ -134,7 +134,7 @@ def _attribute(name: str) -> Callable[[Reported], Any]:
     return lambda shown: getattr(shown.arm, name)
 
 
-# What the state of the arm holds as it is reported.
+# The attributes of the arm's state that are reported without conversion.
 SIMPLE = ("powered", "free", "paused", "connected", "error", "starts")
 READERS: dict[str, Callable[[Reported], Any]] = {
     "angles": _angles,

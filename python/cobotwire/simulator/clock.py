@@ -32,7 +32,7 @@ class RunningClock:
     """The system's monotonic clock, perhaps faster: at ``rate`` 10 a minute takes 6 seconds."""
 
     def __init__(self, rate: float = 1.0) -> None:
-        """``rate`` is how many of its seconds pass in one real second."""
+        """Start now; ``rate`` of its seconds pass in one real second."""
         if not rate > 0:
             raise ValueError(f"a clock's rate must be above 0, not {rate!r}")
         self.rate = rate

@@ -43,7 +43,7 @@ MOST_VALUES = 255
 # This number of a joint stands for all joints.
 EVERY_JOINT = 254
 
-# The state that begins as the edition's `servos` say.
+# The state that starts with the values of the edition's `servos`.
 REGISTERS = "registers"
 
 Fields = Mapping[str, Any]
@@ -195,7 +195,7 @@ def _keep(arm: ArmState, state: State, index: tuple[int, ...], value: Any) -> No
     elif state.kind != "value" and isinstance(value, tuple):
         kept.update({(*index, n): each for n, each in enumerate(value, 1)})
     else:
-        # The value of every index stands under the indices before the last one.
+        # A value for every last index is stored under the indices before it.
         others = {key: each for key, each in kept.items() if key[: len(index)] != index}
         arm.kept[state.name] = others | {index: value}
 
@@ -265,7 +265,8 @@ def _computes(asked: Asked, effect: Computes) -> dict[str, Any]:
     arm, given = asked.arm, tuple(asked.fields[effect.source])
     name = asked.command.reply[0].fields[-1].name
     if effect.what == "coords":
-        # Joints rest on ticks, so the reply for the angles of get_angles is that of get_coords.
+        # Joints rest on ticks, so for angles from get_angles the reply is the same as from
+        # get_coords.
         coords = arm.reported_coords(arm.on_ticks(given))
         if coords is None:
             raise Unanswerable

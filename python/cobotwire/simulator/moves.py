@@ -57,11 +57,11 @@ def move(arm: ArmState, now: float, command: Command, effect: Moves, fields: Fie
 def _speed(arm: ArmState, effect: Moves, fields: Fields) -> int:
     given = fields.get(effect.speed)
     if given is None:
-        # A speed that nothing has set yet is no reason to stand still.
+        # The arm also moves if no speed has been set yet.
         usual = arm.kept.get("speed")
         return round(usual) if isinstance(usual, int | float) and usual else USUAL_SPEED
     if isinstance(given, tuple | list):
-        # Speeds of single servos: the arm moves with one, unless all are 0.
+        # A speed for each servo: the arm uses its usual speed for all, or 0 if all are 0.
         return USUAL_SPEED if any(given) else 0
     return round(float(given))
 

@@ -124,7 +124,7 @@ class ReplayedArm:
 
 
 def exchanges(packets: Iterable[Packet]) -> list[Exchange]:
-    """Return each recorded request with what arrived after it. What came before all is left out."""
+    """Return each recorded request with the bytes after it. Bytes before the first are left out."""
     exchanges: list[Exchange] = []
     requested_at = 0
     for time_ns, direction, data in sorted(_chunks(packets), key=lambda chunk: chunk[0]):

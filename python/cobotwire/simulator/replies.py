@@ -33,13 +33,13 @@ def completed(
     result: Mapping[str, Any],
     usual: int | None = None,
 ) -> dict[str, Any]:
-    """Return all fields of a reply: the result, echoes of the request, and what is usual.
+    """Return all fields of a reply: the result, echoes of the request, and usual values.
 
     Args:
         command: the command.
         request: the fields of the request.
         result: the fields of the reply that the behaviour states.
-        usual: the value of fields without another one; None: 1 for acknowledgements and for flags
+        usual: the value of all other fields; None: 1 for acknowledgements and for flags
             of commands that are no queries, else 0.
     """
     if command.text is not None:

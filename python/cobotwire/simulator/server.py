@@ -34,7 +34,7 @@ class Server:
     url: str
 
     def __init__(self, clock: RunningClock | None) -> None:
-        """``clock`` is the one that the peers use; None: real time."""
+        """Prepare to serve; ``clock`` is the one that the peers use; None: real time."""
         self._clock = RunningClock() if clock is None else clock
         self._clients: dict[int, _Client] = {}
         self._selector = selectors.DefaultSelector()
@@ -112,7 +112,7 @@ class Server:
                 self._selector.modify(client.endpoint.descriptor, events)
 
     def _wait(self, call_at: float | None) -> float | None:
-        """Return for how many real seconds there is nothing to do unless something arrives."""
+        """Return how many real seconds to wait for arriving bytes; None: without a limit."""
         waits = [client.connection.wait for client in self._clients.values()]
         real = [wait / self._clock.rate for wait in waits if wait is not None]
         if call_at is not None:

@@ -55,8 +55,8 @@ class ArmState:
     connected: bool = True
     free: bool = False
     paused: bool = False
-    # The state that the edition declares, by name, and what behaviours from outside keep. Of a
-    # state with a value for each index, a mapping from the index.
+    # The state that the edition declares, by name, and what behaviours from outside keep. A state
+    # with a value for each index is a mapping from the index.
     kept: dict[str, Any] = field(default_factory=dict)
     # What is set for joints that the arm lacks, by the state and the index.
     elsewhere: dict[str, dict[Any, Any]] = field(default_factory=dict)
@@ -94,8 +94,8 @@ class ArmState:
         self.minimum = [-HALF_TURN] * self.joints
         self.maximum = [HALF_TURN] * self.joints
 
-    # The declared state that motion and kinematics obey. An edition that does not declare one has
-    # the value that changes nothing.
+    # The declared state that motion and kinematics use. If the edition does not declare it, it has
+    # the value without an effect.
     @property
     def queues(self) -> bool:
         """Whether a new target waits for the end of the present motion."""

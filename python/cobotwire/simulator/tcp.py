@@ -124,7 +124,7 @@ class TcpServer(Server):
     def _drop_idle_client(self) -> bool:
         """Disconnect the client that has been silent for longest, if that is long enough.
 
-        One that has never sent a byte goes before all that have.
+        A client that has never sent a byte is disconnected first.
         """
         latest = time.monotonic() - IDLE_SECONDS
         idle = [client for client in self._clients.values() if client.active_at < latest]

@@ -1,4 +1,4 @@
-"""The routes of the server. What a page sends is checked here, and nowhere trusted."""
+"""The routes of the server. What a page sends is checked here before it is used."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ KINDS = {
     ".js": "text/javascript; charset=utf-8",
     ".svg": "image/svg+xml",
 }
-# The files of the page by their address: nothing else of the disk can be asked for.
+# The files of the page by their address: no other file of the disk can be requested.
 FILES = {
     "/" if path.name == "index.html" else "/" + path.relative_to(PAGE).as_posix(): path
     for path in sorted(PAGE.rglob("*"))

@@ -38,7 +38,7 @@ class LiveEntries:
     """Turns a client's traffic into entries; its memory does not grow with the traffic."""
 
     def __init__(self, codec: Codec, start: float) -> None:
-        """``start`` is the time of the session's start by the client's clock."""
+        """Take the time of the session's start by the client's clock."""
         self._diagnoser = Diagnoser(codec, "reply")
         self._start = start
         # Where each frame and span of noise began in the stream, and when it came. Those of items
@@ -61,7 +61,7 @@ class LiveEntries:
         return self._entries(self._diagnoser.feed([part]))
 
     def idle(self, now: float) -> list[Entry]:
-        """Return what noise is that waits for more bytes, if none have come for a while."""
+        """Return entries for the noise that waits for more bytes, if none have come for a while."""
         if not self._waiting or now < self._received_at + IDLE_SECONDS:
             return []
         self._waiting = False

@@ -1,4 +1,4 @@
-"""The WebSocket of a page: news goes out in batches, a few wishes come in."""
+"""The WebSocket of a page: entries go out in batches, a few kinds of messages come in."""
 
 from __future__ import annotations
 

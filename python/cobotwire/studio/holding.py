@@ -19,7 +19,7 @@ class Holding:
     """The motion that one page holds; there is at most one."""
 
     def __init__(self, stage: Stage, page: str, refuse: Callable[[str], None]) -> None:
-        """``refuse`` gets the text of an error: the motion was not sent, or stop was not."""
+        """Hold nothing yet; ``refuse`` gets the text if a motion or stop was not sent."""
         self._stage, self._page, self._refuse = stage, page, refuse
         self._tasks: set[asyncio.Task[None]] = set()
         self._held, self._silence = False, Silence(stage.silence)

@@ -28,7 +28,7 @@ class LiveSession:
     def __init__(
         self, line: ArmLine | FollowedRecording, remarks: deque[tuple[float, str, str]]
     ) -> None:
-        """``remarks`` are added by other threads: when, of what kind, and the text."""
+        """Start without entries; other threads add ``remarks``: the time, the kind and the text."""
         self.line = line
         self._start = time.monotonic()
         self.start_ns = time.time_ns()

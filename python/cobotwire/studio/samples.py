@@ -95,7 +95,7 @@ class Sampler:
 
 
 def _ends_target(command: Command) -> bool:
-    """Return whether a command stops the arm, or moves it to where no target says."""
+    """Return whether a command stops the arm, or may move it to an unknown target."""
     return any(
         effect.what in ("stop", "halt", "forget")
         if isinstance(effect, Does)

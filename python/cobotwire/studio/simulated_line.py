@@ -30,7 +30,7 @@ class SimulatedLine:
     """Serves a simulated arm over TCP on this machine while its ``with`` block runs."""
 
     def __init__(self, table: Table, on_remark: Remark) -> None:
-        """``on_remark`` is called in the server's thread with each fault and each note."""
+        """Create the arm; ``on_remark`` gets each fault and note in the server's thread."""
         self.table = table
         self._on_remark = on_remark
         self._clock = RunningClock()

@@ -184,7 +184,7 @@ class Stage:
 
     def _line(self) -> ArmLine:
         if not isinstance(self.session, LiveSession):
-            raise NotPermitted("a recording cannot be sent anything")
+            raise NotPermitted("nothing can be sent to a recording")
         if isinstance(self.session.line, FollowedRecording):
             raise NotPermitted(
                 "what is recorded is only shown: stop the program there, or the arm by its switch"

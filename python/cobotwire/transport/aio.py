@@ -151,7 +151,7 @@ class ThreadedTransport:
         self._loop = asyncio.get_running_loop()
         self._ready = ready
         self._read_queue: queue.SimpleQueue[bytes | LinkError] = queue.SimpleQueue()
-        # With each write how many had failed when it was queued, as far as the loop knew.
+        # Each write with the number of failed writes that the loop knew of when it queued it.
         self._write_queue: queue.SimpleQueue[tuple[bytes, Done, int] | None] = queue.SimpleQueue()
         self._failures = self._unwritten = 0
         self._lost: LinkError | None = None

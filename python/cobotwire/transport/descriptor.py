@@ -39,7 +39,7 @@ class DescriptorTransport(ABC):
         self._baudrate = baudrate
         self._closed = True
         self._why_closed = "it is closed"
-        # -1 while it is closed, which no wait takes.
+        # -1 while it is closed: no wait accepts that.
         self._descriptor = -1
         self._waiter = Waiter()
         self._native = native_calls()

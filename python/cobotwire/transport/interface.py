@@ -75,13 +75,13 @@ class OpenedTransport(PollableTransport, Protocol):
     def low_latency(self) -> bool:
         """Whether the driver of the port passes short replies on at once.
 
-        By default a USB bridge holds them back for up to 16 ms. For a socket, TCP_NODELAY is the
-        same thing.
+        By default a USB bridge holds them back for up to 16 ms. For a socket, TCP_NODELAY has this
+        effect.
         """
         ...
 
     def reopen(self) -> None:
-        """Close it if it is open, and open the same thing again; ``fileno`` may change.
+        """Close it if it is open, and open the same port again; ``fileno`` may change.
 
         Bytes underway in either direction are lost. The controller is not reset.
 

@@ -1,7 +1,7 @@
 """Watch the descriptors of many transports for one event loop.
 
-A loop makes several objects and calls for each descriptor that is ready. So beyond the first few,
-descriptors are watched by one epoll, which is the only one that the loop watches for them.
+A loop makes several objects and calls for each descriptor that is ready. So the loop itself watches
+only the first few descriptors, and one epoll that watches all others.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""The clock that a transport goes by: the system's, unless the transport has its own."""
+"""The clock of a transport: the clock of the system, unless the transport has its own."""
 
 from __future__ import annotations
 

@@ -10,7 +10,7 @@ from typing import NamedTuple
 from cobotwire import codec as codecs
 from cobotwire.transport.alarm import Alarm, new_alarm
 
-# macOS's poll() refuses terminals, and Windows has none. There select() waits, which fails for
+# On macOS, poll() refuses terminals; Windows has no poll(). There select() waits, which fails for
 # descriptors from this number on.
 SELECTABLE = 1024
 POLLS = hasattr(select, "poll")
@@ -29,7 +29,7 @@ class NativeCalls(NamedTuple):
 
 
 def native_calls() -> NativeCalls | None:
-    """Return the native functions; None where Python waits: there is no native module, say."""
+    """Return the native functions; None if Python waits, as with the reference codec."""
     if not POLLS_TERMINALS or codecs.chosen() != "native":
         return None
     from cobotwire import _native
@@ -62,7 +62,7 @@ class Waiter:
         self._alarms: list[Alarm] = []
 
     def wait(self, descriptor: int, timeout: float, *, writing: bool = False) -> bool:
-        """Return whether it is ready, or gone: reading or writing it tells that.
+        """Return whether it is ready or gone; a read or write tells which.
 
         A timeout of zero or less does not wait. After :meth:`wake` every wait ends at once; its
         result means nothing then.
@@ -96,7 +96,7 @@ class Waiter:
             alarm.close()
 
     def __del__(self) -> None:
-        # A transport that was not closed warns for itself; the alarm is not the user's concern.
+        # No warning: a transport that was not closed gives one itself.
         self.close()
 
 

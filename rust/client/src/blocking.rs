@@ -78,20 +78,16 @@ impl Client {
         let (called, mut connection) = (Instant::now(), self.connection());
         let id = connection.submit(prepared, &self.handle.settings, called);
         loop {
+            connection.step(SLICE);
             if let Some(outcome) = connection.session.take(id) {
                 return outcome;
             }
-            connection = self.step(connection, SLICE);
+            connection = self.leave(connection);
         }
     }
 
-    /// Read and write for all, and leave the connection to other threads if they want it.
-    fn step<'a>(
-        &'a self,
-        mut connection: MutexGuard<'a, Connection>,
-        longest: Duration,
-    ) -> MutexGuard<'a, Connection> {
-        connection.step(longest.min(SLICE));
+    /// Leave the connection to other threads if they want it.
+    fn leave<'a>(&'a self, connection: MutexGuard<'a, Connection>) -> MutexGuard<'a, Connection> {
         if self.shared.waiting.load(Ordering::SeqCst) == 0 {
             return connection;
         }
@@ -130,7 +126,8 @@ impl<E: DeviceEvent> Iterator for Events<E> {
             if event.is_some() || left.is_zero() {
                 return event;
             }
-            connection = self.client.step(connection, left);
+            connection.step(left.min(SLICE));
+            connection = self.client.leave(connection);
         }
     }
 }

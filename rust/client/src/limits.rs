@@ -62,28 +62,23 @@ impl Limits {
             let text = bad_argument("limits.speed", &Shown::Real(speed), &allowed);
             return Err(Error::usage(text));
         }
-        for (axis, range) in self.workspace.iter().flatten().enumerate() {
-            if let Some(range) =
-                range.filter(|(low, high)| !(low <= high && (high - low).is_finite()))
-            {
-                return Err(bad_range(axis, range, &error_text("pair", &[])));
-            }
+        let Some(workspace) = &self.workspace else {
+            return Ok(());
+        };
+        let pair = error_text("pair", &[]);
+        let illegal = |(low, high): &Range| !(low <= high && (high - low).is_finite());
+        for (axis, range) in workspace.iter().enumerate() {
+            let range = range.filter(illegal);
+            range.map_or(Ok(()), |range| Err(bad_range(axis, range, &pair)))?;
         }
         let target = find(edition, |each| each.role == "coordinate targets");
         let fields = target.and_then(|target| target.request.first());
         let cases = fields.into_iter().flatten().flat_map(|field| &field.cases);
         let names: Vec<&str> = cases.flatten().map(|number| &*number.name).collect();
-        if self.workspace.is_some() && !AXES.iter().all(|axis| names.contains(axis)) {
-            let names = Shown::List(
-                names
-                    .iter()
-                    .map(|name| Shown::Text((*name).into()))
-                    .collect(),
-            );
-            return Err(Error::usage(error_text(
-                "no-coordinates",
-                &[("names", &names)],
-            )));
+        if !AXES.iter().all(|axis| names.contains(axis)) {
+            let names = names.join(", ");
+            let text = error_text("no-coordinates", &[("names", &names)]);
+            return Err(Error::usage(text));
         }
         Ok(())
     }
@@ -104,10 +99,8 @@ impl Limits {
         }
         let axis = AXES.iter().position(|axis| *axis == known.name);
         let axis = axis.filter(|_| command.role == "coordinate targets");
-        let found = axis
-            .zip(self.workspace)
-            .and_then(|(axis, all)| Some((axis, (*all.get(axis)?)?)));
-        let Some((axis, range)) = found else {
+        let range = axis.and_then(|axis| self.workspace.as_ref()?.get(axis).copied()?);
+        let Some((axis, range)) = axis.zip(range) else {
             return Ok(());
         };
         let (lowest, highest) = raw_range(number, range);
@@ -129,12 +122,13 @@ impl Limits {
     /// Return why a command is not sent within these limits; `None`: it is.
     pub(crate) fn refusal(&self, edition: &Edition, command: &Command) -> Option<String> {
         let (fast, far) = (self.speed.is_some(), self.workspace.is_some());
+        if !fast && !far || matches!(&*command.role, "stop" | "halt") {
+            return None;
+        }
         let moves = moves_arm(edition, command);
         let mut states = command.stores.iter();
         let is_capped = |variant: &Vec<Field>| variant.iter().any(is_speed);
-        let kind = if !fast && !far || matches!(&*command.role, "stop" | "halt") {
-            return None;
-        } else if command.safety == Safety::Persistent {
+        let kind = if command.safety == Safety::Persistent {
             "refused-lasting"
         } else if far && states.any(|state| FRAMES.contains(&&**state)) {
             "refused-frame"

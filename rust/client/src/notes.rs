@@ -22,16 +22,9 @@ pub(crate) struct Note(Option<String>, Instant);
 impl Note {
     /// Return the note of a port, and what was left there; its times are from now on.
     pub fn of(url: Option<&str>) -> (Self, PersistedState) {
-        // A link that keeps its name stands for the device that it names now.
-        let device = url.and_then(|url| std::fs::canonicalize(url).ok());
-        let name = device.map(|device| device.to_string_lossy().into_owned());
         // The next pseudo-terminal of this name is another line.
-        let name = match name.filter(|name| !name.starts_with("/dev/pts/")) {
-            None => url
-                .filter(|url| !url.starts_with("/dev/pts/"))
-                .map(str::to_owned),
-            name => name,
-        };
+        let name = url.filter(|url| !url.starts_with("/dev/pts/"));
+        let name = name.map(str::to_owned);
         let note = name
             .as_ref()
             .and_then(|name| crate::lock(&NOTES).remove(name));

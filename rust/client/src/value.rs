@@ -69,12 +69,10 @@ impl Given for Value {
         let Self::Text(text) = self else {
             return Err(WRONG_TYPE);
         };
-        let latin1 = || text.chars().map(|c| u8::try_from(c).ok()).collect();
-        let utf8 = (encoding == Encoding::Utf8 || text.is_ascii()).then(|| text.as_bytes().into());
-        let encoded = if encoding == Encoding::Latin1 {
-            latin1()
-        } else {
-            utf8
+        let encoded = match encoding {
+            Encoding::Latin1 => text.chars().map(|c| u8::try_from(c).ok()).collect(),
+            Encoding::Utf8 => Some(text.as_bytes().into()),
+            Encoding::Ascii => text.is_ascii().then(|| text.as_bytes().into()),
         };
         encoded.ok_or(Unread::Fault(ValueFault::Text))
     }
@@ -84,18 +82,16 @@ impl Row for Value {
     type Item = Self;
 
     fn count(&self) -> usize {
-        if let Self::Row(row) = self {
-            row.len()
-        } else {
-            0
+        match self {
+            Self::Row(row) => row.len(),
+            _ => 0,
         }
     }
 
     fn at(&self, index: usize) -> Option<Self> {
-        if let Self::Row(row) = self {
-            row.get(index).cloned()
-        } else {
-            None
+        match self {
+            Self::Row(row) => row.get(index).cloned(),
+            _ => None,
         }
     }
 

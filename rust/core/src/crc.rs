@@ -16,7 +16,7 @@ pub struct CrcParameters {
     pub refin: bool,
     /// Whether the result is reversed.
     pub refout: bool,
-    /// What the result is combined with.
+    /// The result is combined with this number by XOR.
     pub xorout: u128,
 }
 

@@ -79,7 +79,7 @@ pub trait Given: Sized {
     /// It is not a row.
     fn row(&self) -> Result<Self::Row, Unread<Self::Error>>;
 
-    /// Return whether the caller leaves the number to the encoder, which counts.
+    /// Return whether the caller leaves it to the encoder to count the elements.
     fn counted(&self) -> bool;
 
     /// Return the bytes of a bytes-like object; `None`: it is something else.

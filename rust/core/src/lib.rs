@@ -11,7 +11,7 @@
 //! in which a [`Table`] stays, and does not read in bulk, read captures or summarize.
 //! An edition's table takes 0.6 to 0.9 MB, and its construction 128 KiB of stack.
 
-// What needs `std` uses more of the other modules.
+// Some code is used only by modules that need `std`.
 #![cfg_attr(not(feature = "std"), no_std, allow(dead_code))]
 
 #[macro_use]

@@ -53,7 +53,7 @@ impl Variant {
         self.size
     }
 
-    /// Return the field that picks another's case, with its index and its one number.
+    /// Return the field that selects the case of `field`, with its index and its number.
     pub(crate) fn selector(&self, field: &Field) -> Option<(usize, &Field, &Number)> {
         let index = field.selector?;
         let selector = self.fields.get(index)?;

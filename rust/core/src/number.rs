@@ -66,13 +66,13 @@ pub enum Value {
     Integer(i64),
     /// A number with a scale.
     Real(f64),
-    /// That many of the values that follow are the elements of one field.
+    /// This many of the following values are the elements of one field.
     Row(usize),
-    /// The following rows, that many, are the elements of one field.
+    /// This many of the following rows are the elements of one field.
     Rows(usize),
-    /// That many of the values that follow are bytes.
+    /// This many of the following values are bytes.
     Bytes(usize),
-    /// That many of the values that follow are the bytes of a text in this encoding.
+    /// This many of the following values are the bytes of a text in this encoding.
     Text(usize, Encoding),
 }
 
@@ -103,7 +103,8 @@ pub enum Misfit {
     Scale,
     /// A bound is beyond the integers that a double holds exactly.
     Bounds,
-    /// A field has no case, cases of different sizes, or not one number where it takes one.
+    /// A field has no case, cases of different sizes, or several numbers although it takes only
+    /// one.
     Cases,
     /// A selector is not the index of a field of one number.
     Selector,

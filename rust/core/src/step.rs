@@ -26,13 +26,13 @@ enum Form {
     Byte,
     Big,
     Little,
-    /// The number itself must be asked.
+    /// [`Number`] reads it.
     Other,
 }
 
 impl Step {
-    /// Return the step of a number that starts at `at`. It asks the number unless bounds decide
-    /// which raw values are legal.
+    /// Return the step of a number that starts at `at`; `bounded`: its bounds alone decide which
+    /// raw values are legal.
     pub(crate) fn new(number: &Number, at: usize, bounded: bool) -> Self {
         let form = match (number.width, number.order) {
             _ if !bounded || number.float || number.bits.is_some() => Form::Other,
@@ -59,8 +59,8 @@ impl Step {
         Ok(self.raw(data)?.map(|raw| self.physical(raw)))
     }
 
-    /// Return the raw value in the data; `None` if it is not legal. `Err`: the number must be asked, at
-    /// this offset.
+    /// Return the raw value in the data; `None` if it is not legal. `Err`: [`Number`] must read it,
+    /// at this offset.
     #[inline(always)]
     fn raw(&self, data: &[u8]) -> Result<Option<i64>, usize> {
         let rest = data.get(self.at..).unwrap_or_default();

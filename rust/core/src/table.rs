@@ -33,7 +33,7 @@ pub struct Table {
     request: Rules,
     reply: Rules,
     both: Rules,
-    /// Those of each command's request and reply; they are made on first use.
+    /// The templates of each command's request and reply; they are made on first use.
     templates: Vec<[OnceLock<Templates>; 2]>,
 }
 

@@ -215,9 +215,9 @@ fn rows_of_several_devices_have_their_addresses() {
     }
 }
 
-/// Every frame contains frames here, so a guess in the middle of a block can be wrong. The second
-/// lane of the block and the third start at different bytes of a frame, one an even number after the
-/// shift, one an odd one, so even shifts suffice.
+/// Every frame contains frames here, so a guess in the middle of a block can be wrong. Even shifts
+/// suffice: one of the second and third lanes starts an even number of bytes after the shift, and the
+/// other one an odd number.
 #[test]
 fn frames_that_hold_frames_do_not_mislead_the_lanes() {
     let edition = Edition::generated("mycobot");

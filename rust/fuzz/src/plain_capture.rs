@@ -239,7 +239,7 @@ fn time(stamp: u64, format: &Format) -> i128 {
 
 /// Return the sizes and delays of the pieces that a comment lists, if they have `size` bytes.
 fn pieces(comment: &[u8], size: u128) -> Option<Vec<(u128, i128)>> {
-    // Bytes that are not UTF-8 are none of the characters that count.
+    // A list has only ASCII characters, so bytes that are not UTF-8 end it.
     let comment = String::from_utf8_lossy(comment);
     let lists = comment
         .split("; ")

@@ -1,8 +1,7 @@
 //! Reads, writes and waits for descriptors that never block: serial ports and sockets.
 //!
 //! `cobotwire.transport.descriptor` does the same in Python and is the specification. A call here
-//! releases the interpreter's lock only while it waits, so it never loses its turn to a busy thread
-//! for nothing.
+//! releases the interpreter's lock only while it waits, so a busy thread delays it only then.
 
 #![allow(unsafe_code)] // Python passes descriptors as numbers
 

@@ -15,7 +15,7 @@ pub struct Pattern {
     span: u8,
 }
 
-/// What the positions are; the lowest bit is the first one.
+/// Sets of positions; the lowest bit is the first position.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Window {
     /// The positions at which a frame may start.

@@ -71,7 +71,7 @@ def test_archive_in_an_object_store_is_read_and_written_there(
     found, expected = rows(tmp_path / "many"), rows(tmp_path / "one")
     assert found.keys() == expected.keys()
     for message, table in found.items():
-        # The inputs have other names there.
+        # The inputs have other names in the object store.
         assert table.drop_columns("source") == expected[message].drop_columns("source")
 
 

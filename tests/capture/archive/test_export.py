@@ -140,7 +140,7 @@ def test_bytes_that_are_added_meanwhile_do_not_count(tmp_path: Path) -> None:
     ],
     ids=["one file", "times", "no piece", "standard input"],
 )
-def test_what_no_archive_has_is_refused(
+def test_arguments_that_an_archive_cannot_have_are_refused(
     single: Single, tmp_path: Path, wrong: dict[str, Any], text: str
 ) -> None:
     output = tmp_path / wrong.pop("output", "out")

@@ -1,4 +1,4 @@
-"""``cobotwire-gen evidence``: files of owners are checked, and change what the spec is sure of."""
+"""``cobotwire-gen evidence``: files of owners are checked, and change the confidence of facts."""
 
 from __future__ import annotations
 
@@ -194,7 +194,7 @@ def test_hostile_file_is_refused(data: bytes, why: str) -> None:
         submitted(data)
 
 
-def test_member_that_stands_twice_is_refused() -> None:
+def test_archive_with_two_members_of_one_name_is_refused() -> None:
     with zipfile.ZipFile(file := io.BytesIO(GOOD), "a") as archive:
         with pytest.warns(UserWarning, match="Duplicate"):
             archive.writestr("survey.json", "{}")

@@ -108,7 +108,7 @@ def test_drafts_have_the_types_that_values_fit_and_the_effects_that_pairs_show()
     line = b""
     for i in range(20):
         word = int(9000 * math.sin(i / 5)).to_bytes(2, "big", signed=True)
-        # Angles, what repeats the first one, and a setting that is read back.
+        # Angles, a message that repeats the first angle, and a setting that is read back.
         line += _frame(0x20, word * 6) + _frame(0xEE, word + bytes([i % 2, 20 + 3 * i]))
         line += _frame(0xEA, bytes([7 * i])) + _frame(0xEB, b"") + _frame(0xEB, bytes([7 * i]))
     _, found = reconcile(EDITION, line, "both")

@@ -1,6 +1,6 @@
 """The schema is complete and closed, and is written for the project and for users.
 
-That it rejects what the reader rejects is a test of each record (``test_language.py``).
+``test_language.py`` tests for each record that it rejects the same as the reader.
 """
 
 from __future__ import annotations

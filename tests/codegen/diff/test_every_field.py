@@ -31,8 +31,8 @@ RECORDS = [
     if isinstance(item, type)
     and is_dataclass(item)
     and item.__module__.startswith(model.__name__)
-    # The frames of the small spec have only a footer; below, a check is put in its place. What
-    # reads a command back follows from effects.
+    # The frames of the small spec have only a footer; below, a check is put in its place. Which
+    # query reads a command back follows from effects.
     and item not in (model.FrameCheck, model.ReadBack)
 ]
 FIELDS = [

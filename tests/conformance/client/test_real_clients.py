@@ -6,13 +6,15 @@ from functools import partial
 
 import pytest
 
+import npm_package
 import probe
 from client_findings import LINES, Line, checked
 from cobotwire.conformance import Report
 from machine_stalls import PtyMeter
 from stalls import unstalled
+from targets.typescript.comparison import package
 
-# A client repeats a query after about 170 ms. A referee that stands still for as long receives both
+# A client repeats a query after about 170 ms. A referee that pauses for that long receives both
 # requests at once.
 ALLOWED_STALL = 0.1
 
@@ -46,6 +48,15 @@ def test_our_client_passes_on_a_bad_line(line: str) -> None:
 @pytest.mark.parametrize(("client", "line"), RUST)
 def test_rust_client_passes(client: str, line: str) -> None:
     report, failures = report_on_time(client, LINES[line])
+    assert report.failures == []
+    assert (report.conforms, failures) == (True, [])
+
+
+@pytest.mark.skipif(bool(npm_package.missing()), reason=npm_package.missing())
+@pytest.mark.parametrize("line", ["good", "merged", "noise"])
+def test_client_in_node_passes(line: str) -> None:
+    package()
+    report, failures = report_on_time("cobotwire node tcp", LINES[line])
     assert report.failures == []
     assert (report.conforms, failures) == (True, [])
 

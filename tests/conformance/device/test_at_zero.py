@@ -25,7 +25,7 @@ def prepared_at(ticks: list[int], defect: str, *allow: str) -> Tester:
 @pytest.mark.parametrize(
     "defect", ["", "tenths-of-degrees", "two-joints-swapped", "joints-in-reverse"]
 )
-def test_report_of_an_arm_at_zero_names_what_would_show_more(defect: str) -> None:
+def test_report_of_an_arm_at_zero_names_the_permission_motion(defect: str) -> None:
     report = prepared_at([0] * 6, defect, "setting").run()
     assert report.untested.startswith(SAYS.format("1, 2, 3, 4, 5, 6"))
     assert "--allow motion" in report.untested

@@ -1,6 +1,6 @@
 """A device broken by hand fails the test case and the command that name its fault.
 
-Most broken devices are in tests/mutation and tests/defects: here are those that are in neither.
+Most broken devices are in tests/mutation and tests/defects; these are not.
 """
 
 from __future__ import annotations

@@ -112,7 +112,7 @@ def test_message_names_what_a_query_reports_by_the_names_of_its_values() -> None
     assert f"{query.name}: expected EMPTY, with 0 points; came FILLED" in result.reason
 
 
-def test_setting_that_none_of_several_numbers_reports_fails() -> None:
+def test_setting_fails_if_no_number_of_a_row_reports_it() -> None:
     shown = bytes.fromhex("FE FE 01 04 D0 32 32 34")
 
     def altered(request: bytes, reply: bytes, count: int) -> bytes:

@@ -1,4 +1,4 @@
-"""A simulated arm conforms from any start pose; calculations that are wrong are found from any.
+"""A simulated arm conforms from any start pose; a wrong calculation is found from any.
 
 A straight elbow or wrist hides the angles from rounded coordinates. ``POSES=500`` draws more poses
 (``make conform`` does).
@@ -64,7 +64,7 @@ def _poses(table: Table, count: int) -> Iterator[Row]:
 
 
 def _failures(edition: str, pose: Row, inverse: Inverse | None = None) -> list[Result]:
-    """Return what fails at rest, perhaps with another calculation of angles."""
+    """Return what fails at rest; ``inverse`` replaces the arm's calculation of angles."""
     table = load(edition).TABLE
 
     def solve(arm: Any, now: float, request: Any) -> Any:

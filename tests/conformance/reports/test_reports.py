@@ -129,7 +129,7 @@ def test_report_with_a_wrong_value_is_rejected_or_can_be_compared(
     report: Report, wrong: object, data: st.DataObject
 ) -> None:
     document = json.loads(to_json(report))
-    # With it, each change is rejected.
+    # A report with a digest is rejected after any change.
     del document["digest"]
     place = document
     while data.draw(st.booleans()):

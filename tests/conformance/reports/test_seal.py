@@ -82,7 +82,7 @@ def test_signed_report_is_verified_with_the_key_of_its_tester(
     assert verify(file)[0] == verify(file, "--key", key.with_suffix(".pub"))[0] == 0
     code, output = verify(file, "--key", other.with_suffix(".pub"))
     assert (code, "signed with another key" in output) == (1, True)
-    # Who changes the contents can state their digest, but not sign it.
+    # Someone who changes the contents can compute their digest, but not sign it.
     document = json.loads(text) | {"subject": "another arm"}
     file.write_text(json.dumps(document))
     assert "was changed" in verify(file)[1]

@@ -40,7 +40,7 @@ def test_motion_confirms_scale_sign_and_order_of_angles() -> None:
     facts = survey_of("mycobot280", motion=True).facts
     for aspect in ("scale", "sign", "order", "byte-order", "agreement"):
         assert facts[f"mycobot280/get_angles/reply.angles/{aspect}"].verdict == "confirmed", aspect
-    # At zero nothing moves, and no scale shows.
+    # Without motion all angles stay 0, which is right in every scale.
     at_rest = Survey(connected(SMALL), SMALL)
     at_rest.run()
     assert at_rest.facts["mycobot280/get_angles/reply.angles/scale"].verdict == "not seen"
@@ -58,7 +58,7 @@ def test_survey_names_what_is_wrong_with_an_arm(wrong: WrongArm) -> None:
     # An arm may lack a gripper: that contradicts nothing.
     assert fact.verdict == ("not seen" if wrong.name == "gripper id" else "contradicted")
     assert fact.frames
-    # Nothing else is called wrong: other commands of the same id, or of the same kind.
+    # The only other contradicted facts are the same aspect of similar commands.
     others = {f.fact for f in survey.facts.with_verdict("contradicted")} - {fact.fact}
     aspect = fact.fact.rpartition("/")[2]
     assert all(other.endswith(aspect) for other in others)
@@ -74,7 +74,7 @@ def tenths(number: Number) -> Number:
 
 
 def in_tenths(*names: str) -> WrongArm:
-    """Return an arm that sends and receives angles in tenths, in all commands or these."""
+    """Return an arm that sends and receives the angles of commands in tenths; no names: of all."""
 
     def change(table: Table) -> Table:
         chosen = (c.name in names or not names for c in table.commands)

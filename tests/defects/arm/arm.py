@@ -284,7 +284,7 @@ class Arm:
             self.travel.go(*target)
 
     def _with(self, joint: int, tick: float) -> list[float]:
-        """Return where all joints are, with another place of one."""
+        """Return the places of all joints, with one of them replaced."""
         return [tick if at == joint else now for at, now in enumerate(self.ticks, 1)]
 
     def send_angle(self, data: bytes) -> None:

@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 
 
 class Travel:
-    """Numbers on their way to their goals, all at the same rate, which a pause holds."""
+    """Numbers on their way to their goals, all at the same rate; a pause stops them."""
 
     _held_at: float | None
 

@@ -158,7 +158,7 @@ static void say(mycobot_message_t message, const void *numbers)
         say(MYCOBOT_##name##_REPLY, &out); \
         break
 
-/* A query of one joint or pin, which the reply repeats. */
+/* A query of one joint or pin; the reply repeats its number. */
 #define PART(name, type, part, member, value) \
     case MYCOBOT_##name##_REQUEST: \
         i = (int)in->type##_request.part; \

@@ -74,7 +74,7 @@ class Session:
 
     @cached_property
     def other(self) -> Command:
-        """A query with another id and without arguments, such as that of the power."""
+        """A query with another id and without arguments, such as whether the arm has power."""
         roles = ("powered", "joints")
         queries = sorted(
             (c for c in self.table.commands if c.safety == "query" and c.requires_reply),

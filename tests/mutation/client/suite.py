@@ -56,7 +56,7 @@ class ClientSuite(Suite):
         """Return why a mutant without a script cannot be found; empty if it can."""
         if self._with_script:
             return ""
-        # Two correct requests may change places; the text after one of them is not a frame.
+        # The referee accepts two correct requests in another order, and ignores a text after one.
         if mutant.kind != "swapped" and not all(map(self._legal, mutant.writes)):
             return ""
         if mutant.kind in ("repeated too soon", "reply not awaited", "late reply", "unpowered"):

@@ -100,8 +100,8 @@ def mutant_of(kind: str, text: str, command: Command, change: Change, field: str
 class BrokenArm(ArmConnection):
     """A connection to a simulated arm with a fault; a peer.
 
-    The times and the order of its replies, acknowledgements and events are those of the
-    correct arm. A fault changes single requests and replies.
+    The times and the order of its replies, acknowledgements and events are as on the correct arm. A
+    fault changes single requests and replies.
     """
 
     def __init__(self, table: Table, fault: Fault, clock: Clock) -> None:
@@ -177,7 +177,7 @@ class BrokenArm(ArmConnection):
 
     def _after_malformed(self, kind: Stimulus, data: bytes) -> bytes:
         if request := self._fault.forgets(kind):
-            # The arm's own connection, which nobody reads, takes its acknowledgement.
+            # The arm sends its acknowledgement to a connection that is never read.
             self._correct.receive(request)
         return self._fault.malformed(self._arm.codec, kind, data)
 

@@ -168,14 +168,14 @@ class NeedsWholeWrites(Fault):
 
 
 class Forgets(Fault):
-    """After some malformed input, one setting has its plainest value again."""
+    """After some malformed input, one setting has its simplest value again."""
 
     def __init__(self, after: Stimulus, request: bytes) -> None:
         self._after = after
         self._request = request
 
     def forgets(self, kind: Stimulus) -> bytes:
-        """Return the request that sets the plainest value."""
+        """Return the request that sets the simplest value."""
         return self._request if kind == self._after else b""
 
 

@@ -15,9 +15,8 @@ from mutation.oracle.reasons import reason
 from mutation.suite import Suite
 
 RUNS = 20
-# The noise on the line of a healthy arm, before one reply in twelve and after one reply in twelve.
-# Four pieces in seven are servo packets. The class "text" is left out: it also draws panics, and a
-# device that panics does not conform.
+# The noise on the line of a healthy arm. Four pieces in seven are servo packets. The class "text"
+# is left out, since it includes panics, and a device that panics does not conform.
 NOISE = (*4 * ("servo",), "command error", "log", "nuls")
 LIGHT_NOISE = Scenario(
     name="light noise",
@@ -42,7 +41,8 @@ class DeviceSuite(Suite):
         """Return the first failure; empty if every test case passes.
 
         The test cases of the broken command run first, on a separate device, because they kill
-        most mutants; a whole run follows. A command may be that of one address.
+        most mutants; a whole run follows. Each address is run, because some commands exist at one
+        address only.
         """
         addresses = tested_addresses(self.table)
         runs = [(mutant.command, address) for address in addresses]

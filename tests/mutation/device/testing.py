@@ -43,7 +43,7 @@ def complaints(
     A run that ends early is a complaint too: its report says that the device stopped replying.
     """
     address = address or tested_addresses(table)[0]
-    # What the simulated arm states that it does not support is no failure.
+    # A command that the simulated arm says it does not support is no failure.
     lacking = on_correct_arm(table, address).lacking
     for result in _results(table, peer, clock, only, address, lacking):
         if result.verdict is Verdict.FAIL:
@@ -89,7 +89,7 @@ def on_correct_arm(table: Table, address: str | None = None) -> OnCorrectArm:
 
 
 def lacking(table: Table, command: str) -> str:
-    """Return why the simulated arm lacks a command at each address; empty if it has it at one."""
+    """Return why the simulated arm lacks a command at all addresses; empty if one has it."""
     arms = [on_correct_arm(table, each) for each in tested_addresses(table)]
     if any(command in arm.replied for arm in arms):
         return ""

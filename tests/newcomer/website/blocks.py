@@ -61,7 +61,7 @@ def _ends(lines: list[str], at: int) -> bool:
 
 
 def commands(page: str) -> Iterator[str]:
-    """Yield the shell commands, without comments, but those of ``console`` blocks."""
+    """Yield the shell commands, without comments, except those of ``console`` blocks."""
     for block in blocks(page):
         if block.kind in SHELL and block.shown is None:
             lines = block.text.replace("\\\n", "").splitlines()
@@ -82,5 +82,5 @@ def console(page: str) -> Iterator[str]:
 
 
 def programs(page: str) -> Iterator[Block]:
-    """Yield the Python blocks that are no files; a console command runs those that are."""
+    """Yield the Python blocks that are not files; console commands run the files."""
     return (each for each in blocks(page) if each.kind == "python" and not each.named)

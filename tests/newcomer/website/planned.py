@@ -55,7 +55,7 @@ INSTALLED = Expected(r"Requirement already satisfied: cobotwire")
 
 
 def unplanned(page: str, plan: Plan) -> list[str]:
-    """Return what a plan lacks of its page, and what it has that the page lacks."""
+    """Return the commands that only the page has, and those that only its plan has."""
     shown = list(commands(page))
     first = [block.text.partition("\n")[0] for block in programs(page)]
     stale = [

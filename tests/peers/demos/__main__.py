@@ -65,7 +65,7 @@ def git(*words: str) -> None:
 
 
 def row(demo: Demo, folders: Folders) -> tuple[str, bool]:
-    """Return a line of the table, and whether the demo runs with the library but not with ours."""
+    """Return a line of the table, and whether the demo fails only with our layer."""
     decisions = rewrite(folders.rewritten / demo.path)
     ways = [
         (folders.library, WITH_LIBRARY),

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 REPOSITORY = "https://github.com/elephantrobotics/pymycobot"
-# The state of the demos that the table is about.
+# The commit of the demos in the table.
 COMMIT = "44d7fb1"
 # The folders whose programs are listed here.
 FOLDERS = ("demo", "tests")

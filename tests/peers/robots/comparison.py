@@ -121,7 +121,7 @@ def _reason(robot: Robot, call: Call, theirs: bytes | str, ours: bytes | str) ->
         return "the nearest step; the maker truncates"
     if robot.edition == OLDEST or isinstance(ours, str):
         return ""
-    # What the class of the same name shows in `make layer`, which is compared with its edition.
+    # The results of the class of the same name in `make layer`, which compares it with its edition.
     side = "only ours" if isinstance(theirs, str) else "other bytes"
     for each in rulings():
         named = robot.peer in each.names and call.method in each.methods

@@ -76,14 +76,14 @@ class Robot:
         edition: the name of our edition.
         further: editions for methods that ``edition`` has no command for: the class sends the
             requests of other firmware too.
-        methods: the names of the class for our commands, where they differ.
+        methods: for our commands, the methods of the class that have another name.
         local: public names of the class that send no frame to the arm.
-        lacking: our commands without a method: why.
-        not_ours: methods of the class that we have no command for: why.
-        own_arguments: for commands, arguments instead of those of the table.
+        lacking: for our commands without a method, the reason.
+        not_ours: for methods without a command of ours, the reason.
+        own_arguments: for commands, arguments that replace those drawn from the table.
         calls: further calls. With ``why``, the two sides differ.
         rulings: for methods, the reasons why calls differ, where ``differences.txt`` has none.
-        before: what the class's methods take before our arguments, by the name of an address.
+        before: for the name of each address, the arguments of methods before ours.
         without_address: commands with methods that do not take an address.
         opened: makes an object of the class on a port.
     """

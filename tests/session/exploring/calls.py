@@ -1,4 +1,4 @@
-"""What the world knows of each request and of each reply, and the exchange has to find out."""
+"""Facts about each request and reply that the world knows, and the exchange has to find out."""
 
 from __future__ import annotations
 
@@ -18,9 +18,9 @@ class Call:
     ended: bool = False
     writes: list[float] = field(default_factory=list)
     received_by_arm: int = 0
-    # Which of its replies were read while it waited, by form.
+    # The forms of its replies that were read while it waited.
     read: set[int] = field(default_factory=set)
-    # Whose texts were read while it waited for a text.
+    # The texts that were read while it waited for a text.
     texts: list[Arrival] = field(default_factory=list)
     answered: bool = False
     # The limit by which the reply to another request has ended it.

@@ -33,7 +33,7 @@ IGNORED = {
         "_fields",
     ),
     *("queued_at", "requested_at", "replied_at", "policy", "_variant", "pending"),
-    # The same in all requests that have one.
+    # These have one value in all requests.
     *("_wait", "silence"),
 }
 

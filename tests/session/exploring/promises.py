@@ -89,7 +89,7 @@ class Promises:
             self._excuse(limit, f"{call.kind} is not acknowledged")
 
     def _must_succeed(self, call: Call) -> bool:
-        """Return whether what was read while a call waited leaves no doubt."""
+        """Return whether the bytes that were read while a call waited can only be its reply."""
         world, frame = self._world, REQUESTS[call.kind].frame
         at_deadline = call.writes and world.now >= call.writes[0] + WAIT
         # A frame may be hidden after one that was cut, until the deadline of a query.
@@ -199,12 +199,12 @@ class Promises:
             raise Broken(f"{call.kind} is sent after its caller stopped waiting")
 
     def wrote(self, call: Call, received: int) -> None:
-        """Check that the arm has received what was just written whole."""
+        """Check that the arm has received the whole request that was just written."""
         if call.received_by_arm == received:
             raise Broken(f"the arm did not receive {call.kind}, which was written whole")
 
     def lose(self) -> None:
-        """Note that nobody knows how much the arm has of the requests that it has not received."""
+        """Note that the arm may have received any part of the requests that are not yet read."""
         begun = self._world.begun.items()
         self.torn |= {at for at, call in begun if call.received_by_arm < len(call.writes)}
 

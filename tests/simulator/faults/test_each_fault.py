@@ -87,7 +87,7 @@ PLAYED: list[tuple[Fault, list[bytes | float], list[tuple[float, bytes]]]] = [
     (Noise(classes=("panic",), only="acknowledgements"), [IS_POWERED], [(0.0, OFF)]),
     (Noise(classes=("ack",), where="after"), [IS_POWERED], [(0.0, OFF + ACK)]),
     (Inserted(data=b"\0", times=3, where="after"), [IS_POWERED], [(0.0, OFF + bytes(3))]),
-    # To malformed input, after a pause, in however many pieces it comes.
+    # The error for malformed input comes once, after a pause, whatever pieces the input comes in.
     (CommandError(), [IS_POWERED[:3], 1.0, IS_POWERED], [(0.2, TEXT), (1.0, OFF)]),
     (CommandError(), [b"abc" + IS_POWERED], [(0.0, TEXT + OFF)]),
     (
@@ -110,7 +110,8 @@ PLAYED: list[tuple[Fault, list[bytes | float], list[tuple[float, bytes]]]] = [
     (Silent(nth=(2,), seconds=0), [IS_POWERED, IS_POWERED], [(0.0, OFF)]),
     (Frozen(commands=(0x19,)), [bytes.fromhex("FE FE 02 19 FA"), 900.0, IS_POWERED], []),
     (FlowControl(), [IS_POWERED], [(0.0, OFF)]),
-    # This edition has neither; conformance/client/test_other_messages.py has one with both.
+    # This edition has no events and no addresses; conformance/client/test_other_messages.py has one
+    # with both.
     (UnrequestedEvent(), [IS_POWERED], [(0.0, OFF)]),
     (OtherAddress(), [IS_POWERED], [(0.0, OFF)]),
 ]

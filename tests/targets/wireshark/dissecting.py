@@ -111,7 +111,7 @@ def events_of(codec: Codec, direction: Listening, chunks: Iterable[tuple[bytes, 
 
 
 def summary(truth: Truth, data: bytes) -> list[tuple[str, bytes]]:
-    """Return the codec's events as :func:`joined` represents those of the dissector."""
+    """Return the codec's events in the form of :func:`joined`."""
     events, pending = truth
     found: list[tuple[str, bytes]] = [
         ("frame" if isinstance(event, Frame) else event.reason, event.data)
@@ -156,5 +156,5 @@ def _groups(element: ET.Element) -> bool:
 
 
 def _data(element: ET.Element) -> bytes:
-    # Of some bits of a word, the value is the bits alone.
+    # For a field of some bits, the value is only these bits.
     return bytes.fromhex(element.get("unmaskedvalue") or element.get("value") or "")

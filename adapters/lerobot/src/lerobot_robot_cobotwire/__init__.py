@@ -1,7 +1,7 @@
 """The arms of cobotwire as a robot and a teleoperator of LeRobot, both of the type ``cobotwire``.
 
-LeRobot imports this package because of its name, and finds the classes by those of their
-configurations.
+LeRobot imports this package because of its name, and finds each class by the class of its
+configuration.
 """
 
 from lerobot_robot_cobotwire.robot import CobotwireRobot as CobotwireRobot

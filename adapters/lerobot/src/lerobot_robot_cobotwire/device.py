@@ -87,7 +87,7 @@ class ArmDevice:
             raise DeviceAlreadyConnectedError(f"{self.name} is connected already")
         port, speed, address = self._config.port, self._config.baudrate, self._config.address
         with ExitStack() as opened:
-            # They close last, after the arm has its stop.
+            # Cameras close last, after stop was sent to the arm.
             for camera in self.cameras.values():
                 opened.enter_context(camera)
             client = self.edition.CLIENT(port, speed, address=address, **self.options)

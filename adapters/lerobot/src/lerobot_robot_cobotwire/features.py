@@ -17,7 +17,7 @@ from cobotwire.protocol.table import Command, Table
 
 # Its position is its opening in percent.
 GRIPPER, OPENINGS = "gripper.pos", (0.0, 100.0)
-# What the effect of the first command for a use is.
+# For each use, whether a command has the effect that it needs.
 _USES: dict[str, Callable[[Effect | None], bool]] = {
     "read gripper": lambda e: isinstance(e, Reports) and [*e.values.values()] == ["opening"],
     "move gripper": lambda e: isinstance(e, Moves) and e.part == "gripper" and type(e.to) is str,

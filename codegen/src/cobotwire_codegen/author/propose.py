@@ -114,7 +114,7 @@ def _typical(type: Type, number: int, length: int = 0) -> object:
     if isinstance(type, Flag):
         return number % 2 == 0
     if isinstance(type, Enum):
-        # The first member is often 0, as a byte would be that nobody has written.
+        # The first member is often 0, which an unwritten byte has too.
         others = type.members[1:] or type.members
         return others[number % len(others)].name
     return _quantity(type, number)

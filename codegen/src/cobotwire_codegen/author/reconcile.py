@@ -25,8 +25,7 @@ class News:
     guesses: tuple[Guess, ...]
     # For each guess, the type that its values fit, and why.
     types: tuple[tuple[str, str], ...]
-    # Whether it ``stores`` a value that another message reports, or ``reports`` one that another
-    # stores.
+    # ``stores`` if another message reports its value, ``reports`` if another message stores it.
     effect: str
     other: int
 

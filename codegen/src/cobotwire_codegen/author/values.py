@@ -13,9 +13,9 @@ from cobotwire_codegen.author.scan import Seen
 from cobotwire_codegen.model import Edition, Enum, Flag, Quantity
 from cobotwire_codegen.render.words import decimal
 
-# Fewer different values fit almost any type.
+# With fewer different values, almost any type fits.
 _LEAST = 3
-# A type with as many values is no enum.
+# A type with this many values or more is not taken for an enum.
 _FEW = 32
 _SCALES = tuple(Fraction(scale) for scale in ("1/1000", "1/100", "1/10", "1"))
 # Known numbers by COMMAND.FIELD[INDEX], each with its type, and the offset and value of each reply.
@@ -24,7 +24,7 @@ Known = dict[str, tuple[Quantity, list[int], list[Fraction]]]
 
 def known_values(edition: Edition, frames: Sequence[Seen]) -> Known:
     """Return the numbers of all replies that the edition reads, in the order of the capture."""
-    # Of commands that share an id, the first one.
+    # Use the first of the commands that share an id.
     commands = {each.id: each for each in reversed(edition.commands) if each.awaits_reply}
     found: Known = {}
     for seen in frames:

@@ -152,7 +152,7 @@ def _command(
     return replace(command, effect=effect)
 
 
-# What each version of a command means, for people.
+# The sentences about each kind of version.
 FIRMWARE_WORDS = {
     "since": "It needs firmware {} or later",
     "until": "It is gone since firmware {}",

@@ -27,9 +27,9 @@ _DIRECTIONS = (b"<", b">", b"!")
 
 
 def beyond_language(frame: Frame, stuffing: bool | None) -> Iterator[tuple[str, Limit]]:
-    """Yield what frames have and a spec cannot state, each with what shows it.
+    """Yield features of frames that a spec cannot state, each with the sign of it.
 
-    ``stuffing`` is what the spec states about it.
+    ``stuffing`` is the spec's statement about byte stuffing.
     """
     shown = f"the header {frame.header.hex(' ').upper()}"
     # One byte at both ends, as in SLIP, COBS and HDLC.

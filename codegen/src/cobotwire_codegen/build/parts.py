@@ -81,7 +81,7 @@ class Parts:
     evidence: list[Node] = field(default_factory=list)
     base: Edition | None = None
     changes: dict[str, list[Change]] = field(default_factory=dict)
-    # Commands of the base that the delta takes away, each with a hint for who still names it.
+    # Commands of the base that the delta removes, each with a hint for entries that still name it.
     gone: dict[str, str] = field(default_factory=dict)
     general_changes: list[Change] = field(default_factory=list)
 

@@ -18,12 +18,12 @@ from cobotwire_codegen.wire import raw_values
 
 # The state of a part that moves.
 MOVED = {"joints": "angles", "joint": "angles", "end": "coords", "gripper": "opening"}
-# What a control of the motion sets.
+# The state that a control of the motion sets.
 _CONTROLLED = {"pause": True, "resume": False}
 
 
 class _Written(NamedTuple):
-    """The value that a command stores in a state: that of an argument, or a fixed one."""
+    """The value that a command stores in a state: an argument, or a fixed value."""
 
     state: str
     argument: str = ""
@@ -40,7 +40,7 @@ def with_read_back(families: Sequence[Family], encoder_zero: int | None) -> tupl
     queries = [c for family in families for c in family.commands if c.safety == "query"]
     found = []
     for family in families:
-        # Of queries that report the same, one of the command's own family comes first.
+        # If several queries report the same, those of the command's own family come first.
         near = sorted(queries, key=lambda query: query not in family.commands)
         commands = (replace(c, read_by=_read_back(c, near, encoder_zero)) for c in family.commands)
         found.append(replace(family, commands=tuple(commands)))
@@ -61,11 +61,11 @@ def _read_back(
             if asked is None or asked.assumed or asked.at != at:
                 continue
             pairs = tuple(_pairs(written, command, query, asked, encoder_zero))
-            # Whether something holds for every index shows in the query of all.
+            # A query without an index can only confirm fixed values.
             if pairs and (at == effect.at or all(isinstance(raw, int) for _, raw in pairs)):
                 found.append((len(reported(query)) - len(pairs), query, pairs))
         if found:
-            # The query that reports little else.
+            # Choose the query that reports the fewest other values.
             _, query, pairs = min(found, key=lambda each: each[0])
             return ReadBack(effect.place, query.name, _short(pairs, command, query))
     return None

@@ -52,8 +52,8 @@ def checked_edition(path: Path, root: Path, unsaved: Mapping[Path, str] | None =
     """Return an edition, built and checked; the arguments are those of ``build_edition``.
 
     Raises:
-        SpecError: the spec has problems. If it cannot be read completely, report the problems of
-            reading, and the problems that they do not cause.
+        SpecError: the spec has problems. If it cannot be read completely, these are the problems of
+        reading, and those of rules that do not depend on them.
     """
     try:
         edition = build_edition(path, root, unsaved)

@@ -16,7 +16,7 @@ def _parts(field: Field) -> int:
 
 
 def _row(parts: int) -> Callable[[Command], bool]:
-    """Return the rule that each request has one row of as many numbers, and something beside it."""
+    """Return the rule that each request has one row of ``parts`` numbers, and further fields."""
 
     def has(command: Command) -> bool:
         return bool(parts) and all(

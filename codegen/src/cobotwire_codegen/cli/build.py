@@ -25,6 +25,7 @@ from cobotwire_codegen.model import Edition
 from cobotwire_codegen.render import Files, render_python, render_reference
 from cobotwire_codegen.targets.c import render_c
 from cobotwire_codegen.targets.rust import render_rust
+from cobotwire_codegen.targets.typescript import render_typescript
 from cobotwire_codegen.targets.vectors import render_shared_vectors
 from cobotwire_codegen.targets.wireshark import render_wireshark
 
@@ -34,6 +35,7 @@ RENDERERS: dict[str, Callable[[Edition, Path | None], Files]] = {
     "--docs": render_reference,
     "--c": render_c,
     "--rust": render_rust,
+    "--typescript": render_typescript,
     "--wireshark": lambda edition, own: render_wireshark([edition], own),
     "--vectors": lambda edition, own: render_shared_vectors([edition]),
 }
@@ -54,6 +56,11 @@ SHARED = ("--wireshark", "--vectors")
     "--rust",
     type=click.Path(file_okay=False),
     help="Also write a module for the crate cobotwire, to this folder.",
+)
+@click.option(
+    "--typescript",
+    type=click.Path(file_okay=False),
+    help="Also write a module for the npm package cobotwire, to this folder.",
 )
 @click.option(
     "--wireshark",
@@ -79,6 +86,7 @@ def build(
     docs: str | None,
     c: str | None,
     rust: str | None,
+    typescript: str | None,
     wireshark: str | None,
     vectors: str | None,
     templates: str | None,
@@ -96,6 +104,7 @@ def build(
         "--docs": docs,
         "--c": c,
         "--rust": rust,
+        "--typescript": typescript,
         "--wireshark": wireshark,
         "--vectors": vectors,
     }

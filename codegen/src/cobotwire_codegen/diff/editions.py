@@ -36,7 +36,7 @@ def diff(old: Edition, new: Edition) -> tuple[Finding, ...]:
         *prose.history("changes", old.changes, new.changes),
     ]
     if old.name in new.bases or new.name in old.bases:
-        # The changes of a delta are the other findings in words.
+        # The changes of a delta repeat the other findings in words.
         found = [one for one in found if one.rule != "history-changed"]
     return _sorted(replace(one, where=f"{new.name}/{one.where}") for one in dict.fromkeys(found))
 
@@ -90,6 +90,7 @@ def _state_changes(old: Edition, new: Edition) -> Iterator[Finding]:
             words.state(side[name]) if name in side else "not declared" for side in (before, after)
         ]
         if shown[0] != shown[1]:
-            # What an old command does to a new state is a change of its effect.
+            # If an old command acts on a new state, its effect has changed, which is another
+            # finding.
             rule = "state-changed" if name in before else "state-added"
             yield finding(rule, f"edition/state/{name}", *shown)

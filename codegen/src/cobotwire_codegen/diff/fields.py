@@ -51,7 +51,7 @@ def _types(where: str, old: Field, new: Field, known: Known) -> Iterator[Finding
     elif old.selector != new.selector:
         yield finding("selector-changed", where, old.selector, new.selector)
     if _by_cases(old) and _by_cases(new):
-        # The field's own type is that of the first case.
+        # The field's own type is the type of the first case.
         yield from _cases(where, old, new, known)
     elif old.cases and new.cases:
         yield from _type(where, old.type, new.type, known)

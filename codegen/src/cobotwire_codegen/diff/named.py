@@ -14,7 +14,7 @@ T = TypeVar("T", Wire, Type)
 
 
 def named_types(old: Edition, new: Edition) -> tuple[Known, list[Finding]]:
-    """Return what fields need not report again, and the findings of named types."""
+    """Return the differences that fields need not report again, and the findings of named types."""
     known = Known()
     wires = match(old.wires, new.wires, _name).further(_wire)
     types = match(old.types, new.types, _name).further(shape)

@@ -16,7 +16,7 @@ LEVELS: dict[Level, str] = {
     "wire": "breaks the protocol: old and new peers misunderstand each other",
     "api": "breaks callers of the generated Python",
     "behaviour": "the same requests and bytes do or mean something else",
-    "peer": "peers of one version agree; one of another version may get what it does not know",
+    "peer": "a peer of the other version may receive values that it does not know",
     "addition": "compatible: what worked keeps working",
     "docs": "words and evidence",
 }

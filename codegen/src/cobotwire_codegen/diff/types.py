@@ -67,7 +67,7 @@ def wire_changes(where: str, old: Wire, new: Wire) -> Iterator[Finding]:
     if old.order != new.order and max(old.width, new.width) > 1:
         yield finding("byte-order-changed", where, old.order, new.order)
     elif old.order != new.order:
-        # A single byte has no order, so the difference is only one of documentation.
+        # A single byte has no order, so the difference is only in the documentation.
         yield from prose.doc(where, f"{old.order} end first", f"{new.order} end first")
     if old.encoding != new.encoding:
         yield finding("encoding-changed", where, old.encoding, new.encoding)

@@ -13,7 +13,7 @@ from cobotwire_codegen.diff.types import Known, shape
 from cobotwire_codegen.model import Command, Field, Variant
 
 Direction = Literal["request", "reply"]
-# What a field is to callers, by the direction of its message.
+# The word for a field, by the direction of its message.
 PART: dict[Direction, str] = {"request": "argument", "reply": "result"}
 
 
@@ -97,7 +97,7 @@ def _match(
 
 
 def _named(variant: Variant, names: dict[str, str]) -> list[str]:
-    # No new name is also an old name, so the names of new variants stay unchanged.
+    # Only old names are keys of ``names``, so the names of new variants stay unchanged.
     return [names.get(field.name, field.name) for field in variant]
 
 
@@ -129,7 +129,7 @@ def _reshaped(
     rules = {f.name: _added(direction, f, legal) for f in added if f.const is None}
     for name, rule in rules.items():
         yield finding(rule, f"{where}/{name}", "", name)
-    # The shorter variant is rejected, even if another variant leaves out what was added.
+    # The shorter variant is now rejected, even if another variant lacks the added fields.
     if not (moved or lost) and {*rules.values()} <= {"argument-added-optional"}:
         yield finding(
             f"{direction}-variant-removed", where, words.variant(removed_one) or "no fields"
@@ -153,8 +153,8 @@ def _removed_variant(
 ) -> Iterator[Finding]:
     """Report a removed variant that nothing replaces.
 
-    A request cannot carry an argument any more that only it had. A reply with other fields is still
-    accepted: only devices that send this one are not.
+    If it was the only request with an argument, callers can no longer give that argument. Of
+    replies, only this variant is no longer accepted.
     """
     known = {field.name for other in after for field in other}
     lost = [field for field in variant if names.get(field.name, field.name) not in known]

@@ -28,7 +28,7 @@ _HEAD = (
 
 @dataclass(slots=True)
 class Entry:
-    """What is taken from a file: the facts and the frames, and why other facts are not."""
+    """The facts and frames that are taken from a file, and why other facts are not."""
 
     taken: list[Reported] = field(default_factory=list)
     refused: dict[str, str] = field(default_factory=dict)
@@ -96,8 +96,7 @@ def _refused(edition: Edition, fact: Reported, line: bytes | None, known: Known)
 def _shows(edition: Edition, command: Command, fact: Reported, known: Known) -> bool:
     """Return whether a frame is the message that a confirmed fact is about.
 
-    The effect of a command shows in the reply to a query, so its frames are those of another
-    command.
+    The effect of a command shows in the reply to a query, so its frames belong to another command.
     """
     _, part, aspect = fact.fact.split("/")
     replied = part.startswith("reply") or (command.awaits_reply and command.text is None)

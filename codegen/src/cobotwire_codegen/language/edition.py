@@ -93,8 +93,8 @@ class _Edition(Record):
     )
     acks = optional(
         Part(Acks),
-        "How commands without a reply are acknowledged. In a delta they replace those of its base; "
-        "the change `withdraw_acks` withdraws those.",
+        "How commands without a reply are acknowledged. In a delta they replace the rules of its "
+        "base; the change `withdraw_acks` removes the rules of the base.",
     )
     geometry = optional(
         Part(Geometry),
@@ -125,8 +125,8 @@ class _Edition(Record):
     )
     start_angles = optional(
         Reals(),
-        "For each joint, where that of a simulated arm is at first. A delta with as many joints "
-        "inherits them. Left out: at 0 degrees.",
+        "The joint angles at which a simulated arm starts. A delta with as many joints inherits "
+        "them. Left out: 0 degrees.",
     )
     state = optional(
         Named(State, LOWER),
@@ -162,7 +162,7 @@ class DeltaEdition(_Edition):
     changes = optional(InFiles(_CHANGES), "The changes, in order.")
 
 
-# The keys that describe the robot. Those of `JOINT_KEYS` fit one number of joints only.
+# The keys that describe the robot. The values of `JOINT_KEYS` fit only one number of joints.
 JOINT_KEYS = ("geometry", "motion", "encoders", "error_codes", "joint_limits", "start_angles")
 ROBOT_KEYS = (*JOINT_KEYS, "gripper", "servos")
 

@@ -17,7 +17,7 @@ _AT = "The arguments that choose one value of a state that has one for each inde
 
 
 class State(Record):
-    """One thing that an arm keeps. The key in `state` is its name."""
+    """One item of the state of an arm. The key in `state` is its name."""
 
     type = optional(_TYPE, "The type of its value. Left out: a text.")
     each = optional(
@@ -104,7 +104,7 @@ class Zeroes(_AtIndex):
 
 
 class Does(_AtIndex):
-    """A command controls the motion that goes on."""
+    """A command controls the motion under way."""
 
     does = required(Word(CONTROLS, CONTROLS.values()), "What happens to the motion.")
     EXAMPLE = "{does: pause}"

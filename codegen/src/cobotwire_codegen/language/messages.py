@@ -231,7 +231,7 @@ class Command(Record):
     )
     effect = optional(
         ANY_EFFECT_PART,
-        "What the command does. A role that says it already replaces the key. Left out: not "
+        "What the command does. A role that implies the effect replaces the key. Left out: not "
         "stated; a simulated arm sends a legal reply, and its state does not change.",
     )
     agrees_with = optional(Names(), "Queries that report the same values while the arm rests.")

@@ -66,7 +66,7 @@ class Record:
     EXAMPLE: ClassVar[str] = ""
     # Pairs of keys that exclude each other.
     EXCLUSIVE: ClassVar[tuple[tuple[str, str], ...]] = ()
-    # What the language cannot express, by the key (known or unknown) with which a spec may try to.
+    # Limits of the language, by the key (known or unknown) with which a spec may try to go beyond.
     LIMITS: ClassVar[ReadOnly[str, str]] = MappingProxyType({})
 
     @classmethod

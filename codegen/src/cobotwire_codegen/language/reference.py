@@ -82,7 +82,7 @@ def language_page() -> str:
             lines += ["", "Every arm has this state, so that no edition declares it:", ""]
             lines += [f"- `{name}`: {doc}" for name, doc in BUILT_IN.items()]
             settable = ", ".join(f"`{name}`" for name in SETTABLE)
-            lines += ["", f"Of it, a command can store or set {settable}."]
+            lines += ["", f"A command can store or set these of it: {settable}."]
     lines += ["", "## What the language cannot say", "", _LIMITS]
     for limit in (*LIMITS, *COMMAND_LIMITS):
         lines += ["", f"### {limit.heading}", "", f"Examples: {limit.examples}.", "", limit.doc]

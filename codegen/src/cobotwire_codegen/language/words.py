@@ -83,7 +83,7 @@ BUILT_IN = {
     "highest": "The largest allowed angle, for each joint.",
     "starts": "How often the controller has started.",
 }
-# Those of them that a command can store or set.
+# The built-in states that a command can store or set.
 SETTABLE = (
     *("powered", "connected", "free", "error", "held", "lowest", "highest"),
     *("opening", "base_coords"),

@@ -57,7 +57,7 @@ def build_library(path: Path, root: Path, editions: Iterable[Edition]) -> Librar
 
 
 def _absent(groups: tuple[Node, ...], problems: list[Problem]) -> tuple[tuple[str, str], ...]:
-    """Return names that have no counterpart, each with why."""
+    """Return the names that have no counterpart, each with the reason."""
     return tuple(
         (name, group.get(language.Absent.why))
         for node in groups
@@ -139,7 +139,7 @@ def _other(reader: Reader, stated: _Stated) -> _Other:
         message = f"{reader.what} has no class {name}{nearest(name, stated.classes)}"
         reader.problem("unknown-word", message, reader.place_of(key))
         return _Other({}, {}, ())
-    # What is wrong there is reported with that class.
+    # Its mistakes are reported with that class.
     other = Reader(entry[2], language.Class, f"the class {name}", [])
     methods = {each[0]: each for each in other.get(language.Class.methods)}
     calls = {

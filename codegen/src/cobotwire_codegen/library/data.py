@@ -128,10 +128,10 @@ def _by(method: Method) -> str:
 
 
 def _gives_form(method: Method) -> str:
-    """Return what a program must do to a result of ours to have the library's.
+    """Return how a program converts a result of ours to the library's.
 
-    ``same`` is nothing, ``nothing`` says that only the library has a result. ``list``, ``int`` and
-    ``ints`` (a list of numbers) say what to make of ours, ``parts`` that no word does.
+    ``same``: it need not; ``nothing``: only the library has a result; ``list``, ``int`` or ``ints``
+    (a list of numbers): to that type; ``parts``: by hand.
     """
     if method.result == ENDED or method.command.ack or not method.command.awaits_reply:
         has_result = method.result != "nothing" and (method.command.ack or method.result != "plain")
@@ -144,7 +144,7 @@ def _gives_form(method: Method) -> str:
 
 
 def _form(given: Type) -> str:
-    """Return what to make of a value of a type to have the library's."""
+    """Return how a value of a type is converted to the library's."""
     if isinstance(given, Flag | Enum):
         return "int"
     if isinstance(given, Listed):

@@ -10,8 +10,8 @@ from cobotwire_codegen.language.shapes import Names, Text, Texts, Word
 RESULTS = {
     "plain": "Lists instead of tuples; numbers instead of flags and enums.",
     "listed": "A list, also of one number.",
-    "nothing": "None; for orders with an acknowledgement.",
-    "done": "1 when the order is sent; for orders without an acknowledgement.",
+    "nothing": "None; for requests with an acknowledgement.",
+    "done": "1 when the request is sent; for requests without an acknowledgement.",
     "ended": "The status with which the motion ended, which is waited for; 0 is success.",
     "bytes_listed": "The bytes in a list; a single one as a number.",
     "numbers": "The bytes in a list.",
@@ -39,11 +39,11 @@ RESULTS = {
     "words_of_text": "The first word of the first text, and the last word of the last.",
 }
 
-# How the orders of a class return that the edition may acknowledge.
+# What one-way requests of a class return, if the edition may acknowledge them.
 ORDERS = {
     "acknowledged": "1 once the acknowledgement has come.",
-    "sent": "1 once the order is sent.",
-    "listed": "A list with 1 once the order is sent.",
+    "sent": "1 once the request is sent.",
+    "listed": "A list with 1 once the request is sent.",
 }
 
 
@@ -84,7 +84,7 @@ class Class(Record):
         Texts(), "The parameters of its constructor; the first two say what it opens."
     )
     opens = optional(Word(("serial", "socket")), "What its constructor opens.", "serial")
-    like = optional(Text(), "A class of which it is a subclass: it has its methods.")
+    like = optional(Text(), "The class that it inherits from, with its methods.")
     methods_of = optional(
         Text(), "A class for another edition: what it states about methods holds here too."
     )
@@ -96,7 +96,7 @@ class Class(Record):
         Names(), "The parameters of its methods that select the device that a request goes to."
     )
     orders = optional(
-        Word(ORDERS, ORDERS.values()), "What its orders return, and when.", "acknowledged"
+        Word(ORDERS, ORDERS.values()), "What its one-way requests return, and when.", "acknowledged"
     )
     absent = optional(Listed(Absent), "Public names of the class that have no counterpart.")
     methods = optional(Named(Method, METHOD), "Methods that differ from those of other classes.")

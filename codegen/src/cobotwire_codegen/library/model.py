@@ -50,7 +50,8 @@ class LibraryClass:
 
     ``edition`` is the edition on ``ports``, and ``elsewhere`` the edition on all other ports; they
     may be equal. ``like`` is the class whose methods it has; empty if none. ``orders`` says what
-    its orders return, and when. ``absent`` are its names that have no counterpart, each with why.
+    its one-way requests return, and when. ``absent`` are its names that have no counterpart, each
+    with why.
     """
 
     name: str

@@ -10,7 +10,7 @@ from cobotwire_codegen.model.shapes import Type
 
 @dataclass(frozen=True, slots=True)
 class State:
-    """One thing that an arm keeps.
+    """One item of the state of an arm.
 
     ``type`` is None for a text. ``each`` are the names of the types of its indices; with any, there
     is a value for each index. ``start`` is what a simulated arm has at the start, as the spec

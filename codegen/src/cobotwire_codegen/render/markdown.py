@@ -119,7 +119,7 @@ def source_words(
     errata: Sequence[Erratum],
     derived: Sequence[Vector],
 ) -> str:
-    """Return what the sources of a command have to say, as the line that opens them."""
+    """Return the line that opens the sources of a command: it tells what they contain."""
     mistakes = "1 mistake" if len(errata) == 1 else f"{len(errata)} mistakes"
     parts = (
         (

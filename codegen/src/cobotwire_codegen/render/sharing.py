@@ -92,7 +92,7 @@ class Sharing:
         return f"{self._package}.commands.{family.name}"
 
     def shared_methods(self, family: Family) -> list[str]:
-        """Return the methods of a family that is not whole in the base, but has them too."""
+        """Return the methods that a family and the family of that name in the base both have."""
         other = self._same_family(family)
         if other is None:
             return []

@@ -19,8 +19,8 @@ def render_units() -> str:
 def render_clients(editions: Sequence[Edition]) -> str:
     """Return the module ``cobotwire.editions.clients``.
 
-    An arm without motors has no power to report. Nothing tells it from the arm that it controls, so
-    that ``connect`` does not return its client.
+    ``connect`` never returns the client of an arm without motors, which reports no power: nothing
+    distinguishes it from the arm that it controls.
     """
     found = sorted(editions, key=lambda edition: edition.name)
     imports = "".join(

@@ -38,11 +38,11 @@ _WORDS = """
 """
 _KEYWORDS = frozenset(_WORDS.split())
 _NOT_EVEN_RAW = frozenset({"Self", "crate", "self", "super"})
-# What generated modules name without a path, and what every typed client has.
+# The names that generated modules use without a path, and the methods of every typed client.
 _TYPES = frozenset(
     {"Async", "From", "Into", "Option", "Result", "Self", "Some", "String", "Typed", "Value", "Vec"}
 )
-_METHODS = frozenset({"acknowledged", "clone", "over", "with", "opened"})
+_METHODS = frozenset({"acknowledged", "clone", "open_with", "over"})
 
 
 def render_rust(edition: Edition, templates: Path | None = None) -> Files:
@@ -57,7 +57,9 @@ def render_rust(edition: Edition, templates: Path | None = None) -> Files:
         name=type_name(shown.class_name),
         commands=commands,
         requests=[each for each in commands if not each.command.event],
-        shape=_Shape(),
+        is_of_joints=_Shape().is_of_joints,
+        array=_array,
+        items=_items,
     )
     return {
         PurePosixPath(f"{edition.name}.rs"): text,
@@ -137,21 +139,22 @@ class _Shape:
             return f"Vec<{self.reported(type.of)}>"
         return _scalar(type)
 
-    def array(self, type: Value | Bits) -> str:
-        """Return the array that has the numbers of a row."""
-        return _array(type)
-
     def is_of_joints(self, type: Type) -> bool:
         """Return whether a row has a number for each joint, so that it needs no other names."""
         parts = type.items if isinstance(type, Value) else ()
         return [name for name, _ in parts] == [f"j{n}" for n in range(1, len(parts) + 1)]
 
-    def items(self, type: Value | Bits) -> list[tuple[str, str, str]]:
-        """Return name, type and description of each part of a row."""
-        return [
-            (name, type_name(item.class_name) if isinstance(item, Enum) else _scalar(item), doc)
-            for name, item, doc in ((name, item, api.item_doc(item)) for name, item in type.items)
-        ]
+
+def _items(type: Value | Bits) -> list[tuple[str, str, str]]:
+    """Return name, type and description of each part of a row."""
+    return [
+        (
+            name,
+            type_name(item.class_name) if isinstance(item, Enum) else _scalar(item),
+            api.item_doc(item),
+        )
+        for name, item in type.items
+    ]
 
 
 def _array(type: Value | Bits) -> str:

@@ -26,7 +26,7 @@ INSTRUCTIONS = (
     "These tools control a robot arm, {title}. {motion} Results have their units. "
     "stop works at any time, also while another tool waits."
 )
-MOVES = "It moves for real: read where it is first, move slowly, and keep people in mind."
+MOVES = "It really moves: read its position first, move slowly, and keep people safe."
 WATCHES = "Only queries are permitted: the user starts the server with --allow-motion to move it."
 
 
@@ -86,7 +86,7 @@ class ArmServer:
                     await self._arm._stop_all()
 
     def _heard(self, moves: bool) -> None:
-        """Note a message of the client; the arm is watched from a motion on until a stop."""
+        """Note a message of the client. The dead man's switch is active from a motion to a stop."""
         if self._dead_man is None:
             return
         if self._dead_man.stops != self._stops:
@@ -181,7 +181,7 @@ def serve(options: Options) -> None:
 
 
 async def _lines() -> AsyncIterator[str]:
-    """Yield the lines of stdin; the thread that waits for one delays no end of the program."""
+    """Yield the lines of stdin; a thread waits for them, but does not keep the program alive."""
     loop, lines = asyncio.get_running_loop(), asyncio.Queue[str | None]()
 
     def read() -> None:

@@ -33,7 +33,7 @@ class ToolSpec(NamedTuple):
     """A tool.
 
     Attributes:
-        name: that of the command, or of the client's method that waits for its motion.
+        name: the name of the command, or of the client's method that waits for its motion.
         description: what it does, for a model.
         schema: the JSON schema of its arguments.
         command: what it sends.
@@ -75,7 +75,7 @@ def tools(
 ) -> dict[str, ToolSpec]:
     """Return the tools by name: ``stop`` first, then queries, and with permission the rest.
 
-    Commands that ``limits`` refuse are left out, and the ranges of the others are theirs.
+    Commands that ``limits`` refuse are left out; the others have the ranges of ``limits``.
     """
     shown = limited(table, limits)
     refused = refusals(table, limits)

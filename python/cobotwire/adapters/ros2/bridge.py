@@ -50,7 +50,7 @@ class Bridge:
         if not 0 < rate <= FASTEST:
             raise UsageError("rate", rate, f"above 0, up to {FASTEST:g}")
         self._period, self._joints = 1 / rate, arm.table.in_role("joints")
-        # It ends with the last reference to it.
+        # The participant leaves the domain when its last reference is gone.
         self._participant = participant
         self._end, self._numbers = _end_of(arm.table, self._joints), numbers_of(arm.table, "joints")
         self._state = participant.publisher("joint_states", ros.JOINT_STATE)
@@ -118,9 +118,10 @@ def numbers_of(table: Table, role: Role) -> tuple[Number, ...]:
 def _end_of(
     table: Table, joints: Command
 ) -> tuple[Command, Callable[[Sequence[float]], Pose]] | None:
-    """Return the query that tells where the end is, and what makes a pose of its result.
+    """Return the query for the arm's end, and the function that turns its result into a pose.
 
-    The arm knows its tool and its frame; the geometry is for editions that report no coordinates.
+    Coordinates from the arm respect its tool and its frame. If an edition reports none, the
+    geometry gives the pose.
     """
     query, geometry = table.find_role("coordinates"), geometry_of(table)
     if query is not None:

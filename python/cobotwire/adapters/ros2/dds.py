@@ -23,7 +23,7 @@ from cobotwire.protocol.errors import LinkError, UsageError
 
 # The longest delay of a message by a reader that does not acknowledge; then the message is dropped.
 BLOCKED_MS = 100
-# So many messages ROS 2 keeps for a slow reader, unless a topic needs more.
+# The number of messages that ROS 2 keeps for a slow reader, unless a topic needs more.
 DEPTH = 10
 LOOPBACK = "127.0.0.1"
 # The handle of a publisher has 64 bits.
@@ -47,7 +47,7 @@ class Network(NamedTuple):
 
 
 def network(interface: str | None, environment: Mapping[str, str] = os.environ) -> Network:
-    """Return what the name or address of an interface, or else the variables of ROS 2, choose.
+    """Return the network that an interface (name or address), or else ROS 2's variables, choose.
 
     ``CYCLONEDDS_URI`` can change the configuration, as for ROS 2.
 
@@ -108,7 +108,7 @@ class Participant:
         return Reader(DataReader(self._participant, *self._topic(topic, kind, DEPTH)))
 
     def _topic(self, topic: str, kind: str, depth: int) -> tuple[Topic[Any], Qos]:
-        """Return a topic with ROS 2's usual QoS: reliable, and for those who read now."""
+        """Return a topic with ROS 2's usual QoS: reliable, and without copies for later readers."""
         qos = Qos(
             Policy.Reliability.Reliable(duration(milliseconds=BLOCKED_MS)),
             Policy.Durability.Volatile,
@@ -133,7 +133,7 @@ class Reader:
 
     def publishes(self, sender: int) -> bool:
         """Return whether the sender of a message still publishes the topic."""
-        # cyclonedds gives one and the same handle with a sign here, and without one in a message.
+        # cyclonedds returns a handle as a signed number here, and as an unsigned one in a message.
         return any(each % HANDLES == sender for each in self._reader.get_matched_publications())
 
     def take(self) -> Iterator[Received]:
@@ -142,7 +142,7 @@ class Reader:
             try:
                 found = self._reader.take(1)
             except Exception:
-                # The participant may be any program, and its bytes any bytes.
+                # Any program can be a participant, so the bytes may be damaged.
                 yield Received(None, 0)
                 return
             if not found:

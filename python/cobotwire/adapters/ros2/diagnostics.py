@@ -1,4 +1,4 @@
-"""Ask an arm, and publish what that shows of its line and its state."""
+"""Query an arm, and publish the diagnostics of its port and its state."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ class Diagnostics:
         self._parts: dict[str, Message] = {}
 
     def note(self, part: str, level: int, text: str, values: Mapping[Any, object] = {}) -> None:
-        """Publish the new status of a part, with those of the others."""
+        """Publish the new status of a part, with the status of the other parts."""
         pairs = [{"key": key, "value": str(value)} for key, value in values.items()]
         named = {"level": level, "name": f"cobotwire: {part}", "message": text}
         self._parts[part] = {**named, "hardware_id": self._url, "values": pairs}
@@ -64,7 +64,7 @@ class Diagnostics:
         return result
 
     async def problems(self) -> str:
-        """Return why the arm does not obey a motion, as far as it replies; empty: it does."""
+        """Return why the arm would not obey a motion; empty if its replies name no reason."""
         table = self._arm.table
         asked = [(role, query) for role in ROLES if (query := table.find_role(role)) is not None]
         states = {role: await self.ask(query) for role, query in asked}

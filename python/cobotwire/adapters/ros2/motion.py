@@ -26,8 +26,8 @@ def waypoints_of(message: Any, joints: Sequence[Number]) -> list[Waypoint]:
     Its velocities, accelerations and efforts are not used. ``follow`` checks numbers and times.
 
     Raises:
-        UsageError: the message is damaged (None), its joints are not those of the arm, each once,
-            or it is too long, or begins later.
+        UsageError: the message is damaged (None), too long, or begins in the future; or it does not
+        name each joint of the arm once.
     """
     if message is None:
         raise UsageError("trajectory", message="the message is damaged")

@@ -127,7 +127,7 @@ def choose_engine(
             Dask is not installed.
     """
     if scheduler is not None and name != "dask":
-        message = "a scheduler is that of a Dask cluster: --engine dask uses it"
+        message = "a scheduler needs a Dask cluster: add --engine dask"
         raise UsageError("scheduler", scheduler, message=message)
     if workers is not None and (name is None or scheduler is not None):
         message = "the cluster has its own workers: leave out --workers"

@@ -13,7 +13,7 @@ from cobotwire.protocol.errors import LinkError
 
 Task = TypeVar("Task")
 Result = TypeVar("Result")
-# A scheduler that runs answers at once.
+# A running scheduler answers at once.
 CONNECT_SECONDS = 10
 
 

@@ -108,7 +108,7 @@ def _check(plan: ExportPlan, inputs: Inputs) -> None:
 
 @contextmanager
 def _hidden_folder(plan: ExportPlan, store: Store) -> Iterator[str]:
-    """Yield the name of a new folder in the store; remove it with what is left in it."""
+    """Yield the name of a new folder in the store; remove it with its remaining files."""
     found = store.names()
     if found and not plan.overwrite:
         message = (

@@ -56,7 +56,7 @@ class Piece(NamedTuple):
 
 
 def divide(inputs: Inputs, size: int, read_as: str = "") -> tuple[Piece, ...]:
-    """Return the pieces of all inputs, in their order; ``read_as`` is that of the plan.
+    """Return the pieces of all inputs, in their order; ``read_as`` is as in the plan.
 
     Raw bytes are divided. Recordings, compressed files and files of other programs are read whole,
     one task for each.
@@ -85,5 +85,5 @@ def _is_raw(input: Input, read_as: str) -> bool:
         with closing(InputStream(input, lambda size: None, read_as or None)) as stream:
             return stream.found.reader is None and not stream.found.recording
     except UnreadableInput:
-        # The task that reads it reports that.
+        # The task that reads this input reports the error.
         return False

@@ -144,7 +144,7 @@ class _Objects:
         return bool(self._store.exists(f"{self._path}/{name}"))
 
     def names(self) -> list[str]:
-        # What another process wrote must be seen.
+        # The cache would hide files that another process wrote.
         self._store.invalidate_cache()
         start = len(self._path) + 1
         try:

@@ -57,7 +57,7 @@ class AtomicFile:
             raise output_error(path, error) from error
         self._lock: int | None = None
         if fcntl is not None:
-            # Held until the file has its final name, which is later than it is closed.
+            # The file is closed before it gets its final name; a second descriptor keeps the lock.
             self._lock = os.dup(stored.fileno())
             fcntl.flock(self._lock, fcntl.LOCK_EX)
         self.file = WritableFile(stored)

@@ -100,13 +100,13 @@ def serialised(kind: str, message: Message) -> bytes:
 
 
 def header(time_ns: int, frame: str = "") -> Message:
-    """Return the header of a message; times after those of ROS, in 2038, are the last of these."""
+    """Return the header of a message; times after ROS's last one, in 2038, become that one."""
     sec, nanosec = divmod(time_ns, 1_000_000_000)
     return {"stamp": {"sec": min(sec, _LATEST), "nanosec": nanosec}, "frame_id": frame}
 
 
 def unit_in_ros(number: Number) -> float:
-    """Return the unit of a joint in that of ROS: radians, or metres."""
+    """Return how many radians or metres, the units of ROS, one unit of a joint is."""
     return _RADIANS_OR_METRES.get(number.unit, 1.0)
 
 

@@ -1,5 +1,5 @@
 """Read what other programs wrote: dumps, logs, and captures of networks and logic analysers.
 
 A reader turns a file into chunks of bytes. :mod:`.recognising` chooses it, and turns its chunks
-into the blocks of a recording, which everything that reads recordings takes.
+into the blocks of a recording, for all readers of recordings.
 """

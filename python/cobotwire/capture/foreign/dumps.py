@@ -12,7 +12,7 @@ from collections.abc import Iterator
 
 from cobotwire.capture.foreign.reader import Chunk, ForeignFile, Line, Reader, starts_with
 
-# What a line ``*`` may stand for.
+# The most bytes that a line ``*`` may stand for.
 MOST_REPEATED = 1 << 24
 BLOCK = 1 << 12
 _OFFSET = "([0-9a-f]{6,16})"
@@ -35,7 +35,7 @@ def _read(file: ForeignFile, what: str, pattern: re.Pattern[str]) -> Iterator[Ch
         if repeated:
             copies, odd = divmod(offset - place, len(last))
             if odd or not 0 < copies * len(last) <= MOST_REPEATED:
-                file.reject(line, f"an offset that the repeated lines before it lead to ({what})")
+                file.reject(line, f"an offset after whole repeated lines ({what})")
             at_once = BLOCK // len(last) + 1
             yield from (Chunk(last * at_once) for _ in range(copies // at_once))
             yield Chunk(last * (copies % at_once))

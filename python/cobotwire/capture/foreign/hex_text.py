@@ -23,7 +23,7 @@ def is_hex(text: bytes, cut: bool = False) -> bool:
 
 
 def read_hex(blocks: Iterator[bytes], name: str) -> Iterator[bytes]:
-    """Yield the bytes of hex text; ``name`` is that of the file, for messages."""
+    """Yield the bytes of hex text; ``name`` stands for the file in messages."""
     place, rest = 0, b""
     for block in blocks:
         text = rest + block

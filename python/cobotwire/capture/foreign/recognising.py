@@ -121,7 +121,7 @@ def recognise(
         name: its name, for messages.
         format: one of ``FORMATS``; None to detect it.
         ports: the TCP ports of arms; empty for the usual ones.
-        missing: a list to which what the file lacks is appended, also by the source of the blocks.
+        missing: a list of what the file lacks; the source of the blocks may append to it, too.
 
     Raises:
         UsageError: there is no such format.

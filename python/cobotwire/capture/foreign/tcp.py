@@ -82,7 +82,7 @@ class _Way:
         return (number - self.next + _HALF & _MASK) - _HALF
 
     def keep(self, segment: Segment) -> None:
-        """Keep a segment until its bytes come next. Of two with one number the longer one stays."""
+        """Keep a segment until its bytes come next. Of two with one number, keep the longer."""
         other = self.waiting.get(segment.number)
         if other is None or len(segment.payload) > len(other.payload):
             self.waiting[segment.number] = segment
@@ -180,7 +180,7 @@ class Connections:
             way.divide()
 
     def _released(self, way: _Way) -> Iterator[Chunk]:
-        """Yield the bytes that continue what came before."""
+        """Yield the kept bytes that are now next in the stream."""
         while way.waiting and (ahead := _first(way)) <= 0:
             segment = way.waiting.pop(way.next + ahead & _MASK)
             data = segment.payload[-ahead:]

@@ -59,6 +59,7 @@ def decode_recording(capture: CaptureReader, options: DecodeOptions, counts: Str
                 printers[stream] = _TimedStreamPrinter(stream, capture, start_ns, options, counts)
             printers[stream].print(items)
             if items:
-                # Times that nobody needs any more are forgotten, also if nothing is printed.
+                # This also forgets times that are no longer needed, so it runs even if nothing is
+                # printed.
                 stream.time_of(items[-1].offset)
         return warn_if_incomplete(capture)

@@ -83,7 +83,7 @@ def _interrupt(number: int, frame: FrameType | None) -> None:
 def signals_as_interrupt() -> Iterator[None]:
     """Handle SIGTERM and SIGHUP in the block as Ctrl-C, but exit with their own codes.
 
-    That is so in the main thread. SIGHUP stays ignored where ``nohup`` started the program.
+    This applies only in the main thread. SIGHUP stays ignored where ``nohup`` started the program.
     """
     if threading.current_thread() is not threading.main_thread():
         yield

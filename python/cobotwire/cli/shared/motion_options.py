@@ -46,7 +46,7 @@ def _range(text: str) -> Range | None:
 
 
 def motion_options(silence: float) -> Callable[[Verb], Verb]:
-    """Return what gives a verb these options, as its argument ``motion``.
+    """Return a decorator that gives a verb these options as its argument ``motion``.
 
     ``silence`` is the default of ``--silence``.
     """

@@ -20,7 +20,7 @@ def progress_bar(
     console = Console(stderr=True)
     columns = TextColumn(work), BarColumn(), DownloadColumn(), TimeRemainingColumn()
     hidden = hidden or not console.is_terminal
-    # The bar goes at the end: the report takes its place.
+    # The bar is removed at the end: the report takes its place.
     with Progress(*columns, console=console, disable=hidden, transient=True) as bar:
         task = bar.add_task(work, total=size)
         yield lambda read: bar.advance(task, read)

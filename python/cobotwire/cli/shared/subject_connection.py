@@ -32,7 +32,7 @@ class Subject:
         """Check it before anything is opened.
 
         Raises:
-            UsageError: not exactly one device is named, or its command is not one.
+            UsageError: no device is named, or several are, or its command is not valid.
         """
         if [self.url is not None, self.command is not None, self.simulated].count(True) != 1:
             message = "give one of these: the URL of an arm, --command, or --simulated"

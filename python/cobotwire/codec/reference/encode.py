@@ -23,8 +23,8 @@ from cobotwire.protocol.table import Case, Command, Direction, Field, FrameForma
 
 # Types that are iterable but never meant as a row of numbers.
 NOT_SEQUENCES = (str, bytes, bytearray, dict, set, frozenset)
-# What has an index or a float value. The first two are quick to compare. Types of other libraries,
-# such as NumPy, are not.
+# Types with an index or a float value. Comparing the first two is fast; comparing types of other
+# libraries, such as NumPy, is not.
 NUMBERS = (float, int, SupportsFloat, SupportsIndex)
 
 
@@ -60,7 +60,7 @@ def _first_that_fits(
                 return _data(each, values)
             except UsageError as error:
                 if error.argument in [f"len({f.counts or f.name})" for f in each.fields if f.sizes]:
-                    # A mistake in the variant of the right size says more.
+                    # The error of the variant with the right size explains more.
                     other_size = other_size or error
                 else:
                     rejection = rejection or error

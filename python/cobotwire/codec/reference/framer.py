@@ -87,7 +87,7 @@ class ReferenceFramer:
             else:
                 end = start + self._rejected_size(data, start, verdict)
                 if verdict == "no-header":
-                    # Up to the next byte that may begin a header, nothing else is possible.
+                    # No frame starts before the next byte that may begin a header.
                     found = data.find(self._validator.frame.header[:1], end)
                     end = len(data) if found < 0 else found
                 self._add_noise(events, before.offset + start, data[start:end], verdict)

@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 
 class CatalogueVersion(NamedTuple):
-    """A version; ``digest`` is that of the catalogue (:func:`listing.digest`).
+    """A version; ``digest`` is the digest of the catalogue (:func:`listing.digest`).
 
     ``clauses`` is how many clauses there were, and ``of_clauses`` their digest.
     """

@@ -21,7 +21,7 @@ SHOWN = 12
 
 
 class Selected(NamedTuple):
-    """The test cases of a group that a command is tested by; without a command: the line."""
+    """The test cases of a group for a command; without a command: those for the whole line."""
 
     command: Command | None
     group: Group[Any]

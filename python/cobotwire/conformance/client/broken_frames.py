@@ -14,14 +14,14 @@ from cobotwire.conformance.hex_text import shown
 from cobotwire.protocol.table import Command, FrameFormat, Table
 from cobotwire.simulator.peer import IDLE_SECONDS
 
-# The bytes of a frame that are shown; the longest of most editions has fewer.
+# The number of bytes of a frame that are shown; most editions have no longer frame.
 MOST = 40
 
 
 def joined(pieces: Sequence[Received]) -> list[Received]:
     """Return the broken frames and the stray bytes that consecutive pieces of noise make up.
 
-    Noise belongs to the frame before it if it begins none, and comes at once.
+    Noise that begins no frame belongs to the frame before it, if it follows at once.
     """
     found: list[Received] = []
     for piece in pieces:

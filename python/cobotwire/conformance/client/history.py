@@ -105,7 +105,7 @@ class History:
         return (e for e in self.since(start) if e.awaits_reply and e.replied_at is None)
 
     def unreplied(self, start: float, longest: float) -> Iterator[Received]:
-        """Yield the outstanding requests since ``start`` that no late reply seems to reply to.
+        """Yield the outstanding requests since ``start`` to which no late reply seems to belong.
 
         The late reply to an earlier request with the same bytes, up to ``longest`` seconds before,
         looks the same: a client must take it for the reply.

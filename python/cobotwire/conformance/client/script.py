@@ -104,7 +104,7 @@ class Script:
         self._at = len(self._lines)
 
     def _broken(self, now: Received) -> Iterator[Observation]:
-        """Check a broken frame that is meant as the line that is due."""
+        """Check a broken frame that was sent for the next line of the script."""
         if self._at == len(self._frames) or not self._is_meant(now.data):
             return
         line, right = self._lines[self._at], self._frames[self._at]
@@ -114,7 +114,7 @@ class Script:
         yield Observation(VARIANT, f"{line.place}: {sent}", line.command.name)
 
     def _is_meant(self, data: bytes) -> bool:
-        """Return whether a broken frame has the id of the line that is due, or all but its id."""
+        """Return whether a broken frame has the id of the next line, or everything but its id."""
         frame, right = self._codec.table.frame, self._frames[self._at]
         if len(data) < frame.head_size or not data.startswith(frame.header):
             return False

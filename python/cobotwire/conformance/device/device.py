@@ -77,7 +77,7 @@ class Noticed:
 
 
 class Device:
-    """Sends requests, notices what the run has to report, and knows what it has to restore."""
+    """Sends requests, and collects what the run has to report and to restore."""
 
     def __init__(
         self,
@@ -230,7 +230,7 @@ class Device:
     def known(self, command: Command | None = None) -> Known:
         """Return the arm's position as rows of numbers, by their units, for its calculations.
 
-        A row that no reply holds is empty. For a ``command`` that takes no row, nothing is needed.
+        A row is empty if no reply has it. For a ``command`` that takes no row, the result is empty.
         """
         if command is not None and not any(f.many for v in command.request for f in v.fields):
             return {}

@@ -65,7 +65,7 @@ class KeptState:
     """Everything that is set and can be read, in the order in which it is compared."""
 
     def __init__(self, device: Device) -> None:
-        """Read the state. What the run may set gets another value first, until the run ends.
+        """Read the state. Before that, give each setting that the run may change another value.
 
         A value that has its default would hide that the device returned to its defaults.
         """

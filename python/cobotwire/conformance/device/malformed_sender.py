@@ -26,9 +26,9 @@ class MalformedSender:
     """Sends malformed requests that are made from one good request.
 
     A correct device that finds the next frame at once needs no pauses. So a good query of another
-    command follows at once; if its reply is all that comes, nothing is wrong. Otherwise, and the
-    first time that something is wrong with a request in some way, the tester waits until the device
-    must have given up, as the test cases say.
+    command follows at once; if only its reply comes, the device passes. Otherwise the tester sends
+    the request again, and waits until the device must have given up. It also waits after the first
+    malformed request of each kind.
     """
 
     def __init__(self, probe: Probe, request: EncodedRequest) -> None:
@@ -56,7 +56,7 @@ class MalformedSender:
             self.expect_kept(what, data, partial(self._again, what, data))
 
     def _reply_after(self, what: str, data: bytes, query: Request[Any]) -> Reply[Any] | None:
-        """Return the reply to a query of another id right after; None if it is not all that comes.
+        """Send a query of another id at once; return its reply, None if anything else comes too.
 
         The other id shows that the reply is not to the malformed request.
         """
@@ -78,7 +78,7 @@ class MalformedSender:
         return silent and good.only_valid
 
     def _good(self, data: bytes) -> EncodedRequest:
-        """Return the request to send next: after half a request one that does not complete it."""
+        """Return a good request that is too short to complete half a request before it."""
         frame = self._device.table.frame
         missing = frame.read_length(data) + frame.overhead - len(data)
         query = self._device.command("powered")
@@ -103,7 +103,8 @@ class MalformedSender:
         """Compare one value of the state with what it was.
 
         ``again`` sends the malformed request again; ``reply`` is that to the query of the value, if
-        it has been sent. One lost reply in a body is enough: more would only end the body early.
+        it has been sent. After one lost value, later ones are not reported: they would only end the
+        test case early.
         """
         sent = Malformed(f"{what}, {self._request.command.name}", data, again)
         changed = self._kept.check(sent, reply)

@@ -41,7 +41,7 @@ class Plan:
     """Which steps to run, in which order, and which results to take from an earlier report."""
 
     def __init__(self, earlier: Report | None = None, *, resume: bool = False) -> None:
-        """Plan to run everything; or what a report has, in its order.
+        """Plan to run everything, or the steps of a report in their order.
 
         Args:
             earlier: the report of a run on a device.
@@ -70,7 +70,7 @@ class Plan:
         return self._found.get(step.place, []) if step.place in self._complete() else []
 
     def _complete(self) -> set[tuple[str, str]]:
-        """Return where results count: before the step at whose end the device may have failed."""
+        """Return the steps whose results count; not the last one that ran before an early end."""
         whole = [place for place, found in self._found.items() if not any(map(_was_not_run, found))]
         if not self._resume:
             return set()

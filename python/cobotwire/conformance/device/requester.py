@@ -171,7 +171,7 @@ class Requester:
         return response.sent_at + (MOTION_SECONDS if command.safety == "motion" else late)
 
     def _begin(self, request: EncodedRequest, data: bytes, note: str) -> Response:
-        """Send; return an empty response, which knows the last request of another command."""
+        """Send; return an empty response, which names the last request of another command."""
         self._connection.send(data, note)
         others = [each for each in self._replied if each.command.id != request.command.id]
         return Response(request, self._connection.now, others[-1] if others else None)

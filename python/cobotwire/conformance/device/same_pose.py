@@ -12,8 +12,8 @@ from cobotwire.kinematics.nearness import misses
 from cobotwire.protocol.table import Table
 from cobotwire.simulator.start import steps
 
-# In how many parts the way from one row of angles to the other is gone, and how many steps may
-# bring a part back to the pose.
+# The number of parts into which the path between two rows of angles is divided, and the most steps
+# that bring a part back to the pose.
 PARTS, STEPS = 32, 8
 # How much longer a part may be than an even one, and how long any may be, in degrees.
 DETOUR, FREE_PART = 4.0, 1.0

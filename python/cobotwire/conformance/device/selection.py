@@ -22,7 +22,7 @@ class Reporter(NamedTuple):
 
 
 def has_role(*roles: Role) -> Selects:
-    """Return what selects the commands in one of the roles."""
+    """Return a function that selects the commands in one of the roles."""
     return lambda table, command: command.role in roles
 
 

@@ -30,8 +30,8 @@ from cobotwire.protocol.table import Command, Table
 
 # From this angle on, a joint shows a wrong scale, order or direction; in degrees.
 AWAY = 5.0
-# The words of a reason if nothing was received, or only the noise of a healthy line. The evidence
-# may go on with a query that was replied to.
+# The words of a reason if nothing was received, or only the noise of a healthy line. A query after
+# that may have got its reply.
 SILENCE = ("came nothing", "came no valid reply", "came noise ")
 
 Progress = Callable[[Step, int, int], None]

@@ -26,7 +26,7 @@ Place = tuple[str, str]
 def matrix(report: Report) -> dict[Place, Result]:
     """Return the gravest result by command and test case, in the order in which they were tested.
 
-    Of several with the same verdict it is the first.
+    Of several results with the same verdict, it has the first.
     """
     found: dict[Place, Result] = {}
     for result in report.results:

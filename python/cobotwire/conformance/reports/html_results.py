@@ -1,4 +1,4 @@
-"""The results of a report as HTML: a matrix, and those of each command with their evidence."""
+"""The results of a report as HTML: a matrix, and each command with its evidence."""
 
 from __future__ import annotations
 

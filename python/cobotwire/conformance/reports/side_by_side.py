@@ -21,7 +21,7 @@ class Row(NamedTuple):
 
     @property
     def differs(self) -> bool:
-        """Whether those reports differ that tested it."""
+        """Whether the reports that tested it differ."""
         return len({o for o in self.outcomes if o and not o.startswith(Verdict.NOT_RUN)}) > 1
 
 

@@ -150,7 +150,7 @@ def illegal_samples(variant: Variant) -> Iterator[Sample]:
 def harmless_values(variant: Variant, known: Known, limits: Limits) -> list[RawValues]:
     """Return values that a device may be sent: each field in turn takes a few; the rest stay.
 
-    None of them has a row that the arm would report, but does not.
+    Values with a row that the arm cannot report are left out.
     """
     found: dict[RawValues, None] = {}
     for picked in picks(variant):

@@ -38,7 +38,7 @@ BY_PLACE = ("reached", "arrives", "stops", "moving", "agrees")
 WORDS = 8
 # A reason lists at most this many relations that do not hold.
 MOST_SHOWN = 3
-# If at least this many commands without a reply share an argument, its value is what is wrong.
+# If at least this many commands without a reply share an argument, its value must be wrong.
 SEVERAL = 2
 
 
@@ -80,7 +80,7 @@ class Interpreter:
                 self.questions.append(f"{command.name}: {why}")
                 return self._note(command.name, part, "present", "not seen", why, frames)
             else:
-                # The evidence may go on with a query that was replied to.
+                # A query after that may have got its reply.
                 own = [f for f in frames if command.id in self._ids("request", f.sent)]
                 if not any(frame.received for frame in own):
                     self._silent[command.name] = own

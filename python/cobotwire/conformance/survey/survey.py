@@ -203,7 +203,7 @@ class Survey:
                 self._on_private(False)
             silent = (result.reason for result in found if result.cause is Cause.RUN_ENDED)
             self._ended = next(silent, "").rstrip(".")
-            # The bytes of what names a device are no evidence for others.
+            # Bytes that identify a device are not published as evidence.
             self._results += [replace(r, evidence=()) if private else r for r in found]
 
     def _read_now(self, progress: Progress) -> None:
@@ -267,7 +267,7 @@ class Survey:
         return tuple(found)
 
     def _first_step(self, probe: Probe) -> None:
-        """Move the joint that is nearest to zero by a degree; stop the arm if anything goes far."""
+        """Move the joint nearest to zero by a degree; stop the arm if a joint goes too far."""
         mover, device = Mover(probe.device), probe.device
         start = mover.angles()
         at = min(range(len(start)), key=lambda joint: abs(start[joint]))

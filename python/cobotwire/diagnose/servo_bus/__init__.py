@@ -167,7 +167,7 @@ class ServoBusReader:
         return Status(tuple([bit.name for bit in self._errors if bit.unpack(data)]))
 
     def _instruction(self, packet: bytes) -> Instruction | None:
-        """Return what an instruction says; None if a packet has not the parameters of one."""
+        """Return what an instruction says; None if its parameters do not fit."""
         message = self._decoded(packet)
         if message is None:
             return None

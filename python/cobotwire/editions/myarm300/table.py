@@ -3,4 +3,4 @@
 
 from cobotwire.protocol.loading import load_table
 
-TABLE = load_table(__package__, checksum="4407d33c")
+TABLE = load_table(__package__, checksum="49a8a122")

@@ -3,4 +3,4 @@
 
 from cobotwire.protocol.loading import load_table
 
-TABLE = load_table(__package__, checksum="d6972d9d")
+TABLE = load_table(__package__, checksum="c0ac3526")

@@ -3,4 +3,4 @@
 
 from cobotwire.protocol.loading import load_table
 
-TABLE = load_table(__package__, checksum="5093f6b5")
+TABLE = load_table(__package__, checksum="11c1c0af")

@@ -3,4 +3,4 @@
 
 from cobotwire.protocol.loading import load_table
 
-TABLE = load_table(__package__, checksum="92af97a5")
+TABLE = load_table(__package__, checksum="ad496c08")

@@ -26,7 +26,7 @@ GAP_INTERVALS, GAP_SECONDS = 4, 1.0
 class Track:
     """The replies to one query: their places on the axis, and the numbers of each.
 
-    ``names`` and ``units`` are those of the numbers, as the edition has them.
+    ``names`` and ``units`` belong to the numbers, as the edition has them.
     """
 
     names: tuple[str, ...] = ()

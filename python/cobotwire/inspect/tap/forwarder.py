@@ -37,8 +37,8 @@ def check_pollable(arm: OpenedTransport) -> int:
 class Forwarder:
     """Forwards until :meth:`stop` or until the arm's port is gone.
 
-    Without a guard every byte is forwarded as soon as it is read. What the arm sends while no
-    program has the port open is copied and lost, as on a serial port that nobody has open.
+    Without a guard every byte is forwarded as soon as it is read. While no program has the port
+    open, bytes from the arm are copied but not delivered, as on a closed serial port.
     """
 
     def __init__(
@@ -154,7 +154,7 @@ class Forwarder:
                 self._copies.put("held", decision.data, time.monotonic())
 
     def _greet(self, happened: str, new: bool) -> None:
-        """Let a new program find nothing of the last one: no unread reply, no half a request."""
+        """Discard what the last program left: unread replies, and half a request."""
         if new:
             self._to_program.clear()
             self._decide(self._guard.flush() if self._guard else ())

@@ -20,8 +20,8 @@ class Guard:
     """Passes whole requests that only read, or that stop the arm; holds back all other bytes.
 
     If several commands share an id, a request passes only if every command that it can be is one of
-    these. Bytes that are no request of the edition are held back, because the arm may make
-    something else of them.
+    these. Bytes that are no request of the edition are held back, because the arm may parse them
+    differently.
     """
 
     def __init__(self, codec: Codec) -> None:

@@ -30,7 +30,7 @@ class WatchingProcess:
     def __init__(self, watch: Watch) -> None:
         """Start it, and wait until watching begins.
 
-        From now on this process ignores Ctrl-C and SIGTERM, unless it says otherwise; the watching
+        From now on this process ignores Ctrl-C and SIGTERM, until it sets handlers; the watching
         process always does, as a terminal sends Ctrl-C to both.
         """
         for number in (signal.SIGINT, signal.SIGTERM):

@@ -13,10 +13,10 @@ from cobotwire.codec.interface import Codec
 from cobotwire.inspect.tap.copies import Copy, CopyReader
 
 READ_SIZE = 1 << 16
-# An incomplete frame is shown after a pause of the line, which is looked for this often.
+# An incomplete frame is shown after a pause of the line; pauses are looked for at this interval.
 TICK_SECONDS = 0.25
 # Copies are collected for this long: a process that woke up for each would take the processor from
-# the program and from the forwarder, just when they need it. It also gives way to all others.
+# the program and from the forwarder, just when they need it. Its priority is low, too.
 COLLECTED_SECONDS = 0.02
 NICENESS = 10
 
@@ -32,7 +32,7 @@ class Watching:
         on_packet: Callable[[Packet], None],
         on_other: Callable[[Copy], None],
     ) -> None:
-        """``copies`` is the pipe; ``on_other`` gets copies of what is not on the arm's line."""
+        """Read ``copies``; ``on_other`` gets copies that are not of the arm's line."""
         self._pipe, self._recording = copies, recording
         self._on_packet, self._on_other = on_packet, on_other
         self._sides = {

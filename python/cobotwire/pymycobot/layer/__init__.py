@@ -1,1 +1,1 @@
-"""What all classes of the layer share: opening, orders and queries, results, helpers."""
+"""What all classes of the layer share: opening, requests, results, helpers."""

@@ -28,7 +28,7 @@ class Method:
         lacks: parameters that cannot be sent.
         ranges: parameters, each with its least and greatest number.
         result: the function of ``layer/results.py`` that gives the result.
-        gives: what ``migrate`` makes of our result to have the library's.
+        gives: how ``migrate`` converts our result to the library's.
         keywords: our arguments that have no position.
     """
 
@@ -54,7 +54,7 @@ class Method:
         self.by = by
         self.parameters = parameters
         self.arguments = arguments
-        # What few methods state.
+        # The attributes that few methods state.
         self.__dict__.update(further)
         self._is_prepared = False
 
@@ -70,7 +70,7 @@ class Method:
         return f"{title}\n\nCalls ``{device}{self.calls}({', '.join(given)})``."
 
     def _prepare(self) -> None:
-        """Work out what each call needs, at the first: a program calls few methods of a class."""
+        """Compute what calls need at the first call: a program calls few methods of a class."""
         places = {name: place for place, (name, *_) in enumerate(self.parameters)}
         self._by = f"_{self.by}"
         self._address = places.get(self.address)
@@ -81,7 +81,7 @@ class Method:
         self._numbers = tuple(int(each) for each in passed if each not in places)
         after = iter(range(len(places), len(places) + len(self._numbers)))
         self._passes = [places[each] if each in places else next(after) for each in passed]
-        # A flag that is False by default is left out then.
+        # A flag that is False is left out if that is its default, and None is ours.
         no = {name for name, _, *default in self.parameters if default in ([False], [0])}
         self._left_out = [
             place

@@ -16,7 +16,7 @@ OnFailure = Literal["raise", "return"]
 Value = TypeVar("Value")
 # The library waits three times half a second for an acknowledgement.
 ACK_SECONDS = 1.5
-# What the library returns for an order that was acknowledged, and for a call that failed.
+# What the library returns for a request that was acknowledged, and for a call that failed.
 DONE, FAILED = 1, -1
 
 
@@ -39,8 +39,8 @@ class CompatibleClient:
     # How long an acknowledgement is waited for, and what a call returns that does not wait for it.
     ACK_SECONDS: ClassVar[float] = ACK_SECONDS
     QUIET: ClassVar[int | None] = None
-    # What an order returns, and when. Older classes serve arms of every age, and older firmware
-    # acknowledges nothing: then an order returns 1, or a list with 1, once it is sent.
+    # What a one-way request returns, and when. Older classes serve firmware of any age, and old
+    # firmware acknowledges nothing: then the request returns 1, or a list with 1, once it is sent.
     ORDERS: ClassVar[str] = "acknowledged"
 
     if not TYPE_CHECKING:
@@ -89,7 +89,7 @@ class CompatibleClient:
         quiet: bool = False,
         gives: Callable[[Any], Any] = plain,
     ) -> Any:
-        """Send an order once; unless ``quiet``, wait for its acknowledgement, and return 1.
+        """Send a request once; unless ``quiet``, wait for its acknowledgement, and return 1.
 
         ``gives`` converts the 1 to the result of the library's method.
         """
@@ -106,11 +106,11 @@ class CompatibleClient:
         return gives(DONE)
 
     def _send(self, call: Callable[..., None], *arguments: Any) -> None:
-        """Send an order that the robot does not acknowledge."""
+        """Send a request that the robot does not acknowledge."""
         call(*arguments)
 
     def _finish(self, call: Callable[..., None], *arguments: Any) -> int:
-        """Send an order that the robot does not acknowledge; return 1, as the library does."""
+        """Send a request that the robot does not acknowledge; return 1, as the library does."""
         call(*arguments)
         return DONE
 

@@ -20,13 +20,13 @@ from cobotwire.pymycobot.layer.naming import naming
 from cobotwire.pymycobot.layer.ranges import check_range
 from cobotwire.pymycobot.layer.results import plain, tenths
 
-# If the end of a motion is not reported for so long, the arm is asked whether it moves.
+# If the end of a motion is not reported for this long, the arm is asked whether it moves.
 ASK_SECONDS = 1.0
-# The end was lost if the arm then stands still this often.
+# The report was lost if this many queries in a row find the arm at rest.
 STILL_TIMES = 3
 # How often it is asked: for five minutes, as the library waits.
 MOST_TIMES = 300
-# The library waits for so long after the motors got power.
+# The library waits this long after the motors got power.
 POWER_SECONDS = 1.0
 HOME_SPEED = 20
 # The pose of a Mercury at rest; other arms stretch all joints.
@@ -47,7 +47,7 @@ class ClosedLoop(CompatibleClient):
 
     QUIET: ClassVar[int | None] = DONE
     ACK_SECONDS: ClassVar[float] = 3.0
-    # Whether motions are waited for, and whether one was sent that was not waited for.
+    # Whether calls wait for the ends of motions; whether the end of an earlier one may still come.
     _waits = True
     _others = False
 
@@ -59,7 +59,7 @@ class ClosedLoop(CompatibleClient):
         command = self.arm.table.in_role("motion ended")
         with self.arm.events(command.reply_type, timeout=ASK_SECONDS) as ends:
             try:
-                # The acceptance may be lost; the end of the motion, or its absence, tells.
+                # The acceptance may be lost; only the report of the end counts.
                 with suppress(ReplyTimeout):
                     call(*arguments, ack_within=self.ACK_SECONDS)
                 end = self._end_of(call.__name__, ends)
@@ -160,7 +160,7 @@ class Reporting(ClosedLoop):
         """Power the arm, and wait a second for its motors."""
         result = self._ask(plain, self.arm.power_on, mode)
         if result == DONE:
-            # The arm has power, whatever becomes of this query.
+            # The arm has power, even if this query fails.
             with suppress(ProtocolError, ReplyTimeout):
                 self._waits = self._waits and bool(self.arm.get_limit_switch().motion_ends)
         self.arm.listen(POWER_SECONDS)

@@ -114,7 +114,7 @@ def _function(
 
 
 def _codes(do: Callable[..., Any]) -> list[CodeType]:
-    """Return the code of methods that pass on their parameters, by how many these are."""
+    """Return the code of methods that pass 0 to 6 parameters to a function."""
     methods: list[Callable[..., Any]] = [
         lambda self: do(self),
         lambda self, a: do(self, a),

@@ -27,7 +27,7 @@ WRITTEN = {
     32: "set_pro_gripper_speed",
     36: "set_pro_gripper_abs_angle",
 }
-# Those that write always 0.
+# The methods that write 0 into one register.
 SWITCHED = {
     13: "set_pro_gripper_calibration",
     37: "set_pro_gripper_pause",
@@ -52,8 +52,8 @@ class Registers(CompatibleClient):
         """Read a register of a gripper; the version of its firmware (1) in tenths.
 
         Raises:
-            UsageError: an argument is not allowed, or the register is one of each joint of the
-                hand; the message names the method that takes the joint.
+            UsageError: an argument is not allowed, or each joint of the hand has the register; the
+            message then names the method that takes the joint.
         """
         if address in OF_A_JOINT:
             message = f"register {address} belongs to a joint of the hand"

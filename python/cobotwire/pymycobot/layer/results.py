@@ -34,7 +34,7 @@ def listed(value: Any) -> Any:
 
 
 def nothing(value: Any) -> None:
-    """Return None, although the order was acknowledged."""
+    """Return None, although the request was acknowledged."""
 
 
 def joined(value: Any) -> Any:
@@ -43,7 +43,7 @@ def joined(value: Any) -> Any:
 
 
 def radians(value: Any) -> Any:
-    """Return radians of degrees that were rounded to hundredths, rounded to thousandths."""
+    """Round degrees to hundredths, convert them to radians, and round these to thousandths."""
     return [round(math.degrees(each) * (math.pi / 180), 3) for each in value]
 
 

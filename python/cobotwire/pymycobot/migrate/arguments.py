@@ -65,7 +65,7 @@ def _passed(
 ) -> cst.BaseExpression | None:
     """Return what our method is given for a parameter; None if nothing.
 
-    A number that no parameter gives is always written. 0 and False say "left out" where that is
+    A number that no parameter gives is always written. 0 and False count as left out where they are
     the library's default, and None is ours.
     """
     if parameter not in call.parameters:

@@ -18,7 +18,7 @@ class Bindings(cst.CSTVisitor):
         self.functions: list[cst.FunctionDef] = []
         self.from_imports: list[cst.ImportFrom] = []
         self.returns: dict[cst.FunctionDef, list[cst.BaseExpression]] = defaultdict(list)
-        # The names that imports give to what is not the module of that name.
+        # Names that an import binds to something else than the module of that name.
         self.imported: set[str] = set()
         self._inside: list[cst.FunctionDef] = []
 

@@ -29,7 +29,7 @@ class Call:
         parameters: the library's parameters in their order, each with its default as text.
         arguments: our arguments in their order: the library's parameter, and our default.
         result: how the library gives the result.
-        gives: what to make of our result to have the library's: ``same``, ``int``, ``list``,
+        gives: how to convert our result to the library's: ``same``, ``int``, ``list``,
             ``ints``; ``nothing`` if only the library has one, ``parts`` if no word does it.
         keywords: our arguments that have no position.
         address: the library's parameter that selects the device; empty if there is none.
@@ -235,7 +235,7 @@ def _call(method: Method) -> Call:
     return Call(
         method.calls,
         defaults,
-        # Arguments of ours that the library's method has not are left out.
+        # Arguments of ours that the library's method lacks are left out.
         {ours: (given, "".join(default)) for ours, given, *default in method.arguments if given},
         method.result,
         method.gives,

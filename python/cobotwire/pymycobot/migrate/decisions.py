@@ -77,16 +77,16 @@ HIDDEN_NAME = "this needs Python's {0}, but the program uses that name for somet
 NOT_ACKNOWLEDGED = ", with ack_within=1.5 also one that the arm does not acknowledge"
 ATTRIBUTE = "{0} is not called here, and only calls are rewritten; write `lambda: {0}()`"
 ESCAPED = (
-    "the arm goes where its calls are not seen here, and they are not rewritten; rewrite them "
-    "there, or annotate the parameter with {0}"
+    "the arm is passed to code that is not read here, so its calls there are not rewritten; "
+    "rewrite them there, or annotate the parameter with {0}"
 )
-INHERITS = "{0} inherits from {1}; what it calls of itself is not rewritten: hold an arm instead"
+INHERITS = "{0} inherits from {1}; calls of its own methods are not rewritten: hold an arm instead"
 MIXED = (
     "{0} is not always an arm of one class, so the call is left as it is; give each arm a name of "
     "its own"
 )
 NOT_STATEMENT = "this import shares its line; write it in a line of its own, and run this again"
-BY_TEXT = "{0} runs what is not seen here; if that uses the library, rewrite it by hand"
+BY_TEXT = "{0} runs code that is not read here; if that uses the library, rewrite it by hand"
 UTILITY = "cobotwire.pymycobot.utils has no {0}"
 HOME = "go_home waits, and its pose and speed depend on its arguments; use move_angles"
 OTHER_ROBOT = "the class is {} here; if the port is that of an arm on a body, write {} ({})"
@@ -105,7 +105,7 @@ BY_HAND = {
     "power_on": "it waits for the motors; call power_on(), and then time.sleep(1)",
     "get_coords": "for coordinates now call get_coords(), for those of angles angles_to_coords()",
     "set_servos_calibration": "call set_servo_calibration for each joint",
-    "set_limit_switch": "it asks is_power_on() before, and motions wait or not from then on",
+    "set_limit_switch": "it asks is_power_on() before, and decides whether later motions wait",
     "drag_teach_execute": "it asks is_drag_fifo_empty() before, and waits for the end",
 }
 
@@ -126,7 +126,7 @@ def why_left(kind: LibraryClass, method: str) -> str:
 
 
 def why_other(call: Call) -> str:
-    """Return how the result of our method differs from that of the library's."""
+    """Return how the result of our method differs from the library's."""
     if call.gives == "nothing":
         waits = call.by_hand or call.result == "done"
         return NO_RESULT.format(call.calls) + ("" if waits else NOT_ACKNOWLEDGED)

@@ -11,7 +11,7 @@ from cobotwire.pymycobot import error
 from cobotwire.pymycobot.migrate.calls import library
 
 OURS = "cobotwire.pymycobot"
-# What the layer has beside classes, by the module of the library.
+# The names in the layer that are no classes, by the module of the library.
 KEPT = {
     "": {"PI_BAUD", "PI_PORT", "Angle", "Coord", "utils"},
     "genre": {"Angle", "Coord"},
@@ -21,7 +21,7 @@ KEPT = {
 
 
 def rewritten(node: cst.ImportFrom) -> tuple[list[cst.ImportFrom], list[str]]:
-    """Return the lines for ours instead of one for the library, and the names that stay."""
+    """Return the imports that replace one of the library, and the names that are not replaced."""
     module = (get_full_name_for_node(node.module) or "") if node.module else ""
     rest = module.partition(".")[2]
     if isinstance(node.names, cst.ImportStar):

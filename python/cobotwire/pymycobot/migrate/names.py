@@ -24,7 +24,7 @@ from cobotwire.pymycobot.migrate.values import (
 
 LIBRARY = "pymycobot"
 _NOTHING: Values = frozenset()
-# With these a rewritten program makes the library's result of ours.
+# A rewritten program calls these to convert a result of ours to the library's.
 _CONVERSIONS = {"int", "list", "map"}
 
 
@@ -40,7 +40,8 @@ class Names:
         self._functions: dict[Key, list[cst.FunctionDef]] = defaultdict(list)
         for each in found.functions:
             self._functions[keys.function_key(each)].append(each)
-        # At first, what is not known yet is nothing; in the end it is unknown.
+        # In the first pass, a name without known values has no values; in the second, it is
+        # unknown.
         for unbound in (_NOTHING, frozenset({UNKNOWN})):
             before = None
             while before != self._bound:
@@ -73,7 +74,7 @@ class Names:
         return self._of_call(node) if isinstance(node, cst.Call) else frozenset({UNKNOWN})
 
     def arms(self, node: cst.CSTNode) -> list[str]:
-        """Return the classes of the library that an expression may be an object of."""
+        """Return the classes of the library whose objects an expression may be."""
         return sorted(each.kind for each in self.values(node) if isinstance(each, Arm))
 
     def kinds(self, node: cst.CSTNode) -> list[str]:
@@ -89,11 +90,11 @@ class Names:
         return sorted({name for each in self._found.from_imports for name, _ in _kinds(each)})
 
     def is_only(self, node: cst.CSTNode, kind: type[Value]) -> bool:
-        """Return whether an expression is nothing but values of a kind, and perhaps None."""
+        """Return whether an expression has only values of a kind, or None."""
         return all(isinstance(each, kind) for each in self.values(node) - {NONE})
 
     def arm_names(self, methods: frozenset[str]) -> set[str]:
-        """Return the last words of the names of arms, and of what these methods are called of."""
+        """Return the last words of the names of arms, and of objects with these methods."""
         arms = (key for key, found in self._bound.items() if any(isinstance(v, Arm) for v in found))
         found = {str(key[-1]) for key in arms}
         for call in self._found.calls:

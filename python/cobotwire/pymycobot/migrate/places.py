@@ -1,4 +1,4 @@
-"""Finds places of a program that no rewritten call makes equal."""
+"""Finds places where a program may behave differently although its calls are rewritten."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ _PASSING |= cst.IfExp | cst.BooleanOperation | cst.UnaryOperation | cst.Attribut
 
 
 class Places(cst.CSTVisitor):
-    """Notes where arms go on unseen, and where a program tests whether a call failed."""
+    """Notes where an arm cannot be followed, and where a program tests whether a call failed."""
 
     def __init__(self, uses: Uses, decide: Decide) -> None:
         self._uses = uses
@@ -67,7 +67,7 @@ class Places(cst.CSTVisitor):
         runs = runs or (name in _IMPORTING and _names_library(node))
         if runs and not self._ran:
             self._decide(node, BY_TEXT.format(name))
-            # A program that runs one text often runs many.
+            # Noted once: a program that runs one text as code often runs many.
             self._ran = True
 
     def visit_Comparison(self, node: cst.Comparison) -> None:

@@ -222,7 +222,7 @@ class Rewriter(cst.CSTTransformer):
     def stop_gripper(
         self, original: cst.Call, updated: cst.Call, kind: LibraryClass
     ) -> cst.BaseExpression:
-        """Return the order that ``gripper_stop`` sends."""
+        """Return the request that ``gripper_stop`` sends."""
         return self._instead(original, updated, "set_gripper_value(0, 0, 1, 1)", "nothing")
 
     def _instead(

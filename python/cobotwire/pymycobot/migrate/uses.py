@@ -63,7 +63,7 @@ class Uses:
         return self._is_safe_row(use) if form == "list" else self._is_safe_number(use)
 
     def is_converted(self, use: Use, form: str) -> bool:
-        """Return whether the program itself makes the library's form of a result of ours."""
+        """Return whether the program itself converts a result of ours to the library's form."""
         call = self._parents[use.inside]
         if not isinstance(use.inside, cst.Arg) or not isinstance(call, cst.Call):
             return False

@@ -17,7 +17,7 @@ class Chooser:
     """
 
     def __init__(self, fault: Fault, seed: int, number: int) -> None:
-        """``number`` counts the scenario's faults of this kind, from 0."""
+        """Seed the draws; ``number`` counts the scenario's faults of this kind, from 0."""
         self.fault = fault
         self.random = Random(f"{seed} {fault.kind} {number}")  # noqa: S311  (repeatable, no secret)
         self._count = 0

@@ -16,7 +16,7 @@ class FaultyConnection:
     """
 
     def __init__(self, clock: Callable[[], float], restart: Callable[[], None]) -> None:
-        """``restart`` makes the controller lose its state."""
+        """Start connected; ``restart`` makes the controller lose its state."""
         self.outlet = Outlet()
         self.deaf_until = -math.inf
         self.stopped_until = -math.inf

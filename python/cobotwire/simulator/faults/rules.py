@@ -69,7 +69,7 @@ class Several:
     """Allows one value, or a list of values; keeps a tuple."""
 
     def __init__(self, one: Rule, *, empty: bool = True) -> None:
-        """``one`` is the rule of each value; ``empty`` allows a list without values."""
+        """Apply the rule ``one`` to each value; ``empty`` allows a list without values."""
         self.one, self.empty = one, empty
 
     def __call__(self, value: Any) -> tuple[Any, ...]:

@@ -149,7 +149,7 @@ class Brake:
         return Brake(self.position(time), self.speed(time), self._plan, acceleration)
 
     def rest(self) -> Plan:
-        """Return what was left before."""
+        """Return the motion that was left when braking began."""
         return self._plan
 
 

@@ -9,7 +9,7 @@ BISECTIONS = 60
 
 
 class Travel:
-    """From ``speed`` over a cruising speed to standstill, over ``way``, in ``duration`` seconds.
+    """Changes from ``speed`` to a cruising speed, then brakes: ``way`` in ``duration`` seconds.
 
     It speeds up and slows down at ``acceleration``. :func:`quickest` and :func:`lasting` find the
     cruising speed.
@@ -60,7 +60,7 @@ def quickest(speed: float, way: float, fastest: float, acceleration: float) -> T
 
 
 def lasting(speed: float, way: float, acceleration: float, duration: float) -> Travel:
-    """Return the travel over ``way`` that takes ``duration``; the quickest takes no longer."""
+    """Return the travel over ``way`` that takes ``duration``, at least that of the quickest."""
     # The way grows with the cruising speed, so bisection finds the speed.
     slowest = (speed - acceleration * duration) / 2
     fastest = (speed + acceleration * duration) / 2

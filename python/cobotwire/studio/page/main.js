@@ -188,7 +188,7 @@ function wireControls() {
     const taller = document.body.classList.toggle("taller");
     byId("taller").textContent = taller ? "Lower" : "Taller";
   });
-  // Capturing: nothing that has the focus may keep a stop from the arm.
+  // Capture the event, so that no focused element keeps a stop from the arm.
   document.addEventListener("keydown", stopKey, true);
   setInterval(showAge, 500);
 }

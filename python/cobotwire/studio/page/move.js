@@ -42,7 +42,7 @@ export class Move {
     const place = (used) => (used.arguments.at ? { [used.arguments.at]: String(used.places[at]) } : {});
     const request = (value) => {
       const { joints, targetJoints } = this.state;
-      // Without a place it takes all joints.
+      // A command without an argument for the joint takes the targets of all joints.
       const to = control.arguments.at ? value : (targetJoints ?? joints).with(at, value).join(",");
       const given = { ...place(control), [control.arguments.to]: String(to), ...this.speed(control) };
       return () => this.source.send(control.command, given);

@@ -16,7 +16,7 @@ export class Player {
     byId("speed").addEventListener("input", () => this.playing && this.play());
     byId("scrub").addEventListener("input", () => {
       clearTimeout(this.timer);
-      // While the handle moves, the page asks for a few of the places only.
+      // While the handle moves, the page requests only some of the positions.
       this.timer = setTimeout(() => source.wish("seek", { value: Number(byId("scrub").value) }), 60);
       this.held = Date.now();
       this.write(Number(byId("scrub").value));

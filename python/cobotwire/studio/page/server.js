@@ -51,7 +51,7 @@ export class Server {
     if (!refused) setTimeout(() => this.connect(), AGAIN_MS);
   }
 
-  // Send a wish over the open connection: it overtakes whatever else is requested.
+  // Send a message over the open WebSocket: it overtakes requests over HTTP.
   wish(wish, values = {}) {
     if (this.socket.readyState !== WebSocket.OPEN) return false;
     this.socket.send(JSON.stringify({ wish, ...values }));

@@ -18,7 +18,8 @@ def configure(port: Any, baudrate: int) -> None:
     """Set up a port that is not open yet; frames are 8N1 without flow control."""
     port.baudrate = baudrate
     port.timeout = 0
-    # A 0x13 in the data would stop the line, and so would control lines that the board lacks.
+    # With flow control, a 0x13 in the data would stop the line, or control lines that the board
+    # lacks.
     port.xonxoff = False
     port.rtscts = False
     port.dsrdtr = False
@@ -62,7 +63,7 @@ def _explained(device: str, error: Exception, cause: BaseException) -> str:
     number = number or next((each for each in cause.args if isinstance(each, int)), None)
     # pyserial lists no ports on some systems.
     with suppress(ImportError, OSError):
-        # Imported here, since most ports open.
+        # Imported here, since opening seldom fails.
         from cobotwire.transport.serial import ports, remedies
 
         if device:

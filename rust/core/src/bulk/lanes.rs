@@ -1,6 +1,6 @@
 //! Finds the frames of a block in three places at once.
 //!
-//! A scan has no memory: the verdict on a position depends only on the bytes from there on. But the
+//! A scan has no state: the verdict on a position depends only on the bytes from there on. But the
 //! start of the next frame depends on this frame's LEN, and the processor waits for that. Therefore
 //! a block is scanned in lanes. All lanes but the first start at a guess: a position at which a
 //! frame seems to start. If a lane ends exactly where the next lane started, the guess was right,

@@ -34,7 +34,7 @@ const STRIDE: usize = 2 * BLOCK - GUESSING;
 #[derive(Clone, Copy, Debug)]
 pub struct Workers {
     count: usize,
-    /// The bytes between two cuts; `None`: as many as are fast, and no cuts in little input.
+    /// The bytes between two cuts; `None`: the default, and small input is not cut.
     stride: Option<usize>,
 }
 

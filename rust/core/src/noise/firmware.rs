@@ -25,7 +25,8 @@ pub(super) fn starts_message(data: &[u8]) -> bool {
 pub(super) fn line(cluster: &Cluster<'_>, at: usize, after_text: bool) -> Verdict {
     let rest = cluster.data.get(at..).unwrap_or_default();
     let readable = |byte: &&u8| readable(**byte);
-    // In random bytes the last of six is as telling as the first, and the first is known.
+    // Check the last byte first: the first one is known to be readable, so most random bytes fail
+    // at once.
     let enough = rest
         .get(..FEWEST)
         .is_some_and(|six| six.iter().rev().all(|byte| readable(&byte)));

@@ -1,8 +1,7 @@
 //! Diagnoses noise: finds the class of each byte that belongs to no frame.
 //!
 //! Python's `cobotwire.diagnose` defines the classes and describes them. This module finds the
-//! frequent ones, in noise that nothing can follow any more, at the speed of a capture. What it does
-//! not know, it leaves to Python.
+//! frequent ones, in noise that is complete, at the speed of a capture. Python finds the others.
 
 mod cluster;
 mod damaged;

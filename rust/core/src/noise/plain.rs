@@ -10,9 +10,9 @@ pub(super) const NULS: usize = 4096;
 const FEWEST_NULS: usize = 4;
 /// This many NULs in a row mean a reboot, which Python describes.
 const REBOOT_NULS: usize = 64;
-/// Fewer bytes prove no wrong baud rate.
+/// Fewer bytes do not prove a wrong baud rate.
 const FEWEST_GARBAGE: usize = 3;
-/// Fitting bytes from here on are not small numbers.
+/// Fitting bytes from this value on are not small numbers.
 const LARGE: u8 = 0x40;
 
 /// Recognise the run of NULs at `at`.
@@ -43,7 +43,7 @@ pub(super) fn classify(cluster: &Cluster<'_>, start: usize, end: usize) -> Kind 
         fitting += fits;
         large += if *byte >= LARGE { fits } else { 0 };
     }
-    // Three quarters of the bytes fit, and half of them are no small numbers.
+    // Three quarters of the bytes fit, and half are fitting bytes that are not small numbers.
     let stretched = 4 * fitting >= 3 * data.len() && 2 * large >= data.len();
     if data.len() >= FEWEST_GARBAGE && stretched {
         Kind::Garbage

@@ -6,7 +6,7 @@ use std::hash::Hash;
 /// This many texts are remembered, so that hostile input does not fill the memory.
 const MOST: usize = 1 << 14;
 
-/// Texts by what they depend on.
+/// Texts by the values that they depend on.
 pub(super) struct Memo<K>(HashMap<K, String>);
 
 impl<K> Default for Memo<K> {

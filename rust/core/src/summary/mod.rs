@@ -31,7 +31,7 @@ use clusters::{Clusters, Span};
 use lines::Writer;
 use report::Report;
 
-/// Receives what a summary does not only count, in the order of the stream.
+/// Receives everything that a summary reports besides counts, in the order of the stream.
 pub trait Sink {
     /// Receive the lines of `size` bytes of the stream, from `offset` on. They hold no noise that
     /// was handed over.
@@ -40,8 +40,8 @@ pub trait Sink {
     /// Receive noise to diagnose.
     fn noise(&mut self, offset: u64, data: &[u8], reason: Reason);
 
-    /// Diagnose the noise before; `closed`: no later noise belongs to it. `expected` changes as the
-    /// packets of the servo bus in it demand.
+    /// Diagnose the noise received so far; `closed`: no later noise belongs to it. Its packets of
+    /// the servo bus change `expected`.
     fn diagnose(&mut self, closed: bool, expected: &mut Expected);
 
     /// Return what is wrong with bytes that are not a legal message.

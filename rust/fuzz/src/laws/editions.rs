@@ -1,4 +1,4 @@
-//! The law of reading tables: any file gives a table that can be used, or a sentence.
+//! The law of reading tables: any file gives a table that can be used, or an error with a message.
 
 use std::sync::LazyLock;
 
@@ -11,7 +11,7 @@ static DOCUMENT: LazyLock<Value> = LazyLock::new(|| {
     serde_json::from_slice(file).expect("the generator writes JSON")
 });
 
-/// Read the bytes as a file, and then the file of an edition that they damage.
+/// Read the bytes as a file; then read the file of an edition with changes that the bytes choose.
 pub fn files_are_read_or_refused(data: &[u8]) {
     used(data);
     let mut rest = data.iter();

@@ -1,4 +1,4 @@
-"""The plans of all pages. A page that is not here has no command and no program that needs one."""
+"""The plans of all pages. Other pages have no command, and no program that needs a plan."""
 
 from __future__ import annotations
 

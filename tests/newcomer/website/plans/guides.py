@@ -143,6 +143,7 @@ SEARCHES = Plan(
             "make attack",
             "make attack ATTACK_SECONDS=600",
             "make attack CLIENT=rust",
+            "make attack CLIENT=node",
             'make attack ATTACK="--profile late --seed 7"',
             "make figures-page",
             "make bench",

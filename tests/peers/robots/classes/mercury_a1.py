@@ -57,7 +57,7 @@ _SEVEN = "the arm has six joints; the maker sends seven angles"
 
 
 def calls_of(joints: int) -> list[Call]:
-    """Return the calls of methods that none of our commands has the name of."""
+    """Return the calls of methods without a command of the same name."""
     zero, why = [0] * joints, "" if joints == len(_HOME) else _SEVEN
     return [
         *TOOLS,

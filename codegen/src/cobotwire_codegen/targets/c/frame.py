@@ -49,7 +49,7 @@ class CrcRegister:
 
     @property
     def bits(self) -> int:
-        """The width of the register: at least that of a byte."""
+        """The width of the register: at least a byte."""
         return max(self.crc.width, 8)
 
     @property

@@ -25,7 +25,7 @@ def member(name: str) -> str:
 
 
 def counter(name: str, taken: set[str]) -> str:
-    """Return the name of the member that counts the elements of a list, and take it."""
+    """Return the name of the member that counts the elements of a list, and add it to ``taken``."""
     found = f"{name}_count"
     while found in taken:
         found += "_"

@@ -92,7 +92,8 @@ class Declared:
     ) -> tuple[str, str, int]:
         """Return the type, the filter name and the mask under which a value is declared."""
         name = self._filter(command, field, item, kind)
-        # Without one mask for all, the dissector passes the number itself.
+        # If values have several masks, no mask is declared, and the dissector passes the number
+        # itself.
         masks = {mask for _, mask in self._kinds[name]} if len(self._kinds[name]) == 1 else {0}
         return reduce(_wider, sorted({each for each, _ in self._kinds[name]})), name, masks.pop()
 

@@ -13,8 +13,8 @@ from cobotwire_codegen.render.words import units
 class Leaf(NamedTuple):
     """One number, text or row of bytes.
 
-    ``kind`` is a name of Wireshark's ``ftypes``; ``mask`` is that of a part of a word, or 0.
-    ``reading`` says how the dissector reads it; omitted values are those of a plain number.
+    ``kind`` is a name of Wireshark's ``ftypes``; ``mask`` has the bits of a part of a word, or is
+    0. ``reading`` says how the dissector reads it; a plain number needs no further values.
     """
 
     item: str

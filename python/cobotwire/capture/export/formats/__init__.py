@@ -32,7 +32,7 @@ OpenSink = Callable[[BinaryIO, Any, ExportPlan], Sink]
 class Format(NamedTuple):
     """A format: its endings, the package that it needs, and whether each message has its file.
 
-    The first ending is that of files whose name the export chooses.
+    Files whose name the export chooses get the first ending.
     """
 
     name: FormatName

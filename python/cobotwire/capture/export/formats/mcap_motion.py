@@ -19,7 +19,7 @@ class Derived(NamedTuple):
 
 
 class Motion:
-    """Knows how an edition reports the angles of all joints, and the geometry of its arm."""
+    """Derives motion from an edition's reports of all joints, and from its arm's geometry."""
 
     def __init__(self, editions: Editions, edition: str) -> None:
         table = editions.codec(edition).table

@@ -12,7 +12,7 @@ Schema = dict[str, Any]
 
 
 def of_table(title: str, schema: Any) -> Schema:
-    """Return the schema of the messages of an Arrow schema: its fields, without our columns."""
+    """Return the schema of the messages of an Arrow schema: its fields, not our columns."""
     fields = {field.name: _of_field(field) for field in schema if field.name not in OWN}
     return {"title": title, "type": "object", "properties": fields}
 

@@ -9,7 +9,7 @@ import pyarrow.parquet as pq
 from cobotwire.capture.export.batch import Batch, joined
 from cobotwire.capture.export.plan import ExportPlan
 
-# Dictionaries of measured values are tried and given up again: only names get them.
+# Only names get dictionaries: for measured values, pyarrow would build them and discard them.
 NAMES = ["robot", "source"]
 
 

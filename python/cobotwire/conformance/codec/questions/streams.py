@@ -133,7 +133,7 @@ def _inside_each_other(
 def _whole_inside(
     codec: Codec, listening: Listening, variants: Sequence[CommandVariant]
 ) -> Iterator[Question]:
-    """Yield frames that contain a frame; only a wrong check of the outer one makes it found."""
+    """Yield frames that contain a frame, which is found only if the outer check is wrong."""
     table = codec.table
     short = min((ordinary_frame(table, variant) for variant in variants), key=len)
     # A framer does not look at values, so one frame of each size will do.

@@ -114,7 +114,7 @@ def _likely(mine: Command, other: Command, compared: list[Pair]) -> str:
         (mine, other, likely_mistake(compared)),
         (other, mine, likely_mistake([pair.turned for pair in compared])),
     ]
-    # What fits both says the least.
+    # These two guesses are the same whichever query is right, so they come last.
     guesses.sort(key=lambda guess: guess[2] in ("", ANOTHER_ORDER))
     right, wrong, mistake = guesses[0]
     return f"; if {right.name} is right, {wrong.name} has {mistake}" if mistake else ""

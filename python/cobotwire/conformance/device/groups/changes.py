@@ -11,7 +11,7 @@ from cobotwire.conformance.suite import Group, TestCase
 from cobotwire.protocol.messages import Request
 from cobotwire.protocol.table import Command
 
-# How often a command is sent before no second acknowledgement is awaited any more.
+# After sending a command this often, wait for no second acknowledgement any more.
 AWAITED = 4
 # What an acknowledgement reports: done.
 DONE = 1

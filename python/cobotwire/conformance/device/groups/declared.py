@@ -33,7 +33,7 @@ def _shows(table: Table, command: Command) -> bool:
 
 
 def _absent(probe: Probe) -> None:
-    """Send the command; of a setting, the value that it has."""
+    """Send the command; a setting with the value that it has already."""
     command, device = probe.command, probe.device
     shared = [
         other.name

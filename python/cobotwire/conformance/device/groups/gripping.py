@@ -30,7 +30,7 @@ SLOW = 20
 
 
 def _moving(table: Table, command: Command) -> Command | None:
-    """Return the query, other than that of the role, that reports whether the gripper moves."""
+    """Return the query without the role that also reports whether the gripper moves."""
     motion = does(Moves)(table, command)
     if motion is None or not is_replayed(table, command):
         return None

@@ -77,15 +77,15 @@ class _Parts:
 
     def expect_motion(self, moved: bool, detail: str = "") -> None:
         """Expect that anything has moved."""
-        reason = f"{self.probe.command.name}: the arm moved from none of {len(POSES)} poses"
+        reason = f"{self.probe.command.name}: the arm did not move from any of {len(POSES)} poses"
         self.probe.expect(ARRIVES, moved, reason + detail)
 
 
 def _nearby(probe: Probe, motion: Moves) -> None:
     """Move each part a short distance up and down.
 
-    An arm may reject targets that it cannot reach. If it moves in a direction from no pose, that
-    direction counts as out of reach. An arm that moves in no direction fails.
+    An arm may reject targets that it cannot reach. If it does not move in a direction from any
+    pose, that direction is out of reach. An arm that moves in no direction fails.
     """
     parts = _Parts(probe, motion)
     stays = [
@@ -139,7 +139,7 @@ def _jogs(probe: Probe, motion: Moves) -> None:
         one, other = (_jog(parts, part, at, way) for way in ways)
         went = went or bool(one or other)
         if one and other and at is not None and not motion.about:
-            # Of a joint, the edition does not state the direction.
+            # The edition does not state the direction of a joint.
             reason = (
                 f"{parts.call(part)}): expected the directions {ways[0]} and {ways[1]} to be "
                 f"opposite; it moved by {one[at]:.2f} and by {other[at]:.2f} degrees"

@@ -106,7 +106,7 @@ def _replays(probe: Probe) -> None:
 def _targets(
     mover: Mover, motion: Setting, query: Request[Any], first: Reply[Any], second: Reply[Any]
 ) -> list[Request[Any]]:
-    """Return the request for the first pose; or samples, if the second is read as the same."""
+    """Return the request for the first pose; samples, if the query reports the same at both."""
     target = motion.again(query, first, mover.speed)
     if target != motion.again(query, second, mover.speed):
         return [target]
@@ -178,7 +178,7 @@ def expect_rest(probe: Probe, query: Command | None) -> None:
 
 
 def under_way(probe: Probe, mover: Mover, target: Pose, case: TestCase) -> bool:
-    """Return whether the arm has not reached its target; give no verdict on a test case if so."""
+    """Return whether the arm is still on its way; if not, the test case has no verdict."""
     on_the_way = bool(off_by(mover.angles(), target, mover.tolerance))
     if not on_the_way:
         probe.not_timed(case, ARRIVED)

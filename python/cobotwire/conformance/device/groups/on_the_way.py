@@ -38,8 +38,8 @@ REPORTED = TestCase(
     timed=True,
 )
 
-# The fast speed is SHARE times the slow one; the slow motion must take at least LONGER times as
-# long, not SHARE times: on a short distance, an accelerating arm does not reach its full speed.
+# The fast speed is SHARE times the slow one. The slow motion must take at least LONGER times as
+# long; that is less than SHARE, because on a short distance an arm does not reach its full speed.
 SHARE, LONGER = 10, 1.25
 # The share of the distance between two poses that is timed, how long that may take, and how often
 # the arm's position is read, in seconds.

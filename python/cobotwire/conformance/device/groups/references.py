@@ -27,8 +27,7 @@ Vector = tuple[float, float, float]
 # How far the reference is set from zero, and by how much the shift may be wrong, in millimetres.
 SHIFT, NEAR = 40.0, 2.0
 AXES = "xyz"
-# The command that stores a reference, and the setting with whose second choice the coordinates show
-# it.
+# For each reference: the setting that makes the coordinates show it, if it has its second value.
 CHOSEN_BY = {"tool": "end_type", "world": "reference_frame"}
 
 

@@ -90,7 +90,8 @@ def _try(probe: Probe, spot: Spot, spots: list[Spot]) -> None:
         reason = f"{spot} reports failure, but {wanted} is read back"
         probe.expect(REPLIED, not failed, reason)
         for other in spots if index == 0 else ():
-            # A setting that cannot be restored was changed before and has lost its old value.
+            # A setting with an obstacle was changed earlier and not restored, so it no longer has
+            # its old value.
             if other.index != spot.index and not other.obstacle:
                 _expect(probe, NEIGHBOURS, other, other.old, f"after {spot}: ")
     if not spot.obstacle:
@@ -118,7 +119,7 @@ def _forbidden(probe: Probe) -> None:
     device = probe.device
     for setting in settings_of(device.table, probe.command):
         if setting.place:
-            # What holds for the first part holds for the others.
+            # The first part represents the others.
             continue
         spot = restorable_spot(device, setting, setting.queries[0])
         device.restore_after_body[probe.command.name] = partial(device.request, spot.old)
@@ -156,7 +157,7 @@ def _others_stay(probe: Probe) -> None:
     device = probe.device
     spots: dict[str, Spot] = {}
     for command in device.table.commands:
-        # Of two settings that the same query reads, one is enough.
+        # One of two settings that the same query reads is enough.
         settings = settings_of(device.table, command) if command.safety == "setting" else []
         for setting in settings[:1]:
             spot = read_spot(device, setting, setting.queries[0])
@@ -180,7 +181,7 @@ def _others_stay(probe: Probe) -> None:
         ]
         call = f"{second.command}({arguments_of(second)})"
         probe.expect(OTHERS, not changed, f"{call} also changes {'; '.join(changed)}")
-        # What has changed with it is set again.
+        # Set again everything that has changed.
         for each in spots.values() if changed else (spot,):
             device.request(each.others[0])
 

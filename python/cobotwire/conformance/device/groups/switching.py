@@ -57,7 +57,7 @@ POLL = 0.05
 
 
 def _switch_of(table: Table, command: Command) -> Fixed | None:
-    """Return the fixed effect of a command, if it can be reverted, and not for each part alone."""
+    """Return a command's fixed effect that can be reverted; None if it is of one part alone."""
     fixed, part = fixed_effect(table, command), _part_of(table, command)
     of_one = fixed and part and part.query.name == fixed.query.name
     return None if command.safety == "persistent write" or of_one else fixed
@@ -106,7 +106,7 @@ def _expect(
 
 
 def _expect_steady_replies(probe: Probe) -> None:
-    """Send each plain query twice: what was true with power shows in one reply."""
+    """Send each plain query twice: a stale value from before shows in only one of the replies."""
     device = probe.device
     device.rest(SETTLES)
     for query in device.table.commands:

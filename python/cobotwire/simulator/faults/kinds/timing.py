@@ -97,7 +97,7 @@ class Slow(Fault):
 @kind("merged")
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Merged(Fault):
-    """The reply is held back until the next one, and comes before it, in one piece with it.
+    """The reply is held back, and sent in one piece with the next one, which follows it.
 
     Attributes:
         at_most_seconds: after this time it is sent without another reply.

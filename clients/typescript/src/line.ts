@@ -1,0 +1,194 @@
+/** What the handles of a client share: a session, and the transport that it uses. */
+import { LinkError, failure } from "./errors.js";
+import type { Machine, Value } from "./machine.js";
+import { reason, within, type Transport } from "./transport.js";
+
+/** What a step of the session asks for: bytes to write, calls that have ended, when to go on. */
+type Step = [
+  bytes: Uint8Array | undefined,
+  ended: [call: number, good: boolean, answer: readonly Value[]][],
+  idle: number | undefined,
+  call: number | undefined,
+];
+interface Caller {
+  done(answer: readonly Value[]): void;
+  failed(error: unknown): void;
+}
+
+/** A line that takes no bytes for so long is stuck. */
+export const WRITE_SECONDS = 1;
+
+/** Return the time in nanoseconds. */
+export const now = (): number => Math.round(performance.now() * 1e6);
+
+/** Run a function when everything that has come by now was received. */
+const afterTurn: (run: () => void) => void =
+  typeof setImmediate === "function"
+    ? // The loop reads between two of its turns.
+      (run) => setImmediate(() => setImmediate(run))
+    : (run) => {
+        const { port1, port2 } = new MessageChannel();
+        port1.onmessage = run;
+        port2.postMessage(undefined);
+      };
+
+export class Line {
+  private readonly callers = new Map<number, Caller>();
+  private waiting: (() => void)[] = [];
+  private timer: ReturnType<typeof setTimeout> | undefined;
+  private wakesAt = Infinity;
+  private turning = false;
+  private writing = false;
+  private open = true;
+
+  constructor(
+    private readonly machine: Machine,
+    private readonly id: number,
+    private readonly transport: Transport,
+    private readonly writeSeconds: number,
+  ) {
+    transport.start(
+      (data) => this.advance("receive", data),
+      (detail) => this.lose(detail),
+    );
+  }
+
+  /** Ask the session something that is no step. */
+  ask<T = Value>(what: string, ...rest: Value[]): T {
+    return this.machine.ask<T>(what, this.id, ...rest);
+  }
+
+  /** Send a request; return its answer: the fields of the reply, and when they were exchanged. */
+  call(signal: AbortSignal | undefined, ...request: Value[]): Promise<readonly Value[]> {
+    return new Promise((done, failed) => {
+      signal?.throwIfAborted();
+      const step = this.step("call", ...request);
+      const call = step[3]!;
+      const giveUp = (): void => {
+        this.callers.delete(call);
+        failed(signal?.reason);
+        this.advance("give up", call);
+      };
+      signal?.addEventListener("abort", giveUp);
+      const ended = (): void => signal?.removeEventListener("abort", giveUp);
+      this.callers.set(call, {
+        done: (answer) => (ended(), done(answer)),
+        failed: (error) => (ended(), failed(error)),
+      });
+      this.take(step);
+    });
+  }
+
+  /** Wait until something was received, for some time at most; return false if the time is over. */
+  arrival(seconds: number, signal: AbortSignal | undefined): Promise<boolean> {
+    return new Promise((done, failed) => {
+      const end = (settle: () => void) => (): void => {
+        clearTimeout(timer);
+        signal?.removeEventListener("abort", abort);
+        settle();
+      };
+      const abort = end(() => failed(signal?.reason));
+      const longest = Math.min(seconds * 1000, 2 ** 31 - 1);
+      const timer = setTimeout(end(() => done(false)), longest);
+      signal?.addEventListener("abort", abort);
+      this.waiting.push(end(() => done(true)));
+    });
+  }
+
+  /** Send a stop to each device that was set in motion, as the policy says. */
+  async stop(): Promise<void> {
+    const bytes = this.open ? this.step<Uint8Array>("stops") : [];
+    if (bytes instanceof Uint8Array && bytes.length) {
+      await within(WRITE_SECONDS, this.transport.write(bytes)).catch(() => {});
+    }
+  }
+
+  /** End every call, send what was written, and close the transport. */
+  async close(): Promise<void> {
+    if (this.open) {
+      this.end("close");
+      await this.transport.close();
+    }
+  }
+
+  private lose(detail: string): void {
+    if (this.open) {
+      this.end("lose", detail);
+      this.transport.abort();
+    }
+  }
+
+  private end(what: string, ...rest: Value[]): void {
+    const step = this.step(what, ...rest);
+    this.open = false;
+    this.take(step);
+    clearTimeout(this.timer);
+  }
+
+  private step<T = Step>(what: string, ...rest: Value[]): T {
+    return this.ask<T>(what, now(), !this.writing, ...rest);
+  }
+
+  private advance(what: string, ...rest: Value[]): void {
+    if (this.open) this.take(this.step(what, ...rest));
+  }
+
+  private take([bytes, ended, idle]: Step, drained = false): void {
+    const written = bytes && this.write(bytes);
+    for (const [call, good, answer] of ended) {
+      const caller = this.callers.get(call);
+      this.callers.delete(call);
+      if (!good) caller?.failed(failure(answer));
+      // The call of a one-way request ends when the transport has taken its bytes.
+      else if (written && answer.length === 1) written.then(() => caller?.done(answer), caller?.failed);
+      else caller?.done(answer);
+    }
+    for (const wake of this.waiting.splice(0)) wake();
+    if (idle === 0 && !drained) this.turn();
+    else this.schedule(idle);
+  }
+
+  /** Write bytes; the promise is fulfilled when the transport has taken them; none: it has. */
+  private write(bytes: Uint8Array): Promise<void> | undefined {
+    const pending = this.transport.write(bytes);
+    if (!pending) return undefined;
+    this.writing = true;
+    const why = `the line took no bytes in ${this.writeSeconds.toFixed(3)} s`;
+    const timer = setTimeout(() => this.lose(`cannot be written: ${why}`), this.writeSeconds * 1000);
+    const written = pending.then(
+      () => {
+        this.writing = false;
+        this.advance("step");
+      },
+      (error: unknown) => {
+        const detail = `cannot be written: ${this.open ? reason(error) : why}`;
+        this.lose(detail);
+        throw new LinkError(`${this.transport.url}: ${detail}`);
+      },
+    );
+    written.finally(() => clearTimeout(timer)).catch(() => {}); // the session reports it, too
+    return written;
+  }
+
+  /** Go on when nothing that has come is unread, and the transport is free. */
+  private turn(): void {
+    if (this.turning || this.writing) return;
+    this.turning = true;
+    afterTurn(() => {
+      this.turning = false;
+      if (this.open) this.take(this.step("drained"), true);
+    });
+  }
+
+  private schedule(idle: number | undefined): void {
+    const at = idle === undefined ? Infinity : performance.now() + idle / 1e6;
+    // The timer that runs comes first; it sets the next one.
+    if (at >= this.wakesAt) return;
+    clearTimeout(this.timer);
+    this.wakesAt = at;
+    this.timer = setTimeout(() => {
+      this.wakesAt = Infinity;
+      this.advance("step");
+    }, at - performance.now());
+  }
+}

@@ -1,0 +1,109 @@
+/** Transports: streams of bytes to a device. */
+import { LinkError } from "./errors.js";
+
+/** An open stream of bytes to a device. */
+export interface Transport {
+  /** Its name in errors; late replies to an earlier client of that name are recognised. */
+  readonly url: string;
+  /** Begin to report what comes, and the reason if the stream ends. */
+  start(received: (data: Uint8Array) => void, ended: (detail: string) => void): void;
+  /** Write bytes; the promise is fulfilled when the system has taken all; none: it has already. */
+  write(data: Uint8Array): Promise<void> | undefined;
+  /** Send what was written, and close the stream. It takes a second at most. */
+  close(): Promise<void>;
+  /** Close the stream at once; nothing more is sent. */
+  abort(): void;
+}
+
+/** What a serial port of the browser (`navigator.serial`) has. */
+export interface WebSerialPort {
+  readonly readable: ReadableStream<Uint8Array> | null;
+  readonly writable: WritableStream<Uint8Array> | null;
+  open(options: { baudRate: number }): Promise<void>;
+  close(): Promise<void>;
+}
+
+/** Return the text of what was thrown. */
+export function reason(error: unknown): string {
+  return error instanceof Error ? error.message : String(error);
+}
+
+/** Wait for a promise, or for some time. */
+export async function within(seconds: number, promise: Promise<unknown> | undefined): Promise<void> {
+  let timer: ReturnType<typeof setTimeout> | undefined;
+  const over = new Promise((done) => (timer = setTimeout(done, seconds * 1000)));
+  try {
+    await Promise.race([promise, over]);
+  } finally {
+    clearTimeout(timer);
+  }
+}
+
+const names = new WeakMap<WebSerialPort, string>();
+let ports = 0;
+
+/** Return the name of a port of the browser. */
+export function nameOf(port: WebSerialPort): string {
+  const name = names.get(port) ?? `serial port ${++ports}`;
+  names.set(port, name);
+  return name;
+}
+
+/** Open a serial port that the browser gave the page. */
+export async function openWebSerial(
+  port: WebSerialPort,
+  url: string,
+  baudRate: number,
+): Promise<Transport> {
+  try {
+    await port.open({ baudRate });
+  } catch (error) {
+    throw new LinkError(`${url}: cannot be opened: ${reason(error)}`, 0);
+  }
+  return new WebSerial(url, port);
+}
+
+class WebSerial implements Transport {
+  private readonly reader: ReadableStreamDefaultReader<Uint8Array>;
+  private readonly writer: WritableStreamDefaultWriter<Uint8Array>;
+
+  constructor(
+    readonly url: string,
+    private readonly port: WebSerialPort,
+  ) {
+    this.reader = port.readable!.getReader();
+    this.writer = port.writable!.getWriter();
+  }
+
+  start(received: (data: Uint8Array) => void, ended: (detail: string) => void): void {
+    const read = async (): Promise<void> => {
+      for (;;) {
+        const { done, value } = await this.reader.read();
+        if (done) return ended("the peer has closed the connection");
+        received(value);
+      }
+    };
+    read().catch((error: unknown) => ended(`cannot be read: ${reason(error)}`));
+  }
+
+  async write(data: Uint8Array): Promise<void> {
+    await this.writer.write(data);
+  }
+
+  async close(): Promise<void> {
+    await within(1, this.writer.close());
+    this.abort();
+  }
+
+  abort(): void {
+    const nothing = (): void => {};
+    const ended = [this.reader.cancel(), this.writer.abort()].map((each) => each.catch(nothing));
+    Promise.all(ended)
+      .then(() => {
+        this.reader.releaseLock();
+        this.writer.releaseLock();
+        return this.port.close();
+      })
+      .catch(nothing);
+  }
+}

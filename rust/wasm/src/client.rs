@@ -1,0 +1,278 @@
+//! A client: its session, the calls that wait, and the queues of its events.
+
+use std::sync::{Arc, Mutex};
+use std::time::Duration;
+
+use cobotwire::machine::{CallId, Handle, Named, PersistedState, Prepared, Queue, Session};
+use cobotwire::{Error, Limits, OnDrop, Options, RetryPolicy, Value, typed};
+use cobotwire_core::exchange::{Answer, Safety};
+
+use crate::{described, number, whole, wrong};
+
+/// A call that waits.
+struct Caller {
+    call: CallId,
+    number: i64,
+    prepared: Prepared,
+}
+
+/// A session that JavaScript drives.
+pub struct Client {
+    pub url: String,
+    /// What the next client on its port must know, and why its calls fail; `None`: it is open.
+    pub ended: Option<(PersistedState, Error)>,
+    session: Session,
+    handle: Handle,
+    callers: Vec<Caller>,
+    queues: Vec<Arc<Mutex<Queue>>>,
+    calls: i64,
+}
+
+impl Client {
+    pub fn new(
+        edition: typed::Table,
+        url: &str,
+        given: &[Value],
+        left: &PersistedState,
+    ) -> Result<Self, Error> {
+        let options = options(given)?;
+        let handle = Handle::new(edition, &options)?;
+        Ok(Self {
+            url: url.to_owned(),
+            ended: None,
+            session: Session::new(&handle, url, options.on_drop, left),
+            handle,
+            callers: Vec::new(),
+            queues: Vec::new(),
+            calls: 0,
+        })
+    }
+
+    pub fn answer(&mut self, what: &str, given: &[Value]) -> Result<Value, Error> {
+        match (what, given) {
+            ("address", [Value::Text(address)]) => {
+                let address = self.handle.clone().at(address)?.settings.address;
+                Ok(Value::Integer(address.unwrap_or_default().into()))
+            }
+            ("subscribe", [Value::Text(command)]) => {
+                let command = self.handle.encoder.command(command)?;
+                self.queues.push(self.session.subscribe(command));
+                Ok(whole(self.queues.len() - 1))
+            }
+            ("event" | "lost", [index]) => {
+                let queue = number(index).and_then(|index| self.queues.get(index));
+                let mut queue = queue.ok_or_else(wrong)?.lock().map_err(|_| wrong())?;
+                Ok(match what {
+                    "event" => queue.events.pop_front().map_or(Value::Absent, flat),
+                    _ => Value::Integer(queue.lost as i64),
+                })
+            }
+            (_, [Value::Integer(now), Value::Flag(free), given @ ..]) => {
+                self.step(*now as u64, *free, what, given)
+            }
+            _ => Err(wrong()),
+        }
+    }
+
+    /// Take what happens at a time; return the bytes to write if the transport is free, the calls
+    /// that have ended, for how long nothing is to be done, and the number of a new call.
+    fn step(&mut self, now: u64, free: bool, what: &str, given: &[Value]) -> Result<Value, Error> {
+        let mut call = Value::Absent;
+        match (what, given) {
+            ("call", given) => call = self.call(given, now)?,
+            ("stops", []) => return Ok(Value::Bytes(self.session.stops(now))),
+            ("receive", [Value::Bytes(data)]) => self.session.receive(data, now),
+            ("give up", [Value::Integer(number)]) => {
+                let mut callers = self.callers.iter();
+                if let Some(at) = callers.position(|caller| caller.number == *number) {
+                    self.session.give_up(self.callers.swap_remove(at).call);
+                }
+            }
+            ("lose", [Value::Text(detail)]) => {
+                let state = self.session.persist(now);
+                self.ended = Some((state, self.session.lose(detail, now)));
+            }
+            ("close", []) => {
+                let state = self.session.close(now);
+                self.ended = self.session.fault().map(|fault| (state, fault.clone()));
+            }
+            ("step" | "drained", []) => self.session.receive(&[], now),
+            _ => return Err(wrong()),
+        }
+        let mut bytes = Value::Absent;
+        if free {
+            let outgoing = self.session.outgoing(now, what == "drained").to_vec();
+            // The transport takes them, or it is lost.
+            self.session.wrote(outgoing.len(), now);
+            bytes = Some(outgoing)
+                .filter(|outgoing| !outgoing.is_empty())
+                .map_or(bytes, Value::Bytes);
+        }
+        let ended = self.ended_calls();
+        let idle = self.session.idle(now);
+        let idle = idle.map_or(Value::Absent, |idle| Value::Integer(idle as i64));
+        Ok(Value::Row(vec![bytes, Value::Row(ended), idle, call]))
+    }
+
+    /// Submit a request; return its number, by which a step will report how it ended.
+    fn call(&mut self, given: &[Value], now: u64) -> Result<Value, Error> {
+        let [
+            Value::Text(command),
+            Value::Row(named),
+            address,
+            within,
+            sampled,
+        ] = given
+        else {
+            return Err(wrong());
+        };
+        let mut handle = self.handle.clone();
+        if let Some(address) = number(address) {
+            handle.settings.address = u8::try_from(address).ok();
+        }
+        handle.settings.ack_within = seconds("seconds", within)?.map(nanos);
+        let pairs = named.chunks_exact(2).filter_map(|pair| match pair {
+            [Value::Text(name), value] => Some((&**name, value.clone())),
+            _ => None,
+        });
+        let arguments: Vec<_> = pairs.collect();
+        let prepared = handle.prepare_named(command, &arguments)?;
+        if *sampled == Value::Flag(true) {
+            let commands = &handle.encoder.edition.commands;
+            let safety = commands
+                .get(prepared.request.command)
+                .map(|each| each.safety);
+            if !prepared.awaits_reply || safety != Some(Safety::Query) {
+                let message = format!("{command} is not a query; a stream can send only queries");
+                return Err(Error::UsageError { message });
+            }
+            handle.settings.retry.attempts = 1;
+        }
+        self.calls += 1;
+        self.callers.push(Caller {
+            call: self.session.submit(&prepared, &handle.settings, now, now),
+            number: self.calls,
+            prepared,
+        });
+        Ok(Value::Integer(self.calls))
+    }
+
+    /// Return the calls that have ended: their numbers, whether it is good, and the answer or error.
+    fn ended_calls(&mut self) -> Vec<Value> {
+        let mut ended = Vec::new();
+        for caller in std::mem::take(&mut self.callers) {
+            match self.session.take(caller.call) {
+                None => self.callers.push(caller),
+                Some(outcome) => {
+                    let good = Value::Flag(outcome.is_ok());
+                    let answer = outcome.map(|answer| self.answered(&caller, answer));
+                    let answer = answer.unwrap_or_else(|error| described(&error));
+                    ended.push(Value::Row(vec![
+                        Value::Integer(caller.number),
+                        good,
+                        answer,
+                    ]));
+                }
+            }
+        }
+        ended
+    }
+
+    /// Return the fields of a reply, and when they were exchanged.
+    fn answered(&self, caller: &Caller, answer: Option<Answer>) -> Value {
+        let times = answer
+            .as_ref()
+            .map(|each| [each.requested_at, each.replied_at]);
+        let fields = self.handle.encoder.fields(&caller.prepared, answer);
+        let mut row = vec![flat(fields)];
+        row.extend(
+            times
+                .into_iter()
+                .flatten()
+                .map(|time| Value::Integer(time as i64)),
+        );
+        Value::Row(row)
+    }
+}
+
+/// Return names and values in turn.
+pub fn flat(fields: Named) -> Value {
+    let each = fields.into_iter();
+    Value::Row(
+        each.flat_map(|(name, value)| [Value::Text(name), value])
+            .collect(),
+    )
+}
+
+fn options(given: &[Value]) -> Result<Options, Error> {
+    let [
+        timeout,
+        deadline,
+        attempts,
+        shortest,
+        grace,
+        address,
+        speed,
+        workspace,
+        leaves,
+    ] = given
+    else {
+        return Err(wrong());
+    };
+    let usual = RetryPolicy::default();
+    let range = |value: Option<&Value>| match value {
+        Some(Value::Row(ends)) => Some((real(ends.first()?)?, real(ends.get(1)?)?)),
+        _ => None,
+    };
+    Ok(Options {
+        timeout: seconds("timeout", timeout)?,
+        deadline: seconds("deadline", deadline)?,
+        retry: RetryPolicy {
+            attempts: real(attempts).map_or(usual.attempts, |attempts| attempts as u8),
+            shortest_attempt: seconds("retry.shortestAttempt", shortest)?
+                .map_or(usual.shortest_attempt, nanos),
+            grace: seconds("retry.grace", grace)?.map_or(usual.grace, nanos),
+        },
+        address: match address {
+            Value::Text(address) => Some(address.clone()),
+            _ => None,
+        },
+        limits: Limits {
+            speed: real(speed),
+            workspace: match workspace {
+                Value::Row(all) => Some([0, 1, 2].map(|axis| range(all.get(axis)))),
+                _ => None,
+            },
+        },
+        on_drop: match leaves {
+            Value::Flag(true) => OnDrop::Leave,
+            _ => OnDrop::Stop,
+        },
+        ..Options::default()
+    })
+}
+
+/// Return an argument in seconds as a duration.
+fn seconds(argument: &str, value: &Value) -> Result<Option<Duration>, Error> {
+    let time = real(value).map(|given| {
+        Duration::try_from_secs_f64(given).map_err(|_| {
+            let shown = cobotwire_table::Shown::Real(given);
+            let allowed = "seconds above 0 and below 3600";
+            let message = cobotwire_table::bad_argument(argument, &shown, allowed);
+            Error::UsageError { message }
+        })
+    });
+    time.transpose()
+}
+
+fn nanos(time: Duration) -> u64 {
+    u64::try_from(time.as_nanos()).unwrap_or(u64::MAX / 2)
+}
+
+fn real(value: &Value) -> Option<f64> {
+    match value {
+        Value::Integer(whole) => Some(*whole as f64),
+        Value::Real(real) => Some(*real),
+        _ => None,
+    }
+}

@@ -1,0 +1,193 @@
+"""The npm package in Node, against simulated arms over TCP."""
+
+from __future__ import annotations
+
+import json
+import re
+import socket
+import subprocess
+import threading
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import npm_package
+from cobotwire import MyCobot280, UsageError
+from cobotwire.editions import mycobot280, pro630
+from cobotwire.protocol.table import Table
+from cobotwire.simulator import SimulatedArm, TcpServer
+from targets.typescript.comparison import package
+
+HERE = Path(__file__).parent
+pytestmark = pytest.mark.skipif(bool(npm_package.missing()), reason=npm_package.missing())
+ANGLES = bytes.fromhex("FEFE0220FA")
+
+
+def talk(name: str, url: str) -> list[Any]:
+    """Run a conversation, and return what it printed."""
+    package()
+    words = ("node", HERE / "conversations.mjs", name, url)
+    done = subprocess.run(words, capture_output=True, text=True, timeout=60, check=False)
+    assert done.returncode == 0, done.stderr
+    return [json.loads(line) for line in done.stdout.splitlines()]
+
+
+def talk_with_arm(name: str, table: Table = mycobot280.TABLE) -> tuple[list[Any], SimulatedArm]:
+    """Run a conversation with a simulated arm; return what it printed, and the arm."""
+    arm = SimulatedArm(table)
+    with TcpServer(arm.connect) as server:
+        return talk(name, server.url), arm
+
+
+@contextmanager
+def peer(serve: Callable[[socket.socket], object]) -> Iterator[str]:
+    """Serve one connection after another with a function, in a thread."""
+    with socket.create_server(("127.0.0.1", 0)) as listener:
+
+        def accept() -> None:
+            while True:
+                try:
+                    connection, _ = listener.accept()
+                except OSError:
+                    return
+                with connection:
+                    serve(connection)
+
+        thread = threading.Thread(target=accept)
+        thread.start()
+        yield f"socket://127.0.0.1:{listener.getsockname()[1]}"
+        listener.shutdown(socket.SHUT_RDWR)
+    thread.join()
+
+
+def read_all(connection: socket.socket) -> bytes:
+    """Return what a client sends until it ends."""
+    return b"".join(iter(lambda: connection.recv(4096), b""))
+
+
+def test_methods_return_values_with_their_types() -> None:
+    [[powered, angles, names, size, fields]], _ = talk_with_arm("results")
+    assert powered is True
+    assert angles == [0.0] * 6
+    assert (names, size) == (["angles", "coords"], 6)
+    assert fields == {"encoder": 2048}
+
+
+def test_mistakes_have_the_texts_of_python() -> None:
+    [found], _ = talk_with_arm("mistakes")
+    with TcpServer(SimulatedArm(mycobot280.TABLE).connect) as server, MyCobot280(server.url) as arm:
+        texts = []
+        for arguments in (([0, 200, 0, 0, 0, 0], 30), ([0] * 5, 30)):
+            with pytest.raises(UsageError) as caught:
+                arm.send_angles(*arguments)
+            texts.append(str(caught.value))
+    assert [text for _, text in found[:2]] == texts
+    assert {name for name, _ in found} == {"UsageError", "LinkError"}
+    expected = [
+        "missing its argument speed",
+        "speed is 60; allowed: a whole number 1..50 percent",
+        "2.5",
+        "takes 0 arguments, not 1",
+        "timeout is -1.0; allowed: seconds above 0 and below 3600",
+        "socket://127.0.0.1:1: cannot be opened: connect ECONNREFUSED",
+        "/dev/nowhere is a serial port, which needs: npm install serialport",
+        "send_angle is not a query; a stream can send only queries",
+    ]
+    for text, (_, shown) in zip(expected, found[2:], strict=True):
+        assert text in shown
+
+
+def test_silence_ends_calls_with_timeout_and_close_with_link_error() -> None:
+    with peer(read_all) as url:
+        [[error, is_timeout, attempts, waited], [waiting, after, again]] = talk("silence", url)
+    assert error[0] == "ReplyTimeout"
+    assert error[1].startswith("no reply to get_angles() within 0.2")
+    assert (is_timeout, attempts, waited, again) == (True, 2, True, None)
+    assert waiting == after == ["LinkError", f"{url}: is closed"]
+
+
+def test_aborted_call_ends_with_reason_of_signal() -> None:
+    with peer(read_all) as url:
+        assert talk("aborted", url) == [True, True]
+
+
+def test_calls_that_run_at_once_get_their_own_replies() -> None:
+    def serve(connection: socket.socket) -> None:
+        while request := connection.recv(6):
+            joint = request[4]
+            connection.sendall(bytes([0xFE, 0xFE, 4, 0x3B, 0, joint, 0xFA]))
+
+    with peer(serve) as url:
+        assert talk("shared", url) == [[1, 2, 3, 4, 5, 6] * 2]
+
+
+def test_stream_yields_samples_with_times() -> None:
+    assert talk_with_arm("stream")[0] == [[10, True]]
+
+
+def test_event_comes_without_a_request() -> None:
+    [[event, lost]], _ = talk_with_arm("events", pro630.TABLE)
+    assert set(event) >= {"status"}
+    assert lost == 0
+
+
+def test_close_sends_the_last_request_whole() -> None:
+    received: list[bytes] = []
+    with peer(lambda connection: received.append(read_all(connection))) as url:
+        assert talk("last", url) == []
+    assert received == [bytes.fromhex("FEFE056A010203FA")]
+
+
+def test_failed_run_stops_the_arm_unless_it_is_left() -> None:
+    received: list[bytes] = []
+    with peer(lambda connection: received.append(read_all(connection))) as url:
+        assert talk("stopped", url) == [[["Error", "mine"]] * 2]
+    stop = bytes.fromhex("FEFE0229FA")
+    assert [data.count(stop) for data in received] == [1, 0]
+
+
+def test_lost_connection_ends_calls_with_link_error() -> None:
+    with peer(lambda connection: connection.recv(100)) as url:
+        [found] = talk("lost", url)
+    assert found == [["LinkError", f"{url}: the peer has closed the connection"]] * 2
+
+
+def test_reply_to_earlier_client_is_not_taken_for_that_of_the_next() -> None:
+    answered = threading.Event()
+
+    def serve(connection: socket.socket) -> None:
+        if not answered.is_set():
+            read_all(connection)
+            answered.set()
+            return
+        connection.sendall(bytes.fromhex("FEFE043B0001FA"))  # the late one
+        while connection.recv(6):
+            connection.sendall(bytes.fromhex("FEFE043B0002FA"))
+
+    with peer(serve) as url:
+        assert talk("late", url) == ["ReplyTimeout", 2]
+
+
+def test_page_shows_first_program() -> None:
+    program = (npm_package.PACKAGE / "examples/first.mjs").read_text()
+    assert len(program.splitlines()) == 8
+    page = (npm_package.ROOT / "docs/typescript.md").read_text()
+    assert f"<!-- file: first.mjs -->\n```js\n{program}```" in page
+
+
+def test_first_program_moves_simulated_arm() -> None:
+    package()
+    program = npm_package.PACKAGE / "examples/first.mjs"
+    with TcpServer(SimulatedArm(mycobot280.TABLE).connect) as server:
+        words = ("node", program, server.url)
+        done = subprocess.run(words, capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert re.fullmatch(r"-?[\d.]+ \[( -?[\d.]+,?){5} \]\n", done.stdout.replace("\n ", ""))
+
+
+def test_page_loads_few_bytes() -> None:
+    package()
+    assert npm_package.loaded() <= npm_package.LARGEST

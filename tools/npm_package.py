@@ -1,0 +1,143 @@
+"""Build the npm package, and use it in a clean folder as a stranger would.
+
+    python tools/npm_package.py            # build, pack, install, run programs; print the sizes
+    python tools/npm_package.py --build    # only build it, in clients/typescript
+
+The program of the docs runs against ``cobotwire sim``, also as TypeScript, and so does a module of
+an own protocol with hostile texts. It prints what failed, and ends with 1 then.
+"""
+
+# ruff: noqa: S603  (node, npm, cargo and our own programs are started)
+
+from __future__ import annotations
+
+import fcntl
+import gzip
+import os
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+from cobotwire_codegen.emit import write
+from cobotwire_codegen.model import Edition
+from cobotwire_codegen.project import TYPESCRIPT_EDITIONS, editions, products
+from rust_package import HOSTILE
+
+ROOT = Path(__file__).parent.parent
+PACKAGE = ROOT / "clients/typescript"
+TARGET = "wasm32-unknown-unknown"
+# What a page loads, compressed.
+LARGEST = 220_000
+WASM = "dist/cobotwire.wasm"
+
+
+def run(folder: Path, *words: str) -> str:
+    """Run a command and return its output; it must not fail."""
+    done = subprocess.run(words, cwd=folder, capture_output=True, text=True, check=False)
+    if done.returncode:
+        sys.exit(f"{' '.join(words)} failed:\n{done.stdout}{done.stderr}")
+    return done.stdout
+
+
+def missing() -> str:
+    """Return what is not installed to build the package, and how to install it; empty: nothing."""
+    for tool in ("node", "npm", "cargo"):
+        if not shutil.which(tool):
+            return f"needs {tool}: not installed"
+    words = ("rustc", "--print", "target-libdir", "--target", TARGET)
+    if not Path(run(ROOT, *words).strip()).exists():
+        return f"needs {TARGET}: rustup target add {TARGET}"
+    return ""
+
+
+def build(found: list[Edition] | None = None) -> Path:
+    """Write what the package contains: editions, compiled sources, the session in WebAssembly.
+
+    Return its folder. ``found`` are the checked editions; to load them takes seconds.
+    """
+    with (PACKAGE / "package.json").open() as lock:
+        # Tests of several processes build it.
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        for made in products(ROOT, found or editions(ROOT), [TYPESCRIPT_EDITIONS]):
+            write(made)
+        if not (PACKAGE / "node_modules/.bin/tsc").exists():
+            run(PACKAGE, "npm", "ci", "--no-audit", "--no-fund")
+        index = PACKAGE / "dist/index.js"
+        changed = max(path.stat().st_mtime for path in (PACKAGE / "src").iterdir())
+        if not index.exists() or index.stat().st_mtime < changed:
+            run(PACKAGE, "npm", "run", "--silent", "build")
+        words = ("--quiet", "--profile", "wasm", "--target", TARGET)
+        run(ROOT, "cargo", "build", "--package", "cobotwire-wasm", *words)
+        target = ROOT / os.environ.get("CARGO_TARGET_DIR", "target")
+        shutil.copy(target / TARGET / "wasm/cobotwire_wasm.wasm", PACKAGE / WASM)
+    return PACKAGE
+
+
+def loaded() -> int:
+    """Return how many bytes a page loads for one edition, compressed."""
+    files = [PACKAGE / "editions/mycobot280.js", *(PACKAGE / "dist").glob("*.js")]
+    files = [path for path in files if path.name != "node.js"]
+    return sum(len(gzip.compress(path.read_bytes(), 9)) for path in (*files, PACKAGE / WASM))
+
+
+def new_folder(folder: Path) -> None:
+    """Pack the package, and install it in a folder as npm does."""
+    run(PACKAGE, "npm", "pack", "--silent", "--pack-destination", str(folder))
+    [archive] = folder.glob("cobotwire-*.tgz")
+    (folder / "package.json").write_text('{"type": "module"}')
+    run(folder, "npm", "install", "--no-audit", "--no-fund", "--offline", archive.name)
+
+
+def first_program(folder: Path) -> str:
+    """Run the program of the docs against a simulated arm, and return what it prints."""
+    page = (ROOT / "docs/typescript.md").read_text()
+    block = re.search(r"<!-- file: first.mjs -->\n```js\n(.*?)```", page, re.S)
+    assert block is not None, "the page has the program"
+    (folder / "first.mjs").write_text(block[1])
+    words = ("cobotwire", "sim", "--tcp", "127.0.0.1:0", "--quiet")
+    with subprocess.Popen(words, stdout=subprocess.PIPE, text=True) as arm:
+        assert arm.stdout is not None
+        url = arm.stdout.readline().split()[0]
+        shown = run(folder, "node", "first.mjs", url)
+        arm.terminate()
+    return shown
+
+
+def own_protocol(folder: Path) -> str:
+    """Check and load the module of an own protocol whose texts try to leave their comments."""
+    lamp = (ROOT / "tests/codegen/lamp.yaml").read_text()
+    # Docs in braces end at a brace, so the others are enough.
+    doc = re.compile(r"^( *doc: )[^{}\n]*$", re.M)
+    (folder / "lamp.yaml").write_text(doc.sub(lambda found: f"{found[1]}'{HOSTILE}'", lamp))
+    words = ("build", "lamp.yaml", "--out", "lamp", "--typescript", "own")
+    run(folder, "cobotwire-gen", *words)
+    (folder / "own.mts").write_text(
+        'import { Lamp } from "./own/lamp.js";\n'
+        'Lamp.open("socket://127.0.0.1:1").catch((error: Error) => console.log(error.name));\n'
+    )
+    options = ("--module", "nodenext", "--target", "es2022", "--strict", "own.mts")
+    run(folder, str(PACKAGE / "node_modules/.bin/tsc"), *options)
+    return run(folder, "node", "own.mjs")
+
+
+def main() -> None:
+    """Build the package, and use it."""
+    build()
+    if "--build" in sys.argv:
+        return
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        new_folder(folder)
+        print(f"the first program prints {first_program(folder).strip()}")
+        shown = own_protocol(folder)
+        assert shown == "LinkError\n", shown
+    size = loaded()
+    print(f"a page loads {size} bytes for one edition, compressed; at most {LARGEST}")
+    assert size <= LARGEST
+
+
+if __name__ == "__main__":
+    main()
