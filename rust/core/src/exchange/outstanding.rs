@@ -17,7 +17,7 @@ pub(super) struct OutstandingReply {
     pub(super) until: Nanos,
 }
 
-/// Those of one transport, oldest first; some may have expired.
+/// The outstanding replies of one transport, oldest first; some may have expired.
 #[derive(Clone, Debug, Default)]
 pub(super) struct OutstandingReplies(pub(super) Vec<OutstandingReply>);
 
