@@ -32,7 +32,7 @@ pub struct Queue {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct CallId(u64);
 
-/// With what each request of a handle is sent.
+/// The options with which a handle sends each request.
 #[derive(Clone, Debug)]
 pub struct Settings {
     pub address: Option<u8>,
