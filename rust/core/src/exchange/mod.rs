@@ -571,7 +571,7 @@ impl Exchange {
         }
     }
 
-    /// End the request that waits with its reply, of which other copies may come.
+    /// End the request that waits with its reply. Further copies of the reply may come.
     fn end(&mut self, reply: Decoded, frame: Option<SeenFrame>, now: Nanos) -> Event {
         if let Some(waiting) = waiting(&mut self.last) {
             if waiting.request.replier == Replier::Anybody {
