@@ -157,7 +157,7 @@ def pymycobot_peer() -> tuple[SimpleNamespace, SimpleNamespace]:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # its import uses features that Python 3.11 deprecates
         from pymycobot import CommandGenerator, MyCobot280, common
-    # Like its constructor, without the port and without 1.5 s of sleep.
+    # This does what its constructor does, but opens no port and does not sleep for 1.5 s.
     peer = object.__new__(MyCobot280)
     CommandGenerator.__init__(peer)
     return common, peer

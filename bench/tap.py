@@ -1,10 +1,11 @@
 """Measure the time that ``cobotwire tap`` adds to a round trip, beside watchers that are busy.
 
-Two processes reply at once, each on a pty of its own; a tap is before the second one. It records,
-prints, and a monitor watches it. Round trips of both alternate, at most 1,000 a second, so that
-other load of the machine affects both. Then the same while the tap's watching process is stopped.
-Exits with 1 if the tap adds more than the limit at 99 %. Where other programs keep the processors
-busy, ``chrt -r 10`` keeps them out of the figures.
+Two processes reply at once, each on a pty of its own. The first is opened directly, the second
+through a tap, which records and prints, and which a monitor watches. Round trips to both alternate,
+at most 1,000 a second, so that other load of the machine affects both. The measurement is repeated
+while the tap's watching process is stopped. The bench exits with 1 if the tap adds more than the
+limit at 99 %. If other programs keep the processors busy, run the bench with ``chrt -r 10``: then
+they do not change the figures.
 """
 
 from __future__ import annotations
@@ -79,7 +80,7 @@ def _tapped(arm: str) -> Iterator[tuple[str, int]]:
         lines = subprocess.Popen([*PROGRAM[:2], copying], stdin=tap.stdout, stdout=output)
         with subprocess.Popen(monitor, stdout=output) as watcher:
             try:
-                # Until the monitor prints, it is being imported.
+                # The monitor prints only after Python has imported it.
                 while not output.tell() and not os.fstat(output.fileno()).st_size:
                     time.sleep(0.1)
                 children = Path(f"/proc/{tap.pid}/task/{tap.pid}/children").read_text()

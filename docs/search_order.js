@@ -2,7 +2,7 @@
 "use strict";
 
 const Order = {
-  // Where readers look first, and what few of them want.
+  // Folders that readers want first have positive numbers; folders that few want have negative ones.
   folders: [
     [/^reference\/test-suite\//, -200],
     [/^reference\/(language|pymycobot)$/, -15],

@@ -15,7 +15,7 @@ Record = dict[str, Any]
 # The features of drawn protocols. Tests of an output target draw those that it can express.
 FEATURES = frozenset({"float", "bits", "bytes", "text", "list", "event", "ack"})
 PLAIN: frozenset[str] = frozenset()
-# Scales with finite decimals as multiples, so that a vector can state them exactly.
+# Each multiple of these scales is a finite decimal, so a vector can state it exactly.
 SCALES = ["1", "1/10", "1/100", "1/1000", "1/8", "3/20", "5", "1/2"]
 # The types of fields with a fixed size, and with a varying size.
 FIXED = {"bits": ["word"], "bytes": ["octets"], "text": ["name"], "list": ["numbers", "pairs"]}
@@ -97,7 +97,7 @@ def _value(name: str, items: dict[str, str]) -> Record:
 
 @st.composite
 def _shapes(draw: st.DrawFn) -> Record:
-    """Draw bits, bytes, texts and lists; those of messages have at most 32 bytes."""
+    """Draw bits, bytes, texts and lists; those in messages have at most 32 bytes."""
     encodings = st.sampled_from(["ascii", "utf-8", "latin-1"])
     name = {"size": draw(st.integers(2, 9)), "encoding": draw(encodings), "doc": "A text."}
     if draw(st.booleans()):

@@ -173,6 +173,6 @@ def test_every_template_is_used_and_every_named_kind_has_one() -> None:
     assert [k for k in stored if f'"{k}"' not in source and not k.endswith(made)] == []
 
 
-def test_value_that_looks_like_a_place_stays_as_it_is() -> None:
+def test_value_that_looks_like_a_placeholder_is_not_replaced() -> None:
     error = UsageError("joint", "{allowed} {argument.__class__}", "{value}")
     assert str(error) == "joint is '{allowed} {argument.__class__}'; allowed: {value}"

@@ -35,7 +35,7 @@ def test_motion_waits_and_prints_where_the_arm_is(server: PtyServer) -> None:
     assert 0 < homed["seconds"] < 9
 
 
-def test_motion_that_was_not_sent_leaves_an_earlier_one_as_it_is(
+def test_no_stop_is_sent_if_the_motion_was_not_sent(
     server: PtyServer, simulated: SimulatedArm
 ) -> None:
     simulated.state.paused = True

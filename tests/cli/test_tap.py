@@ -121,7 +121,7 @@ def test_monitor_and_studio_watch_a_tap_and_send_nothing(served: PtyServer, tmp_
                     time.sleep(0.02)
                 kinds = {(e.direction, e.data[3]) for e in session.entries()}
                 assert kinds == {("sent", 0x20), ("received", 0x20)}
-                with pytest.raises(Exception, match="what is recorded is only shown"):
+                with pytest.raises(Exception, match="this page only shows a recording"):
                     stage._line()
                 assert session.state()["port"] == {"url": served.url, "problem": ""}
                 tap.terminate()

@@ -107,7 +107,7 @@ def run_tasks(url: str, **options: Any) -> list[Call]:
         (run_tasks, "tcp", "native", (LATE,)),
     ],
 )
-def test_no_call_takes_longer_than_the_deadline_and_errors_say_truly_what_was_sent(
+def test_calls_end_by_the_deadline_and_errors_report_correctly_what_was_sent(
     run: Callable[..., list[Call]], kind: str, codec: str, faults: tuple[Fault, ...]
 ) -> None:
     with faulty_arm(*faults, kind=kind) as (url, received):
@@ -187,7 +187,7 @@ def test_full_line_delays_no_call_and_gets_only_the_stop_of_a_failed_block_later
     assert received == [MOTION * sent + STOP]
 
 
-def test_request_of_which_the_line_takes_a_part_ends_in_time(open_arm: Opener) -> None:
+def test_partly_written_request_ends_by_the_deadline(open_arm: Opener) -> None:
     end = ends.PtyEnd()
     with open_arm(end.url, deadline=0.2) as arm:
         end.fill(10, lambda data: None)

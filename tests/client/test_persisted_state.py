@@ -247,7 +247,7 @@ def test_note_of_a_session_that_lost_its_port_is_read(memory: PortMemory, folder
 
 
 @pytest.mark.parametrize("kind", ["fifo", "link", "folder", "socket", "of another user"])
-def test_what_is_in_the_place_of_a_note_is_not_read(
+def test_file_of_another_kind_at_the_path_of_a_note_is_not_read(
     memory: PortMemory,
     folder: Path,
     caplog: pytest.LogCaptureFixture,

@@ -100,7 +100,7 @@ def test_mistakes_have_the_texts_of_python() -> None:
         assert text in shown
 
 
-def test_silence_ends_calls_with_timeout_and_close_with_link_error() -> None:
+def test_call_without_reply_times_out_and_close_ends_waiting_call() -> None:
     with peer(read_all) as url:
         [[error, is_timeout, attempts, waited], [waiting, after, again]] = talk("silence", url)
     assert error[0] == "ReplyTimeout"
@@ -141,7 +141,7 @@ def test_close_sends_the_last_request_whole() -> None:
     assert received == [bytes.fromhex("FEFE056A010203FA")]
 
 
-def test_failed_run_stops_the_arm_unless_it_is_left() -> None:
+def test_failed_run_stops_the_arm_unless_on_error_is_leave() -> None:
     received: list[bytes] = []
     with peer(lambda connection: received.append(read_all(connection))) as url:
         assert talk("stopped", url) == [[["Error", "mine"]] * 2]
@@ -155,7 +155,7 @@ def test_lost_connection_ends_calls_with_link_error() -> None:
     assert found == [["LinkError", f"{url}: the peer has closed the connection"]] * 2
 
 
-def test_reply_to_earlier_client_is_not_taken_for_that_of_the_next() -> None:
+def test_late_reply_to_earlier_client_is_not_paired_with_request_of_next() -> None:
     answered = threading.Event()
 
     def serve(connection: socket.socket) -> None:

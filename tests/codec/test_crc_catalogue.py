@@ -37,7 +37,7 @@ def checked(check: Check, name: codecs.CodecName) -> bytes:
 
 
 @pytest.mark.parametrize("codec", NAMES)
-def test_crc_of_the_digits_is_that_of_the_catalogue(codec: codecs.CodecName) -> None:
+def test_crc_of_the_digits_equals_the_value_in_the_catalogue(codec: codecs.CodecName) -> None:
     for name, (*_, value) in CRCS.items():
         crc = Crc(*CRCS[name][:-1])
         check = Check("crc", "data", -(-crc.width // 8), "big", crc)

@@ -77,7 +77,7 @@ def test_every_byte_is_in_exactly_one_event_for_any_chunking(
 
 @EACH_CODEC
 @given(st.sampled_from(KNOWN), LISTENING, st.data())
-def test_undamaged_frame_is_found_unless_a_legal_one_covers_it_and_no_other_frame_is(
+def test_only_legal_frames_are_found_and_an_undamaged_one_is_found_unless_covered(
     name: codecs.CodecName, table: Table, listening: Listening, data: st.DataObject
 ) -> None:
     line = data.draw(strategies.received(table, listening))

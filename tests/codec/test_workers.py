@@ -59,7 +59,7 @@ def test_large_stream_has_the_same_columns_with_several_threads(
 
 @settings(max_examples=20)
 @given(listening=LISTENING, workers=st.integers(1, 5), stream=strategies.streams())
-def test_small_stream_is_that_of_the_reference(
+def test_native_columns_of_a_small_stream_equal_the_reference(
     listening: Listening, workers: int, stream: bytes
 ) -> None:
     native, reference = (codec_of("mycobot280", name) for name in ("native", "reference"))

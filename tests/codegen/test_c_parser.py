@@ -1,4 +1,4 @@
-"""Where the C parser gives a result, it is that of the parser in Python."""
+"""If the C parser gives a result, the parser in Python gives the same."""
 
 from __future__ import annotations
 

@@ -43,7 +43,7 @@ def test_path_of_the_machine_is_not_shown(text: str, shown: str) -> None:
 
 
 @given(st.text(), st.text(alphabet="ab/\\:. ~'C"))
-def test_any_text_can_be_cleaned_and_stays_so(text: str, paths: str) -> None:
+def test_removing_paths_twice_equals_removing_them_once(text: str, paths: str) -> None:
     for each in (text, paths):
         assert without_paths(without_paths(each)) == without_paths(each)
 

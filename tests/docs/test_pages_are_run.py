@@ -16,7 +16,7 @@ def test_every_command_has_a_plan_or_a_reason(page: str) -> None:
     assert unplanned((ROOT / page).read_text(encoding="utf-8"), PLANS.get(page, Plan())) == []
 
 
-def test_every_plan_is_that_of_a_page() -> None:
+def test_every_plan_names_an_existing_page() -> None:
     assert set(PLANS) <= set(pages())
     assert len(pages()) > 40
 

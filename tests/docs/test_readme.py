@@ -28,7 +28,7 @@ def test_readme_fits_on_two_screens() -> None:
     assert len(README.splitlines()) <= 110
 
 
-def test_comparison_is_that_of_the_measured_pages() -> None:
+def test_comparison_repeats_the_figures_of_the_measured_pages() -> None:
     page = figures.PAGE.read_text(encoding="utf-8")
     assert figures.block(page, "compared") == figures.compared()
     assert figures.block(README, "compared") == figures.compared(in_readme=True)

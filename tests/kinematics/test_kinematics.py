@@ -81,7 +81,7 @@ def test_tick_is_read_back_unchanged(angles: tuple[float, ...], tick: int) -> No
 
 
 @given(angles_on_wire, st.lists(st.floats(-300, 300), min_size=3, max_size=3))
-def test_pose_survives_its_coordinates_and_its_inverse(
+def test_pose_equals_pose_of_its_coordinates_and_inverse_undoes_it(
     rotation: tuple[float, ...], origin: list[float]
 ) -> None:
     pose = Pose.of((*origin, *rotation[:3]))

@@ -1,4 +1,4 @@
-"""Compare written URDFs with independent readers, and geometries that are read with matrices."""
+"""Read written URDFs with independent readers; compare geometries of URDFs with matrix products."""
 
 from __future__ import annotations
 

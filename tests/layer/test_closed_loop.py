@@ -79,7 +79,7 @@ def test_motion_returns_when_the_arm_is_there(name: str, edition: str, target: l
     assert arm.clock() - before < 0.1
 
 
-def test_motion_after_one_that_was_not_waited_for_waits_for_its_own_end() -> None:
+def test_motion_after_an_asynchronous_one_waits_for_its_own_end() -> None:
     arm, _ = made("Mercury", "mercury_a1", peer=Early)
     arm.send_angle(1, 10, 50, _async=True)
     assert arm.send_angles([40, 0, 0, 0, 0, 0, 0], 5) == 0

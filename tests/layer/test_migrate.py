@@ -216,7 +216,7 @@ def test_speed_that_may_be_a_row_is_a_decision() -> None:
         ),
     ],
 )
-def test_name_that_the_program_gives_a_class_stays(before: str, after: str) -> None:
+def test_alias_of_a_class_in_the_program_is_kept(before: str, after: str) -> None:
     found = migrate(f"{before}\nmc.focus_servo(servo_id=1)\n")
     assert found == (f"{after}\nmc.focus_servo(joint=1)\n", ())
 

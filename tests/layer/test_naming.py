@@ -50,7 +50,7 @@ def test_every_method_names_its_own_parameters(name: str) -> None:
     assert checked > 10
 
 
-def test_text_of_another_kind_stays() -> None:
+def test_text_without_the_argument_is_not_renamed() -> None:
     error = UsageError("servo", 3, message="the arm has no servo 3")
     assert str(error.renamed({"servo": "servo_id"})) == "the arm has no servo 3"
     assert error.renamed({"servo": "servo_id"}).argument == "servo_id"

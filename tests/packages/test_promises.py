@@ -99,7 +99,7 @@ def test_changed_id_and_rejected_spec_are_found(tmp_path: Path) -> None:
     )
 
 
-def test_recording_of_a_release_is_read_and_stays(tmp_path: Path) -> None:
+def test_recording_of_a_release_is_read_and_a_changed_one_is_reported(tmp_path: Path) -> None:
     assert [*promises.captures(ROOT, ROOT)] == []
     packets = [*capture.read(ROOT / RECORDED / "0.1.0.pcapng")]
     assert [(each.direction, each.data.hex()) for each in packets[:3]] == [

@@ -104,7 +104,7 @@ def test_another_edition_is_noticed() -> None:
     assert found["set_color"] == ()
 
 
-def test_ruling_that_no_call_needs_is_open() -> None:
+def test_ruling_without_a_differing_call_is_reported() -> None:
     stale = {"set_color": [Ruling("fe fe", "a reason")]}
     [found] = compare(replace(ROBOTS["MechArm270"], rulings=stale), ["set_color"])
     assert found.open == ("no call needs the ruling: a reason",)

@@ -117,7 +117,7 @@ def test_file_is_closed_before_it_is_renamed_and_read_by_offset(tmp_path: Path) 
     assert printed == ["b'0123456789' ['rows.bin']", "b'789' b'234'"]
 
 
-def test_pretended_windows_refuses_what_windows_refuses(tmp_path: Path) -> None:
+def test_simulated_windows_lacks_what_windows_lacks(tmp_path: Path) -> None:
     script = """
 import os, select, sys
 from pathlib import Path

@@ -26,7 +26,7 @@ def submit(
     wait: float | None = None,
     ends_by: float = inf,
 ) -> PendingRequest:
-    """Queue a request; the arm has ``wait`` seconds to reply, None: those of the edition."""
+    """Queue a request; the arm has ``wait`` seconds to reply, None: as the edition states."""
     pending = PendingRequest(request, wait, policy, now, ends_by)
     exchange.enqueue(pending)
     return pending

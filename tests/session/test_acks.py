@@ -75,7 +75,7 @@ def test_motions_succeed_again_if_the_very_first_acknowledgement_was_lost(loaded
     assert all(result for at, result in results.items() if at > MOTION_SECONDS + 10)
 
 
-def test_acknowledgement_at_the_end_of_a_motion_is_not_that_of_the_next_one(loaded: Codec) -> None:
+def test_late_acknowledgement_of_a_motion_does_not_acknowledge_the_next(loaded: Codec) -> None:
     arm = AckedArm(loaded, *MOTION)
     exchange = arm._exchange
     first = arm.send(0.0, lost=True)

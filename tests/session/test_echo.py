@@ -63,7 +63,7 @@ def test_copy_that_cannot_be_a_reply_proves_that_the_line_echoes(
     assert [type(event) for event in session.wake(1.2)] == [RequestExpired]
 
 
-def test_copy_with_a_value_that_no_reply_holds_is_an_echo_and_not_an_error(
+def test_copy_of_request_with_an_illegal_value_for_a_reply_is_an_echo(
     session: OneCaller,
 ) -> None:
     sent = session.request("is_servo_enable", (2,), now=0.0)

@@ -119,7 +119,7 @@ def test_outstanding_reply_does_not_hold_a_request_that_its_constant_excludes(
 
 
 class Swapping(SimulatedArm):
-    """An arm that replies to each query as to the other one."""
+    """An arm that gives each of two queries the reply to the other query."""
 
     def receive(self, data: bytes) -> bytes:
         other = {10: 11, 11: 10}[data[5]]

@@ -126,7 +126,7 @@ def test_pause_keeps_the_targets_and_brakes_in_the_least_time(
 
 
 @given(st.floats(-150, 150), st.integers(-300, 300), rates, st.floats(0, 5))
-def test_travel_covers_its_way_in_its_time(
+def test_travel_ends_at_its_target_at_rest_after_its_duration(
     speed: float, way: int, fastest: float, more: float
 ) -> None:
     soon = quickest(speed, way, fastest, MOST)

@@ -158,7 +158,7 @@ def test_jog_moves_while_it_is_held_and_release_stops(opened: Page, by: str) -> 
 
 
 @pytest.mark.parametrize("how", ["the page is stuck", "the page is closed", "space"])
-def test_jog_ends_when_nothing_holds_it_any_longer(opened: Page, studio: Studio, how: str) -> None:
+def test_jog_ends_when_the_page_no_longer_holds_it(opened: Page, studio: Studio, how: str) -> None:
     opened.choose("speed-of-motion", "20")
     opened.get(f"document.querySelector('{SLIDER.format(1)}').focus()")
     opened.key("keyDown", "ArrowLeft")

@@ -179,7 +179,7 @@ def test_loop_watches_all_if_the_process_has_too_many_descriptors_for_an_epoll(
     assert asyncio.run(run()) == (MANY, MANY)
 
 
-def test_readers_of_a_loop_are_shared_and_those_of_another_loop_are_not() -> None:
+def test_each_event_loop_has_one_shared_set_of_readers() -> None:
     async def run() -> tuple[LoopReaders, LoopReaders]:
         loop = asyncio.get_running_loop()
         return readers_of(loop), readers_of(loop)

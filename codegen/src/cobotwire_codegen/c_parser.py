@@ -1,8 +1,8 @@
 """Parses plain YAML in C, which is faster; the parser in Python decides everything else.
 
 The C parser is optional. It follows YAML 1.1 and has other messages. So its result is used only for
-text that both parsers read alike: one document that is a mapping or a list, without mistakes,
-directives, anchors, aliases, tags, and empty values without quotes.
+text that both parsers read alike: one document that is a mapping or a list. It has no mistakes,
+directives, anchors, aliases or tags, and each empty value has quotes.
 ``tests/codegen/test_c_parser.py`` compares both parsers.
 """
 

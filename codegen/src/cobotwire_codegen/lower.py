@@ -111,7 +111,7 @@ def choices(type: Type) -> tuple[int, ...]:
 
 
 def field_choices(field: Field) -> tuple[int, ...]:
-    """Return the closed list of a field: a constant has one entry; a list, that of its elements.
+    """Return the closed list of a field: one entry for a constant; for a list, its elements' list.
 
     The cases of a field may be quantities with different choices: those are in their numbers.
     """

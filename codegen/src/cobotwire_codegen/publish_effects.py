@@ -53,7 +53,7 @@ def published_effect(effect: Effect, command: Command, states: Mapping[str, Stat
 
 
 def _raw(selector: str, case: str, command: Command) -> int:
-    """Return the raw value of a case: that of the selector's member, or the number itself."""
+    """Return the raw value of a case, which is a member of the selector or a number."""
     fields = (field for variant in command.requests for field in variant)
     members = {m.name: m.value for f in fields if f.name == selector for m in f.type.members}
     return members[case] if case in members else int(case)

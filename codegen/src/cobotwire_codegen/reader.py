@@ -65,7 +65,7 @@ class Reader:
         return self._node.entries.get(key.name)
 
     def place_of(self, key: Key[Any]) -> Place:
-        """Return the place of a key's value; that of the mapping if the key is left out."""
+        """Return the place of a key's value, or of the mapping if the key is left out."""
         node = self.node(key)
         return self.place if node is None else node.place
 

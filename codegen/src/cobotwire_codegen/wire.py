@@ -75,7 +75,7 @@ def enclose(
     direction: Literal["request", "reply"] = "request",
     address: int | None = None,
 ) -> bytes:
-    """Return the frame around data bytes; without ``address`` it has the first one, if any.
+    """Return the frame around data bytes; without ``address`` it has the first, if frames have one.
 
     Raises:
         ValueError: the id or LEN is too large.

@@ -4,7 +4,7 @@
   const PARTS = { address: "the address", length: "LEN", command: "CMD" };
   const BIT_COUNTS = { 4: 32, 8: 64 };
 
-  // Return how many elements a field can have, and how often each repeats the numbers of its case.
+  // Return how many elements a field can have, and how often one element repeats the numbers of the case.
   function elements({ least = 1, most = 1, repeat = 1 }) {
     return { least, most, repeat };
   }
@@ -61,7 +61,8 @@
     return found;
   }
 
-  // Return a raw value. A float has a BigInt: its bits, all but the sign inverted if it is negative.
+  // Return a raw value. For a float it is a BigInt: its bits as a signed integer. If the sign bit is
+  // set, all other bits are inverted first.
   function rawAt(number, bytes, offset) {
     if (number.encoding === "float") {
       const bits = BIT_COUNTS[number.width];

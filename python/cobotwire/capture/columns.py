@@ -43,7 +43,7 @@ class ColumnsReader(Protocol):
     def feed(self, data: Data) -> CapturedColumns:
         """Take the next bytes of the file; return what became certain since the last call.
 
-        Damage raises no exception: this batch and all later ones have it as their ``error``, and
+        Damage raises no exception: ``error`` of this batch and of all later ones states it, and
         later bytes are ignored.
         """
         ...

@@ -36,7 +36,7 @@ SourcePath = str | os.PathLike[str]
 
 # Bytes to write at a time.
 _WRITE = 1 << 18
-# Before and after all time stamps.
+# A limit that no time stamp reaches, forwards or, negated, backwards.
 _ALWAYS = 1 << 200
 # Losses that are listed; all are counted.
 _LISTED = 20
@@ -309,8 +309,8 @@ class Repair:
         self.losses: list[Loss] = []
         # The statistics to write before the next section.
         self._marks = b""
-        # Of the current section: its parser, its byte order, the bytes that were lost before it,
-        # and the last time stamp of each interface, or None after its statistics.
+        # The state of the current section: its parser, its byte order, the bytes that were lost
+        # before it, and the last time stamp of each interface, or None after its statistics.
         self._parser, self._order = PacketParser(""), "<"
         self._lost_before = 0
         self._last: list[int | None] = []

@@ -118,7 +118,7 @@ class FollowingClient(Client):
         stops = self._stop_frames()
 
         def watch(traffic: Traffic) -> None:
-            # A dead man's switch, or another part of the program.
+            # A dead man's switch, or another part of the program, has sent a stop.
             if traffic.data in stops and traffic.direction == "sent":
                 job.stopped = True
 

@@ -50,7 +50,7 @@ class Lines(Frame):
     __slots__ = ("text",)
 
     def __init__(self, offset: int, size: int, text: str) -> None:
-        # The diagnosis uses only the number of bytes, up to its reach.
+        # The diagnosis only counts these bytes, and treats all counts above REACH alike.
         super().__init__(offset, bytes(min(size, REACH + 1)), 0)
         self.text = text
 

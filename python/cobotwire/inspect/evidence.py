@@ -71,9 +71,9 @@ def bare_queries(table: Table) -> list[Command]:
 def own_query(table: Table, others: Iterable[Table]) -> Command | None:
     """Return a query without arguments to which only this edition has a legal reply; or None.
 
-    If no other edition has as many joints, it is the query for their angles. If there is no such
-    reply, its id must be one that no other edition with as many joints has. The query of the
-    version is preferred.
+    If no other edition has as many joints, it is the query for their angles. Otherwise it is a
+    query with an id that no other edition with as many joints has; the query of the version is
+    preferred.
     """
     alike = [other for other in others if other.joints == table.joints]
     if not alike and table.find_role("joints") is not None:
@@ -98,7 +98,7 @@ class JointCount(NamedTuple):
 
 
 def joint_counts(names: Iterable[str]) -> list[JointCount]:
-    """Return a query for each number of joints that the editions have; empty if all have one."""
+    """Return a query for each number of joints; empty if all editions have the same number."""
     groups: dict[int, list[str]] = {}
     for name in names:
         if _table(name).find_role("joints") is not None:
@@ -141,8 +141,8 @@ class Candidates:
     def next_query(self) -> tuple[str, Command] | None:
         """Return an edition, and a query of it that some of the likely editions lack; or None.
 
-        The version comes first, then queries that about half of the editions have. For a single
-        likely edition, it is a query that few others have.
+        The version comes first, then queries that about half of the editions have. If only
+        one edition is likely, it is a query that few of the proven editions have.
         """
         among = self.likely if len(self.likely) > 1 else self.proven
         wanted = len(among) / 2 if among is self.likely else 1

@@ -35,7 +35,7 @@ class Observation(NamedTuple):
         values: the results by command name; None if there was no legal reply.
         rate: samples a second over the last few; 0 for the first.
         sent: requests that were sent, repeats included, so far.
-        unanswered: those of them without a legal reply in time.
+        unanswered: how many of these requests had no legal reply in time.
         late: replies that came after their deadline, or after the reply to a repeat, so far.
         noise: bytes of noise, so far.
         diagnosis: what that noise is, in a sentence.

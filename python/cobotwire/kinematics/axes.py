@@ -53,7 +53,7 @@ def links_of(axes: Iterable[Axis]) -> tuple[Link, ...]:
 
 
 def _between(pose: Pose) -> tuple[list[Link], float, float]:
-    """Return the links from an axis to that of the next frame, and the turn and way that are left.
+    """Return the links from an axis to the next frame's axis, and the turn and way that are left.
 
     The pose is Rz(turn) Tz(d) Tx(a) Rx(alpha) Rz(left) Tz(way).
     """

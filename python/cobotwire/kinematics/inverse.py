@@ -60,8 +60,8 @@ def nearest(
         limits: the lowest and the highest angle of each joint, in degrees.
         largest_turn: solutions in which a joint turns further than this, in degrees, are of no
             use; the search for them is left out. The first solution within it is taken.
-        effort: bounds the search; None: that of one request. What it does not find counts as out of
-            reach.
+        effort: bounds the search; None: the effort for one request. What the search does not find
+            counts as out of reach.
     """
     effort = Effort() if effort is None else effort
     if not is_solved(geometry):

@@ -32,7 +32,7 @@ def converters_of(
 
 
 def _declared(message: type) -> dict[str, Any]:
-    """Return the types of a class's own annotations: those of its bases take most of the time."""
+    """Return the types of a class's own annotations; to resolve its bases too would be slower."""
 
     def own() -> None:
         pass

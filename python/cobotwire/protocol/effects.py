@@ -221,7 +221,7 @@ def fresh_mode(table: Table) -> tuple[Command, str, Command | None]:
 
 
 def empty_value(field: Field) -> int:
-    """Return the raw value that reports an empty list: that of EMPTY; else 1."""
+    """Return the raw value that reports an empty list: the value of EMPTY, or else 1."""
     return dict(zip(field.labels, field.choices)).get("EMPTY", 1)
 
 

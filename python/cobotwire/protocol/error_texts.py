@@ -8,13 +8,14 @@ import sys
 from functools import cache
 from typing import Any
 
-_PLACE = re.compile(r"{(\w+)}")
+_PLACEHOLDER = re.compile(r"{(\w+)}")
 
 
 def error_text(kind: str, **values: object) -> str:
-    """Return the text of a kind, with a value in each of its places."""
-    # One pass: a value that looks like a place stays as it is.
-    return _PLACE.sub(lambda place: str(values[place[1]]), stored_texts("error_texts.json")[kind])
+    """Return the text of a kind, with a value instead of each placeholder."""
+    # A single substitution does not replace placeholders inside of values.
+    text = stored_texts("error_texts.json")[kind]
+    return _PLACEHOLDER.sub(lambda found: str(values[found[1]]), text)
 
 
 @cache

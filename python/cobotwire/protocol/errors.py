@@ -171,8 +171,8 @@ class ReplyTimeout(CobotwireError, TimeoutError):
         attempts: how often the request was sent; 0 if it was not sent, and never will be.
         request: the call with its arguments, for example ``get_encoder(joint=1)``.
         waited_for: what the call waited for when the ``deadline`` of the client passed: ``turn``,
-            ``hold``, ``line`` or ``reply``; empty if another timeout passed: that of the reply, or
-            of the reading before a request.
+            ``hold``, ``line`` or ``reply``; empty if another timeout passed, of the reply or of
+            the reading before a request.
         refusal: why the arm, which is simulated, cannot reply; empty if it did not say so. It will
             not reply if it is sent again.
     """

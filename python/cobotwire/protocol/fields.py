@@ -119,7 +119,7 @@ class Field(NamedTuple):
         return number.allows(raw)
 
     def present(self, values: Sequence[Any]) -> Any:
-        """Return the value of the field from those of its numbers, which are legal."""
+        """Return the value of the field from the values of its numbers, which are legal."""
         if not self.many:
             return values[0]
         if self.kind == "bytes":

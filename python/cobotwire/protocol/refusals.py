@@ -8,16 +8,16 @@ from cobotwire.protocol.limits import Limits, is_speed
 from cobotwire.protocol.roles import moves_arm
 from cobotwire.protocol.table import Command, Table
 
-# The state that decides what coordinates mean: of the end or a tool, from the base or the world.
+# The states that decide whether coordinates are of the end or a tool, from the base or the world.
 _FRAMES = frozenset({"tool", "world", "reference_frame", "end_type"})
 
 
 def refusals(table: Table, limits: Limits) -> dict[str, str]:
     """Return the commands that are not sent within ``limits``, each with the reason.
 
-    These are writes that stay, to a servo or to the arm: they can change what limits mean. With a
-    workspace they are also the motions to a place that is not known before they are sent, and
-    the settings that change what coordinates mean; with a speed, motions that take no percentage.
+    These are persistent writes, because they can change what limits mean. With a workspace they are
+    also motions to an unknown place, and settings that change what coordinates mean. With a speed
+    they are also motions that take no percentage.
     """
     found = {}
     for command in table.commands:
@@ -36,7 +36,7 @@ def refusals(table: Table, limits: Limits) -> dict[str, str]:
 
 
 def _leaves_workspace(table: Table, command: Command) -> str:
-    """Return the kind of refusal of a command that could leave a workspace; or nothing."""
+    """Return the kind of refusal of a command that could leave a workspace; empty if it cannot."""
     effect = effect_of(command)
     if isinstance(effect, Stores) and not _FRAMES.isdisjoint(effect.values.values()):
         return "refused-frame"

@@ -84,7 +84,7 @@ def run_program(
         errors: what a call that fails does, unless the program says so itself.
 
     Returns:
-        The exit code: that of the program; 1 if an exception ended it; 130 after Ctrl-C.
+        The exit code of the program; 1 if an exception ended it; 130 after Ctrl-C.
 
     Raises:
         UsageError: there is no such file.

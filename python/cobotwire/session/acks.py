@@ -170,7 +170,7 @@ class _CommandAcks:
                 ack.count(received.frame, began_at)
 
     def doubts_of(self, request: EncodedRequest, ack: ExpectedAck | None = None) -> list[float]:
-        """Return until when other acknowledgements than ``ack`` may look like that of a request."""
+        """Return until when acknowledgements other than ``ack`` may look like one of a request."""
         others = (other for other in self.expected if other is not ack)
         return [each.until for each in others if not replies_differ(each.request, request)]
 

@@ -223,7 +223,7 @@ class _Wait:
             yield from self._listen(self._sent[-MOST_QUERIES] + 1.0)
         sent = self._now
         self._now, result = yield Query(request, max(0.1, self._ends - sent), optional)
-        # Without a reply it may have been sent again.
+        # If no reply came, the client may have sent the query again.
         repeats = min(int((self._now - sent) / REPEAT_SECONDS), MOST_QUERIES)
         again = (self._now - n * REPEAT_SECONDS for n in reversed(range(repeats)))
         self._sent.extend([sent, *again])

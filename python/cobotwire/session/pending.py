@@ -190,7 +190,7 @@ class PendingRequest(Pending):
         now: float,
         ends_by: float = inf,
     ) -> None:
-        """Queue a request; the arm has ``wait`` seconds to reply, None: those of the edition."""
+        """Queue a request; the arm has ``wait`` seconds to reply, None: as the edition states."""
         super().__init__(request, ends_by)
         command = request.command
         self._wait = command.deadline_ms / 1000 if wait is None else wait

@@ -55,7 +55,7 @@ class RequestEncoder:
     """Encodes requests to one address; what does not depend on the arguments is computed once."""
 
     def __init__(self, codec: Codec, address: Address | None = None) -> None:
-        """Take the address of every request; left out: the first one of the edition, if any."""
+        """Take the address of every request; left out: the first one that the edition has."""
         self._codec = codec
         self._to = address or find_address(codec.table, None)
         self._address = None if self._to is None else self._to.value

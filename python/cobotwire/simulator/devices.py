@@ -31,7 +31,7 @@ def new_state(
 def missing_joints(
     table: Table, command: Command, given: Mapping[str, Any], address: int | None
 ) -> str:
-    """Return why a device lacks the joints that a request is about; or nothing."""
+    """Return why a device lacks the joints that a request is about; empty if it has them."""
     device = _device(table, address)
     if device is None or not device.joints:
         return ""

@@ -20,7 +20,7 @@ from cobotwire.studio.gate import SCOPE_STATE
 QUEUE = 4096
 # The period of the search for connections that have waited too long.
 SWEEP_SECONDS = 1.0
-# After the process could open no file for a connection.
+# The errors if the process can open no file for a connection, and the pause after such an error.
 NO_MORE_FILES = (errno.EMFILE, errno.ENFILE, errno.ENOBUFS, errno.ENOMEM)
 PAUSE_SECONDS = 0.05
 
@@ -56,7 +56,7 @@ class Server(uvicorn.Server):
             try:
                 accepted, _ = await loop.sock_accept(self._listening)
             except OSError as error:
-                # Otherwise the other end has disconnected, which must not affect other connections.
+                # Other errors mean that this peer has disconnected; other connections continue.
                 if error.errno in NO_MORE_FILES:
                     self._open.make_room()
                 await asyncio.sleep(PAUSE_SECONDS if error.errno in NO_MORE_FILES else 0)

@@ -41,8 +41,8 @@ class LiveEntries:
         """Take the time of the session's start by the client's clock."""
         self._diagnoser = Diagnoser(codec, "reply")
         self._start = start
-        # Where each frame and span of noise began in the stream, and when it came. Those of items
-        # that the diagnoser has returned are dropped, but for the last.
+        # The offset and the time of each frame and span of noise. Pairs before the last item that
+        # the diagnoser has returned are dropped.
         self._times: deque[tuple[int, float]] = deque()
         self._received_at = start
         self._waiting = False

@@ -36,7 +36,7 @@ class SimulatedLine:
         self._clock = RunningClock()
         self._arm = SimulatedArm(table, clock=self._clock, on_note=self._note, powered=True)
         self._scenario: Scenario | None = None
-        # Of every client, since others may connect to the arm too; forgotten when they leave.
+        # The peers of all connected clients: other programs may connect to the arm too.
         self._peers: WeakSet[SwitchedPeer] = WeakSet()
         self._server = TcpServer(self._connect, clock=self._clock)
         self.url = self._server.url

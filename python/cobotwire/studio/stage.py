@@ -187,7 +187,7 @@ class Stage:
             raise NotPermitted("nothing can be sent to a recording")
         if isinstance(self.session.line, FollowedRecording):
             raise NotPermitted(
-                "what is recorded is only shown: stop the program there, or the arm by its switch"
+                "this page only shows a recording: stop the program there, or the arm by its switch"
             )
         return self.session.line
 

@@ -26,7 +26,7 @@ class Viewer:
         self.lost = 0
         self._entries: deque[str] = deque()
         self._samples: deque[str] = deque()
-        # Of each kind of state only the newest matters.
+        # The newest state of each kind; older ones do not matter.
         self._states: dict[str, Any] = {}
         self._news = asyncio.Event()
 

@@ -14,7 +14,7 @@ from cobotwire.protocol.lazy import import_aside
 if TYPE_CHECKING:
     from logging import Logger
 
-# Those of ``logging``.
+# The numbers of these levels in ``logging``.
 DEBUG = 10
 INFO = 20
 

@@ -26,7 +26,7 @@ class LoopReaders:
 
     def __init__(self, loop: asyncio.AbstractEventLoop) -> None:
         self._loop = loop
-        # Those that the loop watches itself.
+        # The descriptors that the loop watches itself.
         self._few: set[int] = set()
         self._calls: dict[int, tuple[Context, Callable[[], object]]] = {}
         self._epoll: select.epoll | None = None

@@ -113,7 +113,7 @@ impl AsyncClient {
     /// Read and write for all until `done` returns something.
     async fn until<T>(&self, mut done: impl FnMut(&mut Session) -> Option<T>) -> T {
         loop {
-            // Before the stream is polled, so that nothing is overlooked.
+            // This comes before the poll of the stream, so that no arrival is overlooked.
             let arrived = self.shared.arrived.0.notified();
             let idle = {
                 let mut connection = self.connection();

@@ -49,7 +49,7 @@ impl Error {
         Self::LinkError { message, written }
     }
 
-    /// Return it for a request of which that many bytes were written.
+    /// Return the error of a request, after this number of its bytes was written.
     pub(crate) fn after_writing(mut self, bytes: usize) -> Self {
         if let Self::LinkError { written, .. } = &mut self {
             *written = Some(bytes);

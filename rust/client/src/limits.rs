@@ -17,8 +17,8 @@ const AXES: [&str; 3] = ["x", "y", "z"];
 /// States that decide what coordinates mean.
 const FRAMES: [&str; 4] = ["tool", "world", "reference_frame", "end_type"];
 
-/// How fast an arm may be sent, and where. What could exceed a limit is refused before a byte is
-/// sent, and so are writes that stay. Nothing limits `stop`.
+/// How fast an arm may be sent, and where. Requests that could exceed a limit are refused before
+/// a byte is sent, and so are persistent writes. Nothing limits `stop`.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Limits {
     /// The highest speed in percent, 1..100.

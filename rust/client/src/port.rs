@@ -8,7 +8,7 @@ use crate::Error;
 
 pub(crate) const CONNECT: Duration = Duration::from_secs(5);
 
-/// A stream of bytes to a device, of which reading can be limited in time.
+/// A stream of bytes to a device. The time of a read can be limited.
 ///
 /// When the time is over or the line is full, `read` and `write_some` return `ErrorKind::WouldBlock` or
 /// `ErrorKind::TimedOut`. A `read` of 0 bytes says that the peer has closed the stream.

@@ -32,7 +32,7 @@ pub struct Queue {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct CallId(u64);
 
-/// With what each request of a handle is sent.
+/// The options with which a handle sends each request.
 #[derive(Clone, Debug)]
 pub struct Settings {
     pub address: Option<u8>,
@@ -85,7 +85,7 @@ pub struct Session {
     /// The one-way requests that wait until they can be written.
     one_ways: VecDeque<CallId>,
     writing: Option<Writing>,
-    /// Who wants the events of which command.
+    /// The commands of events, each with a queue of a consumer.
     queues: Vec<(usize, Weak<Mutex<Queue>>)>,
     /// The devices that were set in motion, and not stopped since.
     moved: Vec<Option<u8>>,

@@ -356,7 +356,7 @@ fn request_that_was_given_up_at_a_full_line_is_not_sent() {
         assert!(tokio::time::timeout(short, moved).await.is_err());
         let powered = arm.power_off();
         assert!(tokio::time::timeout(short, powered).await.is_err());
-        // What was begun goes on, so that the stop stands alone.
+        // The request that was begun is written to its end, so that the stop is a frame of its own.
         let mut sent = [0; 24];
         let read = tokio::io::AsyncReadExt::read_exact(&mut far, &mut sent);
         let (stopped, read) = tokio::join!(arm.stop(), tokio::time::timeout(10 * short, read));

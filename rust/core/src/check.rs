@@ -9,9 +9,9 @@ use crate::number::Order;
 /// How a frame ends.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Check {
-    /// Always with this byte.
+    /// It always ends with this byte.
     Footer(u8),
-    /// With a number computed from the frame, and then a footer.
+    /// It ends with a number computed from the frame, and then a footer.
     Computed(Box<Computed>),
 }
 
@@ -37,7 +37,7 @@ pub enum Algorithm {
     Sum,
     /// The sum with all bits inverted.
     InvertedSum,
-    /// The number that added to the sum gives zero.
+    /// The number that gives zero when it is added to the sum.
     NegatedSum,
     /// The exclusive or of the bytes.
     Xor,

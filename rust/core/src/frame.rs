@@ -73,8 +73,8 @@ impl Part {
 }
 
 impl Layout {
-    /// Return the usual layout after a header of that size: address if any, LEN, id; LEN counts
-    /// the bytes after itself.
+    /// Return the usual layout after a header of that size: LEN and id, with an address before
+    /// them if `address`; LEN counts the bytes after itself.
     #[must_use]
     pub fn usual(header: usize, address: bool) -> Self {
         let at = header + usize::from(address);

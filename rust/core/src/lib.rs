@@ -7,8 +7,9 @@
 //! An [`exchange::Exchange`] matches requests and replies on a line; `python/cobotwire/session` is
 //! its specification.
 //!
-//! Without the feature `std`, which is on by default, it needs only `alloc`. Then it has one thread,
-//! in which a [`Table`] stays, and does not read in bulk, read captures or summarize.
+//! Without the feature `std`, which is on by default, it needs only `alloc`. Then a
+//! [`Table`] stays in the thread that made it, and there is no bulk decoding, no reading of captures
+//! and no summary.
 //! An edition's table takes 0.6 to 0.9 MB, and its construction 128 KiB of stack.
 
 // Some code is used only by modules that need `std`.

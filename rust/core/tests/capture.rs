@@ -93,7 +93,7 @@ fn messages_have_the_time_of_their_first_byte_in_either_byte_order() {
 }
 
 #[test]
-fn damage_has_its_place_and_what_is_before_it_is_kept() {
+fn damage_is_reported_with_its_offset_and_data_before_it_is_kept() {
     let mut file = recording(false);
     let whole = file.len() as u64;
     file.extend([6, 0, 0, 0, 13, 0, 0, 0]);
@@ -110,7 +110,7 @@ fn damage_has_its_place_and_what_is_before_it_is_kept() {
 }
 
 #[test]
-fn incomplete_block_at_the_end_is_reported_and_no_damage() {
+fn incomplete_block_at_the_end_counts_as_truncation_not_as_damage() {
     let file = recording(true);
     let (mut reader, mut one) = reader();
     reader.feed(&file[..file.len() - 1], &mut one);

@@ -37,8 +37,8 @@ struct Probe {
     tasks: BTreeMap<u64, AbortHandle>,
 }
 
-/// Serve a client of the edition in `arguments`, on a URL, with options as JSON: those of a client
-/// in seconds, `tasks` for the asynchronous one, and `small` for the smallest buffer of a socket.
+/// Serve a client of the edition in `arguments`, on a URL, with options as JSON: the options of
+/// a client, in seconds; `tasks` for the asynchronous client; `small` for the smallest socket buffer.
 pub fn serve(mut arguments: impl Iterator<Item = String>) -> io::Result<()> {
     let mut next = || arguments.next().unwrap_or_default();
     let mut probe = Probe {

@@ -8,13 +8,13 @@ use crate::texts::text;
 use crate::{Edition, Field, Shown};
 
 impl Edition {
-    /// Return the values of the variant of a request that takes exactly the given arguments, in the
-    /// order of the wire; and its index, unless several do, so that the values must decide. A
-    /// constant or a default is `filled` in; `None`: the number of elements of a list, which the
-    /// encoder counts.
+    /// Return the values of the request's variant that takes exactly the given arguments, in the
+    /// order of the wire, and the index of the variant. If several variants take them, the index is
+    /// `None`, and the values must decide. `filled` makes the value of a constant or a default; for
+    /// `None` it makes the mark of a field that counts elements: the encoder counts them.
     ///
     /// # Errors
-    /// No variant does; the text names an argument at fault.
+    /// No variant takes exactly these arguments; the text names a missing or an unknown one.
     pub fn arrange<V: Clone>(
         &self,
         command: usize,

@@ -47,7 +47,7 @@ impl Edition {
                 let part = self.part(variant, bad.field, bad.case);
                 part.map_or(String::new(), |part| part.bad_value(bad))
             }
-            // It has a text of its own.
+            // The error of a conversion has a text of its own.
             EncodeError::Foreign(_) => String::new(),
         }
     }
@@ -238,7 +238,7 @@ impl Part<'_> {
         }
     }
 
-    /// Return what a text may be.
+    /// Return which texts are allowed.
     fn text(&self, size: usize) -> String {
         let Shape::Text(encoding, padding) = self.wire.shape else {
             return String::new();
@@ -253,7 +253,7 @@ impl Part<'_> {
         }
     }
 
-    /// Return what a row of the first numbers is.
+    /// Return the words for a sequence of `count` numbers, with their names if all have one.
     fn row(&self, count: usize) -> String {
         let names = (0..count).filter_map(|at| self.named(at));
         let names: Vec<&str> = names.map(|number| &*number.name).collect();

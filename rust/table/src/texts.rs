@@ -1,4 +1,4 @@
-//! The texts of errors: those of the Python package, from the same file of templates.
+//! The texts of errors, made as in the Python package from the same file of templates.
 
 use alloc::format;
 use alloc::string::{String, ToString};
@@ -179,7 +179,7 @@ impl Edition {
         format!("{name}({}){}", self.fields(message), to.unwrap_or_default())
     }
 
-    /// Return the text of the error that ended a request. `None`: that of the transport did, which
+    /// Return the text of the error that ended a request; `None` for an error of the transport, which
     /// has a text of its own.
     #[must_use]
     pub fn failure(&self, request: &Request, failure: &Failure) -> Option<String> {

@@ -104,7 +104,9 @@ def test_task_that_kills_each_worker_is_an_error(cluster: DaskProcesses, tmp_pat
         time.sleep(0.05)
 
 
-def test_error_of_a_worker_is_that_of_one_machine(cluster: DaskProcesses, tmp_path: Path) -> None:
+def test_error_on_a_cluster_has_the_same_text_as_on_one_machine(
+    cluster: DaskProcesses, tmp_path: Path
+) -> None:
     path = tmp_path / "arm.bin"
     path.write_bytes(noisy_stream(100))
     inputs = Inputs.find([str(path)])

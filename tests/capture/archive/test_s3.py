@@ -43,7 +43,7 @@ def test_bucket_that_does_not_exist_is_an_error(bucket: str, tmp_path: Path) -> 
         archive.export(plan("s3://no-such-bucket/out"), inputs)
 
 
-def test_table_of_objects_is_that_of_files(bucket: str, tmp_path: Path) -> None:
+def test_table_from_a_bucket_equals_table_from_files(bucket: str, tmp_path: Path) -> None:
     archive_in(tmp_path)
     s3fs.S3FileSystem().put(str(tmp_path / "arm1.bin"), f"{bucket}/scanned/arm1.bin")
     files = archive.scan(

@@ -95,7 +95,7 @@ REPLIES: dict[str, Defect] = {
 
 
 def misread(wanted: int, read: Callable[[bytes], bytes | None]) -> Defect:
-    """Take other data for those of a request; None: ignore the request."""
+    """Replace the data of a request; None: ignore the request."""
 
     def change(arm: Arm, right: Right, id: int, data: bytes) -> None:
         taken = read(data) if id == wanted else data

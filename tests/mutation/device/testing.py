@@ -81,7 +81,10 @@ def _of_edition(edition: str, address: str | None) -> OnCorrectArm:
 
 
 def on_correct_arm(table: Table, address: str | None = None) -> OnCorrectArm:
-    """Return what a whole run on the correct arm shows; nothing if its geometry is known."""
+    """Return what a whole run on the correct arm shows.
+
+    If the geometry is known, the arm supports all commands, and nothing is run.
+    """
     if table.robot.geometry is not None:
         every = frozenset(command.name for command in table.commands)
         return OnCorrectArm({}, every, every)
@@ -104,8 +107,8 @@ def is_tested(table: Table, command: str) -> bool:
 def tested_addresses(table: Table) -> tuple[str | None, ...]:
     """Return the addresses of the devices that are tested; None if frames have none.
 
-    They are those of single devices, because a request to all may have the reply of any of them.
-    Devices with as many joints as another one are left out.
+    Each belongs to a single device, because any device may reply to a request to all of them. Of
+    devices with the same number of joints, only the first is tested.
     """
     devices = {device.joints: device.name for device in reversed(devices_of(table))}
     return tuple(reversed(devices.values())) or (None,)

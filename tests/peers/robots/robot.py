@@ -83,7 +83,7 @@ class Robot:
         own_arguments: for commands, arguments that replace those drawn from the table.
         calls: further calls. With ``why``, the two sides differ.
         rulings: for methods, the reasons why calls differ, where ``differences.txt`` has none.
-        before: for the name of each address, the arguments of methods before ours.
+        before: for each name of an address, the arguments that the maker's methods take first.
         without_address: commands with methods that do not take an address.
         opened: makes an object of the class on a port.
     """
@@ -114,7 +114,7 @@ class Robot:
         return [name for name in names if name not in self.local]
 
     def method(self, command: Command) -> str:
-        """Return the name of the class for a command."""
+        """Return the name of the method for a command."""
         return self.methods.get(command.name, command.name)
 
     def device(self, address: str | None) -> Address | None:

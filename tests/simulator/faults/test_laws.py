@@ -132,7 +132,7 @@ def test_fault_of_time_loses_no_byte_and_mixes_no_replies(
 
 
 @given(faults(), REQUESTS, SEEDS)
-def test_fault_that_is_not_reported_changed_nothing(
+def test_fault_that_changes_bytes_is_reported(
     fault: Fault, requests: list[bytes | float], seed: int
 ) -> None:
     played = talk([fault], requests, seed=seed)

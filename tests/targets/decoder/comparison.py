@@ -68,7 +68,7 @@ def _page(documents: Sequence[tuple[Record, str]]) -> str:
 
 
 def _message(record: Record, made: Any) -> Iterator[str]:
-    # JavaScript writes raw values as texts: those of floats may have 64 bits.
+    # JavaScript writes raw values as texts: raw values of floats may have 64 bits.
     fields = [
         {key: f[key] for key in ("name", "value", "text") if key in f}
         | {"raw": list(map(str, f["raw"]))}

@@ -96,7 +96,7 @@ def _of_field(field: Field, type: Type, number: int, length: int) -> object:
 
 
 def _typical(type: Type, number: int, length: int = 0) -> object:
-    """Return a legal value; those of successive numbers differ."""
+    """Return a legal value; the values for successive numbers differ."""
     if isinstance(type, Value | Bits):
         return tuple(_typical(item, number + at) for at, (_, item) in enumerate(type.items))
     if isinstance(type, Listed):

@@ -40,7 +40,7 @@ def with_read_back(families: Sequence[Family], encoder_zero: int | None) -> tupl
     queries = [c for family in families for c in family.commands if c.safety == "query"]
     found = []
     for family in families:
-        # If several queries report the same, those of the command's own family come first.
+        # If several queries report the same, queries of the command's own family come first.
         near = sorted(queries, key=lambda query: query not in family.commands)
         commands = (replace(c, read_by=_read_back(c, near, encoder_zero)) for c in family.commands)
         found.append(replace(family, commands=tuple(commands)))

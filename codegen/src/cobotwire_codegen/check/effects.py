@@ -125,7 +125,7 @@ def _listed(keys: Sequence[str]) -> str:
 
 
 def _wrong_cases(effect: Effect, selector: Field | None) -> Iterator[str]:
-    """Yield which cases are no value of their selector, or stand for the same one."""
+    """Describe cases that are not a value of their selector, or are the same value as another."""
     found: dict[int, str] = {}
     if not effect.cases or selector is None:
         return

@@ -150,7 +150,7 @@ def classes_apart(edition: Edition) -> Iterator[Problem]:
 
 
 def _asyncio_classes(edition: Edition) -> Iterator[tuple[str, Place]]:
-    """Return the asyncio client's classes; those of the blocking client are reported already."""
+    """Return the asyncio client's classes; classes of the blocking client are reported already."""
     for family in edition.families:
         yield f"Async{family.name.capitalize()}Commands", family.place
     if edition.class_name not in RESERVED_CLASSES:

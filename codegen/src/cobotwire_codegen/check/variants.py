@@ -90,7 +90,7 @@ def _rules(variant: Variant) -> object:
 
 
 def _places(variant: Variant) -> dict[int, Field]:
-    """Return the fields of one number that no selector decides, by their offset."""
+    """Return the fields of one number without a selector, by offset, before any varying size."""
     found: dict[int, Field] = {}
     at = 0
     for field in variant:

@@ -65,7 +65,7 @@ def checked(edition: Edition, given: Submitted) -> Entry:
 
 
 def _expanded(fact: Reported, known: Iterable[str]) -> Iterator[Reported]:
-    """Yield a fact; for ``reply.*``, those of the edition for each field."""
+    """Yield a fact; for ``reply.*``, yield the known fact about each field instead."""
     before, star, aspect = fact.fact.partition("*")
     if not star:
         yield fact

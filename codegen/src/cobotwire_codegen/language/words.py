@@ -22,7 +22,7 @@ REPLIES = {
     "own": "From this address: one device has it.",
     "any": "From any address: several devices have it, and each may reply.",
     "one": "From any address, but one only: several devices have it, and one replies for all.",
-    "none": "There are none: it is a broadcast.",
+    "none": "From no address: it is a broadcast, and no device replies.",
 }
 ROLES = {
     "joint targets": "Moves all joints to a row of targets, at a speed.",

@@ -12,9 +12,9 @@ from cobotwire_codegen.model.shapes import Type
 class State:
     """One item of the state of an arm.
 
-    ``type`` is None for a text. ``each`` are the names of the types of its indices; with any, there
-    is a value for each index. ``start`` is what a simulated arm has at the start, as the spec
-    states it; None: zero, or no text.
+    ``type`` is None for a text. ``each`` names the types of its indices, and there is a value for
+    each index; if ``each`` is empty, there is a single value. ``start`` is what a simulated arm has
+    at the start, as the spec states it; None: zero, or no text.
     """
 
     place: Place
@@ -39,8 +39,8 @@ class Effect:
         at: the arguments that choose one index.
         options: the other keys with their values, such as ``speed`` and its argument.
         cases: the effect for each value of the selector.
-        assumed: why no source states it.
-        by_role: whether the command's role says it, not the spec.
+        assumed: why no source states the effect; empty if a source does.
+        by_role: whether the effect follows from the command's role and is not in the spec.
     """
 
     place: Place

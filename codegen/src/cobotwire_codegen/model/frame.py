@@ -122,7 +122,7 @@ class Frame:
         return dict(zip(order, ends))
 
     def data_at(self, direction: Direction) -> int:
-        """Return the offset of the data; it is that of the command id if a frame has no id."""
+        """Return the offset of the data; frames without an id have data at the offset of the id."""
         return self.offset("data" if self.has_command(direction) else "command")
 
     def has_command(self, direction: Direction) -> bool:

@@ -31,14 +31,14 @@ class Wire:
 
     @property
     def minimum(self) -> int:
-        """The lowest raw value; for a float, that of the lowest finite float."""
+        """The lowest raw value; for a float, the raw value of the lowest finite float."""
         if self.is_float:
             return -1 - floats.largest_rank(self.width)
         return self.signed_at + 1 - 256**self.width if self.signed_at < self.top else 0
 
     @property
     def maximum(self) -> int:
-        """The highest raw value; for a float, that of the highest finite float."""
+        """The highest raw value; for a float, the raw value of the highest finite float."""
         return floats.largest_rank(self.width) if self.is_float else self.signed_at
 
     def raw_of(self, data: bytes) -> int:

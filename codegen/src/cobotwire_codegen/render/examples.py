@@ -44,9 +44,9 @@ def _agree(edition: Edition, command: Command, request: Vector, reply: Vector) -
 
 
 def example_frame(edition: Edition, command: Command, direction: Direction, sizes: range) -> bytes:
-    """Return the frame of an example of one variant, of that size; empty if no example has it.
+    """Return the frame of an example with one of these sizes; empty if there is none.
 
-    It is the example of :func:`examples` if that has this size.
+    The example of :func:`examples` is preferred.
     """
     chosen = examples(edition, command).get(direction)
     every = [v for v in edition.vectors if v.command == command.name and v.direction == direction]

@@ -141,7 +141,7 @@ def linked(text: str) -> str:
 def field_rows(command: Command) -> list[tuple[str, Field]]:
     """Return the fields of every variant, each once, with their direction.
 
-    Those of acknowledgements are described once for the edition.
+    Fields of acknowledgements are left out: they are described once for the edition.
     """
     replies = () if command.ack else command.replies
     rows = [("request", field) for variant in command.requests for field in variant]

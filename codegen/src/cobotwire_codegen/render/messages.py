@@ -49,7 +49,7 @@ class MessageClass:
 
 
 def message_classes(command: Command) -> tuple[MessageClass, ...]:
-    """Return the class of the request, and that of the reply if there is one."""
+    """Return the class of the request, and the class of the reply if there is one."""
     if command.event:
         return (_event(command),)
     if not command.replies and command.text is None:

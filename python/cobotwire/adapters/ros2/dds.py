@@ -58,7 +58,7 @@ def network(interface: str | None, environment: Mapping[str, str] = os.environ) 
     reach = ("LOCALHOST", "SUBNET", "SYSTEM_DEFAULT")
     found = _variable(environment, "ROS_AUTOMATIC_DISCOVERY_RANGE", *reach)
     if interface is None and only == "1":
-        # As in ROS 2 Humble and older.
+        # This variable of ROS 2 Humble and older restricts traffic to the loopback interface.
         interface = LOOPBACK
     if interface is not None:
         key = "address" if interface.replace(".", "").isdigit() or ":" in interface else "name"

@@ -50,7 +50,7 @@ class ReferenceColumnReader:
         """Hold the reader for one call.
 
         Raises:
-            UsageError: another thread has it.
+            UsageError: another thread uses the reader.
         """
         if not self._in_use.acquire(blocking=False):
             raise reject_shared("column reader")

@@ -47,7 +47,7 @@ class Malformed:
 
 @dataclass(slots=True)
 class _Kept:
-    """A value that a query reads; ``set`` is the request that gives it that value, if any does.
+    """A value that a query reads; ``set`` is the request that sets this value, if there is one.
 
     ``since`` holds the malformed requests that were sent since it was read last.
     """

@@ -106,7 +106,7 @@ def _row(cells: list[Result | None]) -> Iterator[Element]:
 
 
 def by_command(report: Report) -> Iterator[Element]:
-    """Yield the section: one folded entry for each command, that of the line last."""
+    """Yield the section: one folded entry for each command, and last the entry of the line."""
     found: dict[str, list[Result]] = {}
     for result in report.results:
         found.setdefault(result.command, []).append(result)

@@ -34,7 +34,7 @@ statement: {format}
 edition: {edition}
 maker: ""
 product: ""
-# As {version} reports it; empty: it is not compared.
+# The version that {version} reports; empty: it is not compared.
 firmware: ""
 # Whether changes are acknowledged, where the edition allows it: all, none, unknown.
 acknowledgements: unknown

@@ -134,7 +134,8 @@ class Survey:
 
         Raises:
             LinkError: the connection is lost; the facts hold what was found until then.
-            KeyboardInterrupt: the same; the arm was stopped.
+            KeyboardInterrupt: the run was interrupted, and the arm was stopped; the facts hold what
+                was found until then.
         """
         progress("which edition the arm speaks", 0, 1)
         self.other = self._is_other_edition()

@@ -90,7 +90,7 @@ def _figure(series: Series, title: str) -> Figure:
 
 
 def _panels(series: Series) -> list[Panel]:
-    """Return a panel for each kind of data that the series holds; at least that of the frames."""
+    """Return a panel for each kind of data that the series holds; at least one for the frames."""
     timed = series.axis == "seconds"
     joints, coords = series.tracks["joints"], series.tracks["coordinates"]
     panels: list[Panel] = []

@@ -55,7 +55,7 @@ class Limbs(CompatibleClient):
 
     @naming(address="id", axis="joint_id")
     def get_coord(self, id: int, joint_id: int) -> Any:
-        """Read a coordinate, in millimetres or degrees; that of the waist in degrees."""
+        """Read a coordinate, in millimetres or degrees; the waist's is in degrees."""
         degrees = id == _WAIST or (isinstance(joint_id, int) and joint_id >= _ROTATIONS)
         scale = 100 if degrees else 10
         return self._ask(lambda raw: raw / scale, self.arm.at(id).get_coord, joint_id)

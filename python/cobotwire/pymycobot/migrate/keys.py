@@ -62,7 +62,7 @@ class Keys:
         return (min(scopes, default=0), node.value)
 
     def class_key(self, node: cst.ClassDef) -> Key:
-        """Return the key of a class: that of its first base, if the program defines it."""
+        """Return the key of a class; for a class of the program, the key of its first base."""
         for base in node.bases:
             found = self.assigned(base.value) if isinstance(base.value, cst.Name) else []
             if len(found) == 1 and isinstance(found[0], cst.ClassDef) and found[0] is not node:

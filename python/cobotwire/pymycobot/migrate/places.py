@@ -80,7 +80,7 @@ class Places(cst.CSTVisitor):
     def visit_Attribute(self, node: cst.Attribute) -> None:
         self._visit_value(node)
         arms = self.names.arms(node.value)
-        # For our own classes, only methods that the library has too: calls that were not rewritten.
+        # In our classes, check only names that the library has too: they may not be rewritten yet.
         if self.names.is_ours(node.value) and not library()[arms[0]].has(node.attr.value):
             arms = []
         if arms and not self._is_called(node):
@@ -114,7 +114,7 @@ class Places(cst.CSTVisitor):
             func = call.func if isinstance(call, cst.Call) else None
             return isinstance(func, cst.Name) and func.value in _HARMLESS
         if isinstance(inside, cst.Assign):
-            # A part of a row is followed only if the row has names for its parts.
+            # An arm is followed into names and attributes, but not into elements such as `arms[0]`.
             return all(isinstance(t.target, cst.Name | cst.Attribute) for t in inside.targets)
         return isinstance(inside, _STORING | _TESTING | _PASSING)
 

@@ -14,7 +14,7 @@ from cobotwire.simulator.behaviour.registry import Behaviours, Unanswerable, fam
 from cobotwire.simulator.state import ArmState
 from cobotwire.simulator.targets import go_to_encoders
 
-# The speed of a motion within a time, and of one with a speed for each servo, in percent.
+# The speed of a motion whose request has a duration, or a speed for each servo, in percent.
 USUAL_SPEED = 50
 
 LIMBS = family("mybuddy", Behaviours())

@@ -139,7 +139,7 @@ def own(table: Table, command: Command) -> Behaviour | None:
 
 
 def row(values: Iterable[float] | None) -> Any:
-    """Return a row of a reply: a value for each joint, or for each coordinate; or None.
+    """Return a row of a reply: a value for each joint, or for each coordinate; None for None.
 
     Reply types declare the rows of an arm with six joints; other arms have more or fewer values.
     """

@@ -149,7 +149,7 @@ class Fault:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Damage(Fault, ABC):
-    """A fault that changes bytes: those of the reply, or those of the request.
+    """A fault that changes the bytes of the reply, or of the request.
 
     Attributes:
         of: which of the two.

@@ -60,7 +60,7 @@ def quickest(speed: float, way: float, fastest: float, acceleration: float) -> T
 
 
 def lasting(speed: float, way: float, acceleration: float, duration: float) -> Travel:
-    """Return the travel over ``way`` that takes ``duration``, at least that of the quickest."""
+    """Return the travel over ``way`` that takes ``duration``; it is not below the quickest."""
     # The way grows with the cruising speed, so bisection finds the speed.
     slowest = (speed - acceleration * duration) / 2
     fastest = (speed + acceleration * duration) / 2

@@ -67,13 +67,13 @@ function begin(hello) {
   byId("stop").disabled = hello.robot.stop === "";
   byId("stop").title = hello.robot.stop ? "" : "This edition has no stop.";
   const drawn = hello.robot.links.length > 0;
-  // Without a drawing the curves have its place.
+  // If the arm is not drawn, the curves use the space of the drawing.
   document.body.classList.toggle("undrawn", !drawn);
   byId("no-geometry").hidden = drawn;
   byId("no-geometry").textContent = `The arm is not drawn: ${hello.robot.noGeometry.replace(/\.$/, "")}.`;
   byId("geometry-remark").hidden = !hello.robot.geometryRemark;
   byId("geometry-remark").textContent = hello.robot.geometryRemark;
-  // After a new connection the server sends the past again.
+  // When the page connects again, the server sends the earlier entries again.
   if (parts) clear();
   else parts = make(hello, recorded);
   if (recorded) setStatus("recording", "good");

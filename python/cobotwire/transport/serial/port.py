@@ -98,7 +98,7 @@ class SerialTransport(DescriptorTransport):
 
 
 def _device(url: str) -> str:
-    """Return the device; that of ``hwgrep://`` is looked up each time, as its number may change."""
+    """Return the device; ``hwgrep://`` is searched for each time, as its number may change."""
     if not url.lower().startswith(HARDWARE):
         return url
     return str(serial.serial_for_url(url, do_not_open=True).port)

@@ -117,9 +117,9 @@ pub(crate) enum Allowed {
     All,
     /// The field is one byte; these are allowed.
     Bytes(Box<[bool; 256]>),
-    /// Those between these bounds.
+    /// The raw values between these bounds.
     Within(Bounds),
-    /// Those that the field allows.
+    /// The raw values that this field allows.
     Some(Box<Field>),
 }
 

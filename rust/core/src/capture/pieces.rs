@@ -16,8 +16,8 @@ pub(crate) struct Piece {
     pub(crate) time: i64,
 }
 
-/// Put the pieces of a packet into `pieces`: those of the last part of its comment that lists all
-/// of its bytes. There are none if no part does.
+/// Put the pieces of a packet into `pieces`. They come from the last part of its comment that lists
+/// all of its bytes; if no part does, `pieces` is empty.
 #[inline]
 pub(crate) fn read(packet: &Packet<'_>, pieces: &mut Vec<Piece>) -> Result<(), Fault> {
     pieces.clear();

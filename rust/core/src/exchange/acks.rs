@@ -48,7 +48,7 @@ impl ExpectedAck {
         self.doubts.sort_unstable();
     }
 
-    /// Count an acknowledgement of the command: of another request, as long as it can be.
+    /// Count an acknowledgement of the command. It counts for another request as long as it can.
     fn count(&mut self, frame: &SeenFrame, began_at: Nanos) {
         self.doubts.retain(|until| *until > began_at);
         if self.doubts.is_empty() {
@@ -63,9 +63,9 @@ impl ExpectedAck {
 /// The requests of one command id.
 #[derive(Clone, Debug, Default)]
 struct CommandAcks {
-    /// Those that are expected or uncertain, oldest first.
+    /// The acknowledgements that are expected or uncertain, oldest first.
     known: Vec<ExpectedAck>,
-    /// The request of which a copy came.
+    /// The request that was received back as a copy.
     copied: Option<u64>,
     /// Since when acknowledgements have been expected without a break.
     began_at: Nanos,

@@ -5,7 +5,7 @@ use alloc::vec::Vec;
 
 use crate::table::Table;
 
-/// Nanoseconds of a monotonic clock, or between two of its moments.
+/// A time of a monotonic clock, or a duration, in nanoseconds.
 pub type Nanos = u64;
 
 /// What a command does to the arm.
@@ -29,8 +29,8 @@ pub enum Safety {
     Persistent,
 }
 
-/// The name of a field, and whether a reply repeats (`echo`) the argument of that name. A `status` is
-/// not a constant, or has labels.
+/// The name of a field. `echo`: a reply repeats the argument of that name. `status`: the field can
+/// report success or failure; this excludes only constants without labels.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[allow(missing_docs)] // as above
 pub struct Named {
@@ -69,8 +69,8 @@ pub struct Facts {
     pub request: Vec<Vec<Named>>,
     /// The fields of each variant of its reply.
     pub reply: Vec<Vec<Named>>,
-    /// The raw values of the last status of its reply that mean success; empty: a field that is 0
-    /// reports failure.
+    /// The raw values that report success, if the last status of its reply has one of them. Without
+    /// such values, each status that is 0 reports failure.
     pub accepted: Vec<i64>,
 }
 
@@ -89,8 +89,8 @@ pub enum Replier {
     Nobody,
 }
 
-/// An address of the frame format: its byte, who replies, and how many joints the device has; 0:
-/// those of the protocol.
+/// An address of the frame format: its byte, who replies, and how many joints the device has. If
+/// `joints` is 0, the device has all joints of the protocol.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[allow(missing_docs)] // as above
 pub struct Addressee {
@@ -108,8 +108,8 @@ pub struct Protocol {
     /// Whether a message of the device reports the end of a motion, so that acknowledgements of
     /// motions come at once.
     pub reports_ends: bool,
-    /// The addresses that the protocol describes. Any other address of the frame format is that of
-    /// one device with all joints.
+    /// The addresses that the protocol describes. Any other address of the frame format belongs
+    /// to one device with all joints.
     pub addresses: Vec<Addressee>,
     pub joints: usize,
 }

@@ -377,7 +377,7 @@ impl Exchange {
         self.last.as_ref().filter(|last| !last.done)
     }
 
-    /// Return from when on no late reply can be mistaken for that of a queued request.
+    /// Return from when on no late reply can be mistaken for the reply to a queued request.
     fn free_at(&self, pending: &Pending, now: Nanos) -> Nanos {
         let held = (self.outstanding).held_until(&self.protocol, &pending.request);
         held.unwrap_or(now)
@@ -571,7 +571,7 @@ impl Exchange {
         }
     }
 
-    /// End the request that waits with its reply, of which other copies may come.
+    /// End the request that waits with its reply. Further copies of the reply may come.
     fn end(&mut self, reply: Decoded, frame: Option<SeenFrame>, now: Nanos) -> Event {
         if let Some(waiting) = waiting(&mut self.last) {
             if waiting.request.replier == Replier::Anybody {

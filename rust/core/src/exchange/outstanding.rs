@@ -17,7 +17,7 @@ pub(super) struct OutstandingReply {
     pub(super) until: Nanos,
 }
 
-/// Those of one transport, oldest first; some may have expired.
+/// The outstanding replies of one transport, oldest first; some may have expired.
 #[derive(Clone, Debug, Default)]
 pub(super) struct OutstandingReplies(pub(super) Vec<OutstandingReply>);
 
@@ -85,7 +85,7 @@ impl From<OutstandingReply> for LateFrame {
 /// Replies that may still come, and what the peer may hold of a request that was cut.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct PersistedState {
-    /// The requests of which replies are outstanding.
+    /// The requests with outstanding replies.
     pub late: Vec<LateFrame>,
     /// Every part of a request that the peer may hold.
     pub parts: Vec<Part>,

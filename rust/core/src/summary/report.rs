@@ -206,7 +206,7 @@ impl Report {
         }
     }
 
-    /// Pass on all lines; those of the stream before `until` are complete.
+    /// Pass on all lines, which describe the stream up to `until`.
     fn pass_lines(&mut self, until: u64, sink: &mut impl Sink) {
         sink.lines(self.lines_from, until - self.lines_from, &self.lines);
         self.lines.clear();

@@ -181,7 +181,7 @@ def _ordinary(slot: Slot, count: int) -> int:
     lowest, highest = slot.ends
     if slot.letter:
         lowest, highest = ord("a"), ord("z")
-    # With fractions, since a double cannot hold the raw values of a float of eight bytes.
+    # Fractions are needed, since a double cannot hold the raw values of a float of eight bytes.
     return round(lowest + Fraction(share) * (highest - lowest))
 
 

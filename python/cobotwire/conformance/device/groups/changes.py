@@ -11,7 +11,7 @@ from cobotwire.conformance.suite import Group, TestCase
 from cobotwire.protocol.messages import Request
 from cobotwire.protocol.table import Command
 
-# After sending a command this often, wait for no second acknowledgement any more.
+# Wait for a second acknowledgement only the first AWAITED times that a command is sent.
 AWAITED = 4
 # What an acknowledgement reports: done.
 DONE = 1
@@ -86,7 +86,7 @@ def _check_acknowledgement(probe: Probe, response: Response, call: str) -> None:
         reply.message is not None and all(v == DONE for v in reply.message.fields.values())
         for reply in response.replies
     )
-    reason = f"{call}: expected one acknowledgement, 1, or none; came {response.summary}"
+    reason = f"{call}: expected at most one acknowledgement, of value 1; came {response.summary}"
     probe.expect(ACKNOWLEDGED, at_most_one and done, reason)
 
 

@@ -133,7 +133,7 @@ def _status(event: EventReceived) -> str:
 
 
 def _is_right(probe: Probe, event: EventReceived, *, stopped: bool) -> bool:
-    """Return whether the status is that of success, or of a stop, if the edition states one."""
+    """Return whether the status reports success, or a stop, if the edition states one."""
     codes, field = probe.device.edition.robot.error_codes, event.message.variant.fields[-1]
     if not stopped:
         return event.command.refusal(event.message.fields) is None

@@ -39,19 +39,20 @@ REPORTED = TestCase(
 )
 
 # The fast speed is SHARE times the slow one. The slow motion must take at least LONGER times as
-# long; that is less than SHARE, because on a short distance an arm does not reach its full speed.
+# long. LONGER is less than SHARE, because on a short distance an arm does not reach its full speed.
 SHARE, LONGER = 10, 1.25
-# The share of the distance between two poses that is timed, how long that may take, and how often
-# the arm's position is read, in seconds.
-TIMED, LONGEST, SOON = 0.5, 20.0, 0.005
-# The names of the two modes, how far apart the targets are, and how far the arm must go to show its
-# direction, both in degrees.
+# The motion is timed over this share of the distance between two poses.
+TIMED = 0.5
+# The longest time for that motion, and the pause between two readings of the position, in seconds.
+LONGEST, SOON = 20.0, 0.005
+# The names of the two modes.
 QUEUED, NEWEST = "INTERPOLATION", "REFRESH"
+# How far apart the targets are, and how far the arm must go to show its direction, in degrees.
 WAY, SHOWN = 8.0, 1.0
-# The speed of the motion upwards, in percent of the fastest: it is slow enough to be read on the
-# way. Then the longest time between two readings, in seconds: the arm cannot go up and down again
-# in it.
-UPWARDS, UNSEEN = 20, 0.1
+# The speed of the motion upwards, in percent of the fastest: slow enough for readings on the way.
+UPWARDS = 20
+# The longest time between two readings, in seconds: too short for the arm to go up and down again.
+UNSEEN = 0.1
 STEPS, TURNS = "step_per_second", "revolution_per_minute"
 # One revolution per minute, in degrees per second.
 TURN = 6.0
@@ -182,7 +183,7 @@ def _left(
 
 
 def _seconds(mover: Mover, start: Pose, target: Pose, speed: int) -> _Left:
-    """Return when the joint with the largest angle to cover has half of it."""
+    """Return when the joint with the largest angle to cover has covered half of it."""
     ways = [abs(b - a) for a, b in zip(start, target)]
     joint, began = ways.index(max(ways)), mover.device.connection.now
     mover.device.request(mover.to(target, speed))
@@ -209,7 +210,10 @@ class _Speeds(NamedTuple):
 
 
 def _speeds(table: Table, command: Command) -> _Speeds | None:
-    """Return the field of a query with speeds in a unit of known size; it may have others."""
+    """Return the first field of a query that has speeds in a unit of known size.
+
+    Return None if there is no such field, or if no commands move the joints and read their angles.
+    """
     effect, encoders = does(Reports)(table, command), table.robot.encoders
     moves = table.find_role("joint targets") is not None and table.find_role("joints") is not None
     if effect is None or not command.reply or not moves:

@@ -21,9 +21,9 @@ UNKNOWN_ROW = "the device does not report the position that the query takes"
 DRIFT = 0.02
 # The time after power on until the readings of an arm must be steady, in seconds.
 SETTLES = 1.0
-# So many replies in a row with NULs are no accident.
+# If this many replies in a row come with NULs, it is no accident.
 NOISY = 10
-# The permission, and the name of what is restored.
+# The name of the permission, and of the state that is restored.
 POWER = "power"
 
 

@@ -76,7 +76,7 @@ def _shift(probe: Probe, chooser: Command, choices: Sequence[int], axis: int) ->
 
 
 def _check(probe: Probe, shifts: list[Vector], tool: bool) -> None:
-    """Compare lengths and directions: those of a tool are turned with the end."""
+    """Compare lengths and directions; the directions of a tool turn with the end."""
     name = probe.command.name
     for axis, shift in zip(AXES, shifts):
         length = math.hypot(*shift)
