@@ -28,6 +28,7 @@ LARGEST = {
     "linear": 256,
     "captures": 512,
     "editions": 64,
+    "exchange": 512,
 }
 # An input that takes longer is a hang: every correct run is much shorter.
 SECONDS_FOR_ONE_INPUT = 20

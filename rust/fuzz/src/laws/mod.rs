@@ -4,6 +4,7 @@ pub mod captures;
 pub mod columns;
 pub mod decoding;
 pub mod editions;
+pub mod exchange;
 pub mod framing;
 pub mod linear;
 pub mod rows;
