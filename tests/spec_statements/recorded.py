@@ -131,7 +131,11 @@ def error_codes(edition: Edition) -> Iterator[str]:
     for pattern, numbers in wanted.items():
         if numbers == [0]:  # the register of the 280 has no such number
             continue
-        low, high = next((a, b) for a, b, text in meanings if re.match(pattern, text))
+        explained = [(a, b) for a, b, text in meanings if re.match(pattern, text)]
+        if not explained:
+            yield f"{numbers} are not explained as {pattern}"
+            continue
+        low, high = explained[0]
         if numbers != [*range(low, high + 1)][: len(numbers)]:
             yield f"{numbers} differ from {low}..{high}, which mean {pattern}"
 
