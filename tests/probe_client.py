@@ -1,6 +1,6 @@
 """A client in a process of its own, with the methods of a blocking client: in Rust or in Node.
 
-``rust/probe/src/client.rs`` or ``tests/clients/driver.mjs`` is the other end of the pipe: one JSON
+``rust/probe/src/client.rs`` or ``tests/typescript/driver.mjs`` is the other end of the pipe: one JSON
 object a line. Each call has a number; the answer has the same number, and the times at which the
 client began and ended it.
 """
@@ -29,7 +29,7 @@ JSON = dict[str, Any]
 # The process has ended if it does not open or close its client within this time.
 CONTROL_SECONDS = 10.0
 # Starts a client in Node; its package must have been built (tools/npm_package.py).
-NODE = ("node", str(Path(__file__).parent / "clients/driver.mjs"))
+NODE = ("node", str(Path(__file__).parent / "typescript/driver.mjs"))
 
 
 class ProbeClient:
