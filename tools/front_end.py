@@ -63,7 +63,7 @@ PACKAGES = (
         "1.6.32",
         "KIMVnG68zvu5XXUbC4LQEPnhwOxBuLyW1AHtpm6IKTXImkbLgkMy+jabjLgSLMasNuGGzQm/ep3tOkyTxpiQIw==",
         (
-            ("package/dist/uPlot.esm.js", f"{PAGE}/uPlot.esm.js"),
+            ("package/dist/uPlot.iife.min.js", f"{PAGE}/uPlot.iife.min.js"),
             ("package/dist/uPlot.min.css", f"{PAGE}/uPlot.min.css"),
             ("package/LICENSE", f"{PAGE}/LICENSE-uPlot"),
         ),

@@ -96,7 +96,7 @@ def test_package_that_was_built_without_the_page_leaves_out_the_verb_and_says_wh
 ) -> None:
     assert " studio " in run(app, "cobotwire", "--help").stdout or not extras.CURVES.is_file()
     for module in (extras, cobotwire.cli.app):
-        monkeypatch.setattr(module, "CURVES", tmp_path / "uPlot.esm.js")
+        monkeypatch.setattr(module, "CURVES", tmp_path / "uPlot.iife.min.js")
     assert " studio " not in run(app, "cobotwire", "--help").stdout
     refused = run(app, "cobotwire", "studio", "--no-browser")
     assert refused.returncode == 2

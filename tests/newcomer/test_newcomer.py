@@ -20,7 +20,7 @@ def test_wheel_ships_the_page_of_the_studio_with_its_library(wheels: list[Path])
     [native] = [wheel for wheel in wheels if wheel.name.startswith("cobotwire-")]
     folder = "cobotwire/studio/page/"
     page = {name.removeprefix(folder) for name in zipfile.ZipFile(native).namelist()}
-    assert {"index.html", "main.js", "vendor/uPlot.esm.js", "vendor/LICENSE-uPlot"} <= page
+    assert {"index.html", "main.js", "vendor/uPlot.iife.min.js", "vendor/LICENSE-uPlot"} <= page
 
 
 def test_delta_of_an_edition_that_the_package_ships_needs_no_clone(

@@ -9,7 +9,7 @@ from cobotwire.protocol.errors import UsageError
 
 PAGE = Path(__file__).parent / "page"
 # uPlot draws the curves. tools/build_backend.py downloads it for a build, and wheels contain it.
-CURVES = PAGE / "vendor" / "uPlot.esm.js"
+CURVES = PAGE / "vendor" / "uPlot.iife.min.js"
 
 
 def check_extra() -> None:

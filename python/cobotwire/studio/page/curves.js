@@ -1,6 +1,5 @@
-// Draw joints, coordinates, reply times and noise over time, with uPlot.
+// Draw joints, coordinates, reply times and noise over time, with uPlot, which index.html loads: the global `uPlot`.
 
-import uPlot from "./vendor/uPlot.esm.js";
 import { byId, clock, colour, el, onThemeChange } from "./dom.js";
 import { Series } from "./series.js";
 
@@ -104,7 +103,7 @@ class Chart {
     // Each unit has a scale and an axis of its own: the first left, the second right.
     const scales = [...new Set(this.units)];
     const axes = scales.map((scale, at) => ({ ...axis, ...ticks, scale, size: 42, side: at ? 1 : 3, grid: { ...axis.grid, show: !at } }));
-    this.plot = new uPlot(
+    this.plot = new globalThis.uPlot(
       {
         width,
         height,
