@@ -39,7 +39,7 @@ def compare(edition: str) -> Comparison:
 def compare_all(files: Iterable[tuple[Path, Path]]) -> list[Comparison]:
     """Run several documents of vectors, each after the table of its edition, in one process."""
     package()
-    words = ("node", PROGRAM, *(path for pair in files for path in pair))
+    words = ("node", str(PROGRAM), *(str(path) for pair in files for path in pair))
     done = subprocess.run(words, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
     return [Comparison(**json.loads(line)) for line in done.stdout.splitlines()]
