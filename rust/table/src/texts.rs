@@ -253,7 +253,8 @@ fn timeout(
     waited_for: Option<WaitedFor>,
     received: String,
 ) -> String {
-    let meanwhile = text!(waited_for.map_or("nothing", WaitedFor::word));
+    let waits = |each| text!(&format!("{each:?}").to_lowercase());
+    let meanwhile = waited_for.map_or(String::new(), waits);
     let kind = match (attempts, waited_for) {
         (0, None) => "not-sent",
         (0, _) => "not-sent-by-deadline",
