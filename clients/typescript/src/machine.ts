@@ -175,3 +175,25 @@ export class Machine {
     return text.length === size ? text : decoder.decode(this.heap.subarray(start, this.at));
   }
 }
+
+const editions = new Map<string, [index: number, baudrate: number]>();
+let loading: Promise<Machine> | undefined;
+
+/** Return the session in WebAssembly, which is loaded once. */
+export function machine(): Promise<Machine> {
+  return (loading ??= Machine.load());
+}
+
+/** Return the number of an edition and its rate; the table is read once. */
+export function edition(machine: Machine, table: string): [index: number, baudrate: number] {
+  const found = editions.get(table) ?? machine.ask<[number, number]>("edition", table);
+  editions.set(table, found);
+  return found;
+}
+
+/** Return the object of names and values in turn. */
+export function objectOf(fields: readonly Value[]): Record<string, Value> {
+  const found: Record<string, Value> = {};
+  for (let at = 0; at < fields.length; at += 2) found[fields[at] as string] = fields[at + 1];
+  return found;
+}

@@ -151,7 +151,8 @@ impl Number {
 
     /// Return the number of bytes from here to the next number of the field.
     #[inline]
-    pub(crate) fn step(&self) -> usize {
+    #[must_use]
+    pub fn step(&self) -> usize {
         match self.bits {
             Some(Bits { more: true, .. }) => 0,
             _ => self.width,
@@ -175,7 +176,8 @@ impl Number {
 
     /// Return the raw value that starts there.
     #[inline]
-    pub(crate) fn unpack(&self, data: &[u8], start: usize) -> i64 {
+    #[must_use]
+    pub fn unpack(&self, data: &[u8], start: usize) -> i64 {
         let bytes = data.get(start..start + self.width).unwrap_or_default();
         let unsigned = match (bytes, self.order) {
             ([byte], _) => i64::from(*byte),

@@ -1,7 +1,7 @@
 // Run the vectors of an edition, whose files are the arguments, on the codec of the package; print
 // what differs.
 import { readFileSync } from "node:fs";
-import { edition, machine } from "../../../clients/typescript/dist/client.js";
+import { edition, machine } from "../../../clients/typescript/dist/machine.js";
 
 const [table, vectors] = process.argv.slice(2).map((file) => readFileSync(file, "utf8"));
 const { messages, rejected, malformed, streams } = JSON.parse(vectors);
