@@ -1,5 +1,7 @@
 // Turn bytes into the entries, explanations and samples that the page shows, by the codec in WebAssembly.
 
+import { Decoder } from "./cobotwire/dist/decoder.js";
+
 const SHOWN_BYTES = 64;
 const SHOWN_TEXT = 400;
 // Replies that are later than this belong to no request that a person would look for.
@@ -13,133 +15,142 @@ const REASONS = {
   "bad-length": "a header with a LEN that is not legal for its id",
   "unknown-id": "a header with an id that the edition lacks",
   "bad-check": "starts like a frame, but does not end like one",
-  "bad-value": "a frame with a value that the edition does not allow",
   truncated: "starts like a frame; the bytes end before it does",
 };
-const DIRECTIONS = { sent: ["request"], received: ["reply"], unknown: ["request", "reply"] };
+const DIRECTIONS = { sent: "request", received: "reply", unknown: "both" };
 const hex = (bytes) => Array.from(bytes, (byte) => byte.toString(16).padStart(2, "0")).join(" ").toUpperCase();
 
-// Reads the frames of one edition. An entry has the number `n`, the time `t` in seconds, the direction `d`, the bytes
-// `data`, and the `reason` of noise; or it is a remark, and has a `label` and a `text`.
+// Cuts the bytes of one direction. An entry has the time `t` in seconds, the direction `d`, the bytes `data`, and the
+// `reason` of noise; or it is a remark, with a `label` and a `text`.
+export class Stream {
+  constructor(direction, decoder) {
+    Object.assign(this, { direction, decoder, times: [], size: 0 });
+  }
+
+  static async load(direction, table) {
+    return new Stream(direction, await Decoder.load(table, DIRECTIONS[direction]));
+  }
+
+  // Return the entries that are certain after some bytes. An entry has the time of its first byte.
+  take(t, data) {
+    this.times.push([this.size, t]);
+    this.size += data.length;
+    return this.entries(this.decoder.feed(data));
+  }
+
+  // Return the entries that are certain because nothing follows.
+  silence() {
+    return this.entries(this.decoder.flush());
+  }
+
+  entries(found) {
+    return found.map(({ offset, data, noise }) => {
+      while (this.times[1]?.[0] <= offset) this.times.shift();
+      return { t: this.times[0][1], d: this.direction, data, reason: noise };
+    });
+  }
+}
+
+// Reads entries of one edition.
 export class Reader {
-  constructor(machine, index, facts) {
-    Object.assign(this, { machine, index, facts });
+  constructor(facts, streams) {
+    this.facts = facts;
+    this.decoders = Object.fromEntries(streams.map(({ direction, decoder }) => [direction, decoder]));
   }
 
-  // Return the frames and the noise that each chunk made certain, as [bytes, offset, reason]; an absent chunk is a silence.
-  cut(direction, chunks) {
-    return this.machine.ask("frames", this.index, DIRECTIONS[direction][0], ...chunks);
-  }
-
-  // Return the message of an entry: its command, its fields, its parts; or why its bytes are none.
+  // Return the message of an entry; undefined: it is noise or a remark; or the reason and text of what is wrong.
   read({ d, data, reason }) {
-    if (reason) return { reason };
-    for (const direction of DIRECTIONS[d]) {
-      const [name, found] = this.machine.ask("decode", this.index, direction, data, undefined);
-      if (!Array.isArray(found)) {
-        reason = name;
-        continue;
-      }
-      const fields = {};
-      for (let at = 0; at < found.length; at += 2) fields[found[at]] = found[at + 1];
-      const parts = this.machine.ask("explain", this.index, direction, data, name);
-      return { name, direction, fields, parts, command: this.facts.commands[name] };
-    }
-    return { reason };
+    return data && !reason ? this.decoders[d].read(data) : undefined;
   }
 
   // Return an entry as the list shows it.
-  describe(entry, message = entry.data && this.read(entry)) {
-    const { n, t, d, data = new Uint8Array() } = entry;
+  describe(entry, message) {
+    const { n, t, d, data, reason } = entry;
+    if (!data) return { n, t, d, h: "", k: "remark", l: entry.label, x: entry.text };
     const shown = { n, t, d, h: hex(data.subarray(0, SHOWN_BYTES)) };
     if (data.length > SHOWN_BYTES) shown.size = data.length;
-    if (!data.length) return { ...shown, k: "remark", l: entry.label, x: entry.text };
-    const { name, reason, command } = message;
-    if (!reason) return { ...shown, k: "frame", l: name, x: text(message).slice(0, SHOWN_TEXT), s: command.safety };
-    return { ...shown, k: "noise", l: reason, x: `${REASONS[reason]}: ${data.length} bytes` };
+    if (message?.command) {
+      const { safety } = this.facts.commands[message.command];
+      return { ...shown, k: "frame", l: message.command, x: text(message).slice(0, SHOWN_TEXT), s: safety };
+    }
+    const noise = d === "sent" ? ["fill", "no request of the edition"] : [reason, REASONS[reason]];
+    const [l, x] = reason ? noise : ["illegal", message.text];
+    return { ...shown, k: "noise", l, x: x.slice(0, SHOWN_TEXT) };
   }
 
   explain(entry) {
-    const { t: time, d: direction, data = new Uint8Array() } = entry;
+    const { t: time, d: direction, data = new Uint8Array(), reason } = entry;
     const found = { time, direction, hex: hex(data), text: entry.text ?? "" };
-    if (!data.length) return found;
-    const { name, reason, parts, command } = this.read(entry);
+    const message = this.read(entry);
     if (reason) {
-      const advice = "if it recurs, save the recording and diagnose it with cobotwire decode";
+      const advice = "save the recording; cobotwire decode names the noise and its cause";
       return { ...found, noise: reason, reason: REASONS[reason], advice, facts: {} };
     }
-    return {
-      ...found,
-      parts: parts.map(([at, size, part, raw, meaning]) => ({
-        ...{ at, hex: hex(data.subarray(at, at + size)), name: part, raw: raw === undefined ? null : String(raw), meaning },
-      })),
-      command: { name, ...command, ...this.facts.sources[name] },
-    };
+    if (!message?.command) return { ...found, text: message?.text ?? found.text };
+    const [name, command] = [message.command, this.facts.commands[message.command]];
+    const parts = message.parts.map(({ at, size, name: part, raw, meaning }) => ({
+      ...{ at, hex: hex(data.subarray(at, at + size)), name: part },
+      ...{ raw: raw === undefined ? null : String(raw), meaning: part === "CMD" ? `${name}: ${command.title}` : meaning },
+    }));
+    return { ...found, parts, command: { name, ...command, ...this.facts.sources[name] } };
   }
 }
 
 // Return a message on one line: a request like a call, a reply with an arrow before it.
-function text({ name, direction, fields, parts }) {
+function text({ command, kind, fields, parts }) {
   const shown = Object.keys(fields).map((field) => {
-    const own = parts.filter(([, , part]) => part.split(/[ []/)[0] === field).map((part) => part[4]);
+    const own = parts.filter(({ name }) => name.split(/[ []/)[0] === field).map(({ meaning }) => meaning);
     if (own.length < 2) return `${field}=${own[0] ?? ""}`;
     // Name each unit once.
-    const units = own.map((meaning) => /^-?[\d.e+-]+ (\D.*)$/.exec(meaning)?.[1] ?? "");
-    const last = (at) => (units[at] && units[at] !== units[at + 1] ? ` ${units[at]}` : "");
-    const numbers = own.map((meaning, at) => (units[at] ? meaning.slice(0, -units[at].length - 1) : meaning) + last(at));
-    const between = (at) => (units[at] === units[at + 1] ? ", " : "; ");
-    return `${field}=(${numbers.map((number, at) => number + (at + 1 < own.length ? between(at) : "")).join("")})`;
+    const [numbers, units] = [0, 1].map((at) => own.map((meaning) => /^(\S+) ?(.*)$/.exec(meaning)[at + 1]));
+    const after = (at) => (units[at] === units[at + 1] ? "," : `${units[at] && ` ${units[at]}`}${at + 1 < own.length ? ";" : ""}`);
+    return `${field}=(${numbers.map((number, at) => number + after(at)).join(" ")})`;
   });
-  return `${direction === "request" ? "" : "-> "}${name}(${shown.join(", ")})`;
+  return `${kind === "request" ? "" : "-> "}${command}(${shown.join(", ")})`;
 }
 
 // Takes the messages of a line in their order; returns the samples that studio/samples.py describes.
 export class Sampler {
-  constructor({ places }) {
-    Object.assign(this, { places, joints: [], target: [], end: [], sent: new Map() });
+  constructor({ places, commands }) {
+    Object.assign(this, { places, commands, joints: [], target: [], end: [], sent: new Map() });
   }
 
-  // Return the sample of an entry; none: it holds nothing to show.
-  take({ t, data }, message) {
-    if (!data) return undefined;
-    if (message.reason) return { t, z: data.length };
-    const { name, direction } = message;
+  // Return the sample of an entry; undefined: it holds nothing to show.
+  take({ t, data, reason }, message) {
+    if (reason) return { t, z: data.length };
+    const command = this.commands[message?.command];
+    if (!command) return undefined;
+    const row = message.fields[command.rows[message.kind === "request" ? "request" : "reply"]];
     let found;
-    if (direction === "request") {
-      this.sent.set(name, t);
-      found = this.requested(message);
+    if (message.kind === "request") {
+      this.sent.set(message.command, t);
+      found = this.requested(command, message.fields, row);
     } else {
-      found = this.replied(message);
-      const since = t - (this.sent.get(name) ?? -Infinity);
-      this.sent.delete(name);
+      found = finite(row) ? this.replied(command, row) : {};
+      const since = t - (this.sent.get(message.command) ?? -Infinity);
+      this.sent.delete(message.command);
       if (since >= 0 && since < LONGEST_REPLY_SECONDS) found.r = since * 1000;
     }
     return Object.keys(found).length ? { t, ...found } : undefined;
   }
 
-  replied({ command, fields }) {
-    const row = fields[command.rows.reply];
-    if (command.role === "joints" && finite(row)) {
+  replied({ role }, row) {
+    if (role === "joints") {
       this.joints = row;
       return { j: row, ...(near(row, this.target, REACHED_DEGREES) ? this.noTarget() : {}) };
     }
-    if (command.role === "coordinates" && finite(row)) {
-      return { c: row, ...(near(this.endOf(row), this.end, REACHED_MILLIMETRES) ? this.noTarget() : {}) };
-    }
-    return {};
+    if (role !== "coordinates") return {};
+    return { c: row, ...(near(this.endOf(row), this.end, REACHED_MILLIMETRES) ? this.noTarget() : {}) };
   }
 
-  requested({ command, fields }) {
-    const row = fields[command.rows.request];
-    if (command.role === "joint targets" && finite(row)) [this.target, this.end] = [row, []];
-    else if (command.role === "joint target" && this.joints.length) {
-      const [joint, target] = command.one.map((name) => fields[name]);
+  requested({ role, one, ends }, fields, row) {
+    if (role === "joint targets" && finite(row)) [this.target, this.end] = [row, []];
+    else if (role === "joint target" && this.joints.length) {
+      const [joint, target] = one.map((name) => fields[name]);
       if (!(joint >= 1 && joint <= this.joints.length)) return {};
       [this.target, this.end] = [(this.target.length ? this.target : this.joints).with(joint - 1, target), []];
-    } else if (command.role === "coordinate targets" && finite(row)) {
-      [this.target, this.end] = [[], this.endOf(row)];
-    } else if (this.target.length || this.end.length) return command.ends ? this.noTarget() : {};
-    else return {};
+    } else if (role === "coordinate targets" && finite(row)) [this.target, this.end] = [[], this.endOf(row)];
+    else return ends && (this.target.length || this.end.length) ? this.noTarget() : {};
     const shown = (numbers) => (numbers.length ? numbers : null);
     return { tj: shown(this.target), te: shown(this.end) };
   }
