@@ -23,10 +23,12 @@ from cobotwire.simulator import MemoryTransport, SimulatedArm, SteppedClock
 from cobotwire.simulator.start import coordinates
 from cobotwire.studio.access import HEADERS
 from cobotwire.studio.controls import controls
-from cobotwire.studio.extras import PAGE
+from cobotwire.studio.explained import about
+from cobotwire.studio.extras import CURVES, PAGE
 from cobotwire.studio.forms import forms
 from cobotwire.studio.robot_facts import robot_facts
 from cobotwire.studio.samples import ends_target
+from cobotwire_codegen.model import Edition as Model
 
 ROOT = Path(__file__).parents[1]
 sys.path.insert(0, str(ROOT / "tools"))
@@ -53,31 +55,27 @@ def facts(edition: Edition, others: list[Table]) -> dict[str, Any]:
     """Return what the page must know about an edition, as JSON values."""
     table, limits = edition.TABLE, Limits(speed=100)
     refused = refusals(table, limits)
-    own = own_query(table, others)
+    own, sources = own_query(table, others), load_sources(edition.__name__)
     return {
         "robot": robot_facts(table),
         "client": edition.CLIENT.__name__,
         "controls": controls(limited(table, limits), refused),
         "forms": [form for form in forms(table) if form["name"] not in refused],
-        "sources": load_sources(edition.__name__),
-        "commands": {each.name: _described(each) for each in table.commands},
+        "commands": {each.name: _described(each, sources) for each in table.commands},
         "own": own.name if own else "",
         "ready": [_readiness(table, role) for role in ROLES if table.find_role(role)],
         "places": coordinates(table),
     }
 
 
-def _described(command: Command) -> dict[str, Any]:
+def _described(command: Command, sources: Any) -> dict[str, Any]:
     """Return what explains a command, and where its messages have joints and targets."""
     rows = {}
     for direction, variants in (("request", command.request), ("reply", command.reply)):
         fields = [v.fields[row_index(v)].name for v in variants if row_index(v) >= 0]
         rows[direction] = fields[0] if fields else ""
     described = {
-        "title": command.title,
-        "doc": command.doc,
-        "safety": command.safety,
-        "notes": list(command.notes),
+        "about": about(command, sources),
         "role": command.role,
         "rows": rows,
         "ends": ends_target(command),
@@ -128,14 +126,21 @@ def record_example(path: Path) -> None:
             clock.sleep(1 / 20)
 
 
-def build(folder: Path) -> str:
-    """Write the page; return why it was not built, or an empty text."""
-    folder.mkdir(parents=True, exist_ok=True)
-    if missing := npm_package.missing():
-        text = f"This website was built without the page: it {missing}."
-        (folder / "index.html").write_text(f"<!doctype html><title>No page</title>{text}", "utf-8")
-        return missing
-    package = npm_package.build()
+def missing() -> str:
+    """Return what the page needs and is not here; empty: nothing."""
+    return npm_package.missing() or ("" if CURVES.is_file() else "needs uPlot: make front-end")
+
+
+def build(folder: Path, found: list[Model]) -> None:
+    """Write the page; ``found`` are the checked editions. Without its parts it says what it needs."""
+    shutil.rmtree(folder, ignore_errors=True)
+    folder.mkdir(parents=True)
+    if needs := missing():
+        text = f"This website was built without the page: it {needs}."
+        page = f'<!doctype html><html lang="en"><title>No page</title><p>{text}</p>'
+        (folder / "index.html").write_text(page, "utf-8")
+        return
+    package = npm_package.build(found)
     shutil.copytree(PAGE, folder, dirs_exist_ok=True)
     shutil.copytree(HERE, folder, dirs_exist_ok=True)
     for part, pattern in (("dist", "*.js"), ("dist", "*.wasm"), ("editions", "*.js")):
@@ -153,10 +158,8 @@ def build(folder: Path) -> str:
         (folder / "editions" / f"{name}.json").write_text(text, "utf-8")
     titles = {name: table.title for name, table in tables.items()}
     (folder / "editions.json").write_text(json.dumps(titles), "utf-8")
-    (folder / "example.pcapng").unlink(missing_ok=True)
     record_example(folder / "example.pcapng")
     _list_files(folder)
-    return ""
 
 
 def _list_files(folder: Path) -> None:

@@ -70,7 +70,7 @@ export class Reader {
     const shown = { n, t, d, h: hex(data.subarray(0, SHOWN_BYTES)) };
     if (data.length > SHOWN_BYTES) shown.size = data.length;
     if (message?.command) {
-      const { safety } = this.facts.commands[message.command];
+      const { safety } = this.facts.commands[message.command].about;
       return { ...shown, k: "frame", l: message.command, x: text(message).slice(0, SHOWN_TEXT), s: safety };
     }
     const noise = d === "sent" ? ["fill", "no request of the edition"] : [reason, REASONS[reason]];
@@ -87,12 +87,12 @@ export class Reader {
       return { ...found, noise: reason, reason: REASONS[reason], advice, facts: {} };
     }
     if (!message?.command) return { ...found, text: message?.text ?? found.text };
-    const [name, command] = [message.command, this.facts.commands[message.command]];
+    const { about } = this.facts.commands[message.command];
     const parts = message.parts.map(({ at, size, name: part, raw, meaning }) => ({
       ...{ at, hex: hex(data.subarray(at, at + size)), name: part },
-      ...{ raw: raw === undefined ? null : String(raw), meaning: part === "CMD" ? `${name}: ${command.title}` : meaning },
+      ...{ raw: raw === undefined ? null : String(raw), meaning: part === "CMD" ? `${about.name}: ${about.title}` : meaning },
     }));
-    return { ...found, parts, command: { name, ...command, ...this.facts.sources[name] } };
+    return { ...found, parts, command: about };
   }
 }
 

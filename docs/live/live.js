@@ -32,7 +32,7 @@ export class Live extends Session {
     this.polled = POLLED.map(find).filter(Boolean).map((name) => ({ name, unanswered: 0, due: 0 }));
   }
 
-  // Open the port, check the edition with queries, and poll the arm; return what the queries showed.
+  // Open the port, and check the edition with queries; return what they showed.
   async connect(port) {
     const { baudrate, facts } = this;
     const url = nameOf(port);
@@ -66,16 +66,17 @@ export class Live extends Session {
     }
     this.port.url = url;
     this.arm = arm;
-    this.control(true);
-    this.publish({ states: { port: { url, problem: "" } } });
-    this.poll(arm);
-    return facts.own ? this.own(arm) : "other editions have the same queries";
+    const { own, robot } = facts;
+    if (!own) return "the joints were read, as other editions allow, too; check that they fit the arm";
+    const replied = await arm.call(own).then(() => true, () => false);
+    return `${own}, which only ${robot.edition} has, ${replied ? "replied" : "got no reply: check that the joints fit the arm"}`;
   }
 
-  async own(arm) {
-    const { own, robot } = this.facts;
-    const found = await arm.call(own).then(() => "replied", () => "got no reply");
-    return `${own}, which only ${robot.edition} has, ${found}`;
+  // Show that the arm is connected, and poll it.
+  begin() {
+    this.publish({ states: { port: { url: this.port.url, problem: "" } } });
+    this.control(true);
+    this.poll(this.arm);
   }
 
   get time() {
@@ -116,6 +117,7 @@ export class Live extends Session {
     const problem = `${why}. Stop cannot reach the arm: use its switch.`;
     this.add([{ t: this.time, d: "unknown", label: "port", text: why }]);
     this.publish({ states: { port: { url: this.port.url, problem }, refused: problem } });
+    this.showControl();
   }
 
   // Stop the arm if it was set in motion, and close the port.

@@ -19,17 +19,14 @@ export class Recorded extends Session {
     super(publish, facts, streams, { url: capture.url, baudrate: capture.baudrate });
     const { packets, remark, interfaces } = capture;
     this.startNs = packets.reduce((first, { ns }) => (ns < first ? ns : first), packets[0].ns);
-    const cut = streams.flatMap((stream) => {
-      let before;
-      const found = packets
-        .filter(({ direction }) => direction === stream.direction)
-        .flatMap(({ ns, data }) => {
-          const silent = before !== undefined && ns - before > GAP_NS ? stream.silence() : [];
-          before = ns;
-          return [...silent, ...stream.take(Number(ns - this.startNs) / 1e9, data)];
-        });
-      return [...found, ...stream.silence()];
-    });
+    const [cut, before] = [[], {}];
+    for (const { ns, direction, data } of packets) {
+      const stream = streams.find((each) => each.direction === direction);
+      if (ns - (before[direction] ?? ns) > GAP_NS) cut.push(...stream.silence());
+      before[direction] = ns;
+      cut.push(...stream.take(Number(ns - this.startNs) / 1e9, data));
+    }
+    for (const stream of streams) cut.push(...stream.silence());
     this.entries = cut.sort((one, other) => one.t - other.t).slice(0, MOST_ENTRIES);
     this.entries.forEach((entry, n) => (entry.n = n));
     this.seconds = this.entries.at(-1).t;

@@ -42,13 +42,15 @@ const requests = {
   async connect({ name, speed, at, infos }) {
     const ports = await navigator.serial.getPorts();
     if (JSON.stringify(ports.map((port) => port.getInfo())) !== infos) throw new Error("the ports changed meanwhile: connect again");
-    if (session) return session.connect(ports[at]);
-    const [facts, module] = await load(name);
-    const baudrate = edition(await machine(), module.table)[1];
-    const opened = await Live.make(publish, facts, { module, baudrate, speed });
-    const shown = await opened.connect(ports[at]);
-    session = opened;
-    hello(facts, { mode: "live", url: session.port.url });
+    let live = session;
+    if (!live) {
+      const [facts, module] = await load(name);
+      live = await Live.make(publish, facts, { module, speed, baudrate: edition(await machine(), module.table)[1] });
+    }
+    const shown = await live.connect(ports[at]);
+    if (!session) hello(live.facts, { mode: "live", url: live.port.url });
+    session = live;
+    session.begin();
     return shown;
   },
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import threading
+import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -19,6 +20,7 @@ from cobotwire.editions.mycobot280.table import TABLE
 from cobotwire.simulator import SimulatedArm, TcpServer
 from live_page import POLICY
 
+STOP = bytes.fromhex("FE FE 02 29 FA")
 # The script of the page and the worker each have this port.
 PORT = """
 const port = {
@@ -46,13 +48,12 @@ class LiveSite:
 
     Attributes:
         sent: the bytes that the page has written to its port.
-        requests: the addresses that were requested.
+        stopped_at: when the last stop was written, by the monotonic clock.
     """
 
     def __init__(self, folder: Path, arm: TcpServer, before: str) -> None:
         self._folder, self._arm, self._before = folder, arm, before
-        self.sent, self.requests = bytearray(), list[str]()
-        self.url = ""
+        self.sent, self.stopped_at, self.url = bytearray(), 0.0, ""
         self._sockets: set[WebSocket] = set()
         self._loop: asyncio.AbstractEventLoop | None = None
 
@@ -65,7 +66,6 @@ class LiveSite:
     async def file(self, request: Request) -> Response:
         """Serve a file; the worker has a port too."""
         name = request.path_params["name"] or "index.html"
-        self.requests.append(name)
         headers = {"content-security-policy": POLICY, "cache-control": "no-store"}
         if name in ("source.js", "worker.js"):
             text = self._before + (self._folder / name).read_text("utf-8")
@@ -86,6 +86,8 @@ class LiveSite:
             while True:
                 data = await socket.receive_bytes()
                 self.sent += data
+                if STOP in data:
+                    self.stopped_at = time.monotonic()
                 writer.write(data)
         except (WebSocketDisconnect, RuntimeError):
             self._sockets.discard(socket)
