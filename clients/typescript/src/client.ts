@@ -2,8 +2,9 @@
 /** The client: what users call. Modules of editions add a method for each command. */
 import { ProtocolError, ReplyTimeout, UsageError } from "./errors.js";
 import { Line, WRITE_SECONDS, now } from "./line.js";
-import { edition, inNode, machine, node, objectOf, type Value } from "./machine.js";
+import { edition, machine, objectOf, type Value } from "./machine.js";
 import { nameOf, openWebSerial, reason, type Transport, type WebSerialPort } from "./transport.js";
+import { inNode, node } from "./wasm.js";
 
 /** Where an arm is: `/dev/ttyACM0` or `socket://host:port` in Node, a port of the browser, a transport. */
 export type Port = string | WebSerialPort | Transport;

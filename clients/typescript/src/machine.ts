@@ -1,5 +1,6 @@
 /** The session in WebAssembly: one call takes a message of values and returns one. */
 import { failure } from "./errors.js";
+import { wasm } from "./wasm.js";
 
 /** What a message consists of; an absent value is `undefined`. */
 export type Value = undefined | number | bigint | boolean | string | Uint8Array | readonly Value[];
@@ -18,15 +19,6 @@ const WORD = 2 ** 32;
 /** Short texts recur: names of functions, commands and arguments. */
 const SHORT = 32;
 const MOST_SHORT = 2000;
-const NODE = "./node.js";
-
-/** Whether the program runs in Node. Its module has no constant name, so that no bundler follows it. */
-export const inNode = typeof globalThis.process === "object" && !!process.versions?.node;
-
-/** Return the module with what only Node has. */
-export async function node(): Promise<typeof import("./node.js")> {
-  return (await import(NODE)) as typeof import("./node.js");
-}
 
 export class Machine {
   private heap = new Uint8Array();
@@ -39,9 +31,7 @@ export class Machine {
   private constructor(private readonly wasm: Exports) {}
 
   static async load(): Promise<Machine> {
-    const url = new URL("./cobotwire.wasm", import.meta.url);
-    const bytes = inNode ? (await node()).read(url) : (await fetch(url)).arrayBuffer();
-    const module = await WebAssembly.compile((await bytes) as BufferSource);
+    const module = await WebAssembly.compile(await wasm());
     const instance = await WebAssembly.instantiate(module);
     return new Machine(instance.exports as unknown as Exports);
   }

@@ -131,7 +131,7 @@ def format_bytes(value: Any) -> str:
     """Return bytes as hex digits, and texts in quotes."""
     if isinstance(value, bytes):
         return value.hex(" ").upper() or "no bytes"
-    return repr(list(value) if isinstance(value, tuple) else value)
+    return repr(value)
 
 
 def format_message(message: DecodedMessage) -> str:

@@ -94,7 +94,6 @@ fn shaped(value: Shown) -> String {
     match value {
         Shown::Bytes(bytes) if bytes.is_empty() => "no bytes".into(),
         Shown::Bytes(bytes) => hex(&bytes, " "),
-        Shown::Tuple(texts) => Shown::List(texts).to_string(),
         text => text.to_string(),
     }
 }
