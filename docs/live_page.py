@@ -113,7 +113,7 @@ def _readiness(table: Table, role: Role) -> dict[str, Any]:
 
 
 def record_example(path: Path) -> None:
-    """Record an arm that moves, with some bytes of noise; its time is stepped."""
+    """Record an arm that moves; its time is stepped."""
     clock = SteppedClock()
     arm = SimulatedArm(mycobot280.TABLE, clock=clock, powered=True)
     with MyCobot280(MemoryTransport(arm, clock), record=path) as client:

@@ -42,7 +42,7 @@ export class Live extends Session {
       start: (received, ended) =>
         inner.start(
           (data) => (this.heard(data), received(data)),
-          (detail) => (ended(detail), this.lose(arm, `the port is gone: it ${detail}`)),
+          (detail) => (ended(detail), this.lose(arm, `${url}: ${detail}`)),
         ),
       write: (data) => {
         this.add(this.sent.take(this.time, data));
@@ -114,9 +114,9 @@ export class Live extends Session {
     this.arm = undefined;
     this.held = this.motion = false;
     clearTimeout(this.silence);
-    const problem = `${why}. Stop cannot reach the arm: use its switch.`;
+    const refused = `${why.replace(/\.$/, "")}. Stop cannot reach the arm: use its switch.`;
     this.add([{ t: this.time, d: "unknown", label: "port", text: why }]);
-    this.publish({ states: { port: { url: this.port.url, problem }, refused: problem } });
+    this.publish({ states: { port: { url: this.port.url, problem: "the port is gone" }, refused } });
     this.showControl();
   }
 

@@ -113,14 +113,15 @@ export class Source {
     }
     const { hello, port } = news.states;
     if (hello) {
-      document.querySelector("main").hidden = this.first.hidden = this.opening.hidden = this.about.hidden = true;
+      this.first.hidden = this.opening.hidden = this.about.hidden = true;
       document.querySelector("main").hidden = this.later.hidden = false;
-      this.again.hidden = this.disconnect.hidden = hello.mode === "recording";
+      this.again.hidden = this.disconnect.hidden = this.save.hidden = hello.mode === "recording";
     }
     if (port) {
       this.connected = port.problem === "";
       this.again.disabled = this.connected;
       this.disconnect.disabled = !this.connected;
+      if (port.problem) this.say(port.problem, true);
     }
     this.onBatch(news);
   }

@@ -87,10 +87,14 @@ def _connect(page: Page) -> None:
     page.until(f"{ANGLES}.length === 6 && {ANGLES}.every(Number.isFinite)")
 
 
-def _jog(page: Page, site: LiveSite) -> None:
-    """Hold the button that moves the first joint, until it moves."""
+def _allow(page: Page) -> None:
     page.click("#motion:not(:checked)")
     page.until("!document.getElementById('controls-of-arm').disabled")
+
+
+def _jog(page: Page, site: LiveSite) -> None:
+    """Hold the button that moves the first joint, until it moves."""
+    _allow(page)
     page.mouse("mousePressed", *page.middle(PLUS))
     page.until(f"{ANGLES}[0] > 1")
     assert site.sent.count(JOG) == 1
@@ -138,8 +142,7 @@ def _same(found: list[dict[str, Any]], expected: list[dict[str, Any]]) -> None:
 def test_arm_is_connected_driven_and_saved(site: LiveSite, page: Page, tmp_path: Path) -> None:
     _connect(page)
     assert "Allow motion" in page.text("move-why")
-    page.click("#motion")
-    page.until("document.getElementById('motion').checked")
+    _allow(page)
     assert page.send("send_angles", 20, 10, 0, 0, 0, 0, 31).startswith("speed is 31")
     assert page.send("send_angles", 20, 10, 0, 0, 0, 0, 30) == "sent"
     page.until(f"Math.abs({ANGLES}[0] - 20) < 0.1")
@@ -183,11 +186,13 @@ def test_stop_needs_no_permission(site: LiveSite, page: Page, stop: str) -> None
 
 
 @pytest.mark.parametrize("way", ["reload", "leave", "close"])
-def test_left_page_stops_the_arm(site: LiveSite, folder: Path, way: str) -> None:
+def test_left_page_stops_an_arm_in_motion(site: LiveSite, way: str) -> None:
     with browser() as page:
         _open(page, site.url)
         _connect(page)
-        _jog(page, site)
+        _allow(page)
+        assert page.send("send_angles", 160, 0, 0, 0, 0, 0, 10) == "sent"
+        assert STOP not in site.sent
         if way == "close":
             page.tab.call("Page.close")
         else:
@@ -199,8 +204,8 @@ def test_unplugged_arm_is_reported_and_can_be_connected_again(site: LiveSite, pa
     _connect(page)
     _jog(page, site)
     site.unplug()
-    page.until("document.getElementById('status').textContent.startsWith('the port is gone')")
-    assert "use its switch" in page.text("status")
+    page.until("document.getElementById('status').textContent === 'the port is gone'")
+    assert "Stop cannot reach the arm: use its switch." in page.text("move-status")
     assert page.text("move-why") == "The port is gone."
     page.press("Escape")
     page.until("document.getElementById('notice').textContent.startsWith('Stop was NOT sent: ')")
