@@ -208,7 +208,7 @@ nightly: .venv/.tools .venv/.native ## run the long searches one after another, 
 
 every-edition: set-up ## test all editions where `make test` tests a sample
 	EVERY_EDITION=1 $(BIN)/python -m pytest tests/codec/test_message_tables.py tests/docs/test_site.py \
-		tests/docs/test_robot_pages.py tests/mutation/test_mutants.py tests/conformance/survey \
+		tests/docs/test_robot_pages.py tests/mutation/test_mutants.py tests/conformance/survey tests/conformance/codec \
 		tests/peers/test_layer.py tests/peers/test_migrated_calls.py
 
 urdf: .venv/.tools .venv/.native ## compare the poses of our URDF files with yourdfpy

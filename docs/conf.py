@@ -16,6 +16,7 @@ from cobotwire_codegen.emit import write
 from cobotwire_codegen.project import SITE, confirmed_table, editions, products
 
 sys.path.insert(0, str(Path(__file__).parent))
+import live_page
 from robot_picture import picture
 from site_search import UserWords, name_commands
 
@@ -86,6 +87,12 @@ def _lead_on(app: Sphinx, error: Exception | None) -> None:
             f'<meta http-equiv="refresh" content="0; url={new}.html"><a href="{new}.html">moved</a>'
         )
         Path(app.outdir, f"{old}.html").write_text(link, "utf-8")
+
+
+def _build_live(app: Sphinx, error: Exception | None) -> None:
+    """Add the page that drives an arm in the browser."""
+    if app.builder.format == "html":
+        live_page.build(Path(app.outdir, "live"), EDITIONS)
 
 
 def _add_robots(app: Sphinx, page: str, source: list[str]) -> None:
@@ -171,3 +178,4 @@ def setup(app: Sphinx) -> None:
     app.connect("doctree-read", _name_commands)
     app.connect("html-page-context", _collapse, priority=400)
     app.connect("build-finished", _lead_on)
+    app.connect("build-finished", _build_live)

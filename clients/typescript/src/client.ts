@@ -197,6 +197,12 @@ export class Client {
     return this.perform(command, Object.entries(fields).flat());
   }
 
+  /** Return the bytes of a request by the name of its command, checked as for `call`; nothing is sent. */
+  prepare(command: string, fields: Record<string, Value> = {}): Uint8Array {
+    const { address } = this.settings;
+    return this.line.ask("prepare", command, Object.entries(fields).flat(), address, undefined);
+  }
+
   /** @internal */
   async perform(command: string, named: Value[]): Promise<Record<string, Value>> {
     const { address, ackWithin, signal, sampled } = this.settings;

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 from cobotwire.codec.interface import Codec, DecodedMessage
@@ -9,6 +10,7 @@ from cobotwire.diagnose import Finding
 from cobotwire.diagnose.explain import Part, frame_parts
 from cobotwire.editions import Edition
 from cobotwire.protocol.loading import load_sources
+from cobotwire.protocol.table import Command
 from cobotwire.studio.describing import Describer, frame_of
 from cobotwire.studio.entries import Entry
 
@@ -50,17 +52,19 @@ class Explainer:
         if text := entry.data[len(frame) :]:
             part = Part(len(frame), text, "text", ascii(text.decode("latin-1")))
             parts.append(_part(part))
-        return {
-            "parts": parts,
-            "command": {
-                "name": command.name,
-                "title": command.title,
-                "doc": command.doc,
-                "safety": command.safety,
-                "notes": list(command.notes),
-                **self._sources.get(command.name, {}),
-            },
-        }
+        return {"parts": parts, "command": about(command, self._sources)}
+
+
+def about(command: Command, sources: Mapping[str, Any]) -> dict[str, Any]:
+    """Return what the spec says about a command; ``sources`` are those of the edition."""
+    return {
+        "name": command.name,
+        "title": command.title,
+        "doc": command.doc,
+        "safety": command.safety,
+        "notes": list(command.notes),
+        **sources.get(command.name, {}),
+    }
 
 
 def _part(part: Part) -> dict[str, Any]:

@@ -61,7 +61,7 @@ def _argument(command: Command, field: Field, optional: bool, radians: bool) -> 
     }
     if field.each or field.sizes:
         # A list whose length varies is written in one box.
-        form |= {"elements": [], "list": True}
+        form |= {"elements": [], "list": True, "rows": bool(field.each)}
     if field.kind in ("bytes", "text"):
         form["size"] = field.size
     if field.selector >= 0:

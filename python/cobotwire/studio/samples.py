@@ -80,7 +80,7 @@ class Sampler:
         elif command.role == "coordinate targets" and _finite(row):
             self._target, self._end = [], self._end_of(row)
         elif self._target or self._end:
-            return self._no_target() if _ends_target(command) else {}
+            return self._no_target() if ends_target(command) else {}
         else:
             return {}
         return {"tj": _rounded(self._target) or None, "te": _rounded(self._end) or None}
@@ -94,7 +94,7 @@ class Sampler:
         return {"tj": None, "te": None}
 
 
-def _ends_target(command: Command) -> bool:
+def ends_target(command: Command) -> bool:
     """Return whether a command stops the arm, or may move it to an unknown target."""
     return any(
         effect.what in ("stop", "halt", "forget")

@@ -54,6 +54,10 @@ impl Client {
                 let address = self.handle.clone().at(address)?.settings.address;
                 Ok(Value::Integer(address.unwrap_or_default().into()))
             }
+            ("prepare", given) => {
+                let encoded = self.prepare(given)?.1.request;
+                Ok(Value::Bytes([encoded.frame, encoded.text].concat()))
+            }
             ("subscribe", [Value::Text(command)]) => {
                 let command = self.handle.encoder.command(command)?;
                 self.queues.push(self.session.subscribe(command));
@@ -114,16 +118,9 @@ impl Client {
         Ok(Value::Row(vec![bytes, Value::Row(ended), idle, call]))
     }
 
-    /// Submit a request; return its number, by which a step will report how it ended.
-    fn call(&mut self, given: &[Value], now: u64) -> Result<Value, Error> {
-        let [
-            Value::Text(command),
-            Value::Row(named),
-            address,
-            within,
-            sampled,
-        ] = given
-        else {
+    /// Check and encode a request; return it with the settings of its call.
+    fn prepare(&self, given: &[Value]) -> Result<(Handle, Prepared), Error> {
+        let [Value::Text(command), Value::Row(named), address, within, ..] = given else {
             return Err(wrong());
         };
         let mut handle = self.handle.clone();
@@ -137,6 +134,15 @@ impl Client {
         });
         let arguments: Vec<_> = pairs.collect();
         let prepared = handle.prepare_named(command, &arguments)?;
+        Ok((handle, prepared))
+    }
+
+    /// Submit a request; return its number, by which a step will report how it ended.
+    fn call(&mut self, given: &[Value], now: u64) -> Result<Value, Error> {
+        let (mut handle, prepared) = self.prepare(given)?;
+        let [Value::Text(command), .., sampled] = given else {
+            return Err(wrong());
+        };
         if *sampled == Value::Flag(true) {
             let commands = &handle.encoder.edition.commands;
             let safety = commands

@@ -3,17 +3,25 @@
 from __future__ import annotations
 
 import json
+import os
 from collections import Counter
 
 import pytest
 
+import npm_package
 from cobotwire import codec as codecs
-from cobotwire.conformance.codec import Run, derive_questions
+from cobotwire import editions
+from cobotwire.conformance.codec import Program, Run, derive_questions
 from cobotwire.conformance.codec.questions.frames import variants_of
 from cobotwire.conformance.codec.questions.our_codec import OurCodec
 from cobotwire.conformance.report import Verdict
 from conformance.codec.questions import questions_of
 from strategies import TABLES
+from targets.typescript.comparison import package
+from vectors import ROOT
+
+# `make every-edition` asks the codec in Node all questions: it answers some 2,000 a second.
+EVERY = "EVERY_EDITION" in os.environ
 
 
 @pytest.mark.parametrize("name", ["native", "reference"])
@@ -23,6 +31,17 @@ def test_both_codecs_pass_every_test_case_of_every_edition(
 ) -> None:
     table = TABLES[edition]
     report = Run(table, OurCodec(codecs.load(table, name))).ask_all(questions_of(edition))
+    assert report.conforms
+    assert {result.verdict for result in report.results} == {Verdict.PASS}
+
+
+@pytest.mark.skipif(bool(npm_package.missing()), reason=npm_package.missing())
+@pytest.mark.parametrize("edition", editions.names() if EVERY else TABLES)
+def test_codec_in_node_answers_a_sample_of_questions(edition: str) -> None:
+    package()
+    questions = questions_of(edition)[:: 1 if EVERY else 23]
+    with Program(["node", str(ROOT / "tests/typescript/codec.mjs")]) as program:
+        report = Run(editions.load(edition).TABLE, program).ask_all(questions)
     assert report.conforms
     assert {result.verdict for result in report.results} == {Verdict.PASS}
 

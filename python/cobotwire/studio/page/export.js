@@ -3,23 +3,27 @@
 import { byId, el } from "./dom.js";
 
 export function wireExport(source) {
-  byId("export").addEventListener("submit", async (event) => {
+  byId("export").addEventListener("submit", (event) => {
     event.preventDefault();
     const query = new URLSearchParams(new FormData(byId("export")));
     query.set("command", byId("by-command").value);
     query.set("direction", byId("by-direction").value);
-    const say = (text) => (byId("export-status").textContent = text);
-    say("writing");
-    try {
-      const response = await source.exported(query);
-      const named = /filename="([\w.-]+)"/.exec(response.headers.get("content-disposition"));
-      const data = await response.blob();
-      const address = URL.createObjectURL(data);
-      el("a", { href: address, download: named?.[1] ?? "studio.bin" }).click();
-      setTimeout(() => URL.revokeObjectURL(address), 10000);
-      say(`${named?.[1]}, ${data.size} bytes`);
-    } catch (error) {
-      say(error.message);
-    }
+    keep(source.exported(query), (text) => (byId("export-status").textContent = text));
   });
+}
+
+// Let the browser keep the file of a response, and say what became of it.
+export async function keep(coming, say) {
+  say("writing");
+  try {
+    const response = await coming;
+    const named = /filename="([\w.-]+)"/.exec(response.headers.get("content-disposition"));
+    const data = await response.blob();
+    const address = URL.createObjectURL(data);
+    el("a", { href: address, download: named?.[1] ?? "studio.bin" }).click();
+    setTimeout(() => URL.revokeObjectURL(address), 10000);
+    say(`${named?.[1]}, ${data.size} bytes`);
+  } catch (error) {
+    say(error.message);
+  }
 }

@@ -10,7 +10,7 @@ import { Line } from "./line.js";
 import { Move } from "./move.js";
 import { Player } from "./player.js";
 import { Send } from "./send.js";
-import { Server } from "./server.js";
+import { Source } from "./source.js";
 import { wireTabs } from "./tabs.js";
 
 // A sample that is older than this is marked as old.
@@ -25,7 +25,7 @@ let stops = 0;
 // When the newest joints were received, and their time on the line.
 let sampled = { at: 0, time: 0 };
 
-const source = new Server(take, connected);
+const source = new Source(take, connected);
 const details = new Details(source);
 const line = new Line((number) => details.show(number));
 const send = new Send(source, state);

@@ -16,7 +16,7 @@ function token() {
   return sessionStorage.getItem(KEY) ?? "";
 }
 
-export class Server {
+export class Source {
   // `onBatch` gets each batch of news; `onState` gets "open", "closed" or "refused".
   constructor(onBatch, onState) {
     this.token = token();
