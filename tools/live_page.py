@@ -43,7 +43,7 @@ def facts(edition: Edition, others: list[Table]) -> dict[str, Any]:
     """Return what the page must know about an edition, as JSON values."""
     table, limits = edition.TABLE, Limits(speed=100)
     refused = refusals(table, limits)
-    own, sources = own_query(table, others), load_sources(edition.__name__)
+    own, sources = own_query(table, others), load_sources(getattr(edition, "__name__", ""))
     return {
         "robot": robot_facts(table),
         "client": edition.CLIENT.__name__,
@@ -58,7 +58,7 @@ def facts(edition: Edition, others: list[Table]) -> dict[str, Any]:
 
 def _described(command: Command, sources: Any) -> dict[str, Any]:
     """Return what explains a command, and where its messages have joints and targets."""
-    described = {
+    described: dict[str, Any] = {
         "about": about(command, sources),
         "role": command.role,
         "rows": {"request": _row(command.request), "reply": _row(command.reply)},

@@ -13,9 +13,10 @@ from typing import Any
 import pytest
 
 import live_page
+import npm_package
 import vectors
+from cobotwire import editions
 from cobotwire.capture import read
-from cobotwire.editions import mycobot280
 from cobotwire.studio.describing import Describer
 from cobotwire.studio.explained import Explainer
 from cobotwire.studio.recorded import RecordedSession
@@ -116,7 +117,10 @@ def test_recording_becomes_the_entries_and_samples_of_the_studio(folder: Path) -
     assert done.returncode == 0, done.stderr
     found: dict[str, Any] = json.loads(done.stdout)
     session = RecordedSession(str(path), "mycobot280")
-    describer, explainer = Describer(session.codec), Explainer(mycobot280, session.codec)
+    describer, explainer = (
+        Describer(session.codec),
+        Explainer(editions.load("mycobot280"), session.codec),
+    )
     described = [describer.describe(*each) for each in enumerate(session.entries())]
     assert len(described) > 600
     _same(found["entries"], [json.loads(each.entry) for each in described])
@@ -272,6 +276,6 @@ def test_page_fits_and_axe_finds_nothing_serious(
 def test_site_without_node_says_what_is_missing(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(live_page.npm_package, "missing", lambda: "needs node: not installed")
+    monkeypatch.setattr(npm_package, "missing", lambda: "needs node: not installed")
     live_page.build(tmp_path / "live", [])
     assert "needs node: not installed" in (tmp_path / "live/index.html").read_text("utf-8")
