@@ -135,8 +135,8 @@ targets: products .venv/.native ## build each output target and run it in its re
 spec-mutants: .venv/.tools .venv/.native ## change each fact of the spec, one at a time; report what nothing notices
 	PYTHONPATH=tests:tests/peers $(BIN)/python -m spec_mutants
 
-docs: .venv/.tools .venv/.native ## build the docs site into docs/_build; a warning is an error
-	PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/python tools/npm_package.py --build || echo "the page decoder.html will not decode" >&2
+docs: .venv/.tools .venv/.native front-end-if-reachable ## build the docs site into docs/_build; a warning is an error
+	PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/python tools/npm_package.py --build || echo "decoder.html will not decode, live/ will be missing" >&2
 	$(BIN)/sphinx-build -q -W --keep-going -b html docs docs/_build
 	@echo open docs/_build/index.html
 

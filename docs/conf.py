@@ -15,10 +15,12 @@ from sphinx.application import Sphinx
 from cobotwire_codegen.emit import write
 from cobotwire_codegen.project import SITE, confirmed_table, editions, products
 
+sys.path.insert(0, str(Path(__file__).parents[1] / "tools"))
 sys.path.insert(0, str(Path(__file__).parent))
-import live_page
 from robot_picture import picture
 from site_search import UserWords, name_commands
+
+import live_page
 
 project = "cobotwire"
 author = "the cobotwire engineers"

@@ -1,72 +1,57 @@
 // A session with an arm. The rules are those of the studio's server: arm_line.py, sending.py and holding.py.
 
-import { LinkError, ProtocolError, ReplyTimeout } from "./cobotwire/dist/errors.js";
+import { LinkError, ReplyTimeout } from "./cobotwire/dist/errors.js";
 import { nameOf, openWebSerial } from "./cobotwire/dist/transport.js";
-import { values } from "./arguments.js";
-import { Stream } from "./entries.js";
-import { Session } from "./session.js";
+import { Session, Stream } from "./session.js";
 
-const POLLED = ["joints", "coordinates"];
 const POLL_MS = 100;
-// If a query had no reply this often although another one had, it is sent again only after a pause.
-const UNANSWERED = 2;
-const PAUSE_MS = 60_000;
-const SILENCE_MS = 500;
-// Noise may wait for more bytes.
-const IDLE_MS = 300;
+// A query without a reply, although another one has, is sent again only after a pause.
+const [UNANSWERED, PAUSE_MS] = [2, 60_000];
+// A page says at least this often that it holds a button; noise waits this long for more bytes.
+const [SILENCE_MS, IDLE_MS] = [500, 300];
 const now = () => performance.now();
 
 export class Live extends Session {
-  static async make(publish, facts, { module, baudrate, speed }) {
-    const streams = await Promise.all(["sent", "received"].map((direction) => Stream.load(direction, module.table)));
-    return new Live(publish, facts, streams, { module, baudrate, speed });
-  }
-
-  constructor(publish, facts, [sent, received], { module, baudrate, speed }) {
-    super(publish, facts, [sent, received], { baudrate, url: "" });
-    Object.assign(this, { sent, received, speed, client: module[facts.client] });
-    Object.assign(this, { start: now(), startNs: BigInt(Date.now()) * 1000000n, mine: true, motion: false, stops: 0 });
-    const { controls } = facts;
-    if (controls.speeds) controls.speeds.high = Math.min(controls.speeds.high, speed);
-    const find = (role) => Object.entries(facts.commands).find(([, command]) => command.role === role)?.[0];
-    this.polled = POLLED.map(find).filter(Boolean).map((name) => ({ name, unanswered: 0, due: 0 }));
+  static async make(publish, facts, module, { speed, baudrate }) {
+    const streams = await Promise.all(["sent", "received"].map((direction) => Stream.load(direction, module)));
+    const live = new Live(publish, facts, streams, { url: "", baudrate });
+    const polled = ["joints", "coordinates"].map((role) => Object.values(facts.commands).find((command) => command.role === role)?.about.name);
+    if (facts.controls.speeds) facts.controls.speeds.high = Math.min(facts.controls.speeds.high, speed);
+    Object.assign(live, { client: module[facts.client], speed, start: now(), startNs: BigInt(Date.now()) * 1000000n, stops: 0 });
+    return Object.assign(live, { polled: polled.filter(Boolean).map((name) => ({ name, unanswered: 0, due: 0 })) });
   }
 
   // Open the port, and check the edition with queries; return what they showed.
   async connect(port) {
-    const { baudrate, facts } = this;
-    const url = nameOf(port);
-    const inner = await openWebSerial(port, url, baudrate);
+    const [url, [sent, received]] = [nameOf(port), this.streams];
+    const inner = await openWebSerial(port, url, this.port.baudrate);
+    let arm;
     const transport = {
       ...{ url, close: () => inner.close(), abort: () => inner.abort() },
-      start: (received, ended) =>
-        inner.start(
-          (data) => (this.heard(data), received(data)),
-          (detail) => (ended(detail), this.lose(arm, `${url}: ${detail}`)),
-        ),
+      start: (take, ended) => {
+        const heard = (data) => {
+          this.add(received.take(this.time, data));
+          clearTimeout(this.idle);
+          this.idle = setTimeout(() => this.add(received.silence()), IDLE_MS);
+          take(data);
+        };
+        inner.start(heard, (detail) => (ended(detail), this.lose(arm, `${url}: ${detail}`)));
+      },
       write: (data) => {
-        this.add(this.sent.take(this.time, data));
-        this.add(this.sent.silence());
+        this.add([...sent.take(this.time, data), ...sent.silence()]);
         return inner.write(data);
       },
     };
-    let arm;
     try {
       arm = await this.client.open(transport, { limits: { speed: this.speed } });
-    } catch (error) {
-      inner.abort();
-      throw error;
-    }
-    try {
       await arm.call(this.polled[0].name);
     } catch (error) {
-      await arm.close();
-      const { edition } = facts.robot;
-      throw new Error(`no legal reply, so this is hardly an arm of the edition ${edition}; \`cobotwire identify\` finds out which (${error.message})`);
+      await (arm ?? inner).close();
+      const { edition } = this.facts.robot;
+      throw new Error(`no legal reply: is it an arm of the edition ${edition}? \`cobotwire identify\` finds out (${error.message})`);
     }
-    this.port.url = url;
-    this.arm = arm;
-    const { own, robot } = facts;
+    Object.assign(this, { arm, port: { ...this.port, url } });
+    const { own, robot } = this.facts;
     if (!own) return "the joints were read, as other editions allow, too; check that they fit the arm";
     const replied = await arm.call(own).then(() => true, () => false);
     return `${own}, which only ${robot.edition} has, ${replied ? "replied" : "got no reply: check that the joints fit the arm"}`;
@@ -81,12 +66,6 @@ export class Live extends Session {
 
   get time() {
     return (now() - this.start) / 1000;
-  }
-
-  heard(data) {
-    this.add(this.received.take(this.time, data));
-    clearTimeout(this.idle);
-    this.idle = setTimeout(() => this.add(this.received.silence()), IDLE_MS);
   }
 
   async poll(arm) {
@@ -111,116 +90,99 @@ export class Live extends Session {
 
   lose(arm, why) {
     if (!arm || this.arm !== arm) return;
-    this.arm = undefined;
-    this.held = this.motion = false;
-    clearTimeout(this.silence);
-    const refused = `${why.replace(/\.$/, "")}. Stop cannot reach the arm: use its switch.`;
     this.add([{ t: this.time, d: "unknown", label: "port", text: why }]);
-    this.publish({ states: { port: { url: this.port.url, problem: "the port is gone" }, refused } });
-    this.showControl();
+    this.end("the port is gone");
+    this.refuse(`${why.replace(/\.$/, "")}. Stop cannot reach the arm: use its switch.`);
   }
 
   // Stop the arm if it was set in motion, and close the port.
   async leave() {
     const { arm } = this;
-    if (!arm) return;
     this.stops += 1;
-    this.arm = undefined;
-    this.held = false;
-    const left = arm[Symbol.asyncDispose]();
-    this.publish({ states: { port: { url: this.port.url, problem: "not connected" } } });
-    await left;
+    this.end("not connected");
+    await arm?.[Symbol.asyncDispose]();
   }
 
-  control(take) {
-    Object.assign(this, { mine: take, motion: false });
-    this.showControl();
+  end(problem) {
+    clearTimeout(this.silence);
+    this.arm = undefined;
+    this.held = false;
+    this.publish({ states: { port: { url: this.port.url, problem } } });
+    this.control(this.mine);
+  }
+
+  refuse(refused) {
+    this.publish({ states: { refused } });
+  }
+
+  control(mine, motion = false) {
+    Object.assign(this, { mine, motion });
+    this.publish({ states: { control: { page: mine ? "page" : "", motion } } });
   }
 
   allowMotion(on) {
-    if (!this.mine) throw new Error("this page only watches; take the control before you send");
-    this.motion = on;
-    this.showControl();
+    this.control(this.mine, on && this.mine);
   }
 
-  showControl() {
-    this.publish({ states: { control: { page: this.mine ? "page" : "", motion: this.motion } } });
+  form(name) {
+    const form = this.facts.forms.find((each) => each.name === name);
+    if (!form || !this.arm) throw new Error(form ? "no arm is connected" : `${name} is no command of this page`);
+    return form;
   }
 
   // Return the form of a command that may be sent now.
-  check(name) {
+  permitted(name) {
     const form = this.form(name);
-    if (!this.arm) throw new Error("no arm is connected");
     if (!this.mine) throw new Error("this page only watches; take the control before you send");
     if (form.safety !== "query" && !this.motion) throw new Error(`${name} is not a query (${form.safety}): allow motion in the page first`);
     return form;
   }
 
-  form(name) {
-    const form = this.facts.forms.find((each) => each.name === name);
-    if (!form) throw new Error(`${name} is no command of this page`);
-    return form;
-  }
-
   preview(name, texts) {
-    if (!this.arm) throw new Error("no arm is connected");
-    const data = this.arm.prepare(name, values(this.form(name), texts));
-    const [frame] = [...this.sent.decoder.feed(data), ...this.sent.decoder.flush()];
-    return this.reader.explain({ t: 0, d: "sent", ...frame });
+    const given = values(this.form(name), texts);
+    return this.explained({ t: 0, d: "sent", data: this.arm.prepare(name, given) });
   }
 
   // Send a command with the texts of its arguments; return its result.
   async send(name, texts, force) {
-    const form = this.check(name);
+    const form = this.permitted(name);
     const { arm, stops } = this;
     const given = values(form, texts);
     // A wrong value is reported before the arm is asked whether it obeys.
     arm.prepare(name, given);
     const checks = form.moves && !force;
-    if (checks) await this.checkReady(name, arm);
+    if (checks) await this.check(arm, this.facts.ready, false, `${name} was not sent:`);
     const query = form.safety === "query";
     if (!query && this.stops !== stops) throw new Error(`${name} was not sent, because the arm was stopped meanwhile`);
-    this.check(name);
-    let fields;
+    this.permitted(name);
+    let results;
     try {
-      fields = await arm.call(name, given);
+      results = Object.values(await arm.call(name, given));
     } finally {
       // The stop may have overtaken it.
       if (!query && this.stops !== stops) await this.sendStop();
     }
-    if (checks) await this.checkAccepted(name, arm);
-    const results = Object.values(fields);
-    return results.length > 1 ? fields : (results[0] ?? null);
+    const error = this.facts.ready.filter(({ role }) => role === "error");
+    if (checks) await this.check(arm, error, true, `${name} was sent, but`);
+    return results.length > 1 ? results : (results[0] ?? null);
   }
 
-  // Ask the arm whether it obeys. If only some queries get no reply, their states are not known.
-  async checkReady(name, arm) {
-    let problems = [];
-    let replied = false;
-    for (const query of this.facts.ready) {
+  // Ask the arm for states; throw if it does not obey. A state that gets no reply after another one did is not known.
+  async check(arm, queries, replied, how) {
+    const problems = [];
+    for (const { command, field, texts, usual } of queries) {
       try {
-        problems = [...problems, ...(await this.problem(query, arm))];
+        const state = Number((await arm.call(command))[field]);
+        problems.push(texts[state] ?? usual.replace("{}", state));
         replied = true;
       } catch (error) {
         if (!(error instanceof ReplyTimeout) || !replied) throw error;
       }
     }
-    if (problems.length) throw new Error(`${name} was not sent: ${problems.join("; ")}`);
+    if (problems.some(Boolean)) throw new Error(`${how} ${problems.filter(Boolean).join(". Also, ")}`);
   }
 
-  async checkAccepted(name, arm) {
-    const query = this.facts.ready.find(({ role }) => role === "error");
-    const problems = query ? await this.problem(query, arm).catch(nothingIfLate) : [];
-    if (problems.length) throw new Error(`${name} was sent, but the arm may not obey: ${problems.join("; ")}`);
-  }
-
-  async problem({ command, field, texts, usual }, arm) {
-    const state = Number((await arm.call(command))[field]);
-    const text = texts[state] ?? usual.replace("{}", state);
-    return text ? [text] : [];
-  }
-
-  // Stop the arm at once. Nothing but a query follows a stop that was sent in the meantime.
+  // Stop the arm at once. Nothing but a query follows that was requested before.
   async stop() {
     this.stops += 1;
     await this.sendStop();
@@ -231,11 +193,11 @@ export class Live extends Session {
     await this.arm.call(this.facts.robot.stop);
   }
 
-  // A motion that lasts only while the page holds a button.
+  // Send a motion that lasts only while the page holds a button, and says so.
   hold(command, given) {
     this.held = true;
     this.keep();
-    this.send(command, given, false).catch((error) => this.publish({ states: { refused: error.message } }));
+    this.send(command, given, false).catch((error) => this.refuse(error.message));
   }
 
   keep() {
@@ -243,7 +205,7 @@ export class Live extends Session {
     clearTimeout(this.silence);
     this.silence = setTimeout(() => {
       this.release();
-      this.publish({ states: { refused: "the arm was stopped: the page did not say that the button is held" } });
+      this.refuse("the arm was stopped: the page did not say that the button is held");
     }, SILENCE_MS);
   }
 
@@ -251,11 +213,32 @@ export class Live extends Session {
     if (!this.held) return;
     this.held = false;
     clearTimeout(this.silence);
-    this.stop().catch((error) => this.publish({ states: { refused: `stop was NOT sent: ${error.message}` } }));
+    this.stop().catch((error) => this.refuse(`stop was NOT sent: ${error.message}`));
   }
 }
 
-function nothingIfLate(error) {
-  if (error instanceof ReplyTimeout || error instanceof ProtocolError) return [];
-  throw error;
+// Return the arguments that the texts of a form state; the codec checks their ranges.
+function values(form, texts) {
+  const given = Object.entries(texts).filter(([, text]) => text);
+  return Object.fromEntries(given.map(([name, text]) => [name, value(form.arguments.find((each) => each.name === name), text)]));
+}
+
+function value({ name, kind, many, list, rows, elements }, text) {
+  const wrong = (allowed) => new Error(`${name} is ${JSON.stringify(text)}; allowed: ${allowed}`);
+  if (kind === "text") return list ? text.split(",").filter(Boolean) : text;
+  if (kind === "flag") {
+    if (text !== "on" && text !== "off") throw wrong("on or off");
+    return text === "on";
+  }
+  if (kind === "bytes") {
+    if (!/^(\s*[\da-f]{2})*\s*$/i.test(text)) throw wrong("pairs of hex digits");
+    return Uint8Array.from(text.match(/[\da-f]{2}/gi) ?? [], (pair) => Number.parseInt(pair, 16));
+  }
+  const number = (word) => {
+    const found = Number(word);
+    if (!word.trim() || !Number.isFinite(found)) throw wrong("a number");
+    return elements[0]?.unit === "radians" ? (found * 180) / Math.PI : found;
+  };
+  if (rows) return text.split(";").map((row) => row.split(",").map(number));
+  return many || list ? text.split(",").map(number) : number(text);
 }

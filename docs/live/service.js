@@ -1,21 +1,17 @@
 // Keep the files of the page, so that it works without a network.
 
-const CACHE = `cobotwire-live-${"VERSION"}`;
-const FILES = ["FILES"];
+const [PREFIX, VERSION, FILES] = ["cobotwire-live-", "VERSION", ["FILES"]];
 
-self.addEventListener("install", (event) => {
-  event.waitUntil(caches.open(CACHE).then((cache) => cache.addAll(FILES)).then(() => self.skipWaiting()));
-});
+async function install() {
+  await (await caches.open(PREFIX + VERSION)).addAll(FILES);
+  await self.skipWaiting();
+}
 
-self.addEventListener("activate", (event) => {
-  const old = async () => {
-    for (const name of await caches.keys()) if (name.startsWith("cobotwire-live-") && name !== CACHE) await caches.delete(name);
-    await self.clients.claim();
-  };
-  event.waitUntil(old());
-});
+async function activate() {
+  for (const name of await caches.keys()) if (name.startsWith(PREFIX) && name !== PREFIX + VERSION) await caches.delete(name);
+  await self.clients.claim();
+}
 
-self.addEventListener("fetch", (event) => {
-  const kept = caches.match(event.request, { ignoreSearch: true });
-  event.respondWith(kept.then((found) => found ?? fetch(event.request)));
-});
+self.addEventListener("install", (event) => event.waitUntil(install()));
+self.addEventListener("activate", (event) => event.waitUntil(activate()));
+self.addEventListener("fetch", (event) => event.respondWith(caches.match(event.request).then((kept) => kept ?? fetch(event.request))));

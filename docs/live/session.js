@@ -1,18 +1,54 @@
-// What a session with an arm and a recording have in common: the entries that the page shows, explains and saves.
+// What a session with an arm and a recording have in common: entries, as the studio's server describes and explains them.
 
-import { Reader, Sampler } from "./entries.js";
+import { Decoder } from "./cobotwire/dist/decoder.js";
 import { written } from "./pcapng.js";
+import { Sampler } from "./samples.js";
 
 // Beyond this the oldest entries are dropped.
 export const MOST_ENTRIES = 1_000_000;
-const DROPPED_AT_ONCE = 10_000;
+const [DROPPED_AT_ONCE, SHOWN_BYTES, SHOWN_TEXT] = [10_000, 64, 400];
+const DIRECTIONS = { sent: "request", received: "reply", unknown: "both" };
+const ADVICE = "save the recording; cobotwire decode names the noise and its cause";
+const REASONS = {
+  "no-header": "no frame starts here",
+  "bad-address": "a header with an address that the edition lacks",
+  "bad-length": "a header with a LEN that is not legal for its id",
+  "unknown-id": "a header with an id that the edition lacks",
+  "bad-check": "starts like a frame, but does not end like one",
+  truncated: "starts like a frame; the bytes end before it does",
+};
+const hex = (bytes) => Array.from(bytes, (byte) => byte.toString(16).padStart(2, "0")).join(" ").toUpperCase();
+
+// Cuts the bytes of one direction. An entry has its number `n`, the time `t` of its first byte in seconds, the direction
+// `d`, the bytes `data`, and the `reason` of noise; or it is a remark, with a `label` and a `text`.
+export class Stream {
+  static async load(direction, { table }) {
+    return Object.assign(new Stream(), { direction, decoder: await Decoder.load(table, DIRECTIONS[direction]), times: [], size: 0 });
+  }
+
+  // Return the entries that are certain after some bytes; then those that are because nothing follows.
+  take(t, data) {
+    this.times.push([this.size, t]);
+    this.size += data.length;
+    return this.entries(this.decoder.feed(data));
+  }
+
+  silence() {
+    return this.entries(this.decoder.flush());
+  }
+
+  entries(found) {
+    return found.map(({ offset, data, noise }) => {
+      while (this.times[1]?.[0] <= offset) this.times.shift();
+      return { t: this.times[0][1], d: this.direction, data, reason: noise };
+    });
+  }
+}
 
 export class Session {
   // `publish` gets the news for the page; `port` is the name and the rate of the serial port.
   constructor(publish, facts, streams, port) {
-    Object.assign(this, { publish, facts, port, entries: [], dropped: 0 });
-    this.reader = new Reader(facts, streams);
-    this.sampler = new Sampler(facts);
+    Object.assign(this, { publish, facts, streams, port, entries: [], dropped: 0, sampler: new Sampler(facts) });
   }
 
   add(entries) {
@@ -26,26 +62,68 @@ export class Session {
   }
 
   show(entry, listed = true) {
-    const message = this.reader.read(entry);
+    const message = this.read(entry);
     const sample = this.sampler.take(entry, message);
-    this.publish({ entries: listed ? [this.reader.describe(entry, message)] : [], samples: sample ? [sample] : [] });
+    this.publish({ entries: listed ? [this.describe(entry, message)] : [], samples: sample ? [sample] : [] });
+  }
+
+  // Return the message of an entry; undefined: it is noise or a remark; or the reason and text of what is wrong.
+  read({ d, data, reason }) {
+    return data && !reason ? this.streams.find(({ direction }) => direction === d).decoder.read(data) : undefined;
+  }
+
+  describe({ n, t, d, data, reason, label, text }, message) {
+    if (!data) return { n, t, d, h: "", k: "remark", l: label, x: text };
+    const shown = { n, t, d, h: hex(data.subarray(0, SHOWN_BYTES)) };
+    if (data.length > SHOWN_BYTES) shown.size = data.length;
+    if (message?.command) {
+      const { safety } = this.facts.commands[message.command].about;
+      return { ...shown, k: "frame", l: message.command, x: line(message).slice(0, SHOWN_TEXT), s: safety };
+    }
+    const noise = d === "sent" ? ["fill", "no request of the edition"] : [reason, REASONS[reason]];
+    const [l, x] = reason ? noise : ["illegal", message.text];
+    return { ...shown, k: "noise", l, x: x.slice(0, SHOWN_TEXT) };
   }
 
   explain(number) {
     const entry = this.entries[number - this.dropped];
     if (!entry) throw new Error("this entry is no longer kept");
-    return this.reader.explain(entry);
+    return this.explained(entry);
   }
 
-  // Return a recording of the entries that a query selects, as studio/exported.py does.
+  explained(entry) {
+    const { t: time, d: direction, data = new Uint8Array(), reason, text = "" } = entry;
+    const found = { time, direction, hex: hex(data), text };
+    if (reason) return { ...found, noise: reason, reason: REASONS[reason], advice: ADVICE, facts: {} };
+    const message = this.read(entry);
+    if (!message?.command) return { ...found, text: message?.text ?? text };
+    const { about } = this.facts.commands[message.command];
+    const parts = message.parts.map(({ at, size, name, raw, meaning }) => ({
+      ...{ at, hex: hex(data.subarray(at, at + size)), name, raw: raw === undefined ? null : String(raw) },
+      meaning: name === "CMD" ? `${about.name}: ${about.title}` : meaning,
+    }));
+    return { ...found, parts, command: about };
+  }
+
+  // Return a recording of the entries that a query selects.
   exported({ begin, end, direction, command }) {
-    const [from, to] = [begin ? Number(begin) : -Infinity, end ? Number(end) : Infinity];
-    if (Number.isNaN(from + to) && from !== -to) throw new Error("a time is a number of seconds");
-    const chosen = this.entries.filter(
-      (entry) =>
-        entry.data && entry.t >= from && entry.t < to && (!direction || entry.d === direction) &&
-        (!command || this.reader.read(entry)?.command === command),
-    );
+    const [from, to] = [Number(begin || -Infinity), Number(end || Infinity)];
+    if (Number.isNaN(from) || Number.isNaN(to)) throw new Error("a time is a number of seconds");
+    const inside = ({ t, d, data }) => data && t >= from && t < to && (!direction || d === direction);
+    const chosen = this.entries.filter((entry) => inside(entry) && (!command || this.read(entry)?.command === command));
     return written(chosen, { ...this.port, edition: this.facts.robot.edition, startNs: this.startNs });
   }
+}
+
+// Return a message on one line: a request like a call, a reply with an arrow before it.
+function line({ command, kind, fields, parts }) {
+  const shown = Object.keys(fields).map((field) => {
+    const own = parts.filter(({ name }) => name.split(/[ []/)[0] === field).map(({ meaning }) => meaning);
+    if (own.length < 2) return `${field}=${own[0] ?? ""}`;
+    // Name each unit once.
+    const [numbers, units] = [1, 2].map((at) => own.map((meaning) => /^(\S+) ?(.*)$/.exec(meaning)[at]));
+    const after = (at) => (units[at] === units[at + 1] ? "," : `${units[at] && ` ${units[at]}`}${at + 1 < own.length ? ";" : ""}`);
+    return `${field}=(${numbers.map((number, at) => number + after(at)).join(" ")})`;
+  });
+  return `${kind === "request" ? "" : "-> "}${command}(${shown.join(", ")})`;
 }

@@ -3,10 +3,13 @@
 import { byId, el } from "./dom.js";
 import { keep } from "./export.js";
 
-const NO_SERIAL =
-  "This browser cannot open a serial port, because it lacks WebSerial. Chrome and Edge on a computer have it. Recordings can be opened here, too.";
+const SERIAL = "serial" in navigator;
+const ABOUT = SERIAL
+  ? "Everything stays in this browser: there is no server. Motion needs your permission, and this is no emergency stop: keep the switch of the arm within reach."
+  : "This browser cannot open a serial port, because it lacks WebSerial. Chrome and Edge on a computer have it. Recordings can be opened here, too.";
 // How long a page that is left waits for its worker, which ends with the page.
 const LEAVE_MS = 100;
+const infoOf = (port) => JSON.stringify(port.getInfo());
 
 export class Source {
   // `onBatch` gets each batch of news.
@@ -14,14 +17,13 @@ export class Source {
     Object.assign(this, { page: "", onBatch, asked: new Map(), count: 0, connected: false });
     this.worker = new Worker("worker.js", { type: "module" });
     this.worker.onmessage = ({ data }) => this.take(data);
-    this.worker.onerror = () => this.say("This browser is too old for the page: its worker does not start.", true);
+    this.worker.onerror = () => this.say("The worker of this page does not start: the browser is too old.", true);
     byId("source").textContent = "an arm in the browser";
     byId("status").textContent = "not connected";
     byId("stop").disabled = byId("control").disabled = true;
     for (const option of document.querySelectorAll("#export [value=parquet], #export [value=csv]")) option.remove();
     document.querySelector("main").hidden = true;
-    document.querySelector("main").before(this.panel());
-    this.choices();
+    this.build();
     for (const event of ["beforeunload", "pagehide"]) window.addEventListener(event, () => this.leave());
     document.addEventListener("dragover", (event) => event.preventDefault());
     document.addEventListener("drop", (event) => {
@@ -31,29 +33,28 @@ export class Source {
     navigator.serviceWorker?.register("service.js").catch(() => {});
   }
 
-  panel() {
+  async build() {
     const button = (id, text, click) => (this[id] = el("button", { id, type: "button", click }, text));
+    const row = (...parts) => el("div", { class: "filters" }, ...parts);
     this.edition = el("select", { id: "edition" });
     this.speed = el("input", { id: "highest-speed", type: "number", min: 1, max: 100, value: 30 });
-    this.file = el("input", { id: "capture", type: "file", accept: ".pcapng", change: () => this.open(this.file.files[0]) });
-    this.said = el("p", { id: "said", role: "status" });
-    const edition = el("label", {}, "Robot ", this.edition);
+    const file = el("input", { id: "capture", type: "file", accept: ".pcapng", change: () => this.open(file.files[0]) });
     const arm = [el("label", {}, "Highest speed ", this.speed, " %"), button("connect", "Connect", () => this.choose())];
-    this.first = el("div", { class: "filters" }, edition, ...("serial" in navigator ? arm : []));
-    this.opening = el("div", { class: "filters" }, el("label", {}, "Open a recording ", this.file), button("example", "Play the example", () => this.play()));
-    const later = [
+    this.first = [
+      row(el("label", {}, "Robot ", this.edition), ...(SERIAL ? arm : [])),
+      row(el("label", {}, "Open a recording ", file), button("example", "Play the example", () => this.play())),
+      el("p", { class: "hint" }, ABOUT),
+    ];
+    this.later = row(
       button("again", "Connect", () => this.choose()),
       button("disconnect", "Disconnect", () => this.wish("leave")),
       button("save", "Save the recording", () => keep(this.exported(new URLSearchParams()), (text) => this.say(text))),
       button("anew", "Start anew", () => location.reload()),
-    ];
-    this.later = el("div", { class: "filters", hidden: true }, ...later);
-    const where = "Everything stays in this browser: there is no server. Motion needs your permission, and this is no emergency stop: keep the switch of the arm within reach.";
-    this.about = el("p", { class: "hint" }, "serial" in navigator ? where : NO_SERIAL);
-    return el("section", { id: "connecting", class: "card", "aria-label": "Connect an arm or open a recording" }, this.first, this.opening, this.later, this.said, this.about);
-  }
-
-  async choices() {
+    );
+    this.later.hidden = true;
+    this.said = el("p", { id: "said", role: "status" });
+    const label = { "aria-label": "Connect an arm, or open a recording" };
+    document.querySelector("main").before(el("section", { id: "connecting", class: "card", ...label }, ...this.first, this.later, this.said));
     const titles = await (await fetch("editions.json")).json();
     const options = Object.entries(titles).map(([value, title]) => el("option", { value }, `${title} (${value})`));
     this.edition.replaceChildren(...options);
@@ -66,60 +67,58 @@ export class Source {
     this.said.className = problem ? "problem" : "hint";
   }
 
-  // Run something that the user wants, and say how it ended.
-  async attempt(doing, text) {
-    this.say(text);
+  // Do something that the user wants, and say how it ended.
+  async attempt(what, doing) {
+    if (this.busy) return;
+    this.busy = true;
+    this.say(what);
     try {
       this.say((await doing()) ?? "");
     } catch (error) {
-      if (error.name === "NotFoundError") return this.say("No port was chosen.");
-      this.say(error.message, true);
+      this.say(error.name === "NotFoundError" ? "No port was chosen." : error.message, true);
     }
+    this.busy = false;
   }
 
   choose() {
-    return this.attempt(async () => {
+    return this.attempt("connecting", async () => {
       const port = await navigator.serial.requestPort();
-      const info = JSON.stringify(port.getInfo());
-      // The worker finds the port by its information, so no other one may look like it.
-      for (const other of await navigator.serial.getPorts()) {
-        if (other !== port && JSON.stringify(other.getInfo()) === info) await other.forget();
-      }
+      // The worker finds the port by its information, so the page keeps no other port that looks like it.
+      for (const other of await navigator.serial.getPorts()) if (other !== port && infoOf(other) === infoOf(port)) await other.forget();
       const ports = await navigator.serial.getPorts();
       const infos = JSON.stringify(ports.map((each) => each.getInfo()));
-      const [name, speed, at] = [this.edition.value, Number(this.speed.value), ports.indexOf(port)];
-      return `Connected: ${await this.ask("connect", { name, speed, at, infos })}.`;
-    }, "connecting");
-  }
-
-  open(file) {
-    return file && this.attempt(async () => this.read(new Uint8Array(await file.arrayBuffer()), file.name), "reading");
+      const asked = { name: this.edition.value, speed: Number(this.speed.value), at: ports.indexOf(port), infos };
+      return `Connected: ${await this.ask("connect", asked)}.`;
+    });
   }
 
   play() {
-    return this.attempt(async () => this.read(new Uint8Array(await (await fetch("example.pcapng")).arrayBuffer()), "example.pcapng"), "reading");
+    return this.attempt("reading", async () => this.read(await fetch("example.pcapng"), "example.pcapng"));
   }
 
-  read(file, name) {
+  open(file) {
+    return file && this.attempt("reading", () => this.read(file, file.name));
+  }
+
+  async read(found, name) {
     if (!this.later.hidden) throw new Error("start anew before you open another recording");
-    return this.ask("open", { file, name, usual: this.edition.value });
+    return this.ask("open", { file: new Uint8Array(await found.arrayBuffer()), name, usual: this.edition.value });
   }
 
   take({ news, id, result, error }) {
     if (!news) {
-      const { done, failed } = this.asked.get(id);
+      const [done, failed] = this.asked.get(id);
       this.asked.delete(id);
       return error === undefined ? done(result) : failed(new Error(error));
     }
     const { hello, port } = news.states;
     if (hello) {
-      this.first.hidden = this.opening.hidden = this.about.hidden = true;
+      for (const part of this.first) part.hidden = true;
       document.querySelector("main").hidden = this.later.hidden = false;
       this.again.hidden = this.disconnect.hidden = this.save.hidden = hello.mode === "recording";
     }
     if (port) {
-      this.connected = port.problem === "";
-      this.again.disabled = this.connected;
+      this.connected = this.again.disabled = port.problem === "";
       this.disconnect.disabled = !this.connected;
       if (port.problem) this.say(port.problem, true);
     }
@@ -129,7 +128,7 @@ export class Source {
   ask(request, ...values) {
     const id = (this.count += 1);
     this.worker.postMessage({ id, request, values });
-    return new Promise((done, failed) => this.asked.set(id, { done, failed }));
+    return new Promise((...settle) => this.asked.set(id, settle));
   }
 
   wish(wish, values = {}) {

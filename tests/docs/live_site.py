@@ -1,8 +1,9 @@
-"""Serve the page live/ with a strict policy; the only serial port is a simulated arm at a WebSocket."""
+"""Serve the page live/ with a strict policy; its serial port is a simulated arm."""
 
 from __future__ import annotations
 
 import asyncio
+import socket
 import threading
 import time
 from collections.abc import Iterator
@@ -49,71 +50,73 @@ class LiveSite:
     Attributes:
         sent: the bytes that the page has written to its port.
         stopped_at: when the last stop was written, by the monotonic clock.
+        gone: whether files are no longer served.
     """
 
-    def __init__(self, folder: Path, arm: TcpServer, before: str) -> None:
-        self._folder, self._arm, self._before = folder, arm, before
-        self.sent, self.stopped_at, self.url = bytearray(), 0.0, ""
+    def __init__(self, folder: Path, arm: TcpServer, before: str, url: str) -> None:
+        self._folder, self._arm, self._before, self.url = folder, arm, before, url
+        self.sent, self.stopped_at, self.gone = bytearray(), 0.0, False
         self._sockets: set[WebSocket] = set()
         self._loop: asyncio.AbstractEventLoop | None = None
 
     def unplug(self) -> None:
         """Let the port disappear."""
-        assert self._loop is not None
-        for socket in [*self._sockets]:
-            asyncio.run_coroutine_threadsafe(socket.close(), self._loop).result(5)
+        for port in [*self._sockets]:
+            assert self._loop is not None
+            asyncio.run_coroutine_threadsafe(port.close(), self._loop).result(5)
 
     async def file(self, request: Request) -> Response:
         """Serve a file; the worker has a port too."""
         name = request.path_params["name"] or "index.html"
+        if self.gone:
+            return Response(status_code=503)
         headers = {"content-security-policy": POLICY, "cache-control": "no-store"}
         if name in ("source.js", "worker.js"):
             text = self._before + (self._folder / name).read_text("utf-8")
             return Response(text, media_type="text/javascript", headers=headers)
-        path = self._folder / name
-        kinds = {".wasm": "application/wasm", ".js": "text/javascript"}
-        return FileResponse(path, media_type=kinds.get(path.suffix), headers=headers)
+        return FileResponse(self._folder / name, headers=headers)
 
-    async def port(self, socket: WebSocket) -> None:
+    async def port(self, page: WebSocket) -> None:
         """Forward between the page and the arm."""
         self._loop = asyncio.get_running_loop()
-        await socket.accept()
-        self._sockets.add(socket)
+        await page.accept()
+        self._sockets.add(page)
         host, _, port = self._arm.url.removeprefix("socket://").rpartition(":")
         reader, writer = await asyncio.open_connection(host, int(port))
-        replies = asyncio.create_task(self._replies(reader, socket))
+        replies = asyncio.create_task(self._replies(reader, page))
         try:
             while True:
-                data = await socket.receive_bytes()
+                data = await page.receive_bytes()
                 self.sent += data
                 if STOP in data:
                     self.stopped_at = time.monotonic()
                 writer.write(data)
         except (WebSocketDisconnect, RuntimeError):
-            self._sockets.discard(socket)
+            self._sockets.discard(page)
         replies.cancel()
         writer.close()
 
-    async def _replies(self, reader: asyncio.StreamReader, socket: WebSocket) -> None:
+    async def _replies(self, reader: asyncio.StreamReader, page: WebSocket) -> None:
         while data := await reader.read(4096):
-            await socket.send_bytes(data)
+            await page.send_bytes(data)
 
 
 @contextmanager
 def serving(folder: Path, before: str = PORT) -> Iterator[LiveSite]:
     """Serve the page and an arm; a script comes before those of the page and the worker."""
-    with TcpServer(SimulatedArm(TABLE, powered=True).connect) as arm:
-        site = LiveSite(folder, arm, before)
+    with TcpServer(SimulatedArm(TABLE, powered=True).connect) as arm, socket.socket() as listening:
+        listening.bind(("127.0.0.1", 0))
+        listening.listen()
+        site = LiveSite(folder, arm, before, f"http://127.0.0.1:{listening.getsockname()[1]}/")
         routes = [WebSocketRoute("/port", site.port), Route("/{name:path}", site.file)]
-        config = uvicorn.Config(Starlette(routes=routes), port=0, log_level="error", ws="websockets-sansio")
+        app = Starlette(routes=routes)
+        config = uvicorn.Config(app, log_level="error", ws="websockets-sansio")
         server = uvicorn.Server(config)
-        thread = threading.Thread(target=server.run)
+        thread = threading.Thread(target=server.run, args=([listening],), daemon=True)
         thread.start()
-        while not server.started:
-            thread.join(0.01)
-        port = server.servers[0].sockets[0].getsockname()[1]
-        site.url = f"http://127.0.0.1:{port}/"
-        yield site
-        server.should_exit = True
-        site.unplug() if site._sockets else None
-        thread.join()
+        try:
+            yield site
+        finally:
+            server.should_exit = True
+            site.unplug()
+            thread.join(5)

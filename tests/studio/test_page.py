@@ -233,11 +233,11 @@ def test_page_fits_and_axe_finds_nothing_serious(opened: Page, width: int, dark:
     found: list[dict[str, Any]] = opened.get(
         f"axe.run({{ resultTypes: ['violations']{rules} }}).then((found) => found.violations)"
     )
-    assert [_violation(each) for each in found if each["impact"] in ("serious", "critical")] == []
+    assert [violation(each) for each in found if each["impact"] in ("serious", "critical")] == []
     assert opened.complaints == []
 
 
-def _violation(found: dict[str, Any]) -> tuple[str, list[str]]:
+def violation(found: dict[str, Any]) -> tuple[str, list[str]]:
     return found["id"], [
         node["html"][:160] + node["failureSummary"][-160:] for node in found["nodes"]
     ]

@@ -5,10 +5,11 @@ from __future__ import annotations
 import hashlib
 import json
 import shutil
-import sys
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+import npm_package
 from cobotwire import editions
 from cobotwire.editions import Edition, mycobot280
 from cobotwire.editions.mycobot280 import MyCobot280
@@ -18,7 +19,7 @@ from cobotwire.protocol.limits import Limits, limited
 from cobotwire.protocol.loading import load_sources
 from cobotwire.protocol.refusals import refusals
 from cobotwire.protocol.roles import picked, row_index
-from cobotwire.protocol.table import Command, Role, Table
+from cobotwire.protocol.table import Command, Role, Table, Variant
 from cobotwire.simulator import MemoryTransport, SimulatedArm, SteppedClock
 from cobotwire.simulator.start import coordinates
 from cobotwire.studio.access import HEADERS
@@ -30,32 +31,19 @@ from cobotwire.studio.robot_facts import robot_facts
 from cobotwire.studio.samples import ends_target
 from cobotwire_codegen.model import Edition as Model
 
-ROOT = Path(__file__).parents[1]
-sys.path.insert(0, str(ROOT / "tools"))
-import npm_package
-
-HERE = Path(__file__).with_name("live")
+HERE = npm_package.ROOT / "docs" / "live"
 # A page can state no policy about its own frame, and WebAssembly needs a permission of its own.
 POLICY = HEADERS["content-security-policy"].replace("; frame-ancestors 'none'", "")
 POLICY = POLICY.replace("script-src 'self'", "script-src 'self' 'wasm-unsafe-eval'")
 META = f'<meta http-equiv="Content-Security-Policy" content="{POLICY}; worker-src \'self\'">'
-UNNAMED, EXAMPLE_SECONDS = 173, 8.0
-
-
-class _State(int):
-    """A state of power that is neither on nor off."""
-
-    name: str
-
-    def __bool__(self) -> bool:
-        return False
+UNNAMED = 173
 
 
 def facts(edition: Edition, others: list[Table]) -> dict[str, Any]:
     """Return what the page must know about an edition, as JSON values."""
     table, limits = edition.TABLE, Limits(speed=100)
     refused = refusals(table, limits)
-    own, sources = own_query(table, others), load_sources(edition.__name__)
+    own, sources = own_query(table, others), load_sources(getattr(edition, "__name__", ""))
     return {
         "robot": robot_facts(table),
         "client": edition.CLIENT.__name__,
@@ -70,14 +58,10 @@ def facts(edition: Edition, others: list[Table]) -> dict[str, Any]:
 
 def _described(command: Command, sources: Any) -> dict[str, Any]:
     """Return what explains a command, and where its messages have joints and targets."""
-    rows = {}
-    for direction, variants in (("request", command.request), ("reply", command.reply)):
-        fields = [v.fields[row_index(v)].name for v in variants if row_index(v) >= 0]
-        rows[direction] = fields[0] if fields else ""
-    described = {
+    described: dict[str, Any] = {
         "about": about(command, sources),
         "role": command.role,
-        "rows": rows,
+        "rows": {"request": _row(command.request), "reply": _row(command.reply)},
         "ends": ends_target(command),
     }
     if command.role == "joint target":
@@ -86,38 +70,39 @@ def _described(command: Command, sources: Any) -> dict[str, Any]:
     return described
 
 
+def _row(variants: Sequence[Variant]) -> str:
+    rows = [v.fields[row_index(v)].name for v in variants if row_index(v) >= 0]
+    return rows[0] if rows else ""
+
+
 def _readiness(table: Table, role: Role) -> dict[str, Any]:
     """Return the query of a role, and a text for each state in which the arm does not move."""
     query = table.in_role(role)
     field = query.reply[0].fields[-1]
 
     def text(raw: int) -> str:
-        state: int = raw
+        stated: Any = raw
         if role == "powered" and raw > 1:
-            state = _State(raw)
-            state.name = field.labels[field.choices.index(raw)]
-        found = [f"{each.text}; {each.advice}" for each in problems(table, {role: state}, "")]
+            # As the enum of the edition: false, and not 0.
+            stated = type("State", (str,), {"__bool__": lambda _: False})()
+            stated.name = field.labels[field.choices.index(raw)]
+        found = [f"{each.text}; {each.advice}" for each in problems(table, {role: stated}, "")]
         return "; ".join(found).replace("cobotwire call '' ", "")
 
-    states = field.choices or range(256)
     # What no source explains differs only in the number.
     usual = "" if field.choices else text(UNNAMED).replace(str(UNNAMED), "{}")
+    states = field.choices or range(256)
     texts = {raw: text(raw) for raw in states if text(raw) != usual.replace("{}", str(raw))}
-    return {
-        "role": role,
-        "command": query.name,
-        "field": field.name,
-        "texts": texts,
-        "usual": usual,
-    }
+    named = {"role": role, "command": query.name, "field": field.name}
+    return {**named, "texts": texts, "usual": usual}
 
 
 def record_example(path: Path) -> None:
-    """Record an arm that moves; its time is stepped."""
+    """Record 8 seconds of an arm that moves; its time is stepped."""
     clock = SteppedClock()
     arm = SimulatedArm(mycobot280.TABLE, clock=clock, powered=True)
     with MyCobot280(MemoryTransport(arm, clock), record=path) as client:
-        for step in range(round(EXAMPLE_SECONDS * 20)):
+        for step in range(160):
             if step % 40 == 0:
                 turned = 60 if step % 80 else -60
                 client.send_angles([turned, turned / 2, -turned, 20, 10, turned], 60)
@@ -132,7 +117,7 @@ def missing() -> str:
 
 
 def build(folder: Path, found: list[Model]) -> None:
-    """Write the page; ``found`` are the checked editions. Without its parts it says what it needs."""
+    """Write the page, or what is missing; ``found`` are the checked editions."""
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
     if needs := missing():
