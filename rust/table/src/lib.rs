@@ -25,7 +25,7 @@ use alloc::string::{String, ToString};
 use alloc::vec::Vec;
 use core::fmt;
 
-use cobotwire_core::exchange::{Addressee, Protocol, Safety};
+use cobotwire_core::exchange::{Protocol, Safety};
 use cobotwire_core::{Direction, Table};
 use serde::Deserialize;
 use serde_json::Value;
@@ -42,7 +42,7 @@ const VERSION: i64 = 3;
 /// The largest file. A value of JSON takes up to 32 times its text in memory.
 const LARGEST: usize = 4 << 20;
 
-/// A protocol as data. Commands are in the order of the table; addresses are those with names.
+/// A protocol as data. Commands are in the order of the table.
 #[derive(Clone, Debug)]
 #[allow(missing_docs)] // as above
 pub struct Edition {
@@ -51,7 +51,6 @@ pub struct Edition {
     /// What codec and exchange interpret.
     pub protocol: Protocol,
     pub commands: Vec<Command>,
-    pub addresses: Vec<Address>,
 }
 
 /// What texts and clients need of a command.
@@ -129,14 +128,6 @@ pub struct Number {
     pub labels: Vec<String>,
 }
 
-/// An address with a name.
-#[derive(Clone, Debug)]
-#[allow(missing_docs)] // as above
-pub struct Address {
-    pub name: String,
-    pub value: u8,
-}
-
 impl Edition {
     /// Read the bytes of an `edition.json`.
     ///
@@ -157,8 +148,6 @@ impl Edition {
         }
         let (frame, described) = (root.at("frame"), root.at("edition"));
         let format = frame::frame_format(frame, json).within("frame", "")?;
-        let named = frame::addresses(frame).within("frame", "")?;
-        let (addresses, addressees): (Vec<Address>, Vec<Addressee>) = named.into_iter().unzip();
         let last = if format.layout.id.wide { 0xFFFF } else { 0xFF };
         let (mut wire, mut facts, mut commands) = (Vec::new(), Vec::new(), Vec::new());
         let (messages, mut names) = (Messages::new(root)?, BTreeSet::new());
@@ -181,7 +170,7 @@ impl Edition {
             table,
             facts,
             reports_ends: commands.iter().any(|each| each.role == "motion ended"),
-            addresses: addressees,
+            addresses: frame::addresses(frame).within("frame", "")?,
             joints: described.get::<u8>("joints")?.into(),
         };
         Ok(Self {
@@ -189,7 +178,6 @@ impl Edition {
             baudrate: frame.within("baudrate", 1..=100_000_000)?,
             protocol,
             commands,
-            addresses,
         })
     }
 }
