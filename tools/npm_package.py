@@ -20,10 +20,11 @@ import shutil
 import subprocess
 import sys
 import tempfile
+from filecmp import cmp
+from hashlib import sha256
 from pathlib import Path, PurePosixPath
 
 from cobotwire_codegen.emit import Target, write
-from cobotwire_codegen.model import Edition
 from cobotwire_codegen.project import TYPESCRIPT_EDITIONS, editions, products
 from cobotwire_codegen.targets.typescript import literal
 from rust_package import HOSTILE
@@ -56,18 +57,22 @@ def missing() -> str:
     return ""
 
 
-def build(found: list[Edition] | None = None) -> Path:
+def build() -> Path:
     """Write what the package contains: editions, compiled sources, the session in WebAssembly.
 
-    Return its folder. ``found`` are the checked editions; to load them takes seconds.
+    Return its folder. Only what has changed is made again.
     """
     with (PACKAGE / "package.json").open() as lock:
         # Tests of several processes build it.
         fcntl.flock(lock, fcntl.LOCK_EX)
-        for made in products(ROOT, found or editions(ROOT), [TYPESCRIPT_EDITIONS]):
-            write(made)
         if not (PACKAGE / "node_modules/.bin/tsc").exists():
             run(PACKAGE, "npm", "ci", "--no-audit", "--no-fund")
+        state, made_from = sources(), PACKAGE / "node_modules/.editions-made-from"
+        if not made_from.exists() or made_from.read_text("utf-8") != state:
+            # To load and render them takes seconds of each process that tests the package.
+            for made in products(ROOT, editions(ROOT), [TYPESCRIPT_EDITIONS]):
+                write(made)
+            made_from.write_text(state, "utf-8")
         index = PACKAGE / "dist/index.js"
         changed = max(path.stat().st_mtime for path in (PACKAGE / "src").iterdir())
         if not index.exists() or index.stat().st_mtime < changed:
@@ -75,9 +80,21 @@ def build(found: list[Edition] | None = None) -> Path:
         words = ("--quiet", "--profile", "wasm", "--target", TARGET)
         run(ROOT, "cargo", "build", "--package", "cobotwire-wasm", *words)
         target = ROOT / os.environ.get("CARGO_TARGET_DIR", "target")
-        shutil.copy(target / TARGET / "wasm/cobotwire_wasm.wasm", PACKAGE / WASM)
+        wasm = target / TARGET / "wasm/cobotwire_wasm.wasm"
+        if not (PACKAGE / WASM).exists() or not cmp(wasm, PACKAGE / WASM, shallow=False):
+            # Never half a file, since other processes may load it.
+            shutil.copy(wasm, PACKAGE / "dist/new.wasm")
+            (PACKAGE / "dist/new.wasm").replace(PACKAGE / WASM)
         write(Target(DECODER, {PurePosixPath("module.js"): decoder_module()}, alone=False))
     return PACKAGE
+
+
+def sources() -> str:
+    """Return a text that changes with the spec and with the generator."""
+    folders = (ROOT / "spec", ROOT / "codegen/src")
+    files = [path for folder in folders for path in folder.rglob("*") if path.suffix != ".pyc"]
+    found = sorted((str(path), path.stat().st_mtime_ns) for path in files if path.is_file())
+    return sha256(repr(found).encode()).hexdigest()
 
 
 def decoder_module() -> str:

@@ -71,6 +71,23 @@ def test_right_codec_conforms(
     assert Run(sensor.TABLE, codec).ask_all(questions[::43]).conforms
 
 
+class Lower(OurCodec):
+    """A codec with hexadecimal digits in lower case."""
+
+    def ask(self, question: Json) -> Json:
+        answer = super().ask(question)
+        octets = {name: v.lower() for name, v in answer.get("fields", {}).items() if name == "data"}
+        return answer | ({"fields": answer["fields"] | octets} if octets else {})
+
+
+def test_bytes_of_fields_may_be_written_in_lower_case(
+    sensor: Any, questions: list[Question]
+) -> None:
+    some = [q for q in questions if q.command == "write_memory" and q.case.id == "decode-values"]
+    assert some
+    assert Run(sensor.TABLE, Lower(codecs.load(sensor.TABLE))).ask_all(some).conforms
+
+
 class Wrong:
     """A codec with text in upper case, and bytes in reverse."""
 

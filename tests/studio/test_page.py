@@ -141,7 +141,7 @@ def test_line_is_filtered_searched_paused_and_explained(opened: Page) -> None:
     opened.click(".row:not([hidden])")
     details = "document.getElementById('details').textContent"
     found = str(opened.until(f"{details}.includes('Specified in') && {details}"))
-    for word in ("CMD", "coords x", "millimetre", "spec/commands/coords.yaml", "footer"):
+    for word in ("CMD", "coords.x", "millimetre", "spec/commands/coords.yaml", "footer"):
         assert word in found
     raw = opened.get("document.querySelectorAll('#details tbody tr')[3].children[3].textContent")
     shown = opened.get("document.querySelectorAll('#details tbody tr')[3].children[4].textContent")

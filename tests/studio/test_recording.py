@@ -93,7 +93,7 @@ def test_entry_of_a_recording_is_explained(studio: Studio) -> None:
     assert explained["command"]["name"] == "send_angles"
     assert explained["command"]["place"].startswith("spec/commands/motion.yaml:")
     parts = {part["name"]: part for part in explained["parts"]}
-    assert (parts["angles j1"]["raw"], parts["angles j1"]["meaning"]) == ("8000", "80 degrees")
+    assert (parts["angles.j1"]["raw"], parts["angles.j1"]["meaning"]) == ("8000", "80 degrees")
     assert " ".join(part["hex"] for part in explained["parts"]) == explained["hex"]
     assert studio.get("/api/entry/100000").status == 404
 

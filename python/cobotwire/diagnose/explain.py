@@ -11,6 +11,7 @@ from cobotwire.codec.interface import Codec, DecodedMessage
 from cobotwire.protocol.addresses import address_name
 from cobotwire.protocol.errors import ProtocolError
 from cobotwire.protocol.frame_index import FrameIndex
+from cobotwire.protocol.rejection import element_name
 from cobotwire.protocol.table import Direction, Field, Number, Table
 
 DIRECTIONS: tuple[Direction, ...] = ("request", "reply")
@@ -83,9 +84,7 @@ def frame_parts(table: Table, data: bytes, message: DecodedMessage) -> Iterator[
             offset += size
             continue
         for at, (number, single) in enumerate(_numbers(message, field, value)):
-            listed = field.each or (field.many and not number.name)
-            place = f"[{at // (field.each or 1)}]" if listed else ""
-            name = f"{field.name}{place} {number.name}".strip()
+            name = element_name(field, number, at)
             # Several parts of a word share its bytes: the last one has them.
             chunk = data[offset : offset + number.step]
             raw = number.unpack(data, offset)

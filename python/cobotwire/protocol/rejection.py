@@ -101,7 +101,7 @@ def reject_value(
         allowed = _elements(case) if field.many else _allowed(field, case.numbers[0])
         return UsageError(field.name, value, allowed)
     number = case.numbers[element]
-    return UsageError(_element(field, number, element), value, _allowed(field, number))
+    return UsageError(element_name(field, number, element), value, _allowed(field, number))
 
 
 def reject_radians(error: UsageError, field: Field, given: Any) -> UsageError:
@@ -109,7 +109,9 @@ def reject_radians(error: UsageError, field: Field, given: Any) -> UsageError:
 
     ``error`` is the codec's, about the field in degrees; ``given`` is what the caller gave.
     """
-    elements = {_element(field, number, at): at for at, number in enumerate(field.cases[0].numbers)}
+    elements = {
+        element_name(field, number, at): at for at, number in enumerate(field.cases[0].numbers)
+    }
     at = elements.get(error.argument)
     if at is None:
         # It is about the row as a whole, or about its length.
@@ -132,7 +134,7 @@ def reject_raw(
     detail = error_text(
         "bad-byte" if field.kind == "text" else "bad-value",
         command=command.name,
-        name=field.name if whole else _element(field, number, element),
+        name=field.name if whole else element_name(field, number, element),
         value=number.physical(raw),
         allowed=_allowed(field, number),
         at=element,
@@ -236,7 +238,7 @@ def _bad_length(table: Table, direction: Direction, data: bytes) -> str:
     return error_text("bad-length", message=what, length=length, allowed=lengths)
 
 
-def _element(field: Field, number: Number, at: int) -> str:
+def element_name(field: Field, number: Number, at: int) -> str:
     """Return the name of a number of a field in a text."""
     if not field.many:
         return field.name

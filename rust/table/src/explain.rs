@@ -31,15 +31,21 @@ impl Edition {
     pub fn explain(&self, frame: &[u8], message: &Decoded) -> Vec<Explained> {
         let (id, format) = (message.variant, self.protocol.table.frame());
         let layout = format.layout;
-        let mut parts = Vec::new();
-        let mut push = |bytes, name: &str, meaning, raw| {
+        let mut parts: Vec<Explained> = Vec::new();
+        // The parts before the data have an order of their own.
+        let mut push = |bytes: Range<usize>, name: &str, meaning, raw| {
+            let before = |part: &Explained| part.bytes.start <= bytes.start;
+            let place = parts.iter().rposition(before).map_or(0, |at| at + 1);
             let name = name.into();
-            parts.push(Explained {
-                bytes,
-                name,
-                meaning,
-                raw,
-            });
+            parts.insert(
+                place,
+                Explained {
+                    bytes,
+                    name,
+                    meaning,
+                    raw,
+                },
+            );
         };
         let start = "a frame starts here".into();
         push(0..format.header.len(), "header", start, None);
@@ -68,14 +74,19 @@ impl Edition {
                 continue;
             };
             if part.wire.shape != Shape::Numbers {
-                push(at..at + part.numbers.len(), name, shaped(value), None);
+                let meaning = match value {
+                    Shown::Bytes(bytes) if bytes.is_empty() => "no bytes".into(),
+                    Shown::Bytes(bytes) => hex(&bytes, " "),
+                    text => text.to_string(),
+                };
+                push(at..at + part.numbers.len(), name, meaning, None);
                 at += part.numbers.len();
                 continue;
             }
             for (element, number) in part.numbers.iter().enumerate() {
                 let (raw, end) = (number.unpack(frame, at), at + number.step());
                 let meaning = part.meaning(element, raw);
-                push(at..end, &part.label(element), meaning, Some(raw));
+                push(at..end, &part.element(element), meaning, Some(raw));
                 at = end;
             }
         }
@@ -84,34 +95,11 @@ impl Edition {
             _ => "footer",
         };
         push(at..frame.len(), name, "the frame ends here".into(), None);
-        parts.sort_by_key(|part| part.bytes.start);
         parts
     }
 }
 
-/// Return bytes as hex digits, and texts in quotes.
-fn shaped(value: Shown) -> String {
-    match value {
-        Shown::Bytes(bytes) if bytes.is_empty() => "no bytes".into(),
-        Shown::Bytes(bytes) => hex(&bytes, " "),
-        text => text.to_string(),
-    }
-}
-
 impl Part<'_> {
-    /// Return the name of a number: of the field, the place in its list, its own.
-    fn label(&self, at: usize) -> String {
-        let (field, named) = (&self.name.name, self.named(at));
-        let name = named.map_or("", |number| &number.name);
-        let index = match at.checked_div(self.wire.each) {
-            None if self.wire.many && name.is_empty() => Some(at),
-            index => index,
-        };
-        let index = index.map_or(String::new(), |index| format!("[{index}]"));
-        let space = if name.is_empty() { "" } else { " " };
-        format!("{field}{index}{space}{name}")
-    }
-
     /// Return a number with its unit or label.
     fn meaning(&self, at: usize, raw: i64) -> String {
         let Some((number, names)) = self.numbers.get(at).zip(self.named(at)) else {

@@ -218,7 +218,7 @@ impl Part<'_> {
     }
 
     /// Return the name of a number of the field.
-    fn element(&self, at: usize) -> String {
+    pub(crate) fn element(&self, at: usize) -> String {
         let field = &self.name.name;
         let number = self.named(at).map_or("", |number| &number.name);
         match at.checked_div(self.wire.each) {

@@ -44,8 +44,12 @@ def _bytes(right: str, answer: Json) -> str:
     given = answer.get("bytes")
     if not isinstance(given, str):
         return f"expected {right}, but the answer was {_shown(answer)}"
-    plain = "".join(given.split()).upper()
+    plain = _digits(given)
     return "" if plain == right else f"expected {right}, got {plain}"
+
+
+def _digits(hexadecimal: str) -> str:
+    return "".join(hexadecimal.split()).upper()
 
 
 def _rejection(question: Question, answer: Json, can: Collection[str]) -> Iterator[Observation]:
@@ -75,6 +79,9 @@ def _values(table: Table, question: Question, answer: Json) -> str:
     if not needed <= set(given) <= set(right["fields"]):
         return f"expected the fields {sorted(right['fields'])}, got {sorted(given)}"
     steps = _steps(table, right["command"], question.ask["direction"])
+    for name in _octets(table, right["command"]) & set(given):
+        if isinstance(given[name], str):
+            given = given | {name: _digits(given[name])}
     for name, value in right["fields"].items():
         if name in given and not _alike(value, given[name], steps.get(name, 1.0)):
             return f"{name}: expected {value}, got {given[name]}"
@@ -84,6 +91,12 @@ def _values(table: Table, question: Question, answer: Json) -> str:
 def _echoes(table: Table, name: str) -> set[str]:
     reply = table.command(name).reply
     return {field.name for variant in reply for field in variant.fields if field.echo}
+
+
+def _octets(table: Table, name: str) -> set[str]:
+    command = table.command(name)
+    variants = (*command.request, *command.reply)
+    return {field.name for each in variants for field in each.fields if field.kind == "bytes"}
 
 
 def _steps(table: Table, name: str, direction: Any) -> dict[str, float]:
