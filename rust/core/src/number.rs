@@ -153,7 +153,8 @@ impl Number {
 
     /// Return the number of bytes from here to the next number of the field.
     #[inline]
-    pub(crate) fn step(&self) -> usize {
+    #[must_use]
+    pub fn step(&self) -> usize {
         match self.bits {
             Some(Bits { more: true, .. }) => 0,
             _ => self.width,

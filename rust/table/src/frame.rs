@@ -41,10 +41,19 @@ struct WideFrame {
 }
 
 /// Return the frame format; `json` are the bytes of the whole file.
-pub(crate) fn frame_format(record: Record<'_>, json: &[u8]) -> Outcome<FrameFormat> {
+pub(crate) fn frame_format(
+    record: Record<'_>,
+    known: &[Addressee],
+    json: &[u8],
+) -> Outcome<FrameFormat> {
     use Place::{Address, Check as CheckBytes, Command, Data, Footer, Header, Length};
     let (header, footer) = (hex(record, "header", 1..=4)?, hex(record, "footer", 0..=2)?);
-    let addresses = address_bytes(record)?;
+    let mut addresses: Vec<u8> = known.iter().map(|each| each.value).collect();
+    if let Some(range) = record.some("address_range") {
+        let range = range.get::<u8>("first")?..=range.get("last")?;
+        let named = |byte: &u8| known.iter().any(|each| each.value == *byte);
+        addresses.extend(range.filter(|byte| !named(byte)));
+    }
     let (algorithm, check_width) = algorithm(record, json)?;
     let (length, id) = (record.at("length"), record.at("command"));
     let sizes = [
@@ -197,20 +206,6 @@ fn crc(json: &[u8], size: usize) -> Outcome<Algorithm> {
             "crc must have 1 to 120 bits, numbers of that many bits, and check_width its bytes",
         ),
     }
-}
-
-fn address_bytes(record: Record<'_>) -> Outcome<Vec<u8>> {
-    let named = record.records("addresses")?.into_iter();
-    let named: Outcome<Vec<u8>> = named.map(|each| each.get("value")).collect();
-    let mut bytes = named?;
-    if let Some(range) = record.some("address_range") {
-        for byte in range.get::<u8>("first")?..=range.get("last")? {
-            if !bytes.contains(&byte) {
-                bytes.push(byte);
-            }
-        }
-    }
-    Ok(bytes)
 }
 
 /// Return the addresses that the file names.

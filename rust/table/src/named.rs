@@ -58,18 +58,10 @@ fn row<'a, V: Clone>(
     }
     let value = |field: &'a Field| {
         let own = |(name, _): &&(&str, V)| !field.constant && field.name == *name;
-        match (
-            &field.counts,
-            given.iter().find(own),
-            field.default.as_deref(),
-        ) {
+        match (&field.counts, given.iter().find(own), &field.default) {
             (Some(_), ..) => Ok(filled(None)),
             (_, Some((_, value)), _) => Ok(value.clone()),
-            (.., Some([one])) => Ok(filled(Some(Shown::Real(*one)))),
-            (.., Some(several)) => {
-                let several = several.iter().copied().map(Shown::Real);
-                Ok(filled(Some(Shown::Tuple(several.collect()))))
-            }
+            (_, _, Some(default)) => Ok(filled(Some(default.clone()))),
             _ => Err(("missing-argument", &*field.name)),
         }
     };

@@ -37,7 +37,9 @@ impl Edition {
         address: Option<u8>,
     ) -> String {
         match error {
-            EncodeError::Address => self.no_raw_address(address),
+            EncodeError::Address => {
+                self.no_address(&Shown::Integer(address.unwrap_or_default().into()))
+            }
             EncodeError::VariantId => self.bad_variant(command, direction, count),
             EncodeError::Value(bad) => {
                 let variant = VariantId {
@@ -233,8 +235,7 @@ impl Part<'_> {
     fn sizes(&self) -> String {
         match self.name.sizes {
             None => (self.numbers.len() / self.wire.each.max(1)).to_string(),
-            Some((low, high)) if low < high => text!("range"; low, high),
-            Some((_, most)) => most.to_string(),
+            Some((low, high)) => text!("range"; low, high),
         }
     }
 

@@ -47,13 +47,6 @@ enum Encoding {
     Float,
 }
 
-impl Kind {
-    /// Return whether it consists of elements, besides rows.
-    pub(crate) fn repeats(self) -> bool {
-        matches!(self, Self::Bits | Self::Bytes | Self::Text | Self::List)
-    }
-}
-
 /// The numbers of a type in the order of the wire, and what texts need of each.
 #[derive(Clone, Default)]
 pub(crate) struct Numbers {
@@ -79,15 +72,6 @@ impl Numbers {
             texts: vec![Number::default()],
             weight: count * size_of::<core_table::Number>(),
         }
-    }
-
-    /// Return the number of their bytes.
-    pub(crate) fn size(&self) -> usize {
-        let size = |number: &core_table::Number| match number.bits {
-            Some(Bits { more: true, .. }) => 0,
-            _ => number.width,
-        };
-        self.wire.iter().map(size).sum()
     }
 
     fn push(&mut self, wire: core_table::Number, name: &str, of: Record<'_>) -> Outcome<()> {

@@ -284,8 +284,7 @@ impl Acks {
             let outcome = if copied && !echoes && !in_time {
                 Ok(wait.answer(None, Vec::new(), now))
             } else {
-                let waited = now.saturating_sub(wait.requested_at);
-                Err(wait.expire(waited, in_time.then_some(WaitedFor::Reply)))
+                Err(wait.expire(now, in_time.then_some(WaitedFor::Reply)))
             };
             (wait.ticket, outcome)
         });
@@ -295,7 +294,7 @@ impl Acks {
     /// Have those who wait remember an event.
     pub(super) fn note(&mut self, event: &Event) {
         for wait in &mut self.waiting {
-            wait.received.add(event);
+            wait.note(event);
         }
     }
 }

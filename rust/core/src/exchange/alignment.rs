@@ -12,7 +12,7 @@
 use alloc::sync::Arc;
 use alloc::vec::Vec;
 
-use super::Protocol;
+use super::{Exchange, Protocol};
 use crate::check::Check;
 use crate::direction::{Direction, Listening};
 use crate::frame::{self, FrameFormat};
@@ -53,46 +53,6 @@ impl Alignment {
         self.last_request = request.into();
     }
 
-    /// Note that `align` and a request after it were taken whole.
-    pub(super) fn end(&mut self) {
-        self.align.clear();
-        self.held.clear();
-    }
-
-    /// Note that of `align + request` only `written` bytes were taken; `None`: nobody knows. Return
-    /// how many of these bytes belong to the request.
-    pub(super) fn cut(
-        &mut self,
-        protocol: &Protocol,
-        align: &[u8],
-        request: &[u8],
-        written: Option<usize>,
-    ) -> Option<usize> {
-        let (format, mut parts) = (protocol.table.frame(), self.held.clone());
-        let Some(written) = written else {
-            parts.extend(all_parts(format, request));
-            self.hold(protocol, parts);
-            return None;
-        };
-        if written == 0 {
-            return Some(0);
-        }
-        let begun = written.checked_sub(align.len());
-        if let Some(begun) = begun {
-            // Text may follow a frame. It is not the beginning of a frame.
-            let within = (1..frame_size(format, request)).contains(&begun);
-            parts = Vec::from_iter(within.then(|| Part::new(&request.into(), begun)));
-        } else if let [part] = parts.as_mut_slice()
-            && self.align == part.split().1
-        {
-            part.written = part.written.saturating_add(written);
-        } else {
-            return Some(0);
-        }
-        self.hold(protocol, parts);
-        Some(begun.unwrap_or_default())
-    }
-
     /// Note that the transport is gone. The last request, and earlier ones that were still on their
     /// way, may be cut anywhere.
     pub(super) fn lose(&mut self, protocol: &Protocol) {
@@ -120,6 +80,50 @@ impl Alignment {
             _ => fill,
         };
         self.held = parts;
+    }
+}
+
+/// Half a request on the line.
+impl Exchange {
+    /// Return what must be written before the next request; empty on an aligned line.
+    #[must_use]
+    pub fn align(&self) -> &[u8] {
+        &self.alignment.align
+    }
+
+    /// Note that these bytes and a request after them were taken whole.
+    pub fn aligned(&mut self) {
+        self.alignment.align.clear();
+        self.alignment.held.clear();
+    }
+
+    /// Note that of `align + request` only `written` bytes were taken; `None`: nobody knows. Return
+    /// how many of these bytes belong to the request.
+    pub fn cut(&mut self, align: &[u8], request: &[u8], written: Option<usize>) -> Option<usize> {
+        let (own, protocol) = (&mut self.alignment, &*self.protocol);
+        let (format, mut parts) = (protocol.table.frame(), own.held.clone());
+        let Some(written) = written else {
+            parts.extend(all_parts(format, request));
+            own.hold(protocol, parts);
+            return None;
+        };
+        if written == 0 {
+            return Some(0);
+        }
+        let begun = written.checked_sub(align.len());
+        if let Some(begun) = begun {
+            // Text may follow a frame. It is not the beginning of a frame.
+            let within = (1..frame_size(format, request)).contains(&begun);
+            parts = Vec::from_iter(within.then(|| Part::new(&request.into(), begun)));
+        } else if let [part] = parts.as_mut_slice()
+            && own.align == part.split().1
+        {
+            part.written = part.written.saturating_add(written);
+        } else {
+            return Some(0);
+        }
+        own.hold(protocol, parts);
+        Some(begun.unwrap_or_default())
     }
 }
 

@@ -151,7 +151,9 @@ impl Protocol {
     /// Return whether no reply to one request can be mistaken for a reply to the other.
     pub(super) fn replies_differ(&self, one: &Request, other: &Request) -> bool {
         let ids_differ = self.has_ids() && self.id(one.command) != self.id(other.command);
-        if ids_differ || !repliers_meet(one.replier, other.replier) {
+        let any = [Replier::Anybody, Replier::Somebody];
+        let meet = any.contains(&one.replier) || any.contains(&other.replier);
+        if ids_differ || !(meet || one.replier == other.replier) {
             return true;
         }
         if one.command != other.command {
@@ -209,10 +211,4 @@ impl Request {
         let (_, value) = arguments.find(|(own, _)| **own == *name)?;
         Some(value)
     }
-}
-
-/// Return whether a reply of one address can belong to both requests.
-fn repliers_meet(one: Replier, other: Replier) -> bool {
-    let all = |replier| matches!(replier, Replier::Anybody | Replier::Somebody);
-    one == other || all(one) || all(other)
 }

@@ -35,13 +35,13 @@ pub use self::outcome::{Answer, Failure, Received, WaitedFor};
 pub use self::outstanding::{OutstandingReply, PersistedState};
 pub use self::pending::{RetryPolicy, Ticket};
 pub use self::request::{Request, RequestError};
-pub use self::text::{TextError, TextFault};
+pub use self::text::{TextError, TextFault, TextMistake};
 
 use self::acks::Acks;
 use self::alignment::Alignment;
 use self::echo::{EchoDetector, since};
 use self::outstanding::OutstandingReplies;
-use self::pending::{NEVER, Pending, ReceivedMeanwhile};
+use self::pending::{NEVER, Pending};
 use self::text::TextCollector;
 use crate::decode::{DecodeError, Decoded};
 use crate::direction::{Direction, Listening};
@@ -170,25 +170,6 @@ impl Exchange {
         self.end_waiting(0, |_| Err(Failure::Link));
     }
 
-    // Half a request on the line.
-
-    /// Return what must be written before the next request; empty on an aligned line.
-    #[must_use]
-    pub fn align(&self) -> &[u8] {
-        &self.alignment.align
-    }
-
-    /// Note that these bytes and a request after them were taken whole.
-    pub fn aligned(&mut self) {
-        self.alignment.end();
-    }
-
-    /// Note that of `align + request` only `written` bytes were taken; `None`: nobody knows. Return
-    /// how many of these bytes belong to the request.
-    pub fn cut(&mut self, align: &[u8], request: &[u8], written: Option<usize>) -> Option<usize> {
-        self.alignment.cut(&self.protocol, align, request, written)
-    }
-
     // What one session leaves to the next one on its port.
 
     /// Return what the next session on this port must respect.
@@ -249,10 +230,9 @@ impl Exchange {
         self.finished.extend(ended);
         self.end_overdue_queued(now);
         // A copy of it does not count as its reply: that one still had time to come.
-        let over = self.waiting().filter(|waiting| waiting.ends_by <= now);
-        let waited = over.map(|waiting| now.saturating_sub(waiting.queued_at));
-        let expired = waited.and_then(|waited| self.expire(waited, Some(WaitedFor::Reply)));
-        expired.into_iter().collect()
+        let over = self.waiting().is_some_and(|waiting| waiting.ends_by <= now);
+        let expired = over.then(|| self.expire(now, Some(WaitedFor::Reply)));
+        expired.flatten().into_iter().collect()
     }
 
     /// Note whether the line took no bytes when a request was to be sent.
@@ -330,12 +310,12 @@ impl Exchange {
             request: Arc::clone(request),
             ends_by: ends_by.unwrap_or(NEVER),
             done: false,
-            received: ReceivedMeanwhile::default(),
+            received: Vec::new(),
             policy,
             queued_at: now,
             undrained_since: NEVER,
             attempt_times: Vec::new(),
-            requested_at: 0,
+            requested_at: now,
             offset: 0,
             candidate: None,
             text: form.map(TextCollector::new),
@@ -383,7 +363,7 @@ impl Exchange {
         }
         if held.is_some() {
             let mut ended = self.queue.remove(index);
-            let failure = ended.expire(now.saturating_sub(ended.queued_at), None);
+            let failure = ended.expire(now, None);
             self.finished.insert(ended.ticket, Err(failure));
         }
         held.is_none()
@@ -417,8 +397,7 @@ impl Exchange {
                 (false, true) => WaitedFor::Line,
                 (false, false) => WaitedFor::Turn,
             };
-            let waited = now.saturating_sub(pending.queued_at);
-            let failure = pending.expire(waited, Some(waited_for));
+            let failure = pending.expire(now, Some(waited_for));
             self.finished.insert(pending.ticket, Err(failure));
         }
     }
@@ -461,15 +440,16 @@ impl Exchange {
     /// Find out what a frame is; its first byte came at `began_at` or earlier.
     fn match_frame(&mut self, frame: SeenFrame, now: Nanos, began_at: Nanos) -> Event {
         let is_copy = self.echo.take_copy(&frame);
-        let Some((request, reply)) = self.as_reply(&frame) else {
-            return self.match_other(frame, now, began_at, is_copy);
-        };
+        let waits = waiting(&mut self.last).filter(|waiting| frame.offset >= waiting.offset);
+        let request = waits.as_ref().map(|waiting| &waiting.request);
+        let reply = request.and_then(|request| self.protocol.as_reply(&frame, request));
         let reply = match reply {
-            Err(error) => return self.reject(frame, error, is_copy),
-            Ok(reply) => reply,
+            None => return self.match_other(frame, now, began_at, is_copy),
+            Some(Err(error)) => return self.reject(frame, error, is_copy),
+            Some(Ok(reply)) => reply,
         };
-        let repeats = request.repeated_by(&self.protocol, &reply);
-        match (is_copy, repeats, waiting(&mut self.last)) {
+        let repeats = request.is_some_and(|own| own.repeated_by(&self.protocol, &reply));
+        match (is_copy, repeats, waits) {
             (false, true, _) => return self.end(reply, Some(frame), now),
             (false, false, _) => return self.match_other(frame, now, began_at, is_copy),
             // A copy that can be the reply is kept; one that cannot proves that the line echoes.
@@ -477,15 +457,6 @@ impl Exchange {
             (true, ..) => self.echo.proven = true,
         }
         self.note(Event::Echo { frame })
-    }
-
-    /// Return a frame as the reply to the request that waits, whichever arguments it repeats.
-    fn as_reply(&self, frame: &SeenFrame) -> Option<(Arc<Request>, Result<Decoded, DecodeError>)> {
-        let waiting = self
-            .waiting()
-            .filter(|waiting| frame.offset >= waiting.offset)?;
-        let reply = self.protocol.as_reply(frame, &waiting.request)?;
-        Some((Arc::clone(&waiting.request), reply))
     }
 
     /// Find out what a frame is that does not reply to the request that waits.
@@ -596,10 +567,9 @@ impl Exchange {
         let Some(waiting) = self.waiting().filter(|waiting| waiting.ends_at() <= now) else {
             return events;
         };
-        let waited = now.saturating_sub(waiting.requested_at);
         match waiting.candidate.clone() {
             Some(reply) if !self.echo.proven => events.push(self.end(reply, None, now)),
-            _ => events.extend(self.expire(waited, None)),
+            _ => events.extend(self.expire(now, None)),
         }
         events
     }
@@ -617,10 +587,10 @@ impl Exchange {
     }
 
     /// End the request that waits with a timeout; its reply may still come.
-    fn expire(&mut self, waited: Nanos, waited_for: Option<WaitedFor>) -> Option<Event> {
+    fn expire(&mut self, now: Nanos, waited_for: Option<WaitedFor>) -> Option<Event> {
         let waiting = self.waiting()?;
         let (requested_at, attempts) = (waiting.requested_at, waiting.attempt_times.len());
-        let command = self.end_waiting(0, |own| Err(own.expire(waited, waited_for)));
+        let command = self.end_waiting(0, |own| Err(own.expire(now, waited_for)));
         Some(Event::Expired {
             command,
             requested_at,
@@ -631,7 +601,7 @@ impl Exchange {
     /// Have everybody who waits remember an event.
     fn note(&mut self, event: Event) -> Event {
         if let Some(waiting) = waiting(&mut self.last) {
-            waiting.received.add(&event);
+            waiting.note(&event);
         }
         self.acks.note(&event);
         event
