@@ -37,7 +37,7 @@ struct Wide {
 
 #[derive(Deserialize)]
 struct WideFrame {
-    crc: Option<CrcParameters>,
+    crc: CrcParameters,
 }
 
 /// Return the frame format; `json` are the bytes of the whole file.
@@ -195,14 +195,11 @@ fn algorithm(record: Record<'_>, json: &[u8]) -> Outcome<(Option<Algorithm>, usi
 
 fn crc(json: &[u8], size: usize) -> Outcome<Algorithm> {
     let wide: Wide = serde_json::from_slice(json).or_else(BadEdition::because)?;
-    let crc = wide.frame.crc.and_then(|crc| {
-        let fits = |number: u128| number.checked_shr(crc.width).unwrap_or_default() == 0;
-        let all = [crc.poly, crc.init, crc.xorout].into_iter().all(fits);
-        Crc::new(crc).filter(|crc| all && crc.size() == size)
-    });
-    match crc {
-        Some(crc) => Ok(Algorithm::Crc(crc)),
-        None => BadEdition::because(
+    let crc = wide.frame.crc;
+    let fits = |number: u128| number.checked_shr(crc.width).unwrap_or_default() == 0;
+    match Crc::new(crc).filter(|crc| crc.size() == size) {
+        Some(made) if fits(crc.poly | crc.init | crc.xorout) => Ok(Algorithm::Crc(made)),
+        _ => BadEdition::because(
             "crc must have 1 to 120 bits, numbers of that many bits, and check_width its bytes",
         ),
     }

@@ -58,14 +58,13 @@ impl Edition {
     /// Return the text of the error of bytes that were not decoded.
     #[must_use]
     pub fn decode_error(&self, direction: Direction, error: DecodeError, data: &[u8]) -> String {
-        match error {
+        let (detail, offset) = match error {
             DecodeError::Frame { reason, offset } => {
-                protocol_error(&self.bad_frame(direction, reason, data), offset, data)
+                (self.bad_frame(direction, reason, data), offset)
             }
-            DecodeError::Raw(bad) => {
-                protocol_error(&self.bad_raw(&bad).unwrap_or_default(), bad.offset, data)
-            }
-        }
+            DecodeError::Raw(bad) => (self.bad_raw(&bad).unwrap_or_default(), bad.offset),
+        };
+        protocol_error(&detail, offset, data)
     }
 
     pub(crate) fn part(&self, id: VariantId, field: usize, case: usize) -> Option<Part<'_>> {

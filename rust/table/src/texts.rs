@@ -140,14 +140,11 @@ impl Edition {
     /// Return the fields of a message as texts show them.
     #[must_use]
     pub fn fields(&self, message: &Decoded) -> String {
-        let shown = self.named(message).into_iter().map(|(name, value)| {
-            let value = match value {
-                Shown::Text(text) => text,
-                value => value.to_string(),
-            };
-            format!("{name}={value}")
-        });
-        join(shown, ", ")
+        let shown = |(name, value)| match value {
+            Shown::Text(text) => format!("{name}={text}"),
+            value => format!("{name}={value}"),
+        };
+        join(self.named(message).into_iter().map(shown), ", ")
     }
 
     /// Return the fields of a message with their names.
@@ -166,8 +163,8 @@ impl Edition {
     pub fn message(&self, message: &Decoded) -> String {
         let name = self.command_name(message.variant.command);
         let to = |address| format!(" to {}", self.address_name(address));
-        let to = message.address.map(to);
-        format!("{name}({}){}", self.fields(message), to.unwrap_or_default())
+        let to = message.address.map_or(String::new(), to);
+        format!("{name}({}){to}", self.fields(message))
     }
 
     /// Return the text of the error that ended a request; `None` for an error of the transport, which

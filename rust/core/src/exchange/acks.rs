@@ -11,9 +11,9 @@ use alloc::collections::BTreeMap;
 use alloc::sync::Arc;
 use alloc::vec::Vec;
 
-use super::pending::{GRACE, NEVER, Pending};
+use super::pending::{GRACE, Pending};
 use super::{
-    Answer, Event, Facts, Failure, Nanos, Protocol, Replier, Request, SeenFrame, Ticket, WaitedFor,
+    Answer, Facts, Failure, Nanos, Protocol, Replier, Request, SeenFrame, Ticket, WaitedFor,
 };
 use crate::decode::Decoded;
 
@@ -167,11 +167,6 @@ pub(super) struct Acks {
 }
 
 impl Acks {
-    pub(super) fn next_end(&self) -> Nanos {
-        let waiting = self.waiting.iter();
-        waiting.fold(NEVER, |first, wait| first.min(wait.ends_first()))
-    }
-
     /// Note that a request goes out; its acknowledgement can begin at `offset`. A caller waits for
     /// it if there is a `pending`. Return until when it is expected.
     pub(super) fn expect(
@@ -289,12 +284,5 @@ impl Acks {
             (wait.ticket, outcome)
         });
         ended.collect()
-    }
-
-    /// Have those who wait remember an event.
-    pub(super) fn note(&mut self, event: &Event) {
-        for wait in &mut self.waiting {
-            wait.note(event);
-        }
     }
 }

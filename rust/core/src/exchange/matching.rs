@@ -6,7 +6,7 @@ use alloc::vec::Vec;
 use super::{Event, Facts, Named, Protocol, Replier, Request, SeenFrame};
 use crate::decode::{DecodeError, Decoded, read};
 use crate::direction::{Direction, Listening};
-use crate::message::{Command, Variant};
+use crate::message::Variant;
 use crate::number::Value;
 
 /// Values by the name of their field.
@@ -32,14 +32,9 @@ pub(super) fn same(one: &[Value], other: &[Value]) -> bool {
 }
 
 impl Protocol {
-    /// Return a command and its facts.
-    pub(super) fn command(&self, index: usize) -> Option<(&Command, &Facts)> {
-        self.table.commands().get(index).zip(self.facts.get(index))
-    }
-
     /// Return the id of a command.
     pub(super) fn id(&self, command: usize) -> Option<u16> {
-        Some(self.command(command)?.0.id)
+        Some(self.table.commands().get(command)?.id)
     }
 
     /// Return whether a command is such as a function of its facts says.

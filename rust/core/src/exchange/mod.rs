@@ -119,7 +119,7 @@ impl Exchange {
     ) -> (Vec<u8>, Option<Ticket>) {
         let offset = self.fed();
         self.echo.sent(&request, offset, true);
-        self.alignment.sent(&request.frame);
+        self.alignment.last_request.clone_from(&request.frame);
         let data = [request.frame.as_slice(), &request.text].concat();
         let (request, protocol) = (Arc::new(request), Arc::clone(&self.protocol));
         if !protocol.is(request.command, |facts| facts.ack) || request.replier == Replier::Nobody {
@@ -287,7 +287,8 @@ impl Exchange {
             None => self.free_at(pending, now).min(pending.ends_by),
             Some(_) => pending.ends_by,
         });
-        let soonest = queued.fold(own.min(self.acks.next_end()), Nanos::min);
+        let acks = self.acks.waiting.iter().map(Pending::ends_first);
+        let soonest = queued.chain(acks).fold(own, Nanos::min);
         (soonest != NEVER).then(|| soonest.saturating_sub(now))
     }
 
@@ -343,7 +344,7 @@ impl Exchange {
     fn begin(&mut self, index: usize, now: Nanos) -> Vec<u8> {
         let (offset, mut pending) = (self.fed(), self.queue.remove(index));
         self.echo.sent(&pending.request, offset, false);
-        self.alignment.sent(&pending.request.frame);
+        (self.alignment.last_request).clone_from(&pending.request.frame);
         pending.begin(now, offset);
         self.last.insert(pending).request.frame.clone()
     }
@@ -354,19 +355,18 @@ impl Exchange {
         let Some(pending) = self.queue.get_mut(index) else {
             return false;
         };
-        let held = self
-            .outstanding
-            .held_until(&self.protocol, &pending.request);
+        let (outstanding, protocol) = (&self.outstanding, &*self.protocol);
+        let held = outstanding.held_until(protocol, &pending.request).is_some();
         pending.undrained_since = pending.undrained_since.min(now);
         if now.saturating_sub(pending.undrained_since) < DRAIN {
             return false;
         }
-        if held.is_some() {
+        if held {
             let mut ended = self.queue.remove(index);
             let failure = ended.expire(now, None);
             self.finished.insert(ended.ticket, Err(failure));
         }
-        held.is_none()
+        !held
     }
 
     /// Return when the request is to be sent again; not while its copy may be its reply.
@@ -600,10 +600,10 @@ impl Exchange {
 
     /// Have everybody who waits remember an event.
     fn note(&mut self, event: Event) -> Event {
-        if let Some(waiting) = waiting(&mut self.last) {
+        let waiting = waiting(&mut self.last).into_iter();
+        for waiting in waiting.chain(&mut self.acks.waiting) {
             waiting.note(&event);
         }
-        self.acks.note(&event);
         event
     }
 }

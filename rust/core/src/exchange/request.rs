@@ -57,7 +57,7 @@ impl Request {
     ) -> Result<Self, RequestError<EncodeError<V>>> {
         let format = protocol.table.frame();
         let address = address.or(format.addresses.first().copied());
-        let found = protocol.command(command);
+        let found = (protocol.table.commands().get(command)).zip(protocol.facts.get(command));
         let (record, facts) = found.ok_or(RequestError::Values(EncodeError::VariantId))?;
         let replier = protocol.replier(address);
         if replier == Replier::Nobody && facts.requires_reply() {
@@ -90,7 +90,7 @@ impl Request {
     pub fn from_frame(protocol: &Protocol, frame: &[u8]) -> Option<Self> {
         let decoded = decode(&protocol.table, Direction::Request, frame, None).ok()?;
         let command = decoded.variant.command;
-        let (_, facts) = protocol.command(command)?;
+        let facts = protocol.facts.get(command)?;
         Some(Self {
             command,
             frame: frame.into(),
