@@ -178,7 +178,8 @@ impl Number {
 
     /// Return the raw value that starts there.
     #[inline]
-    pub(crate) fn unpack(&self, data: &[u8], start: usize) -> i64 {
+    #[must_use]
+    pub fn unpack(&self, data: &[u8], start: usize) -> i64 {
         let bytes = data.get(start..start + self.width).unwrap_or_default();
         let unsigned = match (bytes, self.order) {
             ([byte], _) => i64::from(*byte),

@@ -9,6 +9,7 @@
 extern crate alloc;
 
 mod commands;
+mod explain;
 mod frame;
 mod json;
 mod messages;
@@ -32,6 +33,7 @@ use serde_json::Value;
 use crate::json::Record;
 use crate::messages::Messages;
 
+pub use crate::explain::Explained;
 pub use crate::shown::{Quote, Shown};
 pub use crate::texts::{bad_argument, error_text, link_error};
 
@@ -56,6 +58,8 @@ pub struct Edition {
 #[allow(missing_docs)] // of fields, whose names say what they are
 pub struct Command {
     pub name: String,
+    /// What it is, in a few words; a table for clients does not say it.
+    pub title: String,
     pub family: String,
     pub safety: Safety,
     /// The role in which clients use it; empty: none.

@@ -17,13 +17,13 @@ use crate::texts::{bad_argument, either, entry, hex, one_or, protocol_error, tex
 use crate::{Edition, Field, Number, Quote, Shown};
 
 // A link to a file of the Python package; a package of this crate contains the file.
-const UNITS: &str = include_str!("../units.json");
+pub(crate) const UNITS: &str = include_str!("../units.json");
 
 /// A field with its names, in one of its cases.
 pub(crate) struct Part<'a> {
     pub(crate) name: &'a Field,
-    wire: &'a Wire,
-    numbers: &'a [WireNumber],
+    pub(crate) wire: &'a Wire,
+    pub(crate) numbers: &'a [WireNumber],
     case: usize,
 }
 
@@ -214,7 +214,7 @@ impl Part<'_> {
         bad_argument(&argument, &value, &allowed)
     }
 
-    fn named(&self, at: usize) -> Option<&Number> {
+    pub(crate) fn named(&self, at: usize) -> Option<&Number> {
         self.name.number(self.case, at)
     }
 
@@ -262,15 +262,24 @@ impl Part<'_> {
         text!(if all { "named-row" } else { "row" }; count, names)
     }
 
+    /// Return the words of a number's choices, and their raw values.
+    pub(crate) fn labels<'a>(
+        &'a self,
+        number: &'a WireNumber,
+        names: &'a Number,
+    ) -> (&'a [String], &'a [i64]) {
+        match names.labels.is_empty() {
+            true => (&self.name.labels, &self.wire.choices),
+            false => (&names.labels, &number.choices),
+        }
+    }
+
     /// Return what a number of the field may be.
     fn allowed(&self, at: usize) -> String {
         let Some((number, names)) = self.numbers.get(at).zip(self.named(at)) else {
             return String::new();
         };
-        let (labels, choices) = match names.labels.is_empty() {
-            true => (&self.name.labels, &self.wire.choices),
-            false => (&names.labels, &number.choices),
-        };
+        let (labels, choices) = self.labels(number, names);
         let mut all = [&self.wire.choices, &number.choices].into_iter();
         let choice = all.find(|all| !all.is_empty());
         if self.wire.flag || number.flag {
