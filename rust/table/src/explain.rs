@@ -75,7 +75,7 @@ impl Edition {
             for (element, number) in part.numbers.iter().enumerate() {
                 let (raw, end) = (number.unpack(frame, at), at + number.step());
                 let meaning = part.meaning(element, raw);
-                push(at..end, &part.label(element), meaning, Some(raw));
+                push(at..end, &part.element(element, " "), meaning, Some(raw));
                 at = end;
             }
         }
@@ -99,19 +99,6 @@ fn shaped(value: Shown) -> String {
 }
 
 impl Part<'_> {
-    /// Return the name of a number: of the field, the place in its list, its own.
-    fn label(&self, at: usize) -> String {
-        let (field, named) = (&self.name.name, self.named(at));
-        let name = named.map_or("", |number| &number.name);
-        let index = match at.checked_div(self.wire.each) {
-            None if self.wire.many && name.is_empty() => Some(at),
-            index => index,
-        };
-        let index = index.map_or(String::new(), |index| format!("[{index}]"));
-        let space = if name.is_empty() { "" } else { " " };
-        format!("{field}{index}{space}{name}")
-    }
-
     /// Return a number with its unit or label.
     fn meaning(&self, at: usize, raw: i64) -> String {
         let Some((number, names)) = self.numbers.get(at).zip(self.named(at)) else {

@@ -52,15 +52,12 @@ impl<'a> Messages<'a> {
             let mut varying = self.varying(records)?;
             // The lists are as short as they can be.
             let shortest = self.variant(records, &varying)?;
-            match self.most.checked_sub(shortest.0.size()) {
-                _ if varying.is_empty() => made.push(shortest),
-                None => {}
-                Some(room) => {
-                    made.push(shortest);
-                    while lengthen(&mut varying, room) {
-                        made.push(self.variant(records, &varying)?);
-                    }
-                }
+            let room = self.most.checked_sub(shortest.0.size());
+            if room.is_some() || varying.is_empty() {
+                made.push(shortest);
+            }
+            while room.is_some_and(|room| lengthen(&mut varying, room)) {
+                made.push(self.variant(records, &varying)?);
             }
         }
         Ok(made)
@@ -81,13 +78,11 @@ impl<'a> Messages<'a> {
 
     /// Return a field as a list that varies, if it is one.
     fn list(&self, record: Record<'a>, name: &'a str) -> Outcome<Option<Varying<'a>>> {
-        let Some(of) = self.of(record)? else {
+        let of = self.of(record)?;
+        let found = of.zip(of.map(bounds).transpose()?);
+        let Some((of, (least, most))) = found.filter(|(_, (least, most))| least < most) else {
             return Ok(None);
         };
-        let (least, most) = bounds(of)?;
-        if least >= most {
-            return Ok(None);
-        }
         let numbers = self.shaped(of)?.1.wire;
         let (each, count) = (numbers.iter().map(wire::Number::step).sum(), least);
         if each == 0 {

@@ -104,7 +104,7 @@ impl Edition {
         }
         let number = part.numbers.get(at)?;
         let whole = part.wire.each == 0 && number.bits.is_none();
-        let name = if whole { name } else { &part.element(at) };
+        let name = if whole { name } else { &part.element(at, ".") };
         let value = Shown::nested(&mut once(number.physical(bad.raw)))?;
         let allowed = part.allowed(at);
         Some(text!("bad-value"; command, name, value, allowed))
@@ -209,7 +209,7 @@ impl Part<'_> {
             (None, ValueFault::Count) => (length, count, self.row(size)),
             (None, _) if self.wire.many => (name.clone(), value, self.row(size)),
             (None, _) => (name.clone(), value, self.allowed(0)),
-            (Some(at), _) => (self.element(at), value, self.allowed(at)),
+            (Some(at), _) => (self.element(at, "."), value, self.allowed(at)),
         };
         bad_argument(&argument, &value, &allowed)
     }
@@ -218,15 +218,16 @@ impl Part<'_> {
         self.name.number(self.case, at)
     }
 
-    /// Return the name of a number of the field.
-    fn element(&self, at: usize) -> String {
+    /// Return the name of a number: of the field, the place in its list, its own.
+    pub(crate) fn element(&self, at: usize, between: &str) -> String {
         let field = &self.name.name;
         let number = self.named(at).map_or("", |number| &number.name);
-        match at.checked_div(self.wire.each) {
-            _ if !self.wire.many => field.clone(),
-            Some(index) => format!("{field}[{index}].{number}"),
-            None if number.is_empty() => format!("{field}[{at}]"),
-            None => format!("{field}.{number}"),
+        match (at.checked_div(self.wire.each), number) {
+            (None, "") if !self.wire.many => field.clone(),
+            (None, "") => format!("{field}[{at}]"),
+            (None, _) => format!("{field}{between}{number}"),
+            (Some(index), "") => format!("{field}[{index}]"),
+            (Some(index), _) => format!("{field}[{index}]{between}{number}"),
         }
     }
 

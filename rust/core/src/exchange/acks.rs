@@ -237,11 +237,11 @@ impl Acks {
             let read = || protocol.read(frame, command).ok();
             messages.entry(command).or_insert_with(read);
         }
-        let address = protocol.address_of(frame);
         let fits = |ack: &ExpectedAck| {
             let message = messages.get(&ack.request.command).and_then(Option::as_ref);
             message.is_some_and(|message| {
-                ack.request.can_come_from(address) && ack.request.repeated_by(protocol, message)
+                ack.request.can_come_from(message.address)
+                    && ack.request.repeated_by(protocol, message)
             })
         };
         let oldest = acks.expected().find(|ack| fits(ack))?;

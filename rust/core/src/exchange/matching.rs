@@ -60,12 +60,6 @@ impl Protocol {
         frame.frame.get(self.table.frame()).id()
     }
 
-    /// Return the address byte, if the format has one.
-    pub(super) fn address_of(&self, frame: &SeenFrame) -> Option<u8> {
-        let format = self.table.frame();
-        format.address(frame.frame.get(format))
-    }
-
     fn has_ids(&self) -> bool {
         self.table.frame().layout.reply_has_id
     }
@@ -77,9 +71,10 @@ impl Protocol {
         frame: &SeenFrame,
         request: &Request,
     ) -> Option<Result<Decoded, DecodeError>> {
+        let format = self.table.frame();
         let can_reply = !self.replies(request.command).is_empty()
             && request.can_have_reply(self, frame)
-            && request.can_come_from(self.address_of(frame));
+            && request.can_come_from(format.address(frame.frame.get(format)));
         if !can_reply {
             return None;
         }

@@ -247,14 +247,13 @@ impl Exchange {
             return self.next_attempt(now).unwrap_or_default();
         }
         let free = |pending: &Pending| pending.ends_by > now && self.free_at(pending, now) <= now;
-        let Some(index) = self.queue.iter().position(free) else {
-            return Vec::new();
-        };
-        if !drained && !self.sends_undrained(index, now) {
-            return Vec::new();
+        match self.queue.iter().position(free) {
+            Some(index) if drained || self.sends_undrained(index, now) => {
+                self.outstanding.drop_expired(now);
+                self.begin(index, now)
+            }
+            _ => Vec::new(),
         }
-        self.outstanding.drop_expired(now);
-        self.begin(index, now)
     }
 
     /// Return the request that [`Self::outgoing`] gave last; it may have ended by now.
