@@ -10,6 +10,7 @@ from collections.abc import Callable
 from pathlib import Path
 from random import Random
 from typing import Any
+from unicodedata import category
 
 import pytest
 from hypothesis import HealthCheck, Phase, given, settings
@@ -57,12 +58,15 @@ def given_value(value: Any) -> Any:
         return tuple(map(given_value, value))
     if isinstance(value, bytearray | memoryview):
         return bytes(value)
+    if isinstance(value, str):
+        # Rust may know a later version of Unicode, which has more printable characters.
+        return "".join(char for char in value if category(char) != "Cn")
     # The clients take a whole number for an integer, whatever its type.
     if isinstance(value, float) and value.is_integer() and abs(value) < 1 << 53:
         value = int(value)
     if isinstance(value, int) and abs(value) >= 1 << 63:
         return 1 << 40
-    known = isinstance(value, bool | int | float | str | bytes) or value is ...
+    known = isinstance(value, bool | int | float | bytes) or value is ...
     return value if known else (str(value),)
 
 

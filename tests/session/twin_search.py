@@ -20,7 +20,7 @@ from vectors import ROOT
 # Attributes that never change, or that only an outcome shows; times; positions in the stream.
 LEFT_OUT = re.compile(
     r"queued_at: \d+, |requested_at: \d+, |policy: RetryPolicy {[^}]*}, "
-    r"|received: ReceivedMeanwhile\(\[.*?\]\), (?=policy: )"
+    r"|received: \[.*?\], (?=policy: )"
 )
 TIMES = "until|ends_by|deadline|undrained_since|sent_at|last|began_at|attempt_times|doubts"
 TIME = re.compile(rf"\b({TIMES}): (Some\(|\[)?([\d, ]+)")

@@ -66,7 +66,8 @@ impl Field {
     }
 
     /// Return the numbers of a case.
-    pub(crate) fn numbers(&self, case: usize) -> &[Number] {
+    #[must_use]
+    pub fn numbers(&self, case: usize) -> &[Number] {
         self.cases.get(case).map_or(&[], |case| &case.numbers)
     }
 

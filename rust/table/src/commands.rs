@@ -3,13 +3,12 @@
 use alloc::boxed::Box;
 use alloc::collections::BTreeMap;
 use alloc::string::String;
-use alloc::vec::Vec;
 
 use cobotwire_core as wire;
-use cobotwire_core::exchange::{Facts, Named, Nanos, TextForm};
+use cobotwire_core::exchange::{Facts, Nanos, TextForm};
 
 use crate::json::Record;
-use crate::messages::{Messages, Variant};
+use crate::messages::Messages;
 use crate::{BadEdition, Command, Outcome, Within};
 
 /// The longest time of a file, in milliseconds: a day.
@@ -32,6 +31,8 @@ pub(crate) fn command<'a>(
     let request = messages.variants(lists).within("request", "")?;
     let reply = messages.variants(record.records("reply")?);
     let reply = reply.within("reply", "")?;
+    let (request, (request_texts, request_names)) = request.into_iter().unzip();
+    let (reply, (reply_texts, reply_names)) = reply.into_iter().unzip();
     let facts = Facts {
         safety: record.get("safety")?,
         deadline: record.within("deadline_ms", 0..=LONGEST_MS)? * 1_000_000,
@@ -39,12 +40,10 @@ pub(crate) fn command<'a>(
         event,
         text: text(record, "text")?,
         request_text: text(record, "request_text")?,
-        request: request.iter().map(named).collect(),
-        reply: reply.iter().map(named).collect(),
+        request: request_names,
+        reply: reply_names,
         accepted: record.any("accepted")?,
     };
-    let (in_request, request) = request.into_iter().map(parts).unzip();
-    let (in_reply, reply) = reply.into_iter().map(parts).unzip();
     let stores: BTreeMap<String, String> = record.at("effect").any("stores")?;
     let command = Command {
         name: record.get("name")?,
@@ -54,25 +53,11 @@ pub(crate) fn command<'a>(
         role: record.any("role")?,
         read_by: record.at("read_by").get("query")?,
         stores: stores.into_values().collect(),
-        request: in_request,
-        reply: in_reply,
+        request: request_texts,
+        reply: reply_texts,
     };
     let id = record.within("id", 0..=last)?;
     Ok((wire::Command { id, request, reply }, facts, command))
-}
-
-fn parts(variant: Variant) -> (Vec<crate::Field>, wire::Variant) {
-    (variant.texts, wire::Variant::new(variant.fields))
-}
-
-fn named(variant: &Variant) -> Vec<Named> {
-    let fields = variant.fields.iter().zip(&variant.texts);
-    let named = fields.map(|(field, text)| Named {
-        name: text.name.as_str().into(),
-        echo: text.echo,
-        status: field.choices.len() != 1 || !text.labels.is_empty(),
-    });
-    named.collect()
 }
 
 fn text(record: Record<'_>, key: &str) -> Outcome<Option<TextForm>> {

@@ -37,14 +37,23 @@ struct Wide {
 
 #[derive(Deserialize)]
 struct WideFrame {
-    crc: Option<CrcParameters>,
+    crc: CrcParameters,
 }
 
 /// Return the frame format; `json` are the bytes of the whole file.
-pub(crate) fn frame_format(record: Record<'_>, json: &[u8]) -> Outcome<FrameFormat> {
+pub(crate) fn frame_format(
+    record: Record<'_>,
+    known: &[Addressee],
+    json: &[u8],
+) -> Outcome<FrameFormat> {
     use Place::{Address, Check as CheckBytes, Command, Data, Footer, Header, Length};
     let (header, footer) = (hex(record, "header", 1..=4)?, hex(record, "footer", 0..=2)?);
-    let addresses = address_bytes(record)?;
+    let mut addresses: Vec<u8> = known.iter().map(|each| each.value).collect();
+    if let Some(range) = record.some("address_range") {
+        let range = range.get::<u8>("first")?..=range.get("last")?;
+        let named = |byte: &u8| known.iter().any(|each| each.value == *byte);
+        addresses.extend(range.filter(|byte| !named(byte)));
+    }
     let (algorithm, check_width) = algorithm(record, json)?;
     let (length, id) = (record.at("length"), record.at("command"));
     let sizes = [
@@ -186,31 +195,14 @@ fn algorithm(record: Record<'_>, json: &[u8]) -> Outcome<(Option<Algorithm>, usi
 
 fn crc(json: &[u8], size: usize) -> Outcome<Algorithm> {
     let wide: Wide = serde_json::from_slice(json).or_else(BadEdition::because)?;
-    let crc = wide.frame.crc.and_then(|crc| {
-        let fits = |number: u128| number.checked_shr(crc.width).unwrap_or_default() == 0;
-        let all = [crc.poly, crc.init, crc.xorout].into_iter().all(fits);
-        Crc::new(crc).filter(|crc| all && crc.size() == size)
-    });
-    match crc {
-        Some(crc) => Ok(Algorithm::Crc(crc)),
-        None => BadEdition::because(
+    let crc = wide.frame.crc;
+    let fits = |number: u128| number.checked_shr(crc.width).unwrap_or_default() == 0;
+    match Crc::new(crc).filter(|crc| crc.size() == size) {
+        Some(made) if fits(crc.poly | crc.init | crc.xorout) => Ok(Algorithm::Crc(made)),
+        _ => BadEdition::because(
             "crc must have 1 to 120 bits, numbers of that many bits, and check_width its bytes",
         ),
     }
-}
-
-fn address_bytes(record: Record<'_>) -> Outcome<Vec<u8>> {
-    let named = record.records("addresses")?.into_iter();
-    let named: Outcome<Vec<u8>> = named.map(|each| each.get("value")).collect();
-    let mut bytes = named?;
-    if let Some(range) = record.some("address_range") {
-        for byte in range.get::<u8>("first")?..=range.get("last")? {
-            if !bytes.contains(&byte) {
-                bytes.push(byte);
-            }
-        }
-    }
-    Ok(bytes)
 }
 
 /// Return the addresses that the file names.

@@ -89,8 +89,6 @@ impl Command {
 #[allow(missing_docs)] // as above
 pub struct Field {
     pub name: String,
-    /// Whether a reply repeats an argument in it.
-    pub echo: bool,
     /// The words of its choices, in their order; empty: they have none.
     pub labels: Vec<String>,
     /// What raw values from the first to the second stand for; `{number}` is the raw value.
@@ -98,14 +96,14 @@ pub struct Field {
     /// The numbers of each case. A list, bytes or a text has those of one element:
     /// [`Field::number`] finds the number of any.
     pub cases: Vec<Vec<Number>>,
-    /// The least and the most elements, if they differ or are counted.
+    /// The least and the most elements, if they differ.
     pub sizes: Option<(usize, usize)>,
     /// The field whose elements it counts.
     pub counts: Option<String>,
     /// Whether it is a constant, which the default is then.
     pub constant: bool,
     /// The value of an argument that is left out, in physical units.
-    pub default: Option<Vec<f64>>,
+    pub default: Option<Shown>,
 }
 
 impl Field {
@@ -147,7 +145,8 @@ impl Edition {
             ));
         }
         let (frame, described) = (root.at("frame"), root.at("edition"));
-        let format = frame::frame_format(frame, json).within("frame", "")?;
+        let addresses = frame::addresses(frame).within("frame", "")?;
+        let format = frame::frame_format(frame, &addresses, json).within("frame", "")?;
         let last = if format.layout.id.wide { 0xFFFF } else { 0xFF };
         let (mut wire, mut facts, mut commands) = (Vec::new(), Vec::new(), Vec::new());
         let (messages, mut names) = (Messages::new(root)?, BTreeSet::new());
@@ -170,7 +169,7 @@ impl Edition {
             table,
             facts,
             reports_ends: commands.iter().any(|each| each.role == "motion ended"),
-            addresses: frame::addresses(frame).within("frame", "")?,
+            addresses,
             joints: described.get::<u8>("joints")?.into(),
         };
         Ok(Self {

@@ -8,17 +8,15 @@ use alloc::vec::Vec;
 
 use cobotwire_core as wire;
 use cobotwire_core::Shape;
+use cobotwire_core::exchange::Named;
 
 use crate::frame::LONGEST;
 use crate::json::Record;
 use crate::types::{Kind, Numbers, Types, all_choices, bits, fitting, kind, words};
-use crate::{BadEdition, Field, Outcome, Within};
+use crate::{BadEdition, Field, Outcome, Shown, Within};
 
-/// One variant of a message.
-pub(crate) struct Variant {
-    pub(crate) fields: Vec<wire::Field>,
-    pub(crate) texts: Vec<Field>,
-}
+/// One variant of a message, as the table, texts and clients, and the exchange need it.
+type Variant = (wire::Variant, (Vec<Field>, Vec<Named>));
 
 /// Makes the variants of the messages of a file.
 pub(crate) struct Messages<'a> {
@@ -54,16 +52,12 @@ impl<'a> Messages<'a> {
             let mut varying = self.varying(records)?;
             // The lists are as short as they can be.
             let shortest = self.variant(records, &varying)?;
-            let size = wire::Variant::new(shortest.fields.clone()).size();
-            match self.most.checked_sub(size) {
-                _ if varying.is_empty() => made.push(shortest),
-                None => {}
-                Some(room) => {
-                    made.push(shortest);
-                    while lengthen(&mut varying, room) {
-                        made.push(self.variant(records, &varying)?);
-                    }
-                }
+            let room = self.most.checked_sub(shortest.0.size());
+            if room.is_some() || varying.is_empty() {
+                made.push(shortest);
+            }
+            while room.is_some_and(|room| lengthen(&mut varying, room)) {
+                made.push(self.variant(records, &varying)?);
             }
         }
         Ok(made)
@@ -84,14 +78,13 @@ impl<'a> Messages<'a> {
 
     /// Return a field as a list that varies, if it is one.
     fn list(&self, record: Record<'a>, name: &'a str) -> Outcome<Option<Varying<'a>>> {
-        let Some(of) = self.of(record)? else {
+        let of = self.of(record)?;
+        let found = of.zip(of.map(bounds).transpose()?);
+        let Some((of, (least, most))) = found.filter(|(_, (least, most))| least < most) else {
             return Ok(None);
         };
-        let (least, most) = bounds(of)?;
-        if least >= most {
-            return Ok(None);
-        }
-        let (each, count) = (self.shaped(of)?.1.size(), least);
+        let numbers = self.shaped(of)?.1.wire;
+        let (each, count) = (numbers.iter().map(wire::Number::step).sum(), least);
         if each == 0 {
             return BadEdition::because("its elements have no bytes");
         }
@@ -105,16 +98,21 @@ impl<'a> Messages<'a> {
     }
 
     fn variant(&self, records: &[Record<'a>], lists: &[Varying<'_>]) -> Outcome<Variant> {
-        let (mut fields, mut texts) = (Vec::new(), Vec::new());
+        let (mut fields, mut texts, mut names) = (Vec::new(), Vec::new(), Vec::new());
         for record in records {
             let name = record.name()?;
             let (field, mut text) = self.field(*record, records, lists).within("field", name)?;
-            (text.name, text.echo) = (name.into(), record.some("echo").is_some());
+            text.name = name.into();
             self.types.spend(memory(&field, &text))?;
+            names.push(Named {
+                name: name.into(),
+                echo: record.some("echo").is_some(),
+                status: field.choices.len() != 1 || !text.labels.is_empty(),
+            });
             fields.push(field);
             texts.push(text);
         }
-        Ok(Variant { fields, texts })
+        Ok((wire::Variant::new(fields), (texts, names)))
     }
 
     fn field(
@@ -134,8 +132,11 @@ impl<'a> Messages<'a> {
             (text.counts, text.constant) = (Some(counted.into()), false);
             return Ok((field, text));
         }
+        use Kind::{Bits, Bytes, List, Text};
         match self.of(record)? {
-            Some(of) if kind(of)?.repeats() => self.repeated(of, list(record.name()?)),
+            Some(of) if matches!(kind(of)?, Bits | Bytes | List | Text) => {
+                self.repeated(of, list(record.name()?))
+            }
             _ => self.plain(record, records, record.get("const")?),
         }
     }
@@ -242,10 +243,10 @@ impl<'a> Messages<'a> {
         if fixed.is_none() {
             text.labels = labels(first)?;
         }
-        let numbers = field.cases.first().map_or(0, |case| case.numbers.len());
-        let constants = fixed.map(|fixed| vec![fixed; numbers]);
-        let default = constants.map_or(record.get("default"), |raws| Ok(Some(raws)))?;
-        text.default = default.map(|raws| physical(&raws, &field)).transpose()?;
+        let constant = fixed.map(|fixed| vec![fixed; field.numbers(0).len()]);
+        if let Some(raws) = constant.map_or_else(|| record.get("default"), |raws| Ok(Some(raws)))? {
+            text.default = physical(&raws, &field).within("default", "")?;
+        }
         for each in first.records("meanings")? {
             let meaning = (each.get("first")?, each.get("last")?, each.get("says")?);
             text.meanings.push(meaning);
@@ -261,19 +262,16 @@ fn labels(of: Record<'_>) -> Outcome<Vec<String>> {
 
 /// Set the next numbers of elements; the last list changes first. All lists together may take that
 /// many bytes more than their shortest ones. Return false after the last variant.
-fn lengthen(lists: &mut [Varying<'_>], room: usize) -> bool {
-    for index in (0..lists.len()).rev() {
-        if let Some(list) = lists.get_mut(index) {
-            list.count += 1;
+fn lengthen(mut lists: &mut [Varying<'_>], room: usize) -> bool {
+    let more = |list: &Varying<'_>| (list.count - list.least) * list.each;
+    while let Some((last, earlier)) = lists.split_last_mut() {
+        last.count += 1;
+        let all = more(last) + earlier.iter().map(more).sum::<usize>();
+        if last.count <= last.most && all <= room {
+            return true;
         }
-        let more = |list: &Varying<'_>| (list.count - list.least) * list.each;
-        let fits = lists.iter().map(more).sum::<usize>() <= room;
-        if let Some(list) = lists.get_mut(index) {
-            if fits && list.count <= list.most {
-                return true;
-            }
-            list.count = list.least;
-        }
+        last.count = last.least;
+        lists = earlier;
     }
     false
 }
@@ -285,19 +283,17 @@ fn bounds(of: Record<'_>) -> Outcome<(usize, usize)> {
 }
 
 /// Return raw values of a field's first case in physical units.
-fn physical(raws: &[i64], field: &wire::Field) -> Outcome<Vec<f64>> {
-    let numbers = field.cases.first().map_or(&[][..], |case| &case.numbers);
+fn physical(raws: &[i64], field: &wire::Field) -> Outcome<Option<Shown>> {
+    let numbers = field.numbers(0);
     if numbers.len() != raws.len() {
-        return BadEdition::because("default is not a raw value for each number");
+        return BadEdition::because("it is not a raw value for each number");
     }
-    let physical = |(number, raw): (&wire::Number, &i64)| {
-        fitting(number, [raw]).within("default", "")?;
-        Ok(match number.physical(*raw) {
-            wire::Value::Real(real) => real,
-            _ => *raw as f64,
-        })
-    };
-    numbers.iter().zip(raws).map(physical).collect()
+    let mut values = Vec::from_iter(field.many.then_some(wire::Value::Row(raws.len())));
+    for (number, raw) in numbers.iter().zip(raws) {
+        fitting(number, [raw])?;
+        values.push(number.physical(*raw));
+    }
+    Ok(Shown::nested(&mut values.into_iter()))
 }
 
 /// Return about how many bytes a field takes besides its numbers.

@@ -24,18 +24,13 @@ impl Edition {
         let Some(record) = self.commands.get(command) else {
             return Ok((Vec::new(), None));
         };
-        let (mut fitting, mut misfit) = (Vec::new(), None);
-        for (index, variant) in record.request.iter().enumerate() {
-            match row(variant, given, &filled) {
-                Ok(row) => fitting.push((row, Some(index))),
-                Err(bad) => misfit = misfit.or(Some(bad)),
-            }
+        let rows = record.request.iter().map(|each| row(each, given, &filled));
+        let (fitting, misfits): (Vec<_>, Vec<_>) = rows.enumerate().partition(|row| row.1.is_ok());
+        if let [(index, Ok(row)), others @ ..] = &*fitting {
+            return Ok((row.clone(), others.is_empty().then_some(*index)));
         }
-        let sure = fitting.len() == 1;
-        if let Some((row, index)) = fitting.into_iter().next() {
-            return Ok((row, index.filter(|_| sure)));
-        }
-        let (kind, name) = misfit.unwrap_or_default();
+        let mut misfits = misfits.into_iter();
+        let (kind, name) = misfits.find_map(|row| row.1.err()).unwrap_or_default();
         let fields = record.request.first().into_iter().flatten();
         let fields = fields.filter(|field| !field.constant && field.counts.is_none());
         let mut allowed = join(fields.map(|field| field.name.clone()), ", ");
@@ -58,18 +53,10 @@ fn row<'a, V: Clone>(
     }
     let value = |field: &'a Field| {
         let own = |(name, _): &&(&str, V)| !field.constant && field.name == *name;
-        match (
-            &field.counts,
-            given.iter().find(own),
-            field.default.as_deref(),
-        ) {
+        match (&field.counts, given.iter().find(own), &field.default) {
             (Some(_), ..) => Ok(filled(None)),
             (_, Some((_, value)), _) => Ok(value.clone()),
-            (.., Some([one])) => Ok(filled(Some(Shown::Real(*one)))),
-            (.., Some(several)) => {
-                let several = several.iter().copied().map(Shown::Real);
-                Ok(filled(Some(Shown::Tuple(several.collect()))))
-            }
+            (_, _, Some(default)) => Ok(filled(Some(default.clone()))),
             _ => Err(("missing-argument", &*field.name)),
         }
     };

@@ -37,7 +37,9 @@ impl Edition {
         address: Option<u8>,
     ) -> String {
         match error {
-            EncodeError::Address => self.no_raw_address(address),
+            EncodeError::Address => {
+                self.no_address(&Shown::Integer(address.unwrap_or_default().into()))
+            }
             EncodeError::VariantId => self.bad_variant(command, direction, count),
             EncodeError::Value(bad) => {
                 let variant = VariantId {
@@ -56,14 +58,13 @@ impl Edition {
     /// Return the text of the error of bytes that were not decoded.
     #[must_use]
     pub fn decode_error(&self, direction: Direction, error: DecodeError, data: &[u8]) -> String {
-        match error {
+        let (detail, offset) = match error {
             DecodeError::Frame { reason, offset } => {
-                protocol_error(&self.bad_frame(direction, reason, data), offset, data)
+                (self.bad_frame(direction, reason, data), offset)
             }
-            DecodeError::Raw(bad) => {
-                protocol_error(&self.bad_raw(&bad).unwrap_or_default(), bad.offset, data)
-            }
-        }
+            DecodeError::Raw(bad) => (self.bad_raw(&bad).unwrap_or_default(), bad.offset),
+        };
+        protocol_error(&detail, offset, data)
     }
 
     pub(crate) fn part(&self, id: VariantId, field: usize, case: usize) -> Option<Part<'_>> {
@@ -217,15 +218,16 @@ impl Part<'_> {
         self.name.number(self.case, at)
     }
 
-    /// Return the name of a number of the field.
+    /// Return the name of a number: of the field, the place in its list, its own.
     pub(crate) fn element(&self, at: usize) -> String {
         let field = &self.name.name;
         let number = self.named(at).map_or("", |number| &number.name);
-        match at.checked_div(self.wire.each) {
-            _ if !self.wire.many => field.clone(),
-            Some(index) => format!("{field}[{index}].{number}"),
-            None if number.is_empty() => format!("{field}[{at}]"),
-            None => format!("{field}.{number}"),
+        match (at.checked_div(self.wire.each), number) {
+            (None, "") if !self.wire.many => field.clone(),
+            (None, "") => format!("{field}[{at}]"),
+            (None, _) => format!("{field}.{number}"),
+            (Some(index), "") => format!("{field}[{index}]"),
+            (Some(index), _) => format!("{field}[{index}].{number}"),
         }
     }
 
@@ -233,8 +235,7 @@ impl Part<'_> {
     fn sizes(&self) -> String {
         match self.name.sizes {
             None => (self.numbers.len() / self.wire.each.max(1)).to_string(),
-            Some((low, high)) if low < high => text!("range"; low, high),
-            Some((_, most)) => most.to_string(),
+            Some((low, high)) => text!("range"; low, high),
         }
     }
 

@@ -7,7 +7,7 @@ use core::fmt::Display;
 
 use cobotwire_core::exchange::{
     Event, Failure, Received, ReplyError, Request, RequestError, TextError, TextFault, TextForm,
-    WaitedFor,
+    TextMistake, WaitedFor,
 };
 use cobotwire_core::{Decoded, Direction, EncodeError, Given, decode};
 
@@ -96,8 +96,6 @@ impl Edition {
             RequestError::Values(error) => {
                 return self.encode_error((command, Direction::Request), error, count, address);
             }
-            RequestError::Command => String::new(),
-            RequestError::Address => return self.no_raw_address(address),
             RequestError::Unanswered => text!("unanswered"; command = name, name = to),
             RequestError::LacksJoints(joints) => {
                 let kind = one_or(*joints, "lacks-joints-but-one", "lacks-joints");
@@ -131,11 +129,6 @@ impl Edition {
         bad_argument("address", given, &allowed)
     }
 
-    /// The same for a number.
-    pub(crate) fn no_raw_address(&self, given: Option<u8>) -> String {
-        self.no_address(&Shown::Integer(given.unwrap_or(0).into()))
-    }
-
     /// Return the name of an address; its number, if it has none.
     #[must_use]
     pub fn address_name(&self, value: u8) -> String {
@@ -147,14 +140,11 @@ impl Edition {
     /// Return the fields of a message as texts show them.
     #[must_use]
     pub fn fields(&self, message: &Decoded) -> String {
-        let shown = self.named(message).into_iter().map(|(name, value)| {
-            let value = match value {
-                Shown::Text(text) => text,
-                value => value.to_string(),
-            };
-            format!("{name}={value}")
-        });
-        join(shown, ", ")
+        let shown = |(name, value)| match value {
+            Shown::Text(text) => format!("{name}={text}"),
+            value => format!("{name}={value}"),
+        };
+        join(self.named(message).into_iter().map(shown), ", ")
     }
 
     /// Return the fields of a message with their names.
@@ -173,8 +163,8 @@ impl Edition {
     pub fn message(&self, message: &Decoded) -> String {
         let name = self.command_name(message.variant.command);
         let to = |address| format!(" to {}", self.address_name(address));
-        let to = message.address.map(to);
-        format!("{name}({}){}", self.fields(message), to.unwrap_or_default())
+        let to = message.address.map_or(String::new(), to);
+        format!("{name}({}){to}", self.fields(message))
     }
 
     /// Return the text of the error that ended a request; `None` for an error of the transport, which
@@ -196,17 +186,13 @@ impl Edition {
                 let times = (*waited, *attempts);
                 printable(&timeout(call, times, *waited_for, join(lines, "; ")))
             }
-            Failure::Reply {
-                error: ReplyError::Frame(error),
-                data,
-            } => self.decode_error(Direction::Reply, *error, data),
-            Failure::Reply {
-                error: ReplyError::Text(error),
-                data,
-            } => {
-                let facts = self.protocol.facts.get(command)?;
-                received_text(facts.text.as_ref()?, *error, data)
-            }
+            Failure::Reply { error, data } => match error {
+                ReplyError::Frame(error) => self.decode_error(Direction::Reply, *error, data),
+                ReplyError::Text(error) => {
+                    let form = self.protocol.facts.get(command)?.text.as_ref()?;
+                    received_text(form, *error, data)
+                }
+            },
             Failure::Refused {
                 variant,
                 field,
@@ -275,16 +261,14 @@ fn timeout(
 fn received_text(form: &TextForm, error: TextError, data: &[u8]) -> String {
     let prefix = |index: usize| form.prefixes.get(index).map_or("", |prefix| prefix);
     let prefix = |index: usize| quoted(prefix(index), is_printable);
-    let detail = match error {
-        TextError::NotAscii { .. } => text!("text-not-ascii"),
-        TextError::Start => text!("text-start"; prefix = prefix(0)),
-        TextError::End => text!("text-end"; suffix = quoted(&form.suffix, is_printable)),
-        TextError::Prefix { index, times, .. } => {
-            text!("text-prefix"; prefix = prefix(index), count = times)
-        }
-        TextError::TooLong => text!("text-length"; most = error.offset(0)),
+    let detail = match error.mistake {
+        TextMistake::NotAscii => text!("text-not-ascii"),
+        TextMistake::Start => text!("text-start"; prefix = prefix(0)),
+        TextMistake::End => text!("text-end"; suffix = quoted(&form.suffix, is_printable)),
+        TextMistake::Prefix(index, count) => text!("text-prefix"; prefix = prefix(index), count),
+        TextMistake::TooLong => text!("text-length"; most = error.offset),
     };
-    protocol_error(&detail, error.offset(data.len()), data)
+    protocol_error(&detail, error.offset, data)
 }
 
 /// Return the text of the error of texts that cannot be sent.

@@ -47,13 +47,6 @@ enum Encoding {
     Float,
 }
 
-impl Kind {
-    /// Return whether it consists of elements, besides rows.
-    pub(crate) fn repeats(self) -> bool {
-        matches!(self, Self::Bits | Self::Bytes | Self::Text | Self::List)
-    }
-}
-
 /// The numbers of a type in the order of the wire, and what texts need of each.
 #[derive(Clone, Default)]
 pub(crate) struct Numbers {
@@ -79,15 +72,6 @@ impl Numbers {
             texts: vec![Number::default()],
             weight: count * size_of::<core_table::Number>(),
         }
-    }
-
-    /// Return the number of their bytes.
-    pub(crate) fn size(&self) -> usize {
-        let size = |number: &core_table::Number| match number.bits {
-            Some(Bits { more: true, .. }) => 0,
-            _ => number.width,
-        };
-        self.wire.iter().map(size).sum()
     }
 
     fn push(&mut self, wire: core_table::Number, name: &str, of: Record<'_>) -> Outcome<()> {
@@ -148,7 +132,7 @@ impl<'a> Types<'a> {
 
     fn number(&self, of: Record<'a>) -> Outcome<core_table::Number> {
         let wire = referred(&self.wires, of.at("wire")).within("wire", "")?;
-        number(wire, of, of.rational("scale")?, &all_choices(of)?)
+        number(wire, of, &all_choices(of)?)
     }
 }
 
@@ -188,25 +172,22 @@ pub(crate) fn bits(of: Record<'_>) -> Outcome<Numbers> {
 }
 
 fn part_of_word(part: Record<'_>) -> Outcome<core_table::Number> {
-    let scale = (part.get("multiply")?, part.get("divide")?);
     Ok(core_table::Number {
+        multiply: part.get("multiply")?,
+        divide: part.get("divide")?,
         flag: part.any::<&str>("kind")? == "flag",
         bits: Some(Bits {
             shift: part.get("shift")?,
             count: part.get("bits")?,
             more: part.any("more")?,
         }),
-        ..number(part, part, scale, &[])?
+        ..number(part, part, &[])?
     })
 }
 
 /// Return a number with the bytes of a wire, and the limits of a type unless it has choices.
-fn number(
-    wire: Record<'_>,
-    of: Record<'_>,
-    (multiply, divide): (i64, i64),
-    all: &[i64],
-) -> Outcome<core_table::Number> {
+fn number(wire: Record<'_>, of: Record<'_>, all: &[i64]) -> Outcome<core_table::Number> {
+    let (multiply, divide) = of.rational("scale")?;
     let mut number = core_table::Number {
         width: wire.get("width")?,
         order: wire.get("order")?,

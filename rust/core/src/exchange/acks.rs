@@ -11,9 +11,9 @@ use alloc::collections::BTreeMap;
 use alloc::sync::Arc;
 use alloc::vec::Vec;
 
-use super::pending::{GRACE, NEVER, Pending};
+use super::pending::{GRACE, Pending};
 use super::{
-    Answer, Event, Facts, Failure, Nanos, Protocol, Replier, Request, SeenFrame, Ticket, WaitedFor,
+    Answer, Facts, Failure, Nanos, Protocol, Replier, Request, SeenFrame, Ticket, WaitedFor,
 };
 use crate::decode::Decoded;
 
@@ -167,11 +167,6 @@ pub(super) struct Acks {
 }
 
 impl Acks {
-    pub(super) fn next_end(&self) -> Nanos {
-        let waiting = self.waiting.iter();
-        waiting.fold(NEVER, |first, wait| first.min(wait.ends_first()))
-    }
-
     /// Note that a request goes out; its acknowledgement can begin at `offset`. A caller waits for
     /// it if there is a `pending`. Return until when it is expected.
     pub(super) fn expect(
@@ -242,11 +237,11 @@ impl Acks {
             let read = || protocol.read(frame, command).ok();
             messages.entry(command).or_insert_with(read);
         }
-        let address = protocol.address_of(frame);
         let fits = |ack: &ExpectedAck| {
             let message = messages.get(&ack.request.command).and_then(Option::as_ref);
             message.is_some_and(|message| {
-                ack.request.can_come_from(address) && ack.request.repeated_by(protocol, message)
+                ack.request.can_come_from(message.address)
+                    && ack.request.repeated_by(protocol, message)
             })
         };
         let oldest = acks.expected().find(|ack| fits(ack))?;
@@ -284,18 +279,10 @@ impl Acks {
             let outcome = if copied && !echoes && !in_time {
                 Ok(wait.answer(None, Vec::new(), now))
             } else {
-                let waited = now.saturating_sub(wait.requested_at);
-                Err(wait.expire(waited, in_time.then_some(WaitedFor::Reply)))
+                Err(wait.expire(now, in_time.then_some(WaitedFor::Reply)))
             };
             (wait.ticket, outcome)
         });
         ended.collect()
-    }
-
-    /// Have those who wait remember an event.
-    pub(super) fn note(&mut self, event: &Event) {
-        for wait in &mut self.waiting {
-            wait.received.add(event);
-        }
     }
 }

@@ -12,10 +12,10 @@
 use alloc::sync::Arc;
 use alloc::vec::Vec;
 
-use super::Protocol;
+use super::{Exchange, Protocol};
 use crate::check::Check;
 use crate::direction::{Direction, Listening};
-use crate::frame::{self, FrameFormat};
+use crate::frame::FrameFormat;
 use crate::framer::{Event, Framer};
 
 /// The first `written` bytes of a request, which is all that the peer has of it.
@@ -45,54 +45,10 @@ pub(super) struct Alignment {
     /// Every part that the peer may hold; empty on an aligned line.
     pub(super) held: Vec<Part>,
     /// The frame that was sent last; empty if none was since the transport was lost.
-    last_request: Vec<u8>,
+    pub(super) last_request: Vec<u8>,
 }
 
 impl Alignment {
-    pub(super) fn sent(&mut self, request: &[u8]) {
-        self.last_request = request.into();
-    }
-
-    /// Note that `align` and a request after it were taken whole.
-    pub(super) fn end(&mut self) {
-        self.align.clear();
-        self.held.clear();
-    }
-
-    /// Note that of `align + request` only `written` bytes were taken; `None`: nobody knows. Return
-    /// how many of these bytes belong to the request.
-    pub(super) fn cut(
-        &mut self,
-        protocol: &Protocol,
-        align: &[u8],
-        request: &[u8],
-        written: Option<usize>,
-    ) -> Option<usize> {
-        let (format, mut parts) = (protocol.table.frame(), self.held.clone());
-        let Some(written) = written else {
-            parts.extend(all_parts(format, request));
-            self.hold(protocol, parts);
-            return None;
-        };
-        if written == 0 {
-            return Some(0);
-        }
-        let begun = written.checked_sub(align.len());
-        if let Some(begun) = begun {
-            // Text may follow a frame. It is not the beginning of a frame.
-            let within = (1..frame_size(format, request)).contains(&begun);
-            parts = Vec::from_iter(within.then(|| Part::new(&request.into(), begun)));
-        } else if let [part] = parts.as_mut_slice()
-            && self.align == part.split().1
-        {
-            part.written = part.written.saturating_add(written);
-        } else {
-            return Some(0);
-        }
-        self.hold(protocol, parts);
-        Some(begun.unwrap_or_default())
-    }
-
     /// Note that the transport is gone. The last request, and earlier ones that were still on their
     /// way, may be cut anywhere.
     pub(super) fn lose(&mut self, protocol: &Protocol) {
@@ -123,6 +79,50 @@ impl Alignment {
     }
 }
 
+/// Half a request on the line.
+impl Exchange {
+    /// Return what must be written before the next request; empty on an aligned line.
+    #[must_use]
+    pub fn align(&self) -> &[u8] {
+        &self.alignment.align
+    }
+
+    /// Note that these bytes and a request after them were taken whole.
+    pub fn aligned(&mut self) {
+        self.alignment.align.clear();
+        self.alignment.held.clear();
+    }
+
+    /// Note that of `align + request` only `written` bytes were taken; `None`: nobody knows. Return
+    /// how many of these bytes belong to the request.
+    pub fn cut(&mut self, align: &[u8], request: &[u8], written: Option<usize>) -> Option<usize> {
+        let (own, protocol) = (&mut self.alignment, &*self.protocol);
+        let (format, mut parts) = (protocol.table.frame(), own.held.clone());
+        let Some(written) = written else {
+            parts.extend(all_parts(format, request));
+            own.hold(protocol, parts);
+            return None;
+        };
+        if written == 0 {
+            return Some(0);
+        }
+        let begun = written.checked_sub(align.len());
+        if let Some(begun) = begun {
+            // Text may follow a frame. It is not the beginning of a frame.
+            let within = (1..frame_size(format, request)).contains(&begun);
+            parts = Vec::from_iter(within.then(|| Part::new(&request.into(), begun)));
+        } else if let [part] = parts.as_mut_slice()
+            && own.align == part.split().1
+        {
+            part.written = part.written.saturating_add(written);
+        } else {
+            return Some(0);
+        }
+        own.hold(protocol, parts);
+        Some(begun.unwrap_or_default())
+    }
+}
+
 /// Return whether a parser finds another frame once the fill bytes reject this one.
 fn exposes(protocol: &Protocol, part: &Part, fill: &[u8]) -> bool {
     let rules = protocol.table.rules(Listening::To(Direction::Request));
@@ -146,11 +146,11 @@ fn fill_bytes(format: &FrameFormat, parts: &[Part]) -> Vec<u8> {
     let parts: Vec<&[u8]> = parts.iter().map(|part| part.split().0).collect();
     let free = |value: &u8| !format.header.contains(value) && !footer.contains(value);
     let values: Vec<u8> = (0..=u8::MAX).filter(free).collect();
-    let pairs_of = |one| values.iter().map(move |two| [one, *two]);
-    let pairs = values.iter().copied().flat_map(pairs_of);
+    let pairs = (values.iter()).flat_map(|one| values.iter().map(move |two| [*one, *two]));
     let fill = |pair: [u8; 2]| {
         let ends = parts.iter().flat_map(|part| {
-            frames(format, part, pair).map(|(_, end)| end.saturating_sub(part.len()))
+            let frames = frames(format, part, &pair).into_iter();
+            frames.map(|(_, end)| end.saturating_sub(part.len()))
         });
         let size = ends.max().unwrap_or_default().max(1);
         pair.into_iter().cycle().take(size).collect::<Vec<u8>>()
@@ -161,37 +161,28 @@ fn fill_bytes(format: &FrameFormat, parts: &[Part]) -> Vec<u8> {
     made.unwrap_or_default()
 }
 
-/// Return start and end of each frame that begins in a part, if the pair follows repeatedly.
-fn frames<'a>(
-    format: &'a FrameFormat,
-    part: &'a [u8],
-    [even, odd]: [u8; 2],
-) -> impl Iterator<Item = (usize, usize)> + 'a {
+/// Return start and end of each frame that begins in a part, if the fill bytes follow repeatedly.
+fn frames(format: &FrameFormat, part: &[u8], fill: &[u8]) -> Vec<(usize, usize)> {
     let (header, length) = (&format.header, format.layout.length);
-    let begun = (0..part.len()).filter(move |start| {
+    let after = fill.iter().cycle().take(length.end());
+    let data: Vec<u8> = part.iter().chain(after).copied().collect();
+    let begun = (0..part.len()).filter(|start| {
         let rest = part.get(*start..).unwrap_or_default();
         header.starts_with(rest.get(..header.len()).unwrap_or(rest))
     });
-    begun.map(move |start| {
-        let byte = |at: usize| match at.checked_sub(part.len()) {
-            None => part.get(at).copied().unwrap_or_default(),
-            Some(after) if after % 2 == 0 => even,
-            Some(_) => odd,
-        };
-        let at = start + length.at;
-        let read = frame::Part { at: 0, ..length }.read(&[byte(at), byte(at + 1)]);
+    let frame = |start: usize| {
+        let read = length.read(data.get(start..).unwrap_or_default());
         let size = format.layout.overhead + usize::from(read.unwrap_or_default());
         (start, start + size)
-    })
+    };
+    begun.map(frame).collect()
 }
 
 /// Return whether fill bytes complete a frame that begins in the part.
 fn completes_one(format: &FrameFormat, part: &[u8], fill: &[u8]) -> bool {
-    let data = [part, fill].concat();
-    let pair = core::array::from_fn(|at| fill.get(at).or(fill.first()).copied().unwrap_or(0));
-    let layout = format.layout;
+    let (data, layout) = ([part, fill].concat(), format.layout);
     let head = layout.length.end().max(layout.id.end());
-    frames(format, part, pair).any(|(start, end)| {
+    frames(format, part, fill).into_iter().any(|(start, end)| {
         let check_at = end.saturating_sub(format.check.size());
         if end <= part.len() || check_at < start + head {
             return false;

@@ -6,7 +6,7 @@ use alloc::vec::Vec;
 use super::{Event, Facts, Named, Protocol, Replier, Request, SeenFrame};
 use crate::decode::{DecodeError, Decoded, read};
 use crate::direction::{Direction, Listening};
-use crate::message::{Command, Variant};
+use crate::message::Variant;
 use crate::number::Value;
 
 /// Values by the name of their field.
@@ -32,14 +32,9 @@ pub(super) fn same(one: &[Value], other: &[Value]) -> bool {
 }
 
 impl Protocol {
-    /// Return a command and its facts.
-    pub(super) fn command(&self, index: usize) -> Option<(&Command, &Facts)> {
-        self.table.commands().get(index).zip(self.facts.get(index))
-    }
-
     /// Return the id of a command.
     pub(super) fn id(&self, command: usize) -> Option<u16> {
-        Some(self.command(command)?.0.id)
+        Some(self.table.commands().get(command)?.id)
     }
 
     /// Return whether a command is such as a function of its facts says.
@@ -65,12 +60,6 @@ impl Protocol {
         frame.frame.get(self.table.frame()).id()
     }
 
-    /// Return the address byte, if the format has one.
-    pub(super) fn address_of(&self, frame: &SeenFrame) -> Option<u8> {
-        let format = self.table.frame();
-        format.address(frame.frame.get(format))
-    }
-
     fn has_ids(&self) -> bool {
         self.table.frame().layout.reply_has_id
     }
@@ -82,9 +71,10 @@ impl Protocol {
         frame: &SeenFrame,
         request: &Request,
     ) -> Option<Result<Decoded, DecodeError>> {
+        let format = self.table.frame();
         let can_reply = !self.replies(request.command).is_empty()
             && request.can_have_reply(self, frame)
-            && request.can_come_from(self.address_of(frame));
+            && request.can_come_from(format.address(frame.frame.get(format)));
         if !can_reply {
             return None;
         }
@@ -151,7 +141,9 @@ impl Protocol {
     /// Return whether no reply to one request can be mistaken for a reply to the other.
     pub(super) fn replies_differ(&self, one: &Request, other: &Request) -> bool {
         let ids_differ = self.has_ids() && self.id(one.command) != self.id(other.command);
-        if ids_differ || !repliers_meet(one.replier, other.replier) {
+        let any = [Replier::Anybody, Replier::Somebody];
+        let meet = any.contains(&one.replier) || any.contains(&other.replier);
+        if ids_differ || !(meet || one.replier == other.replier) {
             return true;
         }
         if one.command != other.command {
@@ -209,10 +201,4 @@ impl Request {
         let (_, value) = arguments.find(|(own, _)| **own == *name)?;
         Some(value)
     }
-}
-
-/// Return whether a reply of one address can belong to both requests.
-fn repliers_meet(one: Replier, other: Replier) -> bool {
-    let all = |replier| matches!(replier, Replier::Anybody | Replier::Somebody);
-    one == other || all(one) || all(other)
 }

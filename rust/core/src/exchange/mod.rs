@@ -35,13 +35,13 @@ pub use self::outcome::{Answer, Failure, Received, WaitedFor};
 pub use self::outstanding::{OutstandingReply, PersistedState};
 pub use self::pending::{RetryPolicy, Ticket};
 pub use self::request::{Request, RequestError};
-pub use self::text::{TextError, TextFault};
+pub use self::text::{TextError, TextFault, TextMistake};
 
 use self::acks::Acks;
 use self::alignment::Alignment;
 use self::echo::{EchoDetector, since};
 use self::outstanding::OutstandingReplies;
-use self::pending::{NEVER, Pending, ReceivedMeanwhile};
+use self::pending::{NEVER, Pending};
 use self::text::TextCollector;
 use crate::decode::{DecodeError, Decoded};
 use crate::direction::{Direction, Listening};
@@ -119,7 +119,7 @@ impl Exchange {
     ) -> (Vec<u8>, Option<Ticket>) {
         let offset = self.fed();
         self.echo.sent(&request, offset, true);
-        self.alignment.sent(&request.frame);
+        self.alignment.last_request.clone_from(&request.frame);
         let data = [request.frame.as_slice(), &request.text].concat();
         let (request, protocol) = (Arc::new(request), Arc::clone(&self.protocol));
         if !protocol.is(request.command, |facts| facts.ack) || request.replier == Replier::Nobody {
@@ -168,25 +168,6 @@ impl Exchange {
     /// End the request that waits: its bytes were not written, or not all of them.
     pub fn fail_waiting(&mut self) {
         self.end_waiting(0, |_| Err(Failure::Link));
-    }
-
-    // Half a request on the line.
-
-    /// Return what must be written before the next request; empty on an aligned line.
-    #[must_use]
-    pub fn align(&self) -> &[u8] {
-        &self.alignment.align
-    }
-
-    /// Note that these bytes and a request after them were taken whole.
-    pub fn aligned(&mut self) {
-        self.alignment.end();
-    }
-
-    /// Note that of `align + request` only `written` bytes were taken; `None`: nobody knows. Return
-    /// how many of these bytes belong to the request.
-    pub fn cut(&mut self, align: &[u8], request: &[u8], written: Option<usize>) -> Option<usize> {
-        self.alignment.cut(&self.protocol, align, request, written)
     }
 
     // What one session leaves to the next one on its port.
@@ -249,10 +230,9 @@ impl Exchange {
         self.finished.extend(ended);
         self.end_overdue_queued(now);
         // A copy of it does not count as its reply: that one still had time to come.
-        let over = self.waiting().filter(|waiting| waiting.ends_by <= now);
-        let waited = over.map(|waiting| now.saturating_sub(waiting.queued_at));
-        let expired = waited.and_then(|waited| self.expire(waited, Some(WaitedFor::Reply)));
-        expired.into_iter().collect()
+        let over = self.waiting().is_some_and(|waiting| waiting.ends_by <= now);
+        let expired = over.then(|| self.expire(now, Some(WaitedFor::Reply)));
+        expired.flatten().into_iter().collect()
     }
 
     /// Note whether the line took no bytes when a request was to be sent.
@@ -267,14 +247,13 @@ impl Exchange {
             return self.next_attempt(now).unwrap_or_default();
         }
         let free = |pending: &Pending| pending.ends_by > now && self.free_at(pending, now) <= now;
-        let Some(index) = self.queue.iter().position(free) else {
-            return Vec::new();
-        };
-        if !drained && !self.sends_undrained(index, now) {
-            return Vec::new();
+        match self.queue.iter().position(free) {
+            Some(index) if drained || self.sends_undrained(index, now) => {
+                self.outstanding.drop_expired(now);
+                self.begin(index, now)
+            }
+            _ => Vec::new(),
         }
-        self.outstanding.drop_expired(now);
-        self.begin(index, now)
     }
 
     /// Return the request that [`Self::outgoing`] gave last; it may have ended by now.
@@ -307,7 +286,8 @@ impl Exchange {
             None => self.free_at(pending, now).min(pending.ends_by),
             Some(_) => pending.ends_by,
         });
-        let soonest = queued.fold(own.min(self.acks.next_end()), Nanos::min);
+        let acks = self.acks.waiting.iter().map(Pending::ends_first);
+        let soonest = queued.chain(acks).fold(own, Nanos::min);
         (soonest != NEVER).then(|| soonest.saturating_sub(now))
     }
 
@@ -330,12 +310,12 @@ impl Exchange {
             request: Arc::clone(request),
             ends_by: ends_by.unwrap_or(NEVER),
             done: false,
-            received: ReceivedMeanwhile::default(),
+            received: Vec::new(),
             policy,
             queued_at: now,
             undrained_since: NEVER,
             attempt_times: Vec::new(),
-            requested_at: 0,
+            requested_at: now,
             offset: 0,
             candidate: None,
             text: form.map(TextCollector::new),
@@ -363,7 +343,7 @@ impl Exchange {
     fn begin(&mut self, index: usize, now: Nanos) -> Vec<u8> {
         let (offset, mut pending) = (self.fed(), self.queue.remove(index));
         self.echo.sent(&pending.request, offset, false);
-        self.alignment.sent(&pending.request.frame);
+        (self.alignment.last_request).clone_from(&pending.request.frame);
         pending.begin(now, offset);
         self.last.insert(pending).request.frame.clone()
     }
@@ -374,19 +354,18 @@ impl Exchange {
         let Some(pending) = self.queue.get_mut(index) else {
             return false;
         };
-        let held = self
-            .outstanding
-            .held_until(&self.protocol, &pending.request);
+        let (outstanding, protocol) = (&self.outstanding, &*self.protocol);
+        let held = outstanding.held_until(protocol, &pending.request).is_some();
         pending.undrained_since = pending.undrained_since.min(now);
         if now.saturating_sub(pending.undrained_since) < DRAIN {
             return false;
         }
-        if held.is_some() {
+        if held {
             let mut ended = self.queue.remove(index);
-            let failure = ended.expire(now.saturating_sub(ended.queued_at), None);
+            let failure = ended.expire(now, None);
             self.finished.insert(ended.ticket, Err(failure));
         }
-        held.is_none()
+        !held
     }
 
     /// Return when the request is to be sent again; not while its copy may be its reply.
@@ -417,8 +396,7 @@ impl Exchange {
                 (false, true) => WaitedFor::Line,
                 (false, false) => WaitedFor::Turn,
             };
-            let waited = now.saturating_sub(pending.queued_at);
-            let failure = pending.expire(waited, Some(waited_for));
+            let failure = pending.expire(now, Some(waited_for));
             self.finished.insert(pending.ticket, Err(failure));
         }
     }
@@ -461,15 +439,16 @@ impl Exchange {
     /// Find out what a frame is; its first byte came at `began_at` or earlier.
     fn match_frame(&mut self, frame: SeenFrame, now: Nanos, began_at: Nanos) -> Event {
         let is_copy = self.echo.take_copy(&frame);
-        let Some((request, reply)) = self.as_reply(&frame) else {
-            return self.match_other(frame, now, began_at, is_copy);
-        };
+        let waits = waiting(&mut self.last).filter(|waiting| frame.offset >= waiting.offset);
+        let request = waits.as_ref().map(|waiting| &waiting.request);
+        let reply = request.and_then(|request| self.protocol.as_reply(&frame, request));
         let reply = match reply {
-            Err(error) => return self.reject(frame, error, is_copy),
-            Ok(reply) => reply,
+            None => return self.match_other(frame, now, began_at, is_copy),
+            Some(Err(error)) => return self.reject(frame, error, is_copy),
+            Some(Ok(reply)) => reply,
         };
-        let repeats = request.repeated_by(&self.protocol, &reply);
-        match (is_copy, repeats, waiting(&mut self.last)) {
+        let repeats = request.is_some_and(|own| own.repeated_by(&self.protocol, &reply));
+        match (is_copy, repeats, waits) {
             (false, true, _) => return self.end(reply, Some(frame), now),
             (false, false, _) => return self.match_other(frame, now, began_at, is_copy),
             // A copy that can be the reply is kept; one that cannot proves that the line echoes.
@@ -477,15 +456,6 @@ impl Exchange {
             (true, ..) => self.echo.proven = true,
         }
         self.note(Event::Echo { frame })
-    }
-
-    /// Return a frame as the reply to the request that waits, whichever arguments it repeats.
-    fn as_reply(&self, frame: &SeenFrame) -> Option<(Arc<Request>, Result<Decoded, DecodeError>)> {
-        let waiting = self
-            .waiting()
-            .filter(|waiting| frame.offset >= waiting.offset)?;
-        let reply = self.protocol.as_reply(frame, &waiting.request)?;
-        Some((Arc::clone(&waiting.request), reply))
     }
 
     /// Find out what a frame is that does not reply to the request that waits.
@@ -596,10 +566,9 @@ impl Exchange {
         let Some(waiting) = self.waiting().filter(|waiting| waiting.ends_at() <= now) else {
             return events;
         };
-        let waited = now.saturating_sub(waiting.requested_at);
         match waiting.candidate.clone() {
             Some(reply) if !self.echo.proven => events.push(self.end(reply, None, now)),
-            _ => events.extend(self.expire(waited, None)),
+            _ => events.extend(self.expire(now, None)),
         }
         events
     }
@@ -617,10 +586,10 @@ impl Exchange {
     }
 
     /// End the request that waits with a timeout; its reply may still come.
-    fn expire(&mut self, waited: Nanos, waited_for: Option<WaitedFor>) -> Option<Event> {
+    fn expire(&mut self, now: Nanos, waited_for: Option<WaitedFor>) -> Option<Event> {
         let waiting = self.waiting()?;
         let (requested_at, attempts) = (waiting.requested_at, waiting.attempt_times.len());
-        let command = self.end_waiting(0, |own| Err(own.expire(waited, waited_for)));
+        let command = self.end_waiting(0, |own| Err(own.expire(now, waited_for)));
         Some(Event::Expired {
             command,
             requested_at,
@@ -630,10 +599,10 @@ impl Exchange {
 
     /// Have everybody who waits remember an event.
     fn note(&mut self, event: Event) -> Event {
-        if let Some(waiting) = waiting(&mut self.last) {
-            waiting.received.add(&event);
+        let waiting = waiting(&mut self.last).into_iter();
+        for waiting in waiting.chain(&mut self.acks.waiting) {
+            waiting.note(&event);
         }
-        self.acks.note(&event);
         event
     }
 }

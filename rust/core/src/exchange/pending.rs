@@ -53,34 +53,6 @@ impl RetryPolicy {
     }
 }
 
-/// The last frames and spans of noise, for the text of a timeout.
-#[derive(Clone, Debug, Default)]
-pub(super) struct ReceivedMeanwhile(Vec<Received>);
-
-impl ReceivedMeanwhile {
-    /// Note what was not the reply. Adjacent noise becomes one item.
-    pub(super) fn add(&mut self, event: &Event) {
-        let more = event.data();
-        if let (Event::Noise { .. }, Some(last)) = (event, self.0.last_mut())
-            && let Event::Noise { data, .. } = &mut last.event
-        {
-            data.extend_from_slice(more);
-            data.truncate(SHOWN);
-            last.size = last.size.saturating_add(more.len());
-            return;
-        }
-        if self.0.len() == ITEMS {
-            self.0.remove(0);
-        }
-        let mut event = event.clone();
-        if let Event::Noise { data, .. } = &mut event {
-            data.truncate(SHOWN);
-        }
-        let size = more.len();
-        self.0.push(Received { event, size });
-    }
-}
-
 /// A request whose caller waits: for its turn, and then for its reply or acknowledgement.
 #[derive(Clone, Debug)]
 pub(super) struct Pending {
@@ -89,13 +61,15 @@ pub(super) struct Pending {
     /// When its caller waits no longer.
     pub(super) ends_by: Nanos,
     pub(super) done: bool,
-    pub(super) received: ReceivedMeanwhile,
+    /// The last frames and spans of noise, for the text of a timeout.
+    pub(super) received: Vec<Received>,
     pub(super) policy: RetryPolicy,
     pub(super) queued_at: Nanos,
     /// Since when unread bytes have kept it from being sent.
     pub(super) undrained_since: Nanos,
     /// When it was sent; empty while it waits for its turn.
     pub(super) attempt_times: Vec<Nanos>,
+    /// When it was sent first; until then, when it was queued.
     pub(super) requested_at: Nanos,
     /// Where in the received stream its reply can begin at the earliest.
     pub(super) offset: u64,
@@ -109,13 +83,36 @@ pub(super) struct Pending {
 }
 
 impl Pending {
+    /// Note what was not the reply. Adjacent noise becomes one item.
+    pub(super) fn note(&mut self, event: &Event) {
+        let more = event.data();
+        if let (Event::Noise { .. }, Some(last)) = (event, self.received.last_mut())
+            && let Event::Noise { data, .. } = &mut last.event
+        {
+            data.extend_from_slice(more);
+            data.truncate(SHOWN);
+            last.size = last.size.saturating_add(more.len());
+            return;
+        }
+        if self.received.len() == ITEMS {
+            self.received.remove(0);
+        }
+        let mut event = event.clone();
+        if let Event::Noise { data, .. } = &mut event {
+            data.truncate(SHOWN);
+        }
+        let size = more.len();
+        self.received.push(Received { event, size });
+    }
+
     /// Return the failure of a time that is over, with what was received meanwhile.
-    pub(super) fn expire(&mut self, waited: Nanos, waited_for: Option<WaitedFor>) -> Failure {
+    pub(super) fn expire(&mut self, now: Nanos, waited_for: Option<WaitedFor>) -> Failure {
+        let since = waited_for.map_or(self.requested_at, |_| self.queued_at);
         Failure::Timeout {
-            waited,
+            waited: now.saturating_sub(since),
             attempts: self.attempt_times.len(),
             waited_for,
-            received: core::mem::take(&mut self.received).0,
+            received: core::mem::take(&mut self.received),
         }
     }
 
@@ -159,11 +156,6 @@ impl Pending {
         at.filter(|at| *at < self.deadline).unwrap_or(NEVER)
     }
 
-    /// Return whether it was sent more than once.
-    pub(super) fn repeated(&self) -> bool {
-        self.attempt_times.len() > 1
-    }
-
     /// Note that it is sent for the first time; its reply can begin at `offset`.
     pub(super) fn begin(&mut self, now: Nanos, offset: u64) {
         self.offset = offset;
@@ -174,7 +166,7 @@ impl Pending {
 
     /// Note that the last attempt was written only now.
     pub(super) fn written(&mut self, now: Nanos) {
-        if !self.repeated() {
+        if self.attempt_times.len() == 1 {
             self.deadline = now.saturating_add(self.wait);
         }
         if let Some(last) = self.attempt_times.last_mut() {

@@ -30,15 +30,11 @@ pub struct Request {
 /// Why a request was not encoded; `E` is the [`EncodeError`] of a value.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum RequestError<E> {
-    /// There is no command with that index.
-    Command,
-    /// There is no such address.
-    Address,
     /// The command has a reply, and nobody replies to the address.
     Unanswered,
     /// The command has rows of a value for each joint, and the device has only so many.
     LacksJoints(usize),
-    /// A value is not allowed.
+    /// A value is not allowed, or there is no such command or address.
     Values(E),
     /// A text cannot be sent.
     Text(TextFault),
@@ -61,10 +57,8 @@ impl Request {
     ) -> Result<Self, RequestError<EncodeError<V>>> {
         let format = protocol.table.frame();
         let address = address.or(format.addresses.first().copied());
-        if address.is_some_and(|address| !format.addresses.contains(&address)) {
-            return Err(RequestError::Address);
-        }
-        let (record, facts) = protocol.command(command).ok_or(RequestError::Command)?;
+        let found = (protocol.table.commands().get(command)).zip(protocol.facts.get(command));
+        let (record, facts) = found.ok_or(RequestError::Values(EncodeError::VariantId))?;
         let replier = protocol.replier(address);
         if replier == Replier::Nobody && facts.requires_reply() {
             return Err(RequestError::Unanswered);
@@ -96,7 +90,7 @@ impl Request {
     pub fn from_frame(protocol: &Protocol, frame: &[u8]) -> Option<Self> {
         let decoded = decode(&protocol.table, Direction::Request, frame, None).ok()?;
         let command = decoded.variant.command;
-        let (_, facts) = protocol.command(command)?;
+        let facts = protocol.facts.get(command)?;
         Some(Self {
             command,
             frame: frame.into(),

@@ -10,37 +10,27 @@ const LIMIT: usize = 4096;
 /// This many bytes of a text that is longer are part of its error.
 const SHOWN: usize = 64;
 
+/// What is wrong with a text that was received, and the index of the wrong byte.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[allow(missing_docs)] // as above
+pub struct TextError {
+    pub mistake: TextMistake,
+    pub offset: usize,
+}
+
 /// What is wrong with a text that was received.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[allow(missing_docs)] // of fields, whose names say what they are
-pub enum TextError {
-    /// The byte at `offset` is not ASCII.
-    NotAscii { offset: usize },
+pub enum TextMistake {
+    /// A byte is not ASCII.
+    NotAscii,
     /// It does not start with the first prefix.
     Start,
     /// It does not end with the suffix.
     End,
-    /// A prefix stands in the rest of the text some times, not once.
-    Prefix {
-        index: usize,
-        times: usize,
-        offset: usize,
-    },
-    /// It is longer than 4096 bytes.
+    /// The prefix of this index stands in the rest of the text this many times, not once.
+    Prefix(usize, usize),
+    /// It is longer than the offset.
     TooLong,
-}
-
-impl TextError {
-    /// Return the index of the wrong byte in a text of `size` bytes.
-    #[must_use]
-    pub fn offset(self, size: usize) -> usize {
-        match self {
-            Self::NotAscii { offset } | Self::Prefix { offset, .. } => offset,
-            Self::Start => 0,
-            Self::End => size,
-            Self::TooLong => LIMIT,
-        }
-    }
 }
 
 /// Why texts of a caller cannot be sent.
@@ -76,14 +66,18 @@ impl TextForm {
 
     /// Return the fields of a text. They may contain spaces; a final line end is dropped.
     pub(super) fn decode(&self, data: &[u8]) -> Result<Vec<String>, TextError> {
-        if let Some(offset) = data.iter().position(|byte| !byte.is_ascii()) {
-            return Err(TextError::NotAscii { offset });
+        let wrong = |mistake, offset| TextError { mistake, offset };
+        if let Some(at) = data.iter().position(|byte| !byte.is_ascii()) {
+            return Err(wrong(TextMistake::NotAscii, at));
         }
         let text = core::str::from_utf8(data).unwrap_or_default();
         let text = text.trim_end_matches(['\r', '\n']);
         let (first, suffix) = (self.first_prefix(), &*self.suffix);
-        let after = text.strip_prefix(first).ok_or(TextError::Start)?;
-        let mut rest = after.strip_suffix(suffix).ok_or(TextError::End)?;
+        let after = text
+            .strip_prefix(first)
+            .ok_or(wrong(TextMistake::Start, 0))?;
+        let unended = wrong(TextMistake::End, data.len());
+        let mut rest = after.strip_suffix(suffix).ok_or(unended)?;
         let mut values = Vec::new();
         for (index, prefix) in self.prefixes.iter().enumerate().skip(1) {
             let (times, offset) = (rest.matches(&**prefix).count(), text.len() - rest.len());
@@ -92,13 +86,7 @@ impl TextForm {
                     values.push(value.into());
                     rest = after;
                 }
-                _ => {
-                    return Err(TextError::Prefix {
-                        index,
-                        times,
-                        offset,
-                    });
-                }
+                _ => return Err(wrong(TextMistake::Prefix(index, times), offset)),
             }
         }
         values.push(rest.into());
@@ -155,8 +143,9 @@ impl TextCollector {
     /// Return the fields of the text; with an error, the bytes that show it.
     pub(super) fn decode(&self) -> Result<Vec<String>, (TextError, Vec<u8>)> {
         if self.data.len() > LIMIT {
+            let (mistake, offset) = (TextMistake::TooLong, LIMIT);
             let shown = self.data.get(..SHOWN).unwrap_or_default();
-            return Err((TextError::TooLong, shown.into()));
+            return Err((TextError { mistake, offset }, shown.into()));
         }
         let read = self.form.decode(&self.data);
         read.map_err(|error| (error, self.data.clone()))
@@ -165,8 +154,5 @@ impl TextCollector {
 
 /// Return where some bytes first stand in others.
 pub(super) fn find(data: &[u8], bytes: &[u8]) -> Option<usize> {
-    (0..=data.len()).find(|at| {
-        let rest = data.get(*at..).unwrap_or_default();
-        rest.starts_with(bytes)
-    })
+    (0..=data.len()).find(|at| data.get(*at..).is_some_and(|rest| rest.starts_with(bytes)))
 }
