@@ -76,7 +76,8 @@ npm-package: .venv/.tools .venv/.native ## build the npm package; use it in a cl
 	node clients/typescript/examples/round_trip.mjs
 
 rust-test: $(RUST_DATA) ## run the Rust tests
-	+cargo test $(TESTED) --quiet
+# Only what they need: tests/probe.py compiles the other crates, with the features of its programs.
+	+cargo test $(TESTED) --tests --quiet
 
 ASAN := target/asan
 ASAN_TESTS := $(addprefix tests/codec/test_,native_frames.py agreement.py reused_columns.py segments.py shared_reader.py buffer_protocol.py workers.py) tests/transport/test_native_calls.py
@@ -206,9 +207,8 @@ nightly: .venv/.tools .venv/.native ## run the long searches one after another, 
 	$(BIN)/python tools/nightly.py $(SEARCHES)
 
 every-edition: set-up ## test all editions where `make test` tests a sample
-	EVERY_EDITION=1 $(BIN)/python -m pytest tests/codec/test_message_tables.py tests/docs/test_site.py \
-		tests/docs/test_robot_pages.py tests/mutation/test_mutants.py tests/conformance/survey \
-		tests/peers/test_layer.py tests/peers/test_migrated_calls.py
+	EVERY_EDITION=1 $(BIN)/python -m pytest tests/docs/test_site.py tests/docs/test_robot_pages.py \
+		$(shell grep -rlE 'sampled\(|EVERY_EDITION' tests --include='test_*.py')
 
 urdf: .venv/.tools .venv/.native ## compare the poses of our URDF files with yourdfpy
 	$(BIN)/python -m pip install --quiet --no-compile --group urdf

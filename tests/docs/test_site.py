@@ -10,12 +10,13 @@ from urllib.parse import unquote, urlsplit
 
 import pytest
 
+from docs.pages import LEFT_OUT
 from newcomer.website.blocks import commands, programs
 from strategies import TABLES
 from targets.comparison import ToolMissing
 from targets.decoder import browser
 from targets.decoder.browser import SHOWN
-from vectors import LEFT_OUT, ROOT
+from vectors import ROOT
 
 SITE = "https://cobotwire.github.io/cobotwire/"
 REPOSITORY = re.compile(r"https://github\.com/cobotwire/cobotwire/(?:blob|tree|edit)/main/([^#?]+)")
