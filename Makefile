@@ -76,8 +76,7 @@ npm-package: .venv/.tools .venv/.native ## build the npm package; use it in a cl
 	node clients/typescript/examples/round_trip.mjs
 
 rust-test: $(RUST_DATA) ## run the Rust tests
-# Only what they need: tests/probe.py compiles the other crates, with the features of its programs.
-	+cargo test $(TESTED) --tests --quiet
+	+cargo test $(TESTED) --quiet
 
 ASAN := target/asan
 ASAN_TESTS := $(addprefix tests/codec/test_,native_frames.py agreement.py reused_columns.py segments.py shared_reader.py buffer_protocol.py workers.py) tests/transport/test_native_calls.py

@@ -23,7 +23,7 @@ BLOCK = re.compile(
     re.DOTALL | re.MULTILINE,
 )
 # The editions with pages on the site that tests build: one of each kind of frame.
-SHOWN = sampled(("mycobot280", "mercury_a1", "pro450"))
+SHOWN = sampled(("mycobot", "mycobot280", "mercury_a1", "pro450"))
 LEFT_OUT = {*names()} - {*SHOWN}
 # Even on a busy machine, only a command that hangs takes this long.
 SECONDS = 900
