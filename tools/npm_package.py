@@ -20,6 +20,9 @@ import shutil
 import subprocess
 import sys
 import tempfile
+import time
+from collections.abc import Callable
+from functools import cache
 from pathlib import Path, PurePosixPath
 
 from cobotwire_codegen.emit import Target, write
@@ -35,6 +38,11 @@ TARGET = "wasm32-unknown-unknown"
 # What a page loads, compressed.
 LARGEST = 220_000
 WASM = "dist/cobotwire.wasm"
+# What the package is made of.
+SOURCES = (
+    *("spec/**/*.yaml", "codegen/src/**/*.py", "codegen/src/**/*.j2", "clients/typescript/src/*"),
+    *("clients/typescript/*.json", "rust/*/src/**/*.rs", "rust/*/Cargo.toml", "Cargo.*"),
+)
 
 
 def run(folder: Path, *words: str) -> str:
@@ -45,6 +53,7 @@ def run(folder: Path, *words: str) -> str:
     return done.stdout
 
 
+@cache
 def missing() -> str:
     """Return what is not installed to build the package, and how to install it; empty: nothing."""
     for tool in ("node", "npm", "cargo"):
@@ -56,15 +65,19 @@ def missing() -> str:
     return ""
 
 
-def build(found: list[Edition] | None = None) -> Path:
+def build(found: Callable[[], list[Edition]] = lambda: editions(ROOT)) -> Path:
     """Write what the package contains: editions, compiled sources, the session in WebAssembly.
 
-    Return its folder. ``found`` are the checked editions; to load them takes seconds.
+    Return its folder. Do nothing if no source has changed. ``found`` returns the checked editions;
+    to load them takes seconds.
     """
     with (PACKAGE / "package.json").open() as lock:
         # Tests of several processes build it.
         fcntl.flock(lock, fcntl.LOCK_EX)
-        for made in products(ROOT, found or editions(ROOT), [TYPESCRIPT_EDITIONS]):
+        if _fresh():
+            return PACKAGE
+        began = time.time()
+        for made in products(ROOT, found(), [TYPESCRIPT_EDITIONS]):
             write(made)
         if not (PACKAGE / "node_modules/.bin/tsc").exists():
             run(PACKAGE, "npm", "ci", "--no-audit", "--no-fund")
@@ -77,7 +90,17 @@ def build(found: list[Edition] | None = None) -> Path:
         target = ROOT / os.environ.get("CARGO_TARGET_DIR", "target")
         shutil.copy(target / TARGET / "wasm/cobotwire_wasm.wasm", PACKAGE / WASM)
         write(Target(DECODER, {PurePosixPath("module.js"): decoder_module()}, alone=False))
+        os.utime(DECODER / "module.js", (began, began))
     return PACKAGE
+
+
+def _fresh() -> bool:
+    """Return whether the package was built after its sources were changed."""
+    built = (PACKAGE / WASM, PACKAGE / "editions/mycobot.js", last := DECODER / "module.js")
+    sources = (path for pattern in SOURCES for path in ROOT.glob(pattern))
+    return all(path.exists() for path in built) and all(
+        path.stat().st_mtime < last.stat().st_mtime for path in sources
+    )
 
 
 def decoder_module() -> str:
