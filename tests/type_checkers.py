@@ -20,6 +20,8 @@ SETTINGS = {
     "extraPaths": [str(ROOT / "python")],
     "typeCheckingMode": "standard",
     "pythonVersion": "3.11",
+    # These comments are for mypy.
+    "enableTypeIgnoreComments": False,
     # _call and _send have the types that the generated methods rely on.
     "reportPrivateUsage": False,
 }

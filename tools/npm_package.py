@@ -20,8 +20,9 @@ import shutil
 import subprocess
 import sys
 import tempfile
-from filecmp import cmp
-from hashlib import sha256
+import time
+from collections.abc import Callable
+from functools import cache
 from pathlib import Path, PurePosixPath
 
 from cobotwire_codegen.emit import Target, write
@@ -36,6 +37,11 @@ TARGET = "wasm32-unknown-unknown"
 # What a page loads, compressed.
 LARGEST = 220_000
 WASM = "dist/cobotwire.wasm"
+# What the package is made of.
+SOURCES = (
+    *("spec/**/*.yaml", "codegen/src/**/*.py", "codegen/src/**/*.j2", "clients/typescript/src/*"),
+    *("clients/typescript/*.json", "rust/*/src/**/*.rs", "rust/*/Cargo.toml", "Cargo.*"),
+)
 
 
 def run(folder: Path, *words: str) -> str:
@@ -46,6 +52,7 @@ def run(folder: Path, *words: str) -> str:
     return done.stdout
 
 
+@cache
 def missing() -> str:
     """Return what is not installed to build the package, and how to install it; empty: nothing."""
     for tool in ("node", "npm", "cargo"):
@@ -57,22 +64,22 @@ def missing() -> str:
     return ""
 
 
-def build() -> Path:
+def build(found: Callable[[], list[Edition]] = lambda: editions(ROOT)) -> Path:
     """Write what the package contains: editions, compiled sources, the session in WebAssembly.
 
-    Return its folder. Only what has changed is made again.
+    Return its folder. Do nothing if no source has changed. ``found`` returns the checked editions;
+    to load them takes seconds.
     """
     with (PACKAGE / "package.json").open() as lock:
         # Tests of several processes build it.
         fcntl.flock(lock, fcntl.LOCK_EX)
+        if _fresh():
+            return PACKAGE
+        began = time.time()
+        for made in products(ROOT, found(), [TYPESCRIPT_EDITIONS]):
+            write(made)
         if not (PACKAGE / "node_modules/.bin/tsc").exists():
             run(PACKAGE, "npm", "ci", "--no-audit", "--no-fund")
-        state, made_from = sources(), PACKAGE / "node_modules/.editions-made-from"
-        if not made_from.exists() or made_from.read_text("utf-8") != state:
-            # To load and render them takes seconds of each process that tests the package.
-            for made in products(ROOT, editions(ROOT), [TYPESCRIPT_EDITIONS]):
-                write(made)
-            made_from.write_text(state, "utf-8")
         index = PACKAGE / "dist/index.js"
         changed = max(path.stat().st_mtime for path in (PACKAGE / "src").iterdir())
         if not index.exists() or index.stat().st_mtime < changed:
@@ -80,21 +87,21 @@ def build() -> Path:
         words = ("--quiet", "--profile", "wasm", "--target", TARGET)
         run(ROOT, "cargo", "build", "--package", "cobotwire-wasm", *words)
         target = ROOT / os.environ.get("CARGO_TARGET_DIR", "target")
-        wasm = target / TARGET / "wasm/cobotwire_wasm.wasm"
-        if not (PACKAGE / WASM).exists() or not cmp(wasm, PACKAGE / WASM, shallow=False):
-            # Never half a file, since other processes may load it.
-            shutil.copy(wasm, PACKAGE / "dist/new.wasm")
-            (PACKAGE / "dist/new.wasm").replace(PACKAGE / WASM)
+        # Never half a file, since other processes may load it.
+        shutil.copy(target / TARGET / "wasm/cobotwire_wasm.wasm", PACKAGE / "dist/new.wasm")
+        (PACKAGE / "dist/new.wasm").replace(PACKAGE / WASM)
         write(Target(DECODER, {PurePosixPath("module.js"): decoder_module()}, alone=False))
+        os.utime(DECODER / "module.js", (began, began))
     return PACKAGE
 
 
-def sources() -> str:
-    """Return a text that changes with the spec and with the generator."""
-    folders = (ROOT / "spec", ROOT / "codegen/src")
-    files = [path for folder in folders for path in folder.rglob("*") if path.suffix != ".pyc"]
-    found = sorted((str(path), path.stat().st_mtime_ns) for path in files if path.is_file())
-    return sha256(repr(found).encode()).hexdigest()
+def _fresh() -> bool:
+    """Return whether the package was built after its sources were changed."""
+    built = (PACKAGE / WASM, PACKAGE / "editions/mycobot.js", last := DECODER / "module.js")
+    sources = (path for pattern in SOURCES for path in ROOT.glob(pattern))
+    return all(path.exists() for path in built) and all(
+        path.stat().st_mtime < last.stat().st_mtime for path in sources
+    )
 
 
 def decoder_module() -> str:

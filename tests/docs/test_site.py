@@ -12,10 +12,11 @@ from urllib.parse import unquote, urlsplit
 import pytest
 
 import npm_package
+from docs.pages import LEFT_OUT
 from newcomer.website.blocks import commands, programs
 from strategies import TABLES
 from targets.decoder.browser import SHOWN, Tab, needs_chromium
-from vectors import LEFT_OUT, ROOT
+from vectors import ROOT
 
 SITE = "https://cobotwire.github.io/cobotwire/"
 REPOSITORY = re.compile(r"https://github\.com/cobotwire/cobotwire/(?:blob|tree|edit)/main/([^#?]+)")

@@ -11,7 +11,7 @@ has an assumed effect too, but testers do not test it.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from functools import cache
+from functools import cache, lru_cache
 from typing import Any, Literal, NamedTuple
 
 from cobotwire.protocol.errors import UsageError
@@ -225,7 +225,8 @@ def empty_value(field: Field) -> int:
     return dict(zip(field.labels, field.choices)).get("EMPTY", 1)
 
 
-def states_of(table: Table) -> dict[str, State]:
+@lru_cache(maxsize=64)  # a simulated arm looks a state up for each query
+def states_of(table: Table) -> Mapping[str, State]:
     """Return the state that an edition declares for its arm, by name."""
     return {
         name: State(

@@ -26,7 +26,7 @@ def package() -> Path:
     """
     if missing := npm_package.missing():
         raise ToolMissing(missing)
-    return npm_package.build()
+    return npm_package.build(lambda: [*vectors.editions().values()])
 
 
 def compare(edition: str) -> Comparison:
