@@ -1,7 +1,7 @@
 """Build the npm package, and use it in a clean folder as a stranger would.
 
     python tools/npm_package.py            # build, pack, install, run programs; print the sizes
-    python tools/npm_package.py --build    # only build it, in clients/typescript
+    python tools/npm_package.py --build    # only build it, and the module of the decoder page
 
 The program of the docs runs against ``cobotwire sim``, also as TypeScript, and so does a module of
 an own protocol with hostile texts. It prints what failed, and ends with 1 then.
@@ -11,6 +11,7 @@ an own protocol with hostile texts. It prints what failed, and ends with 1 then.
 
 from __future__ import annotations
 
+import base64
 import fcntl
 import gzip
 import os
@@ -19,15 +20,17 @@ import shutil
 import subprocess
 import sys
 import tempfile
-from pathlib import Path
+from pathlib import Path, PurePosixPath
 
-from cobotwire_codegen.emit import write
+from cobotwire_codegen.emit import Target, write
 from cobotwire_codegen.model import Edition
 from cobotwire_codegen.project import TYPESCRIPT_EDITIONS, editions, products
+from cobotwire_codegen.targets.typescript import literal
 from rust_package import HOSTILE
 
 ROOT = Path(__file__).parent.parent
 PACKAGE = ROOT / "clients/typescript"
+DECODER = ROOT / "docs/_static/decoder"
 TARGET = "wasm32-unknown-unknown"
 # What a page loads, compressed.
 LARGEST = 220_000
@@ -73,7 +76,26 @@ def build(found: list[Edition] | None = None) -> Path:
         run(ROOT, "cargo", "build", "--package", "cobotwire-wasm", *words)
         target = ROOT / os.environ.get("CARGO_TARGET_DIR", "target")
         shutil.copy(target / TARGET / "wasm/cobotwire_wasm.wasm", PACKAGE / WASM)
+        write(Target(DECODER, {PurePosixPath("module.js"): decoder_module()}, alone=False))
     return PACKAGE
+
+
+def decoder_module() -> str:
+    """Return the script that gives the decoder page the source of its worker.
+
+    The page also works as a file, and a file may load neither modules nor other files into a
+    worker. So the source has the package's modules one after another, and the bytes of the session.
+    """
+    lines: list[str] = []
+    for name in ("errors", "machine", "decoder"):
+        text = (PACKAGE / f"dist/{name}.js").read_text("utf-8")
+        kept = (line for line in text.splitlines() if not line.startswith(("import ", "//#")))
+        lines += (line.removeprefix("export ") for line in kept)
+    bytes64 = base64.b64encode((PACKAGE / WASM).read_bytes()).decode()
+    lines.append(
+        f'const wasm = async () => Uint8Array.from(atob("{bytes64}"), (c) => c.charCodeAt());'
+    )
+    return f"cobotwire.module = {literal(chr(10).join(lines))};\n"
 
 
 def loaded() -> int:
@@ -125,6 +147,8 @@ def own_protocol(folder: Path) -> str:
 
 def main() -> None:
     """Build the package, and use it."""
+    if why := missing():
+        sys.exit(why)
     build()
     if "--build" in sys.argv:
         return

@@ -161,10 +161,17 @@ def test_damaged_file_gives_table_or_sentence(probe: Probe, tmp_path: Path, name
 def test_mistake_is_named_with_its_place(probe: Probe, tmp_path: Path) -> None:
     text, deadline = MYCOBOT.read_text("utf-8"), '"deadline_ms": 500, "reply"'
     version, wrong = '"version": 3', deadline.replace("500", '"x"')
+    joint, wire = '"name": "joint", "type": "joint"', '"kind": "quantity", "wire": "byte"'
+    fine = text.replace(wire, f'{wire}, "scale": "9223372036854775807/3"', 1)
+    scale = "a scale is zero, or too fine for an exact double"
     why = 'command is_power_on: deadline_ms: invalid type: string "x", expected u64'
     files = {
         "the file has version 4 of the format, not 3": text.replace(version, '"version": 4', 1),
         why: text.replace(deadline, wrong, 1),
+        # The default in physical units is beyond 64 bits.
+        f"command send_angle: request: field joint: type joint: {scale}": fine.replace(
+            joint, f'{joint}, "default": [6]'
+        ),
         "the file is not JSON: recursion limit exceeded at line 1 column 128": "[" * 100_000,
     }
     paths = [tmp_path / f"{number}.json" for number in range(len(files))]

@@ -12,6 +12,8 @@ from pathlib import Path
 
 import pytest
 
+import npm_package
+from targets.typescript.comparison import package
 from vectors import LEFT_OUT, ROOT
 
 # As `make docs`, but without garbage collection, which takes a fifth of the time.
@@ -21,6 +23,8 @@ BUILD = "import gc, sys; gc.disable(); from sphinx.cmd.build import main; sys.ex
 @pytest.fixture(scope="session")
 def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Build the site with a proxy that leads nowhere, so that nothing can be fetched."""
+    if not npm_package.missing():
+        package()  # the page that decodes bytes needs it
     folder = tmp_path_factory.mktemp("site")
     nowhere = {f"{way}_proxy": "http://127.0.0.1:9" for way in ("http", "https")}
     command = [sys.executable, "-c", BUILD, "-q", "-W", "--keep-going", "-b", "html"]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 from collections.abc import Iterator
 from html.parser import HTMLParser
@@ -10,11 +11,10 @@ from urllib.parse import unquote, urlsplit
 
 import pytest
 
+import npm_package
 from newcomer.website.blocks import commands, programs
 from strategies import TABLES
-from targets.comparison import ToolMissing
-from targets.decoder import browser
-from targets.decoder.browser import SHOWN
+from targets.decoder.browser import SHOWN, Tab, needs_chromium
 from vectors import LEFT_OUT, ROOT
 
 SITE = "https://cobotwire.github.io/cobotwire/"
@@ -123,11 +123,12 @@ def test_pages_link_to_their_source_and_generated_pages_to_the_spec(
         assert f"{repository}/tree/main/spec" in pages[site / generated].links
 
 
-@pytest.mark.parametrize("edition", sorted(TABLES))
-def test_decoder_page_of_the_site_decodes_a_request(site: Path, edition: str) -> None:
-    try:
-        url = f"{(site / 'decoder.html').as_uri()}#edition={edition}&hex=FEFE0220FA"
-        _, shown = browser.evaluate(url, SHOWN, "shown()")
-    except ToolMissing as missing:
-        pytest.skip(str(missing))
-    assert "request at 0: <code>get_angles</code>" in shown
+@needs_chromium
+@pytest.mark.skipif(bool(npm_package.missing()), reason=npm_package.missing())
+def test_decoder_page_of_the_site_decodes_a_request_of_each_edition(site: Path) -> None:
+    with Tab((site / "decoder.html").as_uri()) as tab:
+        tab.evaluate(SHOWN)
+        for edition in sorted(TABLES):
+            state = json.dumps({"edition": edition, "hex": "FEFE0220FA"})
+            shown = tab.evaluate(f"shown({state})")
+            assert "request at 0: <code>get_angles</code>" in shown

@@ -19,13 +19,12 @@ from vectors import ROOT
 
 # Attributes that never change, or that only an outcome shows; times; positions in the stream.
 LEFT_OUT = re.compile(
-    r"queued_at: \d+, |requested_at: \d+, |, count: \d+|policy: RetryPolicy {[^}]*}, "
+    r"queued_at: \d+, |requested_at: \d+, |policy: RetryPolicy {[^}]*}, "
     r"|received: ReceivedMeanwhile\(\[.*?\]\), (?=policy: )"
 )
 TIMES = "until|ends_by|deadline|undrained_since|sent_at|last|began_at|attempt_times|doubts"
 TIME = re.compile(rf"\b({TIMES}): (Some\(|\[)?([\d, ]+)")
 OFFSET = re.compile(r"\boffset: (\d+)")
-NUMBER = re.compile(r"\b(number|ack|copied): (Some\()?(\d+)")
 TICKET = re.compile(r"ticket: Ticket\((\d+)\)")
 NEVER = (1 << 64) - 1
 
@@ -84,11 +83,10 @@ class TwinSearch(Search):
 
 
 def canonical(text: str, owners: list[int | None], now: float) -> str:
-    """Return a state with times and positions relative to now, and numbers in their order."""
+    """Return a state with times and positions relative to now."""
     at = round(now * 1e9)
     least = round(-LATEST * 1e9)
     fed, unparsed = (int(number) for number in re.findall(r"(?:fed|unparsed): (\d+)", text)[:2])
-    numbers: dict[str, int] = {}
 
     def relative(found: re.Match[str]) -> str:
         times = [int(time) for time in re.findall(r"\d+", found[3])]
@@ -97,5 +95,4 @@ def canonical(text: str, owners: list[int | None], now: float) -> str:
     text = LEFT_OUT.sub("", text.partition("unparsed: ")[2])
     text = TIME.sub(relative, text)
     text = OFFSET.sub(lambda found: f"offset: {max(int(found[1]) - fed + unparsed, 0)}", text)
-    text = TICKET.sub(lambda found: f"owner: {owners[int(found[1]) - 1]}", text)
-    return NUMBER.sub(lambda f: f"{f[1]}: {numbers.setdefault(f[3], len(numbers))}", text)
+    return TICKET.sub(lambda found: f"owner: {owners[int(found[1]) - 1]}", text)

@@ -195,8 +195,6 @@ class Recorder:
         twin.open.difference_update(ended)
         return [
             self._plain(twin, exchange.idle_seconds(now)),
-            exchange.busy,
-            exchange.has_next(now),
             exchange.alignment.align.hex(),
             None if last is None else twin.ticket(last),
             [[ticket, self._outcome(twin.pending[ticket], now)] for ticket in ended],

@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 
 from cobotwire import codec as codecs
 from cobotwire.codec.interface import Codec, Listening
+from cobotwire.diagnose.explain import Part, frame_parts
 from cobotwire.protocol.errors import ProtocolError, UsageError
 from cobotwire.protocol.loading import table_of
 from cobotwire.protocol.table import Direction, Field, Variant
@@ -78,6 +79,10 @@ class Document:
                 "read_as": self.codec.decode(direction, data).command.name,
                 "variant": _number(found.variant, number),
                 "fields": self._fields(found.variant, found.values, data, direction),
+                "parts": [
+                    [part.offset, len(part.data), part.name, part.meaning, _raw(part)]
+                    for part in frame_parts(self.codec.table, data, found)
+                ],
             }
         )
 
@@ -145,7 +150,7 @@ class Document:
         rows = variant.unpack(self.codec.table.frame.data(data, direction))
         return [
             {"name": field.name, "raw": list(row), "value": _numbers(variant, field, rows)}
-            | ({"text": list(value) if field.each else [value]} if field.kind == "text" else {})
+            | ({"text": list(value) if field.each else value} if field.kind == "text" else {})
             for field, row, value in zip(variant.fields, rows, values)
         ]
 
@@ -153,6 +158,11 @@ class Document:
 def _number(variant: Variant, number: int) -> int:
     """Return a variant's number in the spec, which counts all sizes of a list as one variant."""
     return 0 if any(field.sizes for field in variant.fields) else number
+
+
+def _raw(part: Part) -> str:
+    # As a text, since the raw value of a float may have 64 bits.
+    return "" if part.raw is None else str(part.raw)
 
 
 def _numbers(variant: Variant, field: Field, rows: list[tuple[int, ...]]) -> list[Any]:

@@ -2,8 +2,9 @@
 /** The client: what users call. Modules of editions add a method for each command. */
 import { ProtocolError, ReplyTimeout, UsageError } from "./errors.js";
 import { Line, WRITE_SECONDS, now } from "./line.js";
-import { Machine, inNode, node, type Value } from "./machine.js";
+import { edition, machine, objectOf, type Value } from "./machine.js";
 import { nameOf, openWebSerial, reason, type Transport, type WebSerialPort } from "./transport.js";
+import { inNode, node } from "./wasm.js";
 
 /** Where an arm is: `/dev/ttyACM0` or `socket://host:port` in Node, a port of the browser, a transport. */
 export type Port = string | WebSerialPort | Transport;
@@ -51,21 +52,6 @@ interface Settings {
 type Class<T> = new (line: Line, description: Description) => T;
 
 const descriptions = new WeakMap<object, Description>();
-const editions = new Map<string, [index: number, baudrate: number]>();
-let loading: Promise<Machine> | undefined;
-
-/** Return the session in WebAssembly, which is loaded once. */
-export function machine(): Promise<Machine> {
-  return (loading ??= Machine.load());
-}
-
-/** Return the number of an edition and its rate; the table is read once. */
-export function edition(machine: Machine, table: string): [index: number, baudrate: number] {
-  const found = editions.get(table) ?? machine.ask<[number, number]>("edition", table);
-  editions.set(table, found);
-  return found;
-}
-
 /** Make the methods of an edition's client. */
 export function describe(
   type: Class<Client>,
@@ -106,12 +92,6 @@ function shaped(fields: Record<string, Value>, [, , result, radians, flags]: Row
   };
   if (result === undefined || typeof result === "string") return take(result ?? "");
   return Object.fromEntries(Object.entries(result).map(([name, field]) => [name, take(field)]));
-}
-
-function objectOf(fields: readonly Value[]): Record<string, Value> {
-  const found: Record<string, Value> = {};
-  for (let at = 0; at < fields.length; at += 2) found[fields[at] as string] = fields[at + 1];
-  return found;
 }
 
 export class Client {

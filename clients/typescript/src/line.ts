@@ -1,7 +1,8 @@
 /** What the handles of a client share: a session, and the transport that it uses. */
 import { LinkError, failure } from "./errors.js";
-import { inNode, type Machine, type Value } from "./machine.js";
+import type { Machine, Value } from "./machine.js";
 import { reason, within, type Transport } from "./transport.js";
+import { inNode } from "./wasm.js";
 
 /** What a step of the session asks for: bytes to write, calls that have ended, when to go on. */
 type Step = [

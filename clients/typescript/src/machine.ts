@@ -1,5 +1,6 @@
 /** The session in WebAssembly: one call takes a message of values and returns one. */
 import { failure } from "./errors.js";
+import { wasm } from "./wasm.js";
 
 /** What a message consists of; an absent value is `undefined`. */
 export type Value = undefined | number | bigint | boolean | string | Uint8Array | readonly Value[];
@@ -18,15 +19,6 @@ const WORD = 2 ** 32;
 /** Short texts recur: names of functions, commands and arguments. */
 const SHORT = 32;
 const MOST_SHORT = 2000;
-const NODE = "./node.js";
-
-/** Whether the program runs in Node. Its module has no constant name, so that no bundler follows it. */
-export const inNode = typeof globalThis.process === "object" && !!process.versions?.node;
-
-/** Return the module with what only Node has. */
-export async function node(): Promise<typeof import("./node.js")> {
-  return (await import(NODE)) as typeof import("./node.js");
-}
 
 export class Machine {
   private heap = new Uint8Array();
@@ -39,9 +31,7 @@ export class Machine {
   private constructor(private readonly wasm: Exports) {}
 
   static async load(): Promise<Machine> {
-    const url = new URL("./cobotwire.wasm", import.meta.url);
-    const bytes = inNode ? (await node()).read(url) : (await fetch(url)).arrayBuffer();
-    const module = await WebAssembly.compile((await bytes) as BufferSource);
+    const module = await WebAssembly.compile(await wasm());
     const instance = await WebAssembly.instantiate(module);
     return new Machine(instance.exports as unknown as Exports);
   }
@@ -174,4 +164,26 @@ export class Machine {
     }
     return text.length === size ? text : decoder.decode(this.heap.subarray(start, this.at));
   }
+}
+
+const editions = new Map<string, [index: number, baudrate: number]>();
+let loading: Promise<Machine> | undefined;
+
+/** Return the session in WebAssembly, which is loaded once. */
+export function machine(): Promise<Machine> {
+  return (loading ??= Machine.load());
+}
+
+/** Return the number of an edition and its rate; the table is read once. */
+export function edition(machine: Machine, table: string): [index: number, baudrate: number] {
+  const found = editions.get(table) ?? machine.ask<[number, number]>("edition", table);
+  editions.set(table, found);
+  return found;
+}
+
+/** Return the object of names and values in turn. */
+export function objectOf(fields: readonly Value[]): Record<string, Value> {
+  const found: Record<string, Value> = {};
+  for (let at = 0; at < fields.length; at += 2) found[fields[at] as string] = fields[at + 1];
+  return found;
 }

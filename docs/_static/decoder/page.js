@@ -17,8 +17,8 @@
     "a false header": "FE FE 0E 20 FE FE 03 12 01 FA FE FE 03 53 87 FA 00",
   };
   const FIRST_EDITION = "mycobot280"; // that of today's arm
-  const UNITS = { degree: "°", degree_celsius: " °C", millimetre: " mm", percent: " %", volt: " V",
-    milliampere: " mA", hertz: " Hz", step_per_second: " steps/s", tick: " ticks" };
+  // The colours of parts of a frame; the others are data.
+  const KINDS = { header: "header", address: "header", LEN: "length", CMD: "command", check: "footer", footer: "footer" };
 
   // The number of events of a long input that are shown at first, and of bytes of each event; "more" shows as many
   // again.
@@ -27,37 +27,61 @@
   // A longer input is not kept in the address, which browsers limit.
   const LONGEST_LINK = 16384;
 
-  // The worker: it parses and cuts, and sends the events in portions. It runs beside the page, which
-  // answers meanwhile, however long the input is.
+  // The worker: it parses, cuts and reads, and sends the events in portions. It runs beside the page, which
+  // answers meanwhile, however long the input is. Before it stands the source of `Decoder`.
   function work() {
-    let bytes, events;
-    function send(job, first, count, limit) {
-      const portion = events.slice(first, first + count).map((event) => (
-        { ...event, data: bytes.slice(event.offset, event.offset + Math.min(event.size, limit)) }));
-      const frames = events.reduce((sum, event) => sum + ("noise" in event ? 0 : 1), 0);
-      const lost = events.reduce((sum, event) => sum + ("noise" in event ? event.size : 0), 0);
-      postMessage({ job, first, portion, counts: { bytes: bytes.length, events: events.length, frames, lost } });
+    let bytes, events, decoder;
+
+    // Parse pasted text: pairs of hex digits with separators, 0x or \x before them, or Python's b'...'
+    // around them. A single digit is a byte only after 0x; elsewhere half of a byte is missing.
+    function parse(text) {
+      const plain = text
+        .replace(/\bb(?=['"])/gi, " ")
+        .replace(/0x([0-9a-f])(?![0-9a-f])/gi, " 0$1 ")
+        .replace(/\\x|0x/gi, " ")
+        .replace(/[\s,;:|"'\[\](){}-]+/g, " ")
+        .trim();
+      const found = [];
+      for (const word of plain ? plain.split(" ") : []) {
+        const shown = word.length > 60 ? `${word.slice(0, 57)}...` : word;
+        const wrong = !/^[0-9a-f]*$/i.test(word) ? "is not hex" : word.length % 2 ? "has an odd number of digits" : "";
+        if (wrong) throw new Error(`Not hex, after ${found.length} byte${found.length === 1 ? "" : "s"}: "${shown}" ${wrong}`);
+        for (let at = 0; at < word.length; at += 2) found.push(parseInt(word.slice(at, at + 2), 16));
+      }
+      return Uint8Array.from(found);
     }
-    onmessage = ({ data: { job, text, table, directions, first, count, limit, from, size } }) => {
-      if (from !== undefined) {
-        postMessage({ job, data: bytes.slice(from, from + size) });
-        return;
+
+    // Return an event as the page shows it, with the first bytes of long noise.
+    function shown({ offset, data, noise }, limit) {
+      if (noise) return { offset, noise, size: data.length, data: data.slice(0, limit) };
+      return { offset, data, message: decoder.read(data) };
+    }
+
+    async function answer({ text, table, direction, first, count, limit, from, size }) {
+      if (from !== undefined) return { data: bytes.slice(from, from + size) };
+      if (text !== undefined) {
+        bytes = parse(text);
+        decoder = await Decoder.load(table, direction);
+        events = [...decoder.feed(bytes), ...decoder.flush()];
       }
+      const portion = events.slice(first, first + count).map((event) => shown(event, limit));
+      const frames = events.reduce((sum, event) => sum + (event.noise ? 0 : 1), 0);
+      const lost = events.reduce((sum, event) => sum + (event.noise ? event.data.length : 0), 0);
+      return { first, portion, counts: { bytes: bytes.length, events: events.length, frames, lost } };
+    }
+
+    onmessage = async ({ data: { job, ...request } }) => {
       try {
-        if (text !== undefined) {
-          bytes = cobotwire.parse(text);
-          events = new cobotwire.Law(table, directions).cut(bytes);
-        }
-      } catch (error) {
-        postMessage({ job, problem: { offset: error.offset, message: error.message } });
-        return;
+        postMessage({ job, ...(await answer(request)) });
+      } catch ({ message }) {
+        postMessage({ job, problem: message });
       }
-      send(job, first, count, limit);
     };
   }
 
+  // A page that is opened as a file may not load another file into a worker.
   const SOURCE = URL.createObjectURL(
-    new Blob([cobotwire.source, `(${work})();`], { type: "text/javascript" }));
+    new Blob([cobotwire.module, `(${work})();`], { type: "text/javascript" }));
   // The worker, the number of the newest job, and whether its answer is outstanding.
   let worker = null;
   let job = 0;
@@ -95,12 +119,11 @@
 
   function show(root) {
     const { text, edition, direction, output } = parts(root);
-    const directions = direction.value === "both" ? ["request", "reply"] : [direction.value];
     output.setAttribute("aria-busy", "true");
     const mine = (shows += 1);
     job += 1; // an answer about the input before comes too late
     load(edition.value, (table) => {
-      if (mine === shows) decode(root, table, directions, text.value);
+      if (mine === shows) decode(root, { table, direction: direction.value, text: text.value });
     });
   }
 
@@ -118,32 +141,28 @@
     document.head.append(script);
   }
 
-  function decode(root, table, directions, text) {
+  function decode(root, request) {
     const { output } = parts(root);
-    const law = new cobotwire.Law(table, directions);
-    ask(root, { text, table, directions, first: 0, count: EVENTS }, (answer) => {
+    ask(root, { ...request, first: 0, count: EVENTS }, (answer) => {
       if (answer.problem) {
-        const { offset, message } = answer.problem;
-        output.replaceChildren(element("p", { class: "problem", role: "alert" },
-          `Not hex, after ${counted(offset, "byte")}: ${message}.`));
+        output.replaceChildren(element("p", { class: "problem", role: "alert" }, `${answer.problem}.`));
         return;
       }
       output.replaceChildren(summary(answer.counts));
-      append(root, law, answer);
+      append(root, answer);
     });
   }
 
   // Show a portion of the events, and a button for the next one.
-  function append(root, law, { first, portion, counts }) {
+  function append(root, { first, portion, counts }) {
     const { output } = parts(root);
-    output.append(...portion.map((event) => (
-      "noise" in event ? noise(root, event, event.data) : frame(law, event, event.data))));
+    output.append(...portion.map((event) => (event.noise ? noise(root, event) : frame(event))));
     const next = first + portion.length;
     if (next === counts.events) return;
     output.append(more(`${next} of ${counts.events} are shown: more`, (button) => {
       ask(root, { first: next, count: EVENTS }, (answer) => {
         button.remove();
-        append(root, law, answer);
+        append(root, answer);
       });
     }));
   }
@@ -159,13 +178,13 @@
       `${counted(bytes, "byte")}: ${counted(frames, "frame")}, ${counted(lost, "byte")} of noise`);
   }
 
-  function noise(root, event, data) {
-    const shown = chips(data, () => "noise");
+  function noise(root, event) {
+    const shown = chips(event.data, () => "noise");
     const card = element("section", { class: "event noise" },
       element("h3", {}, `noise at ${event.offset}: ${event.noise}`),
       element("p", {}, `${REASONS[event.noise]}.`),
       shown);
-    if (data.length < event.size) card.append(moreBytes(root, event, shown));
+    if (event.data.length < event.size) card.append(moreBytes(root, event, shown));
     return card;
   }
 
@@ -182,134 +201,42 @@
     });
   }
 
-  function frame(law, event, data) {
-    let readings;
-    try {
-      readings = law.read(data);
-    } catch (error) {
+  function frame({ offset, data, message }) {
+    if (message.text) {
       return element("section", { class: "event rejected" },
-        element("h3", {}, `frame at ${event.offset}: rejected`),
-        element("p", {}, `${error.message} (byte ${error.offset}).`),
-        chips(data, (at) => (at === error.offset ? "wrong" : "data")));
+        element("h3", {}, `frame at ${offset}: rejected`),
+        element("p", {}, `${message.text}.`),
+        chips(data, (at) => (at === message.offset ? "wrong" : "data")));
     }
-    const [reading, ...others] = readings;
-    const kinds = roles(law, reading, data);
+    const kindOf = (at) => KINDS[message.parts.find((part) => at < part.at + part.size).name] || "data";
     const card = element("section", { class: "event frame" },
-      element("h3", {}, `${reading.command.event ? "event" : reading.direction} at ${event.offset}: `,
-        element("code", {}, reading.command.name)),
-      element("p", {}, `${reading.command.title}.`),
-      chips(data, (at) => kinds[at].kind),
-      rows(kinds, data));
-    if (others.length) {
-      const names = others.map((other) => `${other.command.name} (${other.direction})`);
+      element("h3", {}, `${message.kind} at ${offset}: `, element("code", {}, message.command)),
+      element("p", {}, `${message.title}.`),
+      chips(data, kindOf),
+      table(message.parts, data));
+    if (message.others.length) {
+      const names = message.others.map((other) => `${other.command} (${other.kind})`);
       card.append(element("p", { class: "other" }, `The same bytes can be ${names.join(" or ")}.`));
     }
     return card;
   }
 
-  // Return, for each byte of a frame, the part of the frame that it belongs to.
-  function roles(law, reading, data) {
-    const { header, layout, parts, check, footer } = law.frame;
-    const end = data.length - footer.length;
-    const checked = { kind: "footer", name: "check", start: end, meaning: check && check.word };
-    const found = Array.from(data, (byte, at) => (at < header.length ? HEADER : at < end ? checked : FOOTER));
-    for (const part of layout) {
-      // A reply without an id has data in its place.
-      if (parts[part].at >= law.frame.data_at[reading.direction]) continue;
-      const { at, width, order } = parts[part];
-      const number = cobotwire.unsigned(data, at, width, order);
-      fill(found, at, width, { start: at, ...PART_ROLES[part](number, data.length - at - width, reading) });
-    }
-    for (const field of reading.fields) for (const role of fieldRoles(field)) fill(found, role.start, role.width, role);
-    return found;
-  }
-
-  const HEADER = { kind: "header", name: "header", start: 0, meaning: "a frame starts here" };
-  const FOOTER = { kind: "footer", name: "footer", start: 0, meaning: "the frame ends here" };
-  const PART_ROLES = {
-    address: (number) => ({ kind: "header", name: "address", meaning: `${number}` }),
-    length: (number, rest) => ({ kind: "length", name: "LEN", meaning: number === rest ? `${number} bytes follow` : `${number}` }),
-    command: (number, rest, reading) => ({ kind: "command", name: "CMD", meaning: reading.command.name }),
-  };
-
-  function fill(found, start, width, role) {
-    for (let at = start; at < start + width; at += 1) found[at] = role;
-  }
-
-  // Return a role for each number of a field; bytes have one for all, so has each text, and each word
-  // of bits.
-  function fieldRoles({ field, numbers, text }) {
-    const unit = field.kind === "text" && field.repeat > 1 ? field.repeat : numbers.length;
-    if (field.kind === "text" && numbers.length) {
-      return text.map((each, index) => dataRole(
-        text.length > 1 || field.repeat > 1 ? `${field.name}[${index}]` : field.name,
-        numbers[index * unit].offset, unit, JSON.stringify(each)));
-    }
-    if (field.kind === "bytes" && numbers.length) {
-      const noun = `${numbers.length} byte${numbers.length === 1 ? "" : "s"}`;
-      return [dataRole(field.name, numbers[0].offset, numbers.length, noun)];
-    }
-    const each = field.cases[0].numbers.length;
-    const found = [];
-    numbers.forEach((read, place) => {
-      const { number, offset } = read;
-      const element = field.least === undefined ? field.name : `${field.name}[${Math.floor(place / each)}]`;
-      const name = number.name ? `${element}.${number.name}` : element;
-      const meaning = format(field, read);
-      const last = found[found.length - 1];
-      if (!number.bits) found.push(dataRole(name, offset, number.width, meaning));
-      else if (last && last.start === offset) last.meaning += `, ${number.name}: ${meaning}`;
-      else found.push(dataRole(element, offset, number.width, `${number.name}: ${meaning}`));
-    });
-    return found;
-  }
-
-  function dataRole(name, start, width, meaning) {
-    return { kind: "data", name, start, width, meaning };
-  }
-
-  function format(field, { number, raw, value }) {
-    // A part of a word has a kind of its own.
-    const { kind, choices, labels } = number.bits ? number : field;
-    if (kind === "flag") return raw ? "yes" : "no";
-    const label = labels[choices.indexOf(raw)];
-    if (kind === "enum" && label) return `${label} (${raw})`;
-    const unit = UNITS[number.unit] || (number.unit && ` ${number.unit}`);
-    const scaled = number.multiply === number.divide ? "" : `  (raw ${raw})`;
-    return `${number.width === 4 && number.encoding === "float" ? shortest(value) : value}${unit}${scaled}`;
-  }
-
-  // Return the shortest decimal of a float of four bytes.
-  function shortest(value) {
-    for (let digits = 1; digits < 9; digits += 1) {
-      const rounded = Number(value.toPrecision(digits));
-      if (Math.fround(rounded) === value) return rounded;
-    }
-    return value;
+  function hex(bytes) {
+    return Array.from(bytes, (byte) => byte.toString(16).toUpperCase().padStart(2, "0")).join(" ");
   }
 
   function chips(data, kindOf) {
     return element("p", { class: "bytes" }, ...Array.from(data, (byte, at) =>
-      element("span", { class: `byte ${kindOf(at)}` }, cobotwire.hex([byte]))));
+      element("span", { class: `byte ${kindOf(at)}` }, hex([byte]))));
   }
 
-  function rows(kinds, data) {
-    const body = element("tbody");
-    kinds.forEach((role, at) => {
-      if (at && kinds[at - 1] === role) return;
-      if (at && role.kind === "header" && kinds[at - 1].name === role.name) return;
-      if (at && role.kind === "footer" && kinds[at - 1].name === role.name) return;
-      let end = at + 1;
-      while (end < data.length && kinds[end].name === role.name && kinds[end].start === role.start) end += 1;
-      body.append(element("tr", {},
-        element("td", {}, String(at)),
-        element("td", {}, element("code", {}, cobotwire.hex(data.subarray(at, end)))),
-        element("td", {}, role.name),
-        element("td", {}, role.meaning)));
-    });
-    const head = element("tr", {}, ...["byte", "hex", "content", "meaning"].map((name) =>
+  function table(parts, data) {
+    const cells = parts.map(({ at, size, name, raw = "", meaning }) => (
+      [at, element("code", {}, hex(data.subarray(at, at + size))), name, raw, meaning]));
+    const body = cells.map((row) => element("tr", {}, ...row.map((cell) => element("td", {}, cell))));
+    const head = element("tr", {}, ...["byte", "hex", "content", "raw", "meaning"].map((name) =>
       element("th", { scope: "col" }, name)));
-    return element("div", { class: "scroll" }, element("table", {}, element("thead", {}, head), body));
+    return element("div", { class: "scroll" }, element("table", {}, element("thead", {}, head), element("tbody", {}, ...body)));
   }
 
   function parts(root) {
@@ -358,6 +285,10 @@
   document.addEventListener("DOMContentLoaded", () => {
     const root = document.getElementById("decoder");
     if (!root) return;
+    if (!cobotwire.module) {
+      root.append("This copy of the site was built without Node, and cannot decode. The command cobotwire decode does.");
+      return;
+    }
     build(root);
     restore(root);
     root.addEventListener("input", () => changed(root));

@@ -82,8 +82,10 @@ def frame_parts(table: Table, data: bytes, message: DecodedMessage) -> Iterator[
             yield Part(offset, data[offset : offset + size], field.name, format_bytes(value))
             offset += size
             continue
-        for number, single in _numbers(message, field, value):
-            name = f"{field.name} {number.name}".strip()
+        for at, (number, single) in enumerate(_numbers(message, field, value)):
+            listed = field.each or (field.many and not number.name)
+            place = f"[{at // (field.each or 1)}]" if listed else ""
+            name = f"{field.name}{place} {number.name}".strip()
             # Several parts of a word share its bytes: the last one has them.
             chunk = data[offset : offset + number.step]
             raw = number.unpack(data, offset)
@@ -129,7 +131,7 @@ def format_bytes(value: Any) -> str:
     """Return bytes as hex digits, and texts in quotes."""
     if isinstance(value, bytes):
         return value.hex(" ").upper() or "no bytes"
-    return repr(list(value) if isinstance(value, tuple) else value)
+    return repr(value)
 
 
 def format_message(message: DecodedMessage) -> str:

@@ -44,7 +44,7 @@ pub enum OnDrop {
 
 /// Return the byte of an address, given by its name or number.
 pub(crate) fn find_address(edition: &Edition, given: &str) -> Result<u8, Error> {
-    let mut known = edition.addresses.iter();
+    let mut known = edition.protocol.addresses.iter();
     let named = known.find(|known| known.name.eq_ignore_ascii_case(given));
     let number: Result<i64, _> = given.parse();
     let all = &edition.protocol.table.frame().addresses;

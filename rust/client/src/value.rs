@@ -29,6 +29,8 @@ pub enum Value {
 
 type Read<T> = Result<T, Unread<Infallible>>;
 const WRONG_TYPE: Unread<Infallible> = Unread::Fault(ValueFault::Type);
+/// Below this number a real holds every integer.
+const EXACT: f64 = (1_u64 << 53) as f64;
 
 impl Given for Value {
     type Error = Infallible;
@@ -39,7 +41,7 @@ impl Given for Value {
             Self::Integer(raw) => Ok(*raw),
             Self::Flag(set) if flag => Ok(i64::from(*set)),
             // An array of reals may have integers among them.
-            Self::Real(real) if real.fract() == 0.0 => Ok(*real as i64),
+            Self::Real(real) if real.fract() == 0.0 && real.abs() < EXACT => Ok(*real as i64),
             _ => Err(WRONG_TYPE),
         }
     }
@@ -122,9 +124,7 @@ impl From<Shown> for Value {
             Shown::Real(real) => Self::Real(real),
             Shown::Text(text) => Self::Text(text),
             Shown::Bytes(bytes) => Self::Bytes(bytes),
-            Shown::List(row) | Shown::Tuple(row) => {
-                Self::Row(row.into_iter().map(Self::from).collect())
-            }
+            Shown::Tuple(row) => Self::Row(row.into_iter().map(Self::from).collect()),
             Shown::Other(_) => Self::Absent,
         }
     }

@@ -97,7 +97,7 @@ pub enum Encoding {
 /// A part of a table that cannot be interpreted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Misfit {
-    /// An integer is not one to four bytes wide, or a float not four or eight.
+    /// An integer is not one to four bytes wide, a float not four or eight, or bits are outside.
     Width,
     /// A scale is zero, or too fine for an exact double.
     Scale,
@@ -115,13 +115,15 @@ pub enum Misfit {
 impl fmt::Display for Misfit {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
         out.write_str(match self {
-            Self::Width => "an integer must have one to four bytes, a float four or eight",
+            Self::Width => {
+                "an integer must have one to four bytes, a float four or eight, and bits be inside"
+            }
             Self::Scale => "a scale is zero, or too fine for an exact double",
             Self::Bounds => "a bound is an integer that a double cannot represent exactly",
             Self::Cases => {
                 "all cases of a field must have one size, and one number unless it has many"
             }
-            Self::Selector => "a selector must be the index of a field with one number",
+            Self::Selector => "a selector must be a field of the message with one number",
             Self::Length => {
                 "a variant is longer than LEN can express, or a reply without an id is shorter than an id"
             }
@@ -151,7 +153,8 @@ impl Number {
 
     /// Return the number of bytes from here to the next number of the field.
     #[inline]
-    pub(crate) fn step(&self) -> usize {
+    #[must_use]
+    pub fn step(&self) -> usize {
         match self.bits {
             Some(Bits { more: true, .. }) => 0,
             _ => self.width,
@@ -175,7 +178,8 @@ impl Number {
 
     /// Return the raw value that starts there.
     #[inline]
-    pub(crate) fn unpack(&self, data: &[u8], start: usize) -> i64 {
+    #[must_use]
+    pub fn unpack(&self, data: &[u8], start: usize) -> i64 {
         let bytes = data.get(start..start + self.width).unwrap_or_default();
         let unsigned = match (bytes, self.order) {
             ([byte], _) => i64::from(*byte),
@@ -300,7 +304,11 @@ impl Number {
         (if signed_at < top { signed_at - top } else { 0 }, signed_at)
     }
 
-    pub(crate) fn check(&self) -> Result<(), Misfit> {
+    /// Check that the codecs can interpret it; they compute without overflow then.
+    ///
+    /// # Errors
+    /// They cannot.
+    pub fn check(&self) -> Result<(), Misfit> {
         if self.float {
             return match (self.width, self.multiply, self.divide) {
                 (4 | 8, 1, 1) => Ok(()),

@@ -84,6 +84,17 @@ impl Table {
         command.variants(variant.direction).get(variant.variant)
     }
 
+    /// Return the index of a field's case that the data bytes of a message select; `None`: none.
+    #[must_use]
+    pub fn case(&self, id: VariantId, field: usize, data: &[u8]) -> Option<usize> {
+        let variant = self.variant(id)?;
+        let field = variant.fields().get(field)?;
+        let Some((index, _, number)) = variant.selector(field) else {
+            return Some(0);
+        };
+        field.case(number.unpack(data, variant.start(index)))
+    }
+
     /// Return the templates of a command in one direction.
     #[inline]
     pub(crate) fn templates(&self, command: usize, direction: Direction) -> Option<&Templates> {

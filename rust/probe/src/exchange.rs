@@ -139,14 +139,7 @@ impl Open {
         let exchange = &self.exchange;
         let last = exchange.sent_last();
         let last = last.and_then(|last| self.requests.iter().position(|each| each.0 == last));
-        json!([
-            exchange.idle(now),
-            exchange.busy(),
-            exchange.has_next(now),
-            hex(exchange.align()),
-            last,
-            ended
-        ])
+        json!([exchange.idle(now), hex(exchange.align()), last, ended])
     }
 
     /// Return the request of `{"command", "values", "texts", "address", "variant"}`, or the text of
@@ -266,7 +259,7 @@ fn retry_policy(json: &Json) -> RetryPolicy {
 fn persisted(state: &PersistedState) -> Json {
     let (late, parts) = (state.late.iter(), state.parts.iter());
     let late: Json = late
-        .map(|late| json!([hex(&late.request), late.until]))
+        .map(|late| json!([hex(&late.request.frame), late.until]))
         .collect();
     let parts: Json = parts
         .map(|part| json!([hex(&part.request), part.written]))

@@ -48,6 +48,7 @@ pub(crate) fn command<'a>(
     let stores: BTreeMap<String, String> = record.at("effect").any("stores")?;
     let command = Command {
         name: record.get("name")?,
+        title: record.any("title")?,
         family: record.any("family")?,
         safety: facts.safety,
         role: record.any("role")?,

@@ -11,7 +11,7 @@ use cobotwire_core::{Algorithm, Check, Computed, Crc, CrcParameters, FrameFormat
 use serde::Deserialize;
 
 use crate::json::Record;
-use crate::{Address, BadEdition, Outcome};
+use crate::{BadEdition, Outcome};
 
 /// The most data bytes: the longest LEN of two bytes that the core supports.
 pub(crate) const LONGEST: usize = 0x4000;
@@ -40,35 +40,6 @@ struct WideFrame {
     crc: Option<CrcParameters>,
 }
 
-/// The sizes of a frame's parts, and the order of those between header and data.
-struct Sizes {
-    sizes: [(Place, usize); 7],
-    layout: Vec<Place>,
-}
-
-impl Sizes {
-    fn of(&self, part: Place) -> usize {
-        let found = self.sizes.iter().find(|(each, _)| *each == part);
-        found.map_or(0, |(_, size)| *size)
-    }
-
-    /// Return the offset of a part, which is the header, a fixed part, or the data.
-    fn offset(&self, part: Place) -> usize {
-        let parts = [&Place::Header].into_iter().chain(&self.layout);
-        let before = parts.take_while(|each| **each != part);
-        before.map(|each| self.of(*each)).sum()
-    }
-
-    /// Return an unsigned number of the frame: LEN or the command id.
-    fn part(&self, part: Place, number: Record<'_>) -> Outcome<Part> {
-        Ok(Part {
-            at: self.offset(part),
-            wide: self.of(part) == 2,
-            order: number.any("order")?,
-        })
-    }
-}
-
 /// Return the frame format; `json` are the bytes of the whole file.
 pub(crate) fn frame_format(record: Record<'_>, json: &[u8]) -> Outcome<FrameFormat> {
     use Place::{Address, Check as CheckBytes, Command, Data, Footer, Header, Length};
@@ -76,41 +47,89 @@ pub(crate) fn frame_format(record: Record<'_>, json: &[u8]) -> Outcome<FrameForm
     let addresses = address_bytes(record)?;
     let (algorithm, check_width) = algorithm(record, json)?;
     let (length, id) = (record.at("length"), record.at("command"));
-    let sizes = Sizes {
-        sizes: [
-            (Header, header.len()),
-            (Address, usize::from(!addresses.is_empty())),
-            (Length, length.within_or("width", 1..=2, 1)?),
-            (Command, id.within_or("width", 1..=2, 1)?),
-            (Data, 0),
-            (CheckBytes, check_width),
-            (Footer, footer.len()),
-        ],
-        layout: record.or("layout", vec![Address, Length, Command])?,
+    let sizes = [
+        (Header, header.len()),
+        (Address, usize::from(!addresses.is_empty())),
+        (Length, length.within_or("width", 1..=2, 1)?),
+        (Command, id.within_or("width", 1..=2, 1)?),
+        (Data, 0),
+        (CheckBytes, check_width),
+        (Footer, footer.len()),
+    ];
+    let size = |part: &Place| {
+        let own = sizes.iter().filter(|(each, _)| each == part);
+        own.map(|(_, size)| *size).sum::<usize>()
     };
-    let reply_has_id = !record.any::<bool>("replies_without_id")?;
+    // The parts between header and data, and those that LEN counts.
+    let order = record.or("layout", vec![Address, Length, Command])?;
     let counted = record.or("counted", vec![Command, Data, CheckBytes, Footer])?;
-    check_layout(&sizes, &counted, reply_has_id)?;
-    let mut uncounted = Vec::from(sizes.sizes);
-    uncounted.retain(|(part, _)| !counted.contains(part));
+    let reply_has_id = !record.any::<bool>("replies_without_id")?;
+    let times = |parts: &[Place], part| parts.iter().filter(|each| **each == part).count();
+    let last = order
+        .last()
+        .filter(|last| **last == Command || reply_has_id);
+    let known = order
+        .iter()
+        .all(|part| matches!(part, Address | Length | Command));
+    if !known
+        || (times(&order, Length), times(&order, Command)) != (1, 1)
+        || !(size(&Address)..=1).contains(&times(&order, Address))
+        || !matches!(last, Some(Length | Command))
+    {
+        return BadEdition::because(
+            "layout must have an address if frames have it, length and command, each once; the \
+             last is length or command, and command if replies have none",
+        );
+    }
+    if counted.iter().any(|part| times(&counted, *part) != 1)
+        || !counted.contains(&Data)
+        || !(reply_has_id || counted.contains(&Command))
+    {
+        return BadEdition::because(
+            "counted must have data and other parts of a frame, each once, and command if replies \
+             have data in its place",
+        );
+    }
+    let offset = |part: Place| {
+        let parts = [&Header].into_iter().chain(&order);
+        let before = parts.take_while(|each| **each != part);
+        before.map(size).sum::<usize>()
+    };
+    let number = |part: Place, of: Record<'_>| -> Outcome<Part> {
+        Ok(Part {
+            at: offset(part),
+            wide: size(&part) == 2,
+            order: of.any("order")?,
+        })
+    };
+    let uncounted = sizes.iter().filter(|(part, _)| !counted.contains(part));
     let layout = Layout {
-        address_at: (!addresses.is_empty()).then(|| sizes.offset(Address)),
-        length: sizes.part(Length, length)?,
-        id: sizes.part(Command, id)?,
-        data_at: sizes.offset(Data),
-        overhead: uncounted.iter().map(|(_, size)| size).sum(),
+        address_at: (!addresses.is_empty()).then(|| offset(Address)),
+        length: number(Length, length)?,
+        id: number(Command, id)?,
+        data_at: offset(Data),
+        overhead: uncounted.map(|(_, size)| size).sum(),
         reply_has_id,
     };
     let check = match (algorithm, &*footer) {
         (None, &[footer]) => Check::Footer(footer),
         (None, _) => return BadEdition::because("footer must be one byte, since check is footer"),
-        (algorithm, _) => Check::Computed(Box::new(Computed {
-            width: check_width,
-            order: record.any("check_order")?,
-            from: check_from(record, &sizes, reply_has_id)?,
-            algorithm,
-            footer,
-        })),
+        (algorithm, _) => {
+            let from = record.get("check_from")?;
+            let fixed = order.contains(&from) && size(&from) > 0;
+            if from != Header && !fixed && !(from == Data && reply_has_id) {
+                return BadEdition::because(
+                    "check_from must be a part before the check that all frames have",
+                );
+            }
+            Check::Computed(Box::new(Computed {
+                width: check_width,
+                order: record.any("check_order")?,
+                from: offset(from),
+                algorithm,
+                footer,
+            }))
+        }
     };
     Ok(FrameFormat {
         header,
@@ -133,44 +152,6 @@ fn hex(record: Record<'_>, key: &str, sizes: RangeInclusive<usize>) -> Outcome<V
         Some(bytes) if sizes.contains(&bytes.len()) => Ok(bytes),
         _ => BadEdition::because(format!("{key} must be {sizes:?} bytes, as pairs of digits")),
     }
-}
-
-fn check_layout(sizes: &Sizes, counted: &[Place], reply_has_id: bool) -> Outcome<()> {
-    use Place::{Address, Command, Data, Length};
-    let times = |parts: &[Place], part| parts.iter().filter(|each| **each == part).count();
-    let layout = &*sizes.layout;
-    let addresses = times(layout, Address);
-    let all = (times(layout, Length), times(layout, Command)) == (1, 1)
-        && (sizes.of(Address)..=1).contains(&addresses)
-        && layout.len() == 2 + addresses;
-    let once = counted.iter().all(|part| times(counted, *part) == 1);
-    BadEdition::because(match layout.last() {
-        _ if !all => {
-            "layout must have length, command, and an address if frames have it, each once"
-        }
-        Some(Address) => "layout must end with length or command",
-        Some(Length) if !reply_has_id => "layout must end with command, since replies have none",
-        _ if !once || !counted.contains(&Data) => {
-            "counted must have data and other parts of a frame, each once"
-        }
-        _ if !reply_has_id && !counted.contains(&Command) => {
-            "counted must have command, since replies have data in its place"
-        }
-        _ => return Ok(()),
-    })
-}
-
-fn check_from(record: Record<'_>, sizes: &Sizes, reply_has_id: bool) -> Outcome<usize> {
-    let part = record.get("check_from")?;
-    let stands = match part {
-        Place::Header => true,
-        Place::Data => reply_has_id,
-        _ => sizes.layout.contains(&part) && sizes.of(part) > 0,
-    };
-    if stands {
-        return Ok(sizes.offset(part));
-    }
-    BadEdition::because("check_from must be a part before the check that all frames have")
 }
 
 const ALGORITHMS: [(&str, Algorithm, &[usize]); 6] = [
@@ -233,9 +214,9 @@ fn address_bytes(record: Record<'_>) -> Outcome<Vec<u8>> {
 }
 
 /// Return the addresses that the file names.
-pub(crate) fn addresses(record: Record<'_>) -> Outcome<Vec<(Address, Addressee)>> {
+pub(crate) fn addresses(record: Record<'_>) -> Outcome<Vec<Addressee>> {
     let address = |record: Record<'_>| {
-        let (name, value) = (record.get("name")?, record.get("value")?);
+        let value = record.get("value")?;
         let replier = match record.or("replies", "own")? {
             "own" => Replier::Address(value),
             "any" => Replier::Anybody,
@@ -243,15 +224,12 @@ pub(crate) fn addresses(record: Record<'_>) -> Outcome<Vec<(Address, Addressee)>
             "none" => Replier::Nobody,
             _ => return BadEdition::because("replies must be own, any, one, none"),
         };
-        let joints = record.any::<u8>("joints")?.into();
-        Ok((
-            Address { name, value },
-            Addressee {
-                value,
-                replier,
-                joints,
-            },
-        ))
+        Ok(Addressee {
+            name: record.get("name")?,
+            value,
+            replier,
+            joints: record.any::<u8>("joints")?.into(),
+        })
     };
     let records = record.records("addresses")?.into_iter();
     records.map(address).collect()

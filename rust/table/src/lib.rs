@@ -9,6 +9,7 @@
 extern crate alloc;
 
 mod commands;
+mod explain;
 mod frame;
 mod json;
 mod messages;
@@ -24,7 +25,7 @@ use alloc::string::{String, ToString};
 use alloc::vec::Vec;
 use core::fmt;
 
-use cobotwire_core::exchange::{Addressee, Protocol, Safety};
+use cobotwire_core::exchange::{Protocol, Safety};
 use cobotwire_core::{Direction, Table};
 use serde::Deserialize;
 use serde_json::Value;
@@ -32,6 +33,7 @@ use serde_json::Value;
 use crate::json::Record;
 use crate::messages::Messages;
 
+pub use crate::explain::Explained;
 pub use crate::shown::{Quote, Shown};
 pub use crate::texts::{bad_argument, error_text, link_error};
 
@@ -40,7 +42,7 @@ const VERSION: i64 = 3;
 /// The largest file. A value of JSON takes up to 32 times its text in memory.
 const LARGEST: usize = 4 << 20;
 
-/// A protocol as data. Commands are in the order of the table; addresses are those with names.
+/// A protocol as data. Commands are in the order of the table.
 #[derive(Clone, Debug)]
 #[allow(missing_docs)] // as above
 pub struct Edition {
@@ -49,7 +51,6 @@ pub struct Edition {
     /// What codec and exchange interpret.
     pub protocol: Protocol,
     pub commands: Vec<Command>,
-    pub addresses: Vec<Address>,
 }
 
 /// What texts and clients need of a command.
@@ -57,6 +58,8 @@ pub struct Edition {
 #[allow(missing_docs)] // of fields, whose names say what they are
 pub struct Command {
     pub name: String,
+    /// What it is, in a few words; a table for clients does not say it.
+    pub title: String,
     pub family: String,
     pub safety: Safety,
     /// The role in which clients use it; empty: none.
@@ -125,14 +128,6 @@ pub struct Number {
     pub labels: Vec<String>,
 }
 
-/// An address with a name.
-#[derive(Clone, Debug)]
-#[allow(missing_docs)] // as above
-pub struct Address {
-    pub name: String,
-    pub value: u8,
-}
-
 impl Edition {
     /// Read the bytes of an `edition.json`.
     ///
@@ -153,8 +148,6 @@ impl Edition {
         }
         let (frame, described) = (root.at("frame"), root.at("edition"));
         let format = frame::frame_format(frame, json).within("frame", "")?;
-        let named = frame::addresses(frame).within("frame", "")?;
-        let (addresses, addressees): (Vec<Address>, Vec<Addressee>) = named.into_iter().unzip();
         let last = if format.layout.id.wide { 0xFFFF } else { 0xFF };
         let (mut wire, mut facts, mut commands) = (Vec::new(), Vec::new(), Vec::new());
         let (messages, mut names) = (Messages::new(root)?, BTreeSet::new());
@@ -177,7 +170,7 @@ impl Edition {
             table,
             facts,
             reports_ends: commands.iter().any(|each| each.role == "motion ended"),
-            addresses: addressees,
+            addresses: frame::addresses(frame).within("frame", "")?,
             joints: described.get::<u8>("joints")?.into(),
         };
         Ok(Self {
@@ -185,7 +178,6 @@ impl Edition {
             baudrate: frame.within("baudrate", 1..=100_000_000)?,
             protocol,
             commands,
-            addresses,
         })
     }
 }

@@ -154,7 +154,7 @@ impl<'a> Messages<'a> {
     ) -> Outcome<(wire::Field, Field)> {
         let (mut field, numbers, mut text) = self.shaped(of)?;
         let count = list.map_or(bounds(of)?.0, |list| list.count);
-        self.types.spend(numbers.weight().saturating_mul(count))?;
+        self.types.spend(numbers.weight.saturating_mul(count))?;
         field.cases = vec![wire::Case {
             when: Vec::new(),
             numbers: vec![numbers.wire; count].concat(),
@@ -169,38 +169,31 @@ impl<'a> Messages<'a> {
     fn shaped(&self, of: Record<'a>) -> Outcome<(wire::Field, Numbers, Field)> {
         let (mut field, mut text) = (wire::Field::default(), Field::default());
         let shape = kind(of)?;
-        let of = if shape == Kind::List {
+        let in_list = shape == Kind::List;
+        let of = if in_list {
             self.types.get(of, "of")?
         } else {
             of
         };
         let kind = kind(of)?;
         field.many = true;
-        let numbers = match (shape, kind) {
-            (Kind::Bits, _) => bits(of)?,
-            (Kind::Bytes, _) => {
+        let numbers = match kind {
+            Kind::Bits if !in_list => bits(of)?,
+            Kind::Bytes if !in_list => {
                 field.shape = Shape::Bytes;
                 Numbers::bytes(1, 255)
             }
-            (_, Kind::Text) => {
+            Kind::Text => {
                 let encoding = of.get("encoding")?;
                 field.shape = Shape::Text(encoding, of.get("padding")?);
-                let count = if shape == Kind::List {
-                    bounds(of)?.0
-                } else {
-                    1
-                };
-                field.each = if shape == Kind::List { count } else { 0 };
+                let count = if in_list { bounds(of)?.0 } else { 1 };
+                field.each = if in_list { count } else { 0 };
                 let ascii = encoding == wire::Encoding::Ascii;
                 Numbers::bytes(count, if ascii { 127 } else { 255 })
             }
             _ => {
                 let numbers = self.types.numbers(of)?;
-                field.each = if kind == Kind::Value {
-                    numbers.wire.len()
-                } else {
-                    0
-                };
+                field.each = numbers.wire.len() * usize::from(kind == Kind::Value);
                 (field.flag, field.choices) = (kind == Kind::Flag, all_choices(of)?);
                 text.labels = labels(of)?;
                 numbers
@@ -232,7 +225,10 @@ impl<'a> Messages<'a> {
         let first = self.types.get(*cases.first().unwrap_or(&record), "type")?;
         let kind = kind(first)?;
         (field.flag, field.many) = (kind == Kind::Flag, kind == Kind::Value);
-        field.selector = selector(record.get("selector")?, records)?;
+        let selector: Option<&str> = record.get("selector")?;
+        let index = |name| records.iter().position(|each| each.name() == Ok(name));
+        // The core rejects what is not a field.
+        field.selector = selector.map(|name| index(name).unwrap_or(records.len()));
         field.choices = match fixed {
             Some(fixed) => vec![fixed],
             // Each case of a selected quantity has its own choices, in its number.
@@ -286,16 +282,6 @@ fn lengthen(lists: &mut [Varying<'_>], room: usize) -> bool {
 fn bounds(of: Record<'_>) -> Outcome<(usize, usize)> {
     let bound = |key| of.within_or(key, 0..=LONGEST, 1);
     Ok((bound("least")?, bound("most")?))
-}
-
-fn selector(name: Option<&str>, records: &[Record<'_>]) -> Outcome<Option<usize>> {
-    let Some(name) = name else {
-        return Ok(None);
-    };
-    match records.iter().position(|each| each.name() == Ok(name)) {
-        None => BadEdition::because("selector is not the name of a field of the message"),
-        index => Ok(index),
-    }
 }
 
 /// Return raw values of a field's first case in physical units.

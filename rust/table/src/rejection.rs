@@ -4,6 +4,7 @@ use alloc::collections::BTreeSet;
 use alloc::format;
 use alloc::string::{String, ToString};
 use alloc::vec::Vec;
+use core::iter::once;
 
 use cobotwire_core::{
     Algorithm, BadRaw, BadValue, Check, DecodeError, Direction, EncodeError, Encoding,
@@ -16,13 +17,13 @@ use crate::texts::{bad_argument, either, entry, hex, one_or, protocol_error, tex
 use crate::{Edition, Field, Number, Quote, Shown};
 
 // A link to a file of the Python package; a package of this crate contains the file.
-const UNITS: &str = include_str!("../units.json");
+pub(crate) const UNITS: &str = include_str!("../units.json");
 
 /// A field with its names, in one of its cases.
 pub(crate) struct Part<'a> {
     pub(crate) name: &'a Field,
-    wire: &'a Wire,
-    numbers: &'a [WireNumber],
+    pub(crate) wire: &'a Wire,
+    pub(crate) numbers: &'a [WireNumber],
     case: usize,
 }
 
@@ -103,7 +104,8 @@ impl Edition {
         let number = part.numbers.get(at)?;
         let whole = part.wire.each == 0 && number.bits.is_none();
         let name = if whole { name } else { &part.element(at) };
-        let (value, allowed) = (Shown::from(number.physical(bad.raw)), part.allowed(at));
+        let value = Shown::nested(&mut once(number.physical(bad.raw)))?;
+        let allowed = part.allowed(at);
         Some(text!("bad-value"; command, name, value, allowed))
     }
 
@@ -197,11 +199,9 @@ impl Part<'_> {
                 let counted = self.name.counts.as_deref().unwrap_or_default();
                 (format!("len({counted})"), value, self.sizes())
             }
-            (_, ValueFault::ElementCount) => match value {
-                Shown::List(all) => (indexed, Shown::Tuple(all), self.row(each)),
-                value => (indexed, value, self.row(each)),
-            },
-            (_, ValueFault::ElementType) => (indexed, value, self.row(each)),
+            (_, ValueFault::ElementCount | ValueFault::ElementType) => {
+                (indexed, value, self.row(each))
+            }
             (None, _) if is_bytes => (name.clone(), value, text!("bytes")),
             (None, _) if each > 0 => (name.clone(), value, text!("list"; sizes = self.sizes())),
             // The elements may all be legal; only their number is wrong.
@@ -213,7 +213,7 @@ impl Part<'_> {
         bad_argument(&argument, &value, &allowed)
     }
 
-    fn named(&self, at: usize) -> Option<&Number> {
+    pub(crate) fn named(&self, at: usize) -> Option<&Number> {
         self.name.number(self.case, at)
     }
 
@@ -262,15 +262,24 @@ impl Part<'_> {
         text!(if all { "named-row" } else { "row" }; count, names)
     }
 
+    /// Return the words of a number's choices, and their raw values.
+    pub(crate) fn labels<'a>(
+        &'a self,
+        number: &'a WireNumber,
+        names: &'a Number,
+    ) -> (&'a [String], &'a [i64]) {
+        match names.labels.is_empty() {
+            true => (&self.name.labels, &self.wire.choices),
+            false => (&names.labels, &number.choices),
+        }
+    }
+
     /// Return what a number of the field may be.
     fn allowed(&self, at: usize) -> String {
         let Some((number, names)) = self.numbers.get(at).zip(self.named(at)) else {
             return String::new();
         };
-        let (labels, choices) = match names.labels.is_empty() {
-            true => (&self.name.labels, &self.wire.choices),
-            false => (&names.labels, &number.choices),
-        };
+        let (labels, choices) = self.labels(number, names);
         let mut all = [&self.wire.choices, &number.choices].into_iter();
         let choice = all.find(|all| !all.is_empty());
         if self.wire.flag || number.flag {
@@ -287,8 +296,9 @@ impl Part<'_> {
 
     /// Return a status as a person reads it: `NO_POWER (3)`, or `3 (the arm has no power)`.
     pub(crate) fn status(&self, value: Value) -> String {
-        let Value::Integer(raw) = value else {
-            return Shown::from(value).to_string();
+        let shown = Shown::nested(&mut once(value));
+        let Some(Shown::Integer(raw)) = shown else {
+            return shown.iter().map(Shown::to_string).collect();
         };
         let at = self.wire.choices.iter().position(|choice| *choice == raw);
         if let Some(label) = at.and_then(|at| self.name.labels.get(at)) {

@@ -19,8 +19,6 @@ pub enum Shown {
     Real(f64),
     Text(String),
     Bytes(Vec<u8>),
-    /// Values in square brackets.
-    List(Vec<Shown>),
     /// Values in parentheses.
     Tuple(Vec<Shown>),
     /// Anything else, as it is to be written.
@@ -31,16 +29,6 @@ pub enum Shown {
 pub trait Quote {
     /// Return it as a text shows it.
     fn quote(&self) -> Shown;
-}
-
-impl From<Value> for Shown {
-    fn from(value: Value) -> Self {
-        match value {
-            Value::Real(real) => Self::Real(real),
-            Value::Integer(raw) => Self::Integer(raw),
-            _ => Self::Tuple(Vec::new()),
-        }
-    }
 }
 
 impl Shown {
@@ -66,7 +54,7 @@ impl Shown {
     /// Return its length: of a text, in bytes of an encoding.
     pub(crate) fn count(&self, encoding: Option<Encoding>) -> usize {
         match self {
-            Self::List(all) | Self::Tuple(all) => all.len(),
+            Self::Tuple(all) => all.len(),
             Self::Bytes(bytes) => bytes.len(),
             Self::Text(text) if encoding == Some(Encoding::Utf8) => text.len(),
             Self::Text(text) => text.chars().count(),
@@ -97,7 +85,6 @@ impl Display for Shown {
                 let shown = quoted(&text, |char| (' '..='~').contains(&char));
                 write!(out, "b{shown}")
             }
-            Self::List(all) => write!(out, "[{}]", joined(all)),
             Self::Tuple(all) if all.len() == 1 => write!(out, "({},)", joined(all)),
             Self::Tuple(all) => write!(out, "({})", joined(all)),
             Self::Other(text) => out.write_str(text),

@@ -99,11 +99,8 @@ impl Edition {
             RequestError::Command => String::new(),
             RequestError::Address => return self.no_raw_address(address),
             RequestError::Unanswered => text!("unanswered"; command = name, name = to),
-            RequestError::LacksJoints => {
-                let mut known = protocol.addresses.iter();
-                let known = known.find(|known| Some(known.value) == address);
-                let joints = known.map_or(0, |known| known.joints);
-                let kind = one_or(joints, "lacks-joints-but-one", "lacks-joints");
+            RequestError::LacksJoints(joints) => {
+                let kind = one_or(*joints, "lacks-joints-but-one", "lacks-joints");
                 let lacks = text!(kind; count = protocol.joints, name = to, joints);
                 format!("{name}() {lacks}")
             }
@@ -142,8 +139,9 @@ impl Edition {
     /// Return the name of an address; its number, if it has none.
     #[must_use]
     pub fn address_name(&self, value: u8) -> String {
-        let known = self.addresses.iter().find(|known| known.value == value);
-        known.map_or(value.to_string(), |known| known.name.clone())
+        let mut known = self.protocol.addresses.iter();
+        let known = known.find(|known| known.value == value);
+        known.map_or(value.to_string(), |known| known.name.clone().into())
     }
 
     /// Return the fields of a message as texts show them.
@@ -253,7 +251,8 @@ fn timeout(
     waited_for: Option<WaitedFor>,
     received: String,
 ) -> String {
-    let meanwhile = text!(waited_for.map_or("nothing", WaitedFor::word));
+    let waits = |each| text!(&format!("{each:?}").to_lowercase());
+    let meanwhile = waited_for.map_or(String::new(), waits);
     let kind = match (attempts, waited_for) {
         (0, None) => "not-sent",
         (0, _) => "not-sent-by-deadline",

@@ -59,6 +59,8 @@ impl Kind {
 pub(crate) struct Numbers {
     pub(crate) wire: Vec<core_table::Number>,
     pub(crate) texts: Vec<Number>,
+    /// About how many bytes of memory they take.
+    pub(crate) weight: usize,
 }
 
 impl Numbers {
@@ -75,16 +77,8 @@ impl Numbers {
         Self {
             wire: vec![byte; count],
             texts: vec![Number::default()],
+            weight: count * size_of::<core_table::Number>(),
         }
-    }
-
-    /// Return about how many bytes of memory they take.
-    pub(crate) fn weight(&self) -> usize {
-        let wire = self.wire.iter();
-        let texts = self.texts.iter();
-        let texts = texts.map(|text| 72 + text.name.len() + text.unit.len() + words(&text.labels));
-        let wire = wire.map(|number| size_of_val(number) + 8 * number.choices.len());
-        wire.chain(texts).sum()
     }
 
     /// Return the number of their bytes.
@@ -97,8 +91,10 @@ impl Numbers {
     }
 
     fn push(&mut self, wire: core_table::Number, name: &str, of: Record<'_>) -> Outcome<()> {
-        self.wire.push(wire);
         let text = Number::deserialize(of.0).or_else(BadEdition::because)?;
+        let words = name.len() + text.unit.len() + words(&text.labels);
+        self.weight += size_of_val(&wire) + 8 * wire.choices.len() + size_of_val(&text) + words;
+        self.wire.push(wire);
         let name = name.into();
         self.texts.push(Number { name, ..text });
         Ok(())
@@ -135,12 +131,9 @@ impl<'a> Types<'a> {
     pub(crate) fn numbers(&self, of: Record<'a>) -> Outcome<Numbers> {
         let (mut numbers, name) = (Numbers::default(), of.any("name")?);
         let mut push = |name, of: Record<'a>| {
-            let mut one = Numbers::default();
-            one.push(self.number(of).within("type", of.any("name")?)?, name, of)?;
-            self.spend(one.weight())?;
-            numbers.wire.append(&mut one.wire);
-            numbers.texts.append(&mut one.texts);
-            Ok(())
+            let before = numbers.weight;
+            numbers.push(self.number(of).within("type", of.any("name")?)?, name, of)?;
+            self.spend(numbers.weight - before)
         };
         if kind(of)? != Kind::Value {
             push("", of)?;
@@ -199,8 +192,8 @@ fn part_of_word(part: Record<'_>) -> Outcome<core_table::Number> {
     Ok(core_table::Number {
         flag: part.any::<&str>("kind")? == "flag",
         bits: Some(Bits {
-            shift: part.within("shift", 0..=31)?,
-            count: part.within("bits", 1..=32)?,
+            shift: part.get("shift")?,
+            count: part.get("bits")?,
             more: part.any("more")?,
         }),
         ..number(part, part, scale, &[])?
@@ -215,7 +208,7 @@ fn number(
     all: &[i64],
 ) -> Outcome<core_table::Number> {
     let mut number = core_table::Number {
-        width: wire.within("width", 0..=8)?,
+        width: wire.get("width")?,
         order: wire.get("order")?,
         signed_at: wire.get("signed_at")?,
         multiply,
@@ -225,16 +218,16 @@ fn number(
         ..core_table::Number::default()
     };
     let (low, high) = number.natural_range();
-    (number.minimum, number.maximum) = match (all.iter().min(), all.iter().max()) {
-        (Some(low), Some(high)) => (*low, *high),
-        _ => (of.or("minimum", low)?, of.or("maximum", high)?),
-    };
+    let (least, most) = (all.iter().min().copied(), all.iter().max().copied());
+    number.minimum = least.map_or_else(|| of.or("minimum", low), Ok)?;
+    number.maximum = most.map_or_else(|| of.or("maximum", high), Ok)?;
+    number.check().or_else(BadEdition::because)?;
     let ends = [number.minimum, number.maximum];
     fitting(&number, ends.iter().chain(&number.choices))?;
     Ok(number)
 }
 
-/// Return whether the bytes of a number can hold raw values, so that they can be scaled.
+/// Check that the bytes of a number can hold raw values.
 pub(crate) fn fitting<'a>(
     number: &core_table::Number,
     raws: impl IntoIterator<Item = &'a i64>,

@@ -2,7 +2,10 @@
 
 use cobotwire::Value;
 use cobotwire::machine::Encoder;
-use cobotwire_core::{Choice, DecodeError, Direction, Event, Framer, Listening, decode, encode};
+use cobotwire_core::{
+    Choice, DecodeError, Decoded, Direction, Event, Framer, Listening, Verdict, decode, encode,
+};
+use cobotwire_table::Explained;
 
 use crate::client::flat;
 use crate::{number, whole};
@@ -14,9 +17,10 @@ pub fn answer(encoder: &Encoder, what: &str, given: &[Value]) -> Option<Value> {
     let [Value::Text(word), given @ ..] = given else {
         return None;
     };
-    let direction = match &**word {
-        "request" => Direction::Request,
-        _ => Direction::Reply,
+    let listening = match &**word {
+        "request" => Listening::To(Direction::Request),
+        "reply" => Listening::To(Direction::Reply),
+        _ => Listening::Both,
     };
     let index = |name: &Value| match name {
         Value::Text(name) => encoder.command(name).ok(),
@@ -24,13 +28,16 @@ pub fn answer(encoder: &Encoder, what: &str, given: &[Value]) -> Option<Value> {
     };
     match (what, given) {
         ("encode", [command, variant, Value::Row(names), Value::Row(values)]) => {
+            let Listening::To(direction) = listening else {
+                return None;
+            };
             let which = (index(command)?, number(variant));
             encoded(encoder, direction, which, (names, values))
         }
         ("decode", [Value::Bytes(frame), of]) => {
-            Some(decoded(encoder, direction, frame, index(of)))
+            Some(decoded(encoder, listening, frame, index(of)))
         }
-        ("frames", chunks) => Some(frames(encoder, direction, chunks)),
+        ("frames", chunks) => Some(frames(encoder, listening, chunks)),
         _ => None,
     }
 }
@@ -76,28 +83,86 @@ fn encoded(
     Some(Value::Absent)
 }
 
-/// Return the command and its fields, or the reason and the offset of what is wrong.
-fn decoded(encoder: &Encoder, direction: Direction, frame: &[u8], of: Option<usize>) -> Value {
-    let edition = &encoder.edition;
-    let (what, rest) = match decode(&edition.protocol.table, direction, frame, of) {
-        Ok(decoded) => {
-            let command = edition.commands.get(decoded.variant.command);
-            let name = command.map_or("", |command| &command.name);
-            (name, flat(encoder.named(&decoded)))
+/// Return the command of a frame, its fields, its direction or that it is an event, its title, its
+/// bytes explained, and what else it can be; or the reason, the offset and the text of what is wrong.
+fn decoded(encoder: &Encoder, listening: Listening, frame: &[u8], of: Option<usize>) -> Value {
+    let (edition, table) = (&encoder.edition, &encoder.edition.protocol.table);
+    let mut found: Vec<Decoded> = Vec::new();
+    if let Verdict::Frame(start) = table.rules(listening).validate(frame) {
+        for id in table.rules(listening).variants(start) {
+            let message = (id.direction, id.command);
+            let is_this =
+                |each: &Decoded| (each.variant.direction, each.variant.command) == message;
+            if of.is_none_or(|of| of == id.command) && !found.iter().any(is_this) {
+                found.extend(decode(table, id.direction, frame, Some(id.command)));
+            }
         }
-        Err(DecodeError::Frame { reason, offset }) => (reason.word(), whole(offset)),
-        Err(DecodeError::Raw(bad)) => ("bad-value", whole(bad.offset)),
+    }
+    let text = |text: &str| Value::Text(text.to_owned());
+    let kind = |message: &Decoded| {
+        let facts = edition.protocol.facts.get(message.variant.command);
+        match facts {
+            Some(facts) if facts.event => text("event"),
+            _ => text(message.variant.direction.word()),
+        }
     };
-    Value::Row(vec![Value::Text(what.to_owned()), rest])
+    let command = |message: &Decoded| edition.commands.get(message.variant.command);
+    let name = |message: &Decoded| text(command(message).map_or("", |command| &command.name));
+    let Some((first, others)) = found.split_first() else {
+        return rejected(encoder, listening, frame, of);
+    };
+    let part = |part: Explained| {
+        let raw = part.raw.map_or(Value::Absent, Value::Integer);
+        let (at, size) = (whole(part.bytes.start), whole(part.bytes.len()));
+        Value::Row(vec![
+            at,
+            size,
+            Value::Text(part.name),
+            Value::Text(part.meaning),
+            raw,
+        ])
+    };
+    let parts = edition.explain(frame, first).into_iter().map(part);
+    let other = |each: &Decoded| Value::Row(vec![name(each), kind(each)]);
+    Value::Row(vec![
+        name(first),
+        flat(encoder.named(first)),
+        kind(first),
+        text(command(first).map_or("", |command| &command.title)),
+        Value::Row(parts.collect()),
+        Value::Row(others.iter().map(other).collect()),
+    ])
+}
+
+/// Return the reason, the offset and the text of what is wrong with a frame. A bad value in one
+/// direction explains more than a LEN that does not fit the other.
+fn rejected(encoder: &Encoder, listening: Listening, frame: &[u8], of: Option<usize>) -> Value {
+    let directions = match listening {
+        Listening::To(direction) => vec![direction],
+        Listening::Both => vec![Direction::Request, Direction::Reply],
+    };
+    let table = &encoder.edition.protocol.table;
+    let error = |way: Direction| Some((way, decode(table, way, frame, of).err()?));
+    let errors: Vec<_> = directions.into_iter().filter_map(error).collect();
+    let is_value = |(_, error): &&_| matches!(error, DecodeError::Raw(_));
+    let Some((direction, error)) = errors.iter().find(is_value).or(errors.first()) else {
+        return Value::Absent;
+    };
+    let (reason, offset) = match error {
+        DecodeError::Frame { reason, offset } => (reason.word(), *offset),
+        DecodeError::Raw(bad) => ("bad-value", bad.offset),
+    };
+    let text = encoder.edition.decode_error(*direction, *error, frame);
+    Value::Row(vec![
+        Value::Text(reason.to_owned()),
+        whole(offset),
+        Value::Text(text),
+    ])
 }
 
 /// Return the events that each chunk of a stream made certain; an absent chunk is a silence.
-fn frames(encoder: &Encoder, direction: Direction, chunks: &[Value]) -> Value {
-    let rules = encoder
-        .edition
-        .protocol
-        .table
-        .rules(Listening::To(direction));
+fn frames(encoder: &Encoder, listening: Listening, chunks: &[Value]) -> Value {
+    let rules = encoder.edition.protocol.table.rules(listening);
     let mut framer = Framer::new(rules.clone());
     let mut made = |chunk: &Value| {
         let mut certain = Vec::new();

@@ -1,9 +1,10 @@
-"""Compare the codec of the npm package with the vectors, in Node."""
+"""Compare the codec of the npm package with vectors, in Node."""
 
 from __future__ import annotations
 
 import json
 import subprocess
+from collections.abc import Iterable
 from functools import lru_cache
 from pathlib import Path
 
@@ -30,10 +31,15 @@ def package() -> Path:
 
 def compare(edition: str) -> Comparison:
     """Run an edition's vectors."""
-    package()
     table = ROOT / "python/cobotwire/editions" / edition / "edition.json"
-    document = built("vectors") / f"{edition}.json"
-    words = ("node", PROGRAM, table, document)
+    [found] = compare_all([(table, built("vectors") / f"{edition}.json")])
+    return found
+
+
+def compare_all(files: Iterable[tuple[Path, Path]]) -> list[Comparison]:
+    """Run several documents of vectors, each after the table of its edition, in one process."""
+    package()
+    words = ("node", str(PROGRAM), *(str(path) for pair in files for path in pair))
     done = subprocess.run(words, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
-    return Comparison(**json.loads(done.stdout))
+    return [Comparison(**json.loads(line)) for line in done.stdout.splitlines()]

@@ -25,7 +25,7 @@ pub(super) type Ended = Vec<(Ticket, Result<Answer, Failure>)>;
 /// An acknowledgement that may come.
 #[derive(Clone, Debug)]
 struct ExpectedAck {
-    number: u64,
+    /// Which no other one shares: a request that is sent again is another one.
     request: Arc<Request>,
     sent_at: Nanos,
     /// After this it no longer counts.
@@ -66,7 +66,7 @@ struct CommandAcks {
     /// The acknowledgements that are expected or uncertain, oldest first.
     known: Vec<ExpectedAck>,
     /// The request that was received back as a copy.
-    copied: Option<u64>,
+    copied: Option<Arc<Request>>,
     /// Since when acknowledgements have been expected without a break.
     began_at: Nanos,
 }
@@ -110,43 +110,26 @@ impl CommandAcks {
         }
     }
 
-    /// Note a copy of a request, if it is clear which of the expected ones was copied.
-    fn note_copy(&mut self, protocol: &Protocol, frame: &SeenFrame) {
-        let copies = |ack: &&ExpectedAck| ack.request.frame == frame.bytes();
-        let sent: Vec<&ExpectedAck> = self.expected().filter(copies).collect();
-        if let [ack] = sent.as_slice()
-            && self.doubts_of(protocol, ack).is_empty()
-        {
-            self.copied = Some(ack.number);
-        }
-    }
-
-    /// Settle the oldest acknowledgement that a frame `fits`; count it for all that wait. Return the
-    /// numbers of those that are certain now.
-    fn take(
-        &mut self,
-        fits: impl Fn(&ExpectedAck) -> bool,
-        frame: &SeenFrame,
-        began_at: Nanos,
-    ) -> Vec<u64> {
+    /// Settle the oldest acknowledgement that a frame `fits`; count it for all that wait.
+    fn take(&mut self, fits: impl Fn(&ExpectedAck) -> bool, frame: &SeenFrame, began_at: Nanos) {
         let mut known = self.known.iter_mut();
         if let Some(ack) = known.find(|ack| ack.expected && fits(ack)) {
             // Several devices may acknowledge a broadcast: it stays until its time is over.
             ack.expected = ack.request.replier == Replier::Anybody;
         }
-        let mut certain = Vec::new();
         for ack in self.uncertain().filter(|ack| fits(ack)) {
             ack.count(frame, began_at);
-            certain.extend(ack.certain.then_some(ack.number));
         }
         self.known.retain(|ack| ack.expected || ack.uncertain);
-        certain
     }
 
     /// Return until when all that is expected besides an acknowledgement may look like it.
     fn doubts_of(&self, protocol: &Protocol, ack: &ExpectedAck) -> Vec<Nanos> {
-        let others = self.expected().filter(|other| other.number != ack.number);
-        let alike = others.filter(|other| !protocol.replies_differ(&other.request, &ack.request));
+        let alike = |other: &&ExpectedAck| {
+            !Arc::ptr_eq(&other.request, &ack.request)
+                && !protocol.replies_differ(&other.request, &ack.request)
+        };
+        let alike = self.expected().filter(alike);
         alike.map(|other| other.until).collect()
     }
 
@@ -179,45 +162,34 @@ impl CommandAcks {
 pub(super) struct Acks {
     commands: BTreeMap<u16, CommandAcks>,
     pub(super) waiting: Vec<Pending>,
-    /// Whether this firmware was seen to acknowledge a motion at its start. It does if another
-    /// message reports the end.
+    /// Whether this firmware was seen to acknowledge a motion at its start.
     motions_at_once: bool,
-    /// How many were expected so far.
-    count: u64,
 }
 
 impl Acks {
-    /// Expect nothing; `motions_at_once`: a message of the device reports the end of a motion.
-    pub(super) fn new(motions_at_once: bool) -> Self {
-        Self {
-            motions_at_once,
-            ..Self::default()
-        }
-    }
-
     pub(super) fn next_end(&self) -> Nanos {
         let waiting = self.waiting.iter();
         waiting.fold(NEVER, |first, wait| first.min(wait.ends_first()))
     }
 
     /// Note that a request goes out; its acknowledgement can begin at `offset`. A caller waits for
-    /// it if there is a `pending`, `within` that time. Return until when it is expected.
+    /// it if there is a `pending`. Return until when it is expected.
     pub(super) fn expect(
         &mut self,
         protocol: &Protocol,
         request: &Arc<Request>,
-        (now, offset): (Nanos, u64),
-        within: Nanos,
+        now: Nanos,
+        offset: u64,
         pending: Option<Pending>,
     ) -> Nanos {
-        let usual = match protocol.is(request.command, Facts::moves) && !self.motions_at_once {
+        let at_once = self.motions_at_once || protocol.reports_ends;
+        let usual = match protocol.is(request.command, Facts::moves) && !at_once {
             true => MOTION,
             false => GRACE,
         };
+        let within = pending.as_ref().map_or(0, |pending| pending.wait);
         let until = now.saturating_add(within.max(usual));
-        self.count += 1;
         let ack = ExpectedAck {
-            number: self.count,
             request: Arc::clone(request),
             sent_at: now,
             until,
@@ -231,7 +203,6 @@ impl Acks {
         self.commands.entry(id).or_default().add(protocol, ack);
         self.waiting.extend(pending.map(|mut wait| {
             wait.begin(now, offset);
-            wait.ack = self.count;
             wait
         }));
         until
@@ -239,8 +210,16 @@ impl Acks {
 
     /// Note a copy of a request, which is a bare acknowledgement unless the line echoes.
     pub(super) fn note_copy(&mut self, protocol: &Protocol, frame: &SeenFrame) {
-        if let Some(acks) = self.commands.get_mut(&protocol.id_of(frame)) {
-            acks.note_copy(protocol, frame);
+        let Some(acks) = self.commands.get_mut(&protocol.id_of(frame)) else {
+            return;
+        };
+        let copies = |ack: &&ExpectedAck| ack.request.frame == frame.bytes();
+        let sent: Vec<&ExpectedAck> = acks.expected().filter(copies).collect();
+        // It must be clear which of the expected ones was copied.
+        if let [ack] = sent.as_slice()
+            && acks.doubts_of(protocol, ack).is_empty()
+        {
+            acks.copied = Some(Arc::clone(&ack.request));
         }
     }
 
@@ -282,10 +261,11 @@ impl Acks {
             acks.shorten(protocol, GRACE, now);
         }
         // What learning has shortened may be over by now.
-        let certain = acks.take(fits, frame, began_at);
+        acks.take(fits, frame, began_at);
         // The acknowledgement may say that the arm did not do it.
         let refused = Failure::refusal(protocol, &message);
-        let over = |wait: &mut Pending| certain.contains(&wait.ack);
+        let own = |ack: &ExpectedAck, wait: &Pending| Arc::ptr_eq(&ack.request, &wait.request);
+        let over = |wait: &mut Pending| acks.known.iter().any(|ack| ack.certain && own(ack, wait));
         let ended = self.waiting.extract_if(.., over).map(|wait| {
             let answer = wait.answer(None, Vec::new(), now);
             (wait.ticket, refused.clone().map_or(Ok(answer), Err))
@@ -298,8 +278,8 @@ impl Acks {
         let over = |wait: &mut Pending| wait.ends_first() <= now;
         let ended = self.waiting.extract_if(.., over).map(|mut wait| {
             let id = protocol.id(wait.request.command);
-            let acks = id.and_then(|id| self.commands.get(&id));
-            let copied = acks.is_some_and(|acks| acks.copied == Some(wait.ack));
+            let copied = id.and_then(|id| self.commands.get(&id)?.copied.as_ref());
+            let copied = copied.is_some_and(|copied| Arc::ptr_eq(copied, &wait.request));
             let in_time = wait.deadline > now;
             let outcome = if copied && !echoes && !in_time {
                 Ok(wait.answer(None, Vec::new(), now))

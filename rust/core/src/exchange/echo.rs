@@ -32,38 +32,34 @@ impl Sent {
 pub(super) struct EchoDetector {
     /// Whether the line was seen to echo.
     pub(super) proven: bool,
-    request: Option<Sent>,
-    one_way: Option<Sent>,
+    /// The last request, and the last one-way request.
+    sent: [Option<Sent>; 2],
     noise: Vec<u8>,
 }
 
 impl EchoDetector {
     /// Note a request that goes out; its copy can begin at `offset` of the stream.
     pub(super) fn sent(&mut self, request: &Request, offset: u64, is_one_way: bool) {
-        let sent = Some(Sent {
+        let [last, one_way] = &mut self.sent;
+        *(if is_one_way { one_way } else { last }) = Some(Sent {
             frame: request.frame.clone(),
             offset,
             copies: 1,
         });
-        *(if is_one_way {
-            &mut self.one_way
-        } else {
-            &mut self.request
-        }) = sent;
         self.noise.clear();
     }
 
     /// Note that the last request that waits for a reply goes out once more.
     pub(super) fn sent_again(&mut self) {
-        if let Some(sent) = &mut self.request {
-            sent.copies += 1;
+        if let [Some(last), _] = &mut self.sent {
+            last.copies += 1;
         }
         self.noise.clear();
     }
 
     /// Look for copies in noise: most requests are not legal replies, so they come as noise.
     pub(super) fn add_noise(&mut self, offset: u64, data: &[u8]) {
-        let watched = || [&self.request, &self.one_way].into_iter().flatten();
+        let watched = || self.sent.iter().flatten();
         let first = watched().map(|sent| sent.offset).min();
         let Some(first) = first.filter(|_| !self.proven) else {
             return;
@@ -79,8 +75,8 @@ impl EchoDetector {
     /// beyond that is the arm's own frame.
     pub(super) fn take_copy(&mut self, frame: &SeenFrame) -> bool {
         self.noise.clear();
-        let take = |sent: &mut Option<Sent>| sent.as_mut().is_some_and(|sent| sent.take(frame));
-        take(&mut self.request) || take(&mut self.one_way)
+        let mut watched = self.sent.iter_mut().flatten();
+        watched.any(|sent| sent.take(frame))
     }
 }
 

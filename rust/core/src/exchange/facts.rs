@@ -91,9 +91,10 @@ pub enum Replier {
 
 /// An address of the frame format: its byte, who replies, and how many joints the device has. If
 /// `joints` is 0, the device has all joints of the protocol.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 #[allow(missing_docs)] // as above
 pub struct Addressee {
+    pub name: Box<str>,
     pub value: u8,
     pub replier: Replier,
     pub joints: usize,

@@ -32,7 +32,7 @@ pub use self::alignment::Part;
 pub use self::events::{Event, ReplyError, SeenFrame};
 pub use self::facts::{Addressee, Facts, Named, Nanos, Protocol, Replier, Safety, TextForm};
 pub use self::outcome::{Answer, Failure, Received, WaitedFor};
-pub use self::outstanding::{LateFrame, PersistedState};
+pub use self::outstanding::{OutstandingReply, PersistedState};
 pub use self::pending::{RetryPolicy, Ticket};
 pub use self::request::{Request, RequestError};
 pub use self::text::{TextError, TextFault};
@@ -79,7 +79,7 @@ impl Exchange {
             framer: Framer::new(rules.clone()),
             alignment: Alignment::default(),
             outstanding: OutstandingReplies::default(),
-            acks: Acks::new(protocol.reports_ends),
+            acks: Acks::default(),
             echo: EchoDetector::default(),
             queue: Vec::new(),
             last: None,
@@ -129,10 +129,8 @@ impl Exchange {
         let pending = |within| self.pending(&request, Some(within), policy, now, ends_by);
         let pending = ack_within.map(pending);
         let ticket = pending.as_ref().map(|pending| pending.ticket);
-        let within = ack_within.unwrap_or_default();
-        let until = self
-            .acks
-            .expect(&protocol, &request, (now, offset), within, pending);
+        let acks = &mut self.acks;
+        let until = acks.expect(&protocol, &request, now, offset, pending);
         if protocol.has_query(protocol.id(request.command)) {
             self.outstanding.drop_expired(now);
             self.outstanding.expect(request, until);
@@ -144,13 +142,10 @@ impl Exchange {
     pub fn give_up(&mut self, ticket: Ticket) {
         self.queue.retain(|pending| pending.ticket != ticket);
         self.acks.waiting.retain(|pending| pending.ticket != ticket);
-        self.finished.remove(&ticket);
-        if let Some(waiting) = waiting(&mut self.last)
-            && waiting.ticket == ticket
-        {
-            self.outstanding.expect_late(waiting, 0);
-            waiting.done = true;
+        if self.waiting().is_some_and(|own| own.ticket == ticket) {
+            self.fail_waiting();
         }
+        self.finished.remove(&ticket);
     }
 
     /// Return how a request has ended, once; `None`: it has not, or was given up.
@@ -172,10 +167,7 @@ impl Exchange {
 
     /// End the request that waits: its bytes were not written, or not all of them.
     pub fn fail_waiting(&mut self) {
-        if let Some(waiting) = waiting(&mut self.last) {
-            self.outstanding.expect_late(waiting, 0);
-            self.end_waiting(Err(Failure::Link));
-        }
+        self.end_waiting(0, |_| Err(Failure::Link));
     }
 
     // Half a request on the line.
@@ -208,7 +200,7 @@ impl Exchange {
             outstanding.expect_late(waiting, 0);
         }
         PersistedState {
-            late: outstanding.0.into_iter().map(LateFrame::from).collect(),
+            late: outstanding.0,
             parts: self.alignment.held.clone(),
         }
     }
@@ -216,7 +208,7 @@ impl Exchange {
     /// Respect what an earlier session left on this port.
     pub fn restore(&mut self, state: &PersistedState) {
         for late in &state.late {
-            if let Some(request) = Request::from_frame(&self.protocol, &late.request) {
+            if let Some(request) = Request::from_frame(&self.protocol, &late.request.frame) {
                 self.outstanding.expect(Arc::new(request), late.until);
             }
         }
@@ -266,15 +258,6 @@ impl Exchange {
     /// Note whether the line took no bytes when a request was to be sent.
     pub fn note_full(&mut self, full: bool) {
         self.line_is_full = full;
-    }
-
-    /// Return whether [`Self::outgoing`] may have something to send.
-    #[must_use]
-    pub fn has_next(&self, now: Nanos) -> bool {
-        match self.waiting() {
-            None => !self.queue.is_empty(),
-            Some(waiting) => self.repeat_at(waiting) <= now,
-        }
     }
 
     /// Return the bytes of the request to be sent now, for the first time or again. `drained`:
@@ -328,12 +311,6 @@ impl Exchange {
         (soonest != NEVER).then(|| soonest.saturating_sub(now))
     }
 
-    /// Return whether a request waits for its turn or its reply, or for its acknowledgement.
-    #[must_use]
-    pub fn busy(&self) -> bool {
-        !self.queue.is_empty() || !self.acks.waiting.is_empty() || self.waiting().is_some()
-    }
-
     // Whose turn it is.
 
     fn pending(
@@ -362,7 +339,6 @@ impl Exchange {
             offset: 0,
             candidate: None,
             text: form.map(TextCollector::new),
-            ack: 0,
             wait,
             attempts: facts.map_or(1, |facts| policy.attempts_of(facts, wait)),
             deadline: NEVER,
@@ -554,16 +530,13 @@ impl Exchange {
         if self.outstanding.has_command(&self.protocol, &frame) {
             return self.note(Event::Unexpected { frame });
         }
-        if let Some(waiting) = waiting(&mut self.last).filter(|waiting| waiting.repeated()) {
-            self.outstanding.expect_late(waiting, 1);
-        }
         let data = frame.bytes().into();
         self.fail_reply(ReplyError::Frame(error), data, Some(frame))
     }
 
     /// End the request that waits with an illegal reply.
     fn fail_reply(&mut self, error: ReplyError, data: Vec<u8>, frame: Option<SeenFrame>) -> Event {
-        let command = self.end_waiting(Err(Failure::Reply { error, data }));
+        let command = self.end_waiting(1, |_| Err(Failure::Reply { error, data }));
         Event::Rejected {
             command,
             error,
@@ -573,27 +546,22 @@ impl Exchange {
 
     /// End the request that waits with its reply. Further copies of the reply may come.
     fn end(&mut self, reply: Decoded, frame: Option<SeenFrame>, now: Nanos) -> Event {
-        if let Some(waiting) = waiting(&mut self.last) {
-            if waiting.request.replier == Replier::Anybody {
-                // Other devices may reply too.
-                self.outstanding.expect_late(waiting, 0);
-            } else if waiting.repeated() {
-                self.outstanding.expect_late(waiting, 1);
-            }
-        }
-        self.answer(Some(reply), Vec::new(), frame, now)
+        let waiting = self.waiting();
+        // Other devices may reply to a broadcast too.
+        let anybody = waiting.is_some_and(|own| own.request.replier == Replier::Anybody);
+        self.answer(usize::from(!anybody), Some(reply), Vec::new(), frame, now)
     }
 
     fn answer(
         &mut self,
+        received: usize,
         decoded: Option<Decoded>,
         texts: Vec<String>,
         frame: Option<SeenFrame>,
         now: Nanos,
     ) -> Event {
-        let answer = |waiting: &Pending| waiting.answer(decoded.clone(), texts.clone(), now);
-        let answer = self.waiting().map(answer).ok_or(Failure::Link);
-        let command = self.end_waiting(answer);
+        let answer = |own: &mut Pending| Ok(own.answer(decoded.clone(), texts.clone(), now));
+        let command = self.end_waiting(received, answer);
         Event::Matched {
             command,
             decoded,
@@ -602,12 +570,17 @@ impl Exchange {
         }
     }
 
-    /// End the request that waits; return its command.
-    fn end_waiting(&mut self, outcome: Result<Answer, Failure>) -> usize {
-        let waiting = waiting(&mut self.last);
-        waiting.map_or(0, |waiting| {
+    /// End the request that waits; return its command. The replies to all but its first `received`
+    /// attempts may still come.
+    fn end_waiting(
+        &mut self,
+        received: usize,
+        outcome: impl FnOnce(&mut Pending) -> Result<Answer, Failure>,
+    ) -> usize {
+        waiting(&mut self.last).map_or(0, |waiting| {
+            self.outstanding.expect_late(waiting, received);
             waiting.done = true;
-            self.finished.insert(waiting.ticket, outcome);
+            self.finished.insert(waiting.ticket, outcome(waiting));
             waiting.request.command
         })
     }
@@ -638,18 +611,16 @@ impl Exchange {
             return None;
         }
         Some(match text.decode() {
-            Ok(texts) => self.answer(None, texts, None, now),
+            Ok(texts) => self.answer(1, None, texts, None, now),
             Err((error, data)) => self.fail_reply(ReplyError::Text(error), data, None),
         })
     }
 
     /// End the request that waits with a timeout; its reply may still come.
     fn expire(&mut self, waited: Nanos, waited_for: Option<WaitedFor>) -> Option<Event> {
-        let waiting = waiting(&mut self.last)?;
+        let waiting = self.waiting()?;
         let (requested_at, attempts) = (waiting.requested_at, waiting.attempt_times.len());
-        self.outstanding.expect_late(waiting, 0);
-        let failure = waiting.expire(waited, waited_for);
-        let command = self.end_waiting(Err(failure));
+        let command = self.end_waiting(0, |own| Err(own.expire(waited, waited_for)));
         Some(Event::Expired {
             command,
             requested_at,

@@ -4,9 +4,9 @@ use alloc::string::String;
 use alloc::vec::Vec;
 
 use super::matching::{fields, same};
-use super::{Event, Named, Nanos, Protocol, ReplyError};
+use super::{Event, Nanos, Protocol, ReplyError};
 use crate::decode::Decoded;
-use crate::message::{Variant, VariantId};
+use crate::message::VariantId;
 use crate::number::Value;
 
 /// What a request that has succeeded has got.
@@ -30,19 +30,6 @@ pub enum WaitedFor {
     Hold,
     Line,
     Reply,
-}
-
-impl WaitedFor {
-    /// Return its name in the API.
-    #[must_use]
-    pub fn word(self) -> &'static str {
-        match self {
-            Self::Turn => "turn",
-            Self::Hold => "hold",
-            Self::Line => "line",
-            Self::Reply => "reply",
-        }
-    }
 }
 
 /// A frame, or adjacent noise, that was received while a request waited.
@@ -105,42 +92,20 @@ impl Failure {
     ///
     /// Without accepted values, each status that is 0 reports it; repeated arguments do not count.
     pub(super) fn refusal(protocol: &Protocol, reply: &Decoded) -> Option<Self> {
-        let (command, facts) = protocol.command(reply.variant.command)?;
-        let names = facts.reply.get(reply.variant.variant)?;
-        let value = |named: &Named| {
-            let mut found = fields(names, reply);
-            Some(found.find(|(own, _)| own.name == named.name)?.1)
-        };
-        // The last variant with these fields counts.
-        let has_them = |own: &Vec<Named>| {
-            let has = |named: &Named| own.iter().any(|own| own.name == named.name);
-            own.iter().all(|own| !own.status || value(own).is_some())
-                && fields(names, reply).all(|(named, _)| has(named))
-        };
-        let index = facts.reply.iter().rposition(has_them)?;
-        let own = facts.reply.get(index)?.iter().enumerate();
-        let mut statuses = own.filter(|(_, named)| named.status);
+        let (variant, facts) = (reply.variant, protocol.facts.get(reply.variant.command)?);
+        let own = fields(facts.reply.get(variant.variant)?, reply).enumerate();
+        let mut statuses = own.filter(|(_, (named, _))| named.status);
         let is = |value: &[Value], raw: i64| same(value, &[Value::Integer(raw)]);
         let (field, value) = if facts.accepted.is_empty() {
-            let fields = command.reply.get(index).map_or(&[][..], Variant::fields);
-            let many = |at: usize| fields.get(at).map(|field| field.many);
-            let failed = |(at, named): &(usize, &Named)| {
-                let value = value(named).filter(|_| !named.echo && many(*at) == Some(false));
-                value.is_some_and(|value| is(value, 0))
-            };
+            let (field, _) = statuses.find(|(_, (named, value))| !named.echo && is(value, 0))?;
             // It is reported as the integer, whatever the scale of the field is.
-            (statuses.find(failed)?.0, Value::Integer(0))
+            (field, Value::Integer(0))
         } else {
-            let (last, named) = statuses.next_back()?;
-            let value = value(named)?;
+            let (last, (_, value)) = statuses.last()?;
             if facts.accepted.iter().any(|raw| is(value, *raw)) {
                 return None;
             }
             (last, *value.first()?)
-        };
-        let variant = VariantId {
-            variant: index,
-            ..reply.variant
         };
         Some(Self::Refused {
             variant,

@@ -11,10 +11,11 @@ use super::pending::Pending;
 use super::{Nanos, Part, Protocol, Request, SeenFrame};
 
 /// A reply to a request that may come before `until`.
-#[derive(Clone, Debug)]
-pub(super) struct OutstandingReply {
-    pub(super) request: Arc<Request>,
-    pub(super) until: Nanos,
+#[derive(Clone, Debug, PartialEq)]
+#[allow(missing_docs)] // as above
+pub struct OutstandingReply {
+    pub request: Arc<Request>,
+    pub until: Nanos,
 }
 
 /// The outstanding replies of one transport, oldest first; some may have expired.
@@ -66,27 +67,12 @@ impl OutstandingReplies {
     }
 }
 
-/// The frame of a request that was sent; its reply may still come before `until`, by the clock of
-/// the port.
-#[derive(Clone, Debug, PartialEq, Eq)]
-#[allow(missing_docs)] // as above
-pub struct LateFrame {
-    pub request: Vec<u8>,
-    pub until: Nanos,
-}
-
-impl From<OutstandingReply> for LateFrame {
-    fn from(reply: OutstandingReply) -> Self {
-        let (request, until) = (reply.request.frame.clone(), reply.until);
-        Self { request, until }
-    }
-}
-
 /// Replies that may still come, and what the peer may hold of a request that was cut.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct PersistedState {
-    /// The requests with outstanding replies.
-    pub late: Vec<LateFrame>,
+    /// The outstanding replies, with times by the clock of the port. The next session reads their
+    /// frames by its own table.
+    pub late: Vec<OutstandingReply>,
     /// Every part of a request that the peer may hold.
     pub parts: Vec<Part>,
 }

@@ -103,8 +103,6 @@ pub(super) struct Pending {
     pub(super) candidate: Option<Decoded>,
     /// Collects a reply that is text outside any frame.
     pub(super) text: Option<TextCollector>,
-    /// The acknowledgement that is expected, by its number; 0: it waits for a reply.
-    pub(super) ack: u64,
     pub(super) wait: Nanos,
     pub(super) attempts: u64,
     pub(super) deadline: Nanos,

@@ -36,8 +36,8 @@ pub enum RequestError<E> {
     Address,
     /// The command has a reply, and nobody replies to the address.
     Unanswered,
-    /// The command has rows of a value for each joint, and the device has fewer joints.
-    LacksJoints,
+    /// The command has rows of a value for each joint, and the device has only so many.
+    LacksJoints(usize),
     /// A value is not allowed.
     Values(E),
     /// A text cannot be sent.
@@ -69,8 +69,8 @@ impl Request {
         if replier == Replier::Nobody && facts.requires_reply() {
             return Err(RequestError::Unanswered);
         }
-        if protocol.lacks_joints(address, record) {
-            return Err(RequestError::LacksJoints);
+        if let Some(joints) = protocol.lacks_joints(address, record) {
+            return Err(RequestError::LacksJoints(joints));
         }
         let choice = Choice { variant, address };
         let frame = encode(format, record, Direction::Request, values, choice);
@@ -152,13 +152,13 @@ impl Protocol {
         known.find(|known| Some(known.value) == address)
     }
 
-    /// Return whether the device of an address has too few joints for a command: rows with a value
+    /// Return the joints of an address's device if they are too few for a command: rows with a value
     /// for each joint belong to the devices with all joints.
-    fn lacks_joints(&self, address: Option<u8>, command: &Command) -> bool {
-        let joints = self.addressee(address).map_or(0, |known| known.joints);
+    fn lacks_joints(&self, address: Option<u8>, command: &Command) -> Option<usize> {
+        let joints = self.addressee(address)?.joints;
         let variants = command.request.iter().chain(&command.reply);
         let is_row = |field: &Field| field.many && field.numbers(0).len() == self.joints;
         let mut fields = variants.flat_map(Variant::fields);
-        joints != 0 && joints != self.joints && fields.any(is_row)
+        (joints != 0 && joints != self.joints && fields.any(is_row)).then_some(joints)
     }
 }

@@ -124,7 +124,7 @@ impl Run {
             self.cover(&events);
             self.exchange.outgoing(self.now, true);
         }
-        assert!(!self.exchange.busy(), "a request waits without end");
+        assert!(self.exchange.idle(self.now).is_none(), "a request waits");
         let events = self.exchange.fail(self.now);
         self.cover(&events);
         assert_eq!(self.covered, received, "each byte is in one event");

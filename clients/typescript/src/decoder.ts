@@ -1,0 +1,109 @@
+/** The decoder: frames of a stream, the noise between them, and what each byte of a frame means. */
+import { edition, machine, objectOf, type Machine, type Value } from "./machine.js";
+
+/** Whose frames a stream has: those to the arm, those from it, or both. */
+export type Listening = "request" | "reply" | "both";
+
+/** Why bytes are not a frame. */
+export type Reason = "no-header" | "bad-address" | "bad-length" | "unknown-id" | "bad-check" | "truncated";
+
+/** A frame, or noise. */
+export interface Found {
+  /** Where it starts in the stream. */
+  offset: number;
+  data: Uint8Array;
+  /** Why the bytes are not a frame; `undefined`: they are one. */
+  noise: Reason | undefined;
+}
+
+/** A run of bytes inside a frame. Parts of a word share its bytes: the last one has them. */
+export interface Part {
+  at: number;
+  size: number;
+  name: string;
+  /** The value with its unit or label. */
+  meaning: string;
+  /** The raw value of a number. */
+  raw: number | bigint | undefined;
+}
+
+/** What a frame says. */
+export interface Message {
+  command: string;
+  /** What the command is, in a few words, if the table says it. */
+  title: string;
+  kind: "request" | "reply" | "event";
+  /** Its values, in the units of the edition. */
+  fields: Record<string, Value>;
+  /** Every byte of it, in order. */
+  parts: Part[];
+  /** What else the same bytes can be. */
+  others: { command: string; kind: Message["kind"] }[];
+}
+
+/** Why the table does not allow a frame, and at which of its bytes. */
+export interface Rejection {
+  reason: Reason | "trailing" | "bad-value";
+  offset: number;
+  text: string;
+}
+
+type Kind = Message["kind"];
+type Row = [string, fields: Value[], Kind, title: string, parts: Value[][], others: [string, Kind][]];
+
+export class Decoder {
+  private rest = new Uint8Array();
+  private offset = 0;
+
+  private constructor(
+    private readonly machine: Machine,
+    private readonly edition: number,
+    private readonly listening: Listening,
+  ) {}
+
+  /** Return a decoder at the start of a stream. The module of an edition has its `table`. */
+  static async load(table: string, listening: Listening = "both"): Promise<Decoder> {
+    const session = await machine();
+    return new Decoder(session, edition(session, table)[0], listening);
+  }
+
+  /** Take bytes; return the frames, and the noise, that are certain now. Noise may come in pieces. */
+  feed(data: Uint8Array): Found[] {
+    const all = new Uint8Array(this.rest.length + data.length);
+    all.set(this.rest);
+    all.set(data, this.rest.length);
+    return this.cut(all);
+  }
+
+  /** Take a silence: the bytes that could begin a frame do not. */
+  flush(): Found[] {
+    return this.cut(this.rest, undefined);
+  }
+
+  /** Return what a frame says. */
+  read(frame: Uint8Array): Message | Rejection {
+    const row = this.machine.ask<Row | [Rejection["reason"], number, string]>(
+      ...["decode", this.edition, this.listening, frame, undefined],
+    );
+    if (row.length === 3) return { reason: row[0], offset: row[1], text: row[2] };
+    const [command, fields, kind, title, parts, others] = row;
+    const names = ["at", "size", "name", "meaning", "raw"];
+    return {
+      ...{ command, title, kind, fields: objectOf(fields) },
+      parts: parts.map((part) => objectOf(part.flatMap((each, at) => [names[at], each])) as unknown as Part),
+      others: others.map(([command, kind]) => ({ command, kind })),
+    };
+  }
+
+  private cut(data: Uint8Array, ...silence: undefined[]): Found[] {
+    const chunks = this.machine.ask<[Uint8Array, number, Reason | undefined][][]>(
+      ...["frames", this.edition, this.listening, data, ...silence],
+    );
+    const found = chunks.flat().map(([data, offset, noise]) => ({ offset: this.offset + offset, data, noise }));
+    const last = found.at(-1);
+    const end = last ? last.offset + last.data.length - this.offset : 0;
+    this.rest = data.slice(end);
+    this.offset += end;
+    return found;
+  }
+}
