@@ -3,9 +3,9 @@
 PYTHON ?= python3
 BIN := .venv/bin
 RUST_SOURCES := $(shell find rust/core rust/py rust/simd -name '*.rs' -o -name Cargo.toml) Cargo.toml
-# Made after what Rust tests and examples need, and git does not have.
+# This stamp is newer than the data of the Rust tests and examples, which git does not have.
 RUST_DATA := .venv/.rust-data
-# The module has no Rust tests, and its dependencies need features that theirs do not have.
+# Exclude the Python module: it has no Rust tests, and compiles its dependencies with more features.
 TESTED := --workspace --exclude cobotwire-native
 # The Python tests run in five lanes at once, which should end together. The first only computes. It
 # lets the others go first (nice), because they also have tests that wait for a reply until a
@@ -56,14 +56,14 @@ lint: .venv/.tools .venv/.native ## check formatting, types, stubs against the b
 	$(BIN)/python -m mypy.stubtest cobotwire._native cobotwire.pymycobot.layer.classes --mypy-config-file pyproject.toml
 	cargo fmt --all --check
 	cargo fmt --manifest-path rust/fuzz/Cargo.toml --check
-# Each in the mode in which its dependencies are compiled anyway: for the module, for the tests.
+# In these modes the dependencies are compiled anyway: release for the module, debug for the tests.
 	+cargo clippy --release --package cobotwire-native --lib --quiet -- -D warnings
 	+cargo clippy $(TESTED) --lib --bins --tests --quiet -- -D warnings
 	+if [ -d "$$(rustc --print target-libdir --target $(WASM))" ]; then $(CHECK_WASM) && $(CHECK_WASM) --no-default-features; \
 		else echo "skipped: the check of the core for $(WASM), which is not installed" >&2; fi
 
-# Linters and Rust tests use what the tests in Python leave, which wait a third of the time. First
-# the linters: most of what they find is found in seconds.
+# The Python tests wait a third of the time; the linters and the Rust tests use that processor
+# time. The linters run first, since they find most problems in seconds.
 lint-and-rust: lint
 	+nice -n 5 $(MAKE) --no-print-directory rust-test
 
@@ -123,7 +123,7 @@ four-hours: .venv/.tools .venv/.native front-end ## show four hours of a 50 Hz l
 studio-pictures: .venv/.tools .venv/.native front-end ## take the pictures of docs/studio.md
 	PYTHONPATH=python:tests $(BIN)/python -m studio.pictures docs/plots
 
-gen: .venv/.tools ## write the generated files that git has from spec/, and the schema for editors
+gen: .venv/.tools ## write the committed generated files from spec/, and the schema for editors
 	$(BIN)/cobotwire-gen
 
 products: .venv/.tools ## also write the build products: pages of the site, output targets, data of the Rust tests
@@ -132,7 +132,7 @@ products: .venv/.tools ## also write the build products: pages of the site, outp
 targets: products .venv/.native ## build each output target and run it in its real tool
 	PYTHONPATH=tests $(BIN)/python tests/targets/report.py
 
-spec-mutants: .venv/.tools .venv/.native ## change each fact of the spec, one at a time; report what nothing notices
+spec-mutants: .venv/.tools .venv/.native ## change each fact of the spec, one at a time; report the changes that no check notices
 	PYTHONPATH=tests:tests/peers $(BIN)/python -m spec_mutants
 
 docs: .venv/.tools .venv/.native front-end-if-reachable ## build the docs site into docs/_build; a warning is an error
@@ -234,7 +234,7 @@ release-check: .venv/.tools .venv/.native ## compare API, editions, spec languag
 robots: .venv/.tools .venv/.native ## compare every request of the maker's classes with ours
 	PYTHONPATH=tests:tests/peers $(BIN)/python -W ignore -m robots $(ROBOTS)
 
-layer: .venv/.tools .venv/.native ## compare every call of our classes with the maker's names with its classes
+layer: .venv/.tools .venv/.native ## compare every call of the maker's classes with ours of the same names
 	PYTHONPATH=python:codegen/src:tests:tests/peers $(BIN)/python -W ignore -m layer_main
 
 demos: .venv/.tools .venv/.native ## run the maker's public demos: with the library, with our layer, rewritten
@@ -265,7 +265,7 @@ clean: ## remove the environment and all build products
 	. $(BIN)/activate && maturin develop --release --quiet --extras sim
 	touch $@
 
-# Compile what the recipe above installs: maturin finds it compiled.
+# Compile early what the recipe of .venv/.native installs, so that it need not compile.
 .venv/.compiled: .venv/.base $(RUST_SOURCES)
 	. $(BIN)/activate && maturin build --release --quiet --out target/wheels
 	touch $@

@@ -103,7 +103,7 @@ class Row:
         return f"**{outcome.verdict}**" if kind == "crash" else outcome.verdict
 
     def time(self, limit: float) -> str:
-        """Return the time of all calls; empty if chance decides on it."""
+        """Return the time of all calls; empty if chance decides it."""
         if self.hung:
             return f"ended after {limit:.0f} s"
         if self._by_chance():

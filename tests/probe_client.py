@@ -1,8 +1,8 @@
 """A client in a process of its own, with the methods of a blocking client: in Rust or in Node.
 
-``rust/probe/src/client.rs`` or ``tests/typescript/driver.mjs`` is the other end of the pipe: one JSON
-object a line. Each call has a number; the answer has the same number, and the times at which the
-client began and ended it.
+``rust/probe/src/client.rs`` or ``tests/typescript/driver.mjs`` is the other end of the pipe. Each
+line is a JSON object. Each call has a number; the answer has the same number, and the times at
+which the client began and ended the call.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Fetch the JavaScript that is not ours: the library of the page's curves, and a test's checker.
+"""Fetch the JavaScript of others: the library that draws the page's curves, and a test's checker.
 
     python tools/front_end.py          fetch what is missing
     python tools/front_end.py --check  exit with 1 if something is missing or differs

@@ -1,10 +1,10 @@
-"""Build the npm package, and use it in a clean folder as a stranger would.
+"""Build the npm package, and use it in a clean folder as a user would.
 
     python tools/npm_package.py            # build, pack, install, run programs; print the sizes
     python tools/npm_package.py --build    # only build it, and the module of the decoder page
 
 The program of the docs runs against ``cobotwire sim``, also as TypeScript, and so does a module of
-an own protocol with hostile texts. It prints what failed, and ends with 1 then.
+an own protocol with hostile texts. If something fails, it prints that, and exits with 1.
 """
 
 # ruff: noqa: S603  (node, npm, cargo and our own programs are started)

@@ -13,7 +13,7 @@ from contextlib import suppress
 from pathlib import Path
 
 PERIOD = 0.03
-# Shorter stops are as usual on a busy machine.
+# Shorter stops are usual on a busy machine.
 SHORTEST = 0.02
 # /proc/stat counts hundredths of a second; the eighth number is the time taken by the host.
 TICK, STOLEN = 0.01, 8

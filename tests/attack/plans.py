@@ -90,7 +90,7 @@ def plan(profile: Profile, seed: int, seconds: float | None = None, calls: int =
         profile,
         seed,
         # Only a pty takes half a frame. TCP may lose what is written just before it is closed.
-        # Serial ports in Node need a package of others.
+        # Serial ports in Node need a third-party package.
         tcp=(random.random() < (0.2 if profile.stalls else 0.5) and not profile.signals)
         or client == "node",
         client=client,

@@ -186,7 +186,7 @@ _ALL = (
     ),
 )
 PROFILES = {profile.name: profile for profile in _ALL}
-# For the Rust clients: it is an exception of Python that interrupts a call.
+# The profiles of the Rust clients, in which no exception of Python can interrupt a call.
 RUST_PROFILES = {
     name: replace(profile, clients=("rust async",) if profile.cancels else ("rust", "rust async"))
     for name, profile in PROFILES.items()

@@ -36,7 +36,7 @@ export interface Sample<T> {
 
 /** The fields of a message by the names that they have in a method: one of them, or an object. */
 type Result = string | Record<string, string> | undefined;
-/** A command: its name, its arguments, its result; what of them is in radians, or true or false. */
+/** A command: its name, arguments and result, and which of these are in radians, or true or false. */
 type Row = [command: string, names?: string[], result?: Result, radians?: string[], flags?: string[]];
 interface Description {
   table: string;

@@ -1,7 +1,7 @@
 /** The decoder: frames of a stream, the noise between them, and what each byte of a frame means. */
 import { edition, machine, objectOf, type Machine, type Value } from "./machine.js";
 
-/** Whose frames a stream has: those to the arm, those from it, or both. */
+/** Which frames a stream has: those to the arm, those from it, or both. */
 export type Listening = "request" | "reply" | "both";
 
 /** Why bytes are not a frame. */

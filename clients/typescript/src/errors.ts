@@ -40,7 +40,7 @@ export class LinkError extends CobotwireError {
 export class ReplyTimeout extends CobotwireError {
   /** Seconds since the request was sent; since the call, if its deadline passed. */
   readonly waited: number;
-  /** How often the request was sent; 0: it was not, and never will be. */
+  /** How often the request was sent; 0: it was not sent, and never will be. */
   readonly attempts: number;
   /** What the call waited for when its deadline passed: `turn`, `hold`, `line` or `reply`. */
   readonly waitedFor: string;

@@ -16,7 +16,7 @@ interface Caller {
   failed(error: unknown): void;
 }
 
-/** A line that takes no bytes for so long is stuck. */
+/** A line that takes no bytes for this long is stuck. */
 export const WRITE_SECONDS = 1;
 
 /**
@@ -64,7 +64,7 @@ export class Line {
     );
   }
 
-  /** Ask the session something that is no step. */
+  /** Call a function of the session that is not a step. */
   ask<T = Value>(what: string, ...rest: Value[]): T {
     return this.machine.ask<T>(what, this.id, ...rest);
   }
@@ -159,7 +159,7 @@ export class Line {
     else this.schedule(idle);
   }
 
-  /** Write bytes; the promise is fulfilled when the transport has taken them; none: it has. */
+  /** Write bytes. The promise is fulfilled when the transport has taken them; no promise: it already has. */
   private write(bytes: Uint8Array): Promise<void> | undefined {
     const pending = this.transport.write(bytes);
     if (!pending) return undefined;

@@ -7,7 +7,7 @@ export interface Transport {
   readonly url: string;
   /** Begin to report what comes, and the reason if the stream ends. */
   start(received: (data: Uint8Array) => void, ended: (detail: string) => void): void;
-  /** Write bytes; the promise is fulfilled when the system has taken all; none: it has already. */
+  /** Write bytes. The promise is fulfilled when the system has taken all; no promise: it already has. */
   write(data: Uint8Array): Promise<void> | undefined;
   /** Send what was written, and close the stream. It takes a second at most. */
   close(): Promise<void>;

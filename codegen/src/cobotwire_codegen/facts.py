@@ -27,7 +27,7 @@ ASPECTS = (
     *("id", "length", "scale", "unit", "sign", "order", "range", "limits", "byte-order"),
     *("effect", "agreement", "deadline", "present"),
 )
-# The kinds of sources that confirm a fact, from the farthest of a real arm to the nearest.
+# The kinds of sources that confirm a fact; a later one is nearer to a real arm.
 SOURCES = {
     "library": "the maker's library sends and reads the same bytes (`make robots`, `make layer`)",
     "page": "the maker's document or page states it",

@@ -133,7 +133,7 @@ def second_sources(root: Path, found: Sequence[Edition]) -> dict[str, Sources]:
 
 
 def confirmed_table(root: Path, found: Sequence[Edition]) -> str:
-    """Return the share of each edition's facts that each source confirms, or none, in Markdown."""
+    """Return, in Markdown, the share of each edition's facts by source, and without one."""
     sources = second_sources(root, found)
     rows = [
         "| edition | facts | " + " | ".join(SOURCES) + " | no source |",

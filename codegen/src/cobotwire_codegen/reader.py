@@ -71,7 +71,7 @@ class Reader:
 
 
 def chosen(node: Node, choice: Choice, what: str, problems: list[Problem]) -> str | None:
-    """Return the key that decides the kind of a change; report a problem unless there is one."""
+    """Return the key that decides the kind of a change; report a problem if not exactly one."""
     if not isinstance(node, Mapping):
         Reader(node, choice, what, problems)
         return None

@@ -46,7 +46,7 @@ _LISTED = 20
 def _output(
     output: SourcePath, overwrite: bool, sources: Sequence[SourcePath]
 ) -> Iterator[Callable[[bytes], object]]:
-    """Yield a function that writes to a file; it gets its name if no exception is raised."""
+    """Yield a function that writes to a file; the file gets its name if no exception is raised."""
     path = Path(output)
     for source in sources:
         if path.exists() and os.path.samefile(path, source):

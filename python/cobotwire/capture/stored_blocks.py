@@ -111,7 +111,7 @@ class BlockFile:
             yield StoredBlock(self._start + at, kind, self._order, data[at:end])
 
     def _end(self) -> None:
-        """Tell what is missing, if a block has begun."""
+        """Note what is missing, if a block has begun."""
         place = self._start + self._at
         if place == 0 and not self.incomplete:
             raise damaged(self.name, 0, "not-pcapng")

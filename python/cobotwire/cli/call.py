@@ -74,10 +74,9 @@ def call(
     Standard output is the result. Without one, a line on standard error says whether the arm
     acknowledged the request.
 
-    Before a motion that has arguments, the arm is asked whether it has power, whether it is paused,
-    and what its error register is. If it would not obey, the motion is not sent; --force sends it.
-    After the motion the error register is read again, since the arm does not say that it rejects a
-    motion.
+    Before a motion that has arguments, the arm's power, pause and error register are queried. If
+    it would not obey, the motion is not sent; --force sends it. After the motion the error register
+    is read again, since the arm does not say that it rejects a motion.
     """  # noqa: D301  (click keeps the lines of a paragraph that starts with the character \b)
     if name is None:
         message = (

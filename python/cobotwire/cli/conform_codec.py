@@ -65,7 +65,7 @@ def codec(
             words, only or "", timeout, repeat, expected=known_text, expected_name=name
         )
         given = options.for_report()
-        # A report has no folder of the machine, so a command may have to be given again.
+        # A report does not state the working folder, so a command may have to be given again.
         given.pop("command", None)
         earlier = earlier_report(None, again, given, edition, "codec")
         if earlier is not None:

@@ -23,8 +23,8 @@ def run(errors: str, script: str, arguments: tuple[str, ...]) -> None:
     """Run the program SCRIPT as if cobotwire were the package pymycobot.
 
     The program is not changed, and neither is anything that is installed. ARGUMENTS are passed to
-    it. When it ends, its arms are closed; if an error or Ctrl-C ends it, each arm is sent `stop`
-    once before.
+    it. When it ends, its arms are closed; if an error or Ctrl-C ends it, each arm is first sent
+    `stop` once.
 
     The exit code is that of the program; 1 if an exception ended it.
     """

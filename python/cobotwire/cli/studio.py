@@ -51,15 +51,15 @@ def studio(
     """Show the arm at URL, or a RECORDING, on a page in the browser, until Ctrl-C.
 
     URL is a serial port, or a URL such as socket://host:9000. Without it, a simulated arm is
-    started, which the page may move. follow:RECORDING shows what another program records while it
-    does, such as cobotwire tap. The page shows the arm in 3D, curves, and every frame on the line,
+    started, which the page may move. follow:RECORDING shows live what another program, such as
+    cobotwire tap, records. The page shows the arm in 3D, curves, and every frame on the line,
     byte by byte; sliders and buttons move the arm.
 
     The first line of output is the address of the page. It contains a secret: whoever has it can
     see the page. Only programs on this machine reach the page, unless --host says otherwise.
 
-    A real arm is sent queries. Anything else needs --allow-motion here and the switch "Allow
-    motion" on the page. With --allow-motion the arm is sent stop at the end.
+    Only queries are sent to a real arm. Anything else needs --allow-motion here and the switch
+    "Allow motion" on the page. With --allow-motion the arm is sent stop at the end.
     """
     check_extra()
     # Imported here: the packages of the extra may be absent.

@@ -119,7 +119,7 @@ def survey(
             json.dumps(content, indent=1) if as_json else fold("\n".join(_lines(found, content)))
         )
         if found.other:
-            # It says nothing about the edition.
+            # The file says nothing about this edition, so it is not kept.
             sys.exit(1)
         file.file.write(survey_file(content, recorded, signer))
         file.publish()

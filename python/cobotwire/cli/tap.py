@@ -71,7 +71,7 @@ def tap(
     nothing is added, and every byte passes unchanged. While it records, cobotwire studio and
     monitor can watch: give them follow:FILE as URL.
 
-    With --read-only, only whole requests of the edition that read, or that stop the arm, reach it.
+    With --read-only, only whole requests that are queries, or that stop the arm, reach the arm.
     All other bytes are held back, and printed.
     """
     if sys.platform == "win32":

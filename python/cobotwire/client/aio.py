@@ -236,7 +236,7 @@ class AsyncClient:
         return made
 
     async def _close_for(self, error: BaseException | None) -> None:
-        """Close the transport; do not replace the error that ended the block by one of closing."""
+        """Close the transport; its error does not replace the one that ended the block."""
         try:
             await self.close()
         except BaseException as failed:
@@ -315,7 +315,7 @@ class AsyncClient:
     ) -> Result:
         """Send a request, wait for its reply, and return the reply's result.
 
-        ``longest`` limits the usual time for a reply, in seconds; ``deadline`` that of the call.
+        ``longest`` limits the time for the reply, ``deadline`` that of the call, in seconds.
         """
         encoded = self._encoder.encode_request(request)
         wait, retry = self._settings.timeout, self._settings.retry

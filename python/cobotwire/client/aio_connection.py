@@ -145,7 +145,7 @@ class AsyncConnection:
     async def listen(self, seconds: float, done: Callable[[], bool] | None = None) -> None:
         """Wait while the loop reads what comes without a request, and reports it to listeners.
 
-        Until then, ``done`` ends the wait as soon as it returns True after something has come.
+        The wait ends early if ``done`` returns True after something has come.
 
         Raises:
             LinkError: the transport is gone.

@@ -88,8 +88,8 @@ class AsyncMovingClient(AsyncFollowingClient):
     ) -> None:
         """Wait until the arm is at a target to which it was sent.
 
-        The arm is asked whether it is there. If the edition has no query for that, the arm is there
-        once it is within 0.5 degrees and 5 millimetres of the target.
+        The client queries whether it has arrived. If the edition has no query for that, it has
+        arrived once it is within 0.5 degrees and 5 millimetres of the target.
 
         Args:
             target: angles in degrees, or coordinates in millimetres and degrees.
@@ -176,7 +176,7 @@ class AsyncMovingClient(AsyncFollowingClient):
                 raise
 
     def _end_signs(self) -> AbstractContextManager[events.EndSigns]:
-        """Return a context with what the arm sends that can mean the end of a motion."""
+        """Return a context that collects messages that can mean the end of a motion."""
         return events.end_signs(self.table, self._address, self._connection.listeners.add)
 
     async def _send_motion(self, request: EncodedRequest, in_stages: bool) -> None:

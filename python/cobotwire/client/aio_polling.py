@@ -29,7 +29,7 @@ class AsyncPoller:
         """Store functions that return the connection's steps, and whether the stream is closed."""
         self._opened, self._closed = opened, closed
         self._timed = Timed(self._send)
-        # The request that was sent; None: it was not.
+        # The request that was sent; None: it was not sent.
         self._pending: PendingRequest | None = None
 
     async def readings(self, polls: Sequence[Poll], at: float) -> list[Reading[Any]] | None:

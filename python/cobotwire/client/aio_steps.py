@@ -17,7 +17,7 @@ from cobotwire.transport.interface import Transport
 
 # How often a line that takes no bytes is tried again.
 FULL_SECONDS = 0.002
-# A timer that goes off this early or late is left as it is.
+# A timer that is wrong by less than this is not set again.
 TIMER_SLACK = 0.0005
 
 

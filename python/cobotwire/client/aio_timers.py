@@ -103,7 +103,7 @@ def _clock_of(loop: asyncio.AbstractEventLoop, call: Callable[[], None]) -> Alar
     return None
 
 
-# By the id of their loop, which they keep alive.
+# By the id of the loop, which the timers keep alive.
 _known: WeakValueDictionary[int, LoopTimers] = WeakValueDictionary()
 
 

@@ -260,7 +260,7 @@ class Client:
         return made
 
     def _close_for(self, error: BaseException | None) -> None:
-        """Close the transport; do not replace the error that ended the block by one of closing."""
+        """Close the transport; its error does not replace the one that ended the block."""
         try:
             self.close()
         except BaseException as failed:
@@ -339,7 +339,7 @@ class Client:
     ) -> Result:
         """Send a request, wait for its reply, and return the reply's result.
 
-        ``longest`` limits the usual time for a reply, in seconds; ``deadline`` that of the call.
+        ``longest`` limits the time for the reply, ``deadline`` that of the call, in seconds.
         """
         encoded = self._encoder.encode_request(request)
         wait, retry = self._settings.timeout, self._settings.retry

@@ -117,7 +117,7 @@ class Connection:
     def listen(self, seconds: float, done: Callable[[], bool] | None = None) -> None:
         """Read what comes without a request, and report it to the traffic listeners.
 
-        Until then, ``done`` ends the wait as soon as it returns True after something has come.
+        The wait ends early if ``done`` returns True after something has come.
 
         Raises:
             LinkError: the transport is gone.

@@ -20,7 +20,7 @@ END_SECONDS = 2.0
 
 
 class Silence:
-    """Tells how long until ``seconds`` have passed without a sign of life. It has no clock."""
+    """Computes the time until ``seconds`` have passed without a sign of life. It has no clock."""
 
     def __init__(self, seconds: float) -> None:
         check_seconds("seconds", seconds)

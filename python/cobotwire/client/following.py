@@ -135,7 +135,7 @@ class FollowingClient(Client):
             remove()
 
     def _stop_frames(self) -> set[bytes]:
-        """Return what stops the arm, for each address."""
+        """Return the frames that stop the arm, for each address."""
         stop = self.table.find_role("stop")
         if stop is None:
             return set()

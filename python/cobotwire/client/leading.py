@@ -33,7 +33,7 @@ class Leading:
         self.followers: list[threading.Lock] = []
 
     def take_lead(self) -> bool:
-        """Return whether this thread leads; it does from now on if no other one does."""
+        """Return whether this thread leads; it takes the lead if no other thread has it."""
         me = threading.get_ident()
         if self.leader != me:
             with self._state:

@@ -131,7 +131,7 @@ def check_port(port: str | Transport) -> None:
     """Check that a port is a name, a URL or an open transport.
 
     Raises:
-        UsageError: it is neither of them.
+        UsageError: it is something else.
     """
     if not isinstance(port, str | Transport):
         raise UsageError("port", port, "the name of a serial port, a URL, or a transport")

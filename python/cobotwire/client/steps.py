@@ -160,7 +160,7 @@ class Steps:
     def _write_request(
         self, pending: PendingRequest, data: bytes, now: float, ends_by: float
     ) -> bytes | None:
-        """Write a request that the exchange gave at ``now``; the caller holds the writer's lock.
+        """Write a request returned by the exchange at ``now``; the caller holds the writer's lock.
 
         The write ends in time for its caller, and by ``ends_by`` for the caller of this thread.
 

@@ -93,7 +93,7 @@ def is_path(path: Any) -> TypeGuard[Sequence[Target | Waypoint]]:
 
 
 def source_of(path: Any) -> Source:
-    """Return the source that a function or an iterable is.
+    """Return a function or an iterable as a source.
 
     Raises:
         UsageError: it is neither.

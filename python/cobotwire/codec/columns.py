@@ -301,7 +301,7 @@ class Columns(Sequence[Rows]):
 
         The columns are those of :meth:`Rows.to_arrow`, for all variants together: a value that a
         variant lacks is null. Their names, types and order depend on the message only, so tables of
-        several captures, or without rows, go together. ``leading`` returns the leading columns of
+        several captures, or without rows, can be joined. ``leading`` returns the leading columns of
         the rows of one variant, which take the place of ``offset``.
 
         Raises:

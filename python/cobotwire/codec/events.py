@@ -41,7 +41,7 @@ class DecodedMessage(NamedTuple):
 class Read(Protocol):
     """Decodes a frame that a framer returned.
 
-    None: in every direction that the framer listened to.
+    Without a direction, it tries every direction that the framer listened to.
     """
 
     def __call__(

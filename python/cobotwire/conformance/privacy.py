@@ -15,7 +15,7 @@ from typing import Any
 
 from cobotwire.conformance.report import Exchange, Report
 
-# The characters of a hash that are written.
+# The number of characters of a hash that are written.
 SHOWN = 16
 PART = r"[^\s/\\:;,'\"`<>|(){}\[\]]+"
 PATHS = re.compile(

@@ -11,10 +11,10 @@ from typing import IO
 
 from cobotwire.protocol.errors import LinkError
 
-# How long a program may take to end after it was asked to, in seconds.
+# How long a program may take to end after the first signal, in seconds.
 ENDING = 2.0
 
-# The characters of its last diagnostics that are shown.
+# The number of characters of its last diagnostics that are shown.
 SHOWN = 200
 
 

@@ -39,7 +39,7 @@ PORT = (
 
 
 def problems_in(findings: Summary) -> list[Problem]:
-    """Return a problem for each kind of finding, the one to look into first at the start."""
+    """Return a problem for each kind of finding, the most important first."""
     return [
         Problem(each.kind, f"{findings.kinds[each.kind]} x {each.kind}", each.advice, each.serious)
         for each in CLASSES

@@ -43,7 +43,7 @@ class Call(NamedTuple):
     def run(
         self, arm: Client, url: str, *, force: bool, timeout: float | None
     ) -> Done | CobotwireError:
-        """Send it; first check that the arm obeys it if it is a motion, unless ``force``.
+        """Send it; before a motion, check that the arm obeys, unless ``force``.
 
         Returns:
             The outcome; or an error if nothing was sent, so that no motion has to be stopped.

@@ -130,7 +130,7 @@ class Candidates:
         self.likely = [name for name in self.likely if name in kept]
 
     def evidence(self, found: Evidence, command: Command) -> Evidence:
-        """Add to what a query shows which of the proven editions have it."""
+        """Return what a query shows, with the proven editions that have the query."""
         having = _having(command.id, self.proven)
         if len(having) == len(self.proven):
             return found._replace(shows="every edition in question has this query")

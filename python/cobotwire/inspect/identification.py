@@ -1,10 +1,10 @@
 """Find out which edition an arm speaks, and connect to it with the client of that edition.
 
-First a query that every edition has, and for which every arm has a reply: with the frames of most
+First it sends a query that every edition has and every arm replies to: with the frames of most
 editions, then with other frames (:mod:`cobotwire.inspect.frame_families`), until a reply comes.
-Then the number of joints, by the length of the row of angles. Then queries that only some editions
-have; each legal reply rules out the others. If several editions remain, a limit of a joint decides,
-as the arm reports it.
+Then the length of the row of angles shows the number of joints. Then it sends queries that only
+some editions have; each legal reply rules out the others. If several editions remain, a limit of a
+joint decides, as the arm reports it.
 """
 
 from __future__ import annotations

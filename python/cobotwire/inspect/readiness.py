@@ -42,7 +42,7 @@ def problems(table: Table, states: Mapping[Role, Any], url: str) -> list[Problem
 
 
 def check_ready(arm: Client, name: str, url: str) -> None:
-    """Ask the arm whether it obeys the motion of that name; ``url`` is its port, for the advice.
+    """Query whether the arm obeys the motion of that name; ``url`` is its port, for the advice.
 
     If only some queries get no reply, as from firmware that lacks one, their states are not known.
 
@@ -64,7 +64,7 @@ def check_ready(arm: Client, name: str, url: str) -> None:
 
 
 def check_accepted(arm: Client, name: str, url: str) -> None:
-    """Ask the arm for its error register after a motion was sent; no reply is not an error.
+    """Query the error register after a motion was sent; no reply is not an error.
 
     Raises:
         ArmNotReady: the register holds an error.

@@ -138,7 +138,7 @@ def target_of(table: Table) -> tuple[Key, tuple[Number, ...]] | None:
 
 
 def _of_targets(table: Table) -> Iterator[Relation]:
-    """Yield that an arm at rest is where it was sent."""
+    """Yield the relation that an arm at rest is where it was sent."""
     target, query = target_of(table), table.find_role("joints")
     if target is not None and query is not None and query.reply:
         angles = query.name, f"reply.{query.reply[0].fields[0].name}"

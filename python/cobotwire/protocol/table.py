@@ -308,7 +308,7 @@ class Table(NamedTuple):
         return next((command for command in self.commands if command.role == role), None)
 
     def find_setter(self, role: Role, raw: int) -> Command | None:
-        """Return the first command that sets what the query of a role reports to a raw value."""
+        """Return the first command that makes the query of a role report a raw value."""
         query = self.find_role(role)
         for command in self.commands:
             back = command.read_by

@@ -51,7 +51,7 @@ class TypeRecords:
         encoding = wire.get("encoding", "integer")
         low, high = (signed_at + 1 - top if signed_at < top - 1 else 0), signed_at
         if encoding == "float":
-            # Left out: all finite floats.
+            # A bound that is left out allows all finite floats.
             high = raw_of_float(inf, wire["width"]) - 1
             low = -1 - high
         kind = type["kind"]

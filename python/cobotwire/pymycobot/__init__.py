@@ -5,8 +5,8 @@
 
 A class has the methods of the library's class, with their names and parameters. Each method calls
 our client of the robot: an argument that is not allowed raises UsageError before a byte is sent,
-and an order is sent once. A call that fails raises our error. With ``errors="return"`` it returns
--1, as in the library. :doc:`/pymycobot` lists what differs.
+and a one-way request is sent once. A call that fails raises our error. With ``errors="return"`` it
+returns -1, as in the library. :doc:`/pymycobot` lists what differs.
 """
 
 from __future__ import annotations

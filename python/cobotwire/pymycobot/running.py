@@ -75,8 +75,8 @@ def run_program(
 ) -> int:
     """Run a program of the maker's library on our clients.
 
-    Its arms are closed when it ends. If an exception or Ctrl-C ends it, each arm is sent ``stop``
-    once before.
+    Its arms are closed when it ends. If an exception or Ctrl-C ends it, each arm is first sent
+    ``stop`` once.
 
     Args:
         path: the program's file.

@@ -34,9 +34,9 @@ class ExpectedAck:
         sent_at: the second at which it was sent.
         until: the second after which it no longer counts.
         offset: where in the received stream it can begin at the earliest.
-        doubts: until when the acknowledgement of each other request may come, and look like this
-            one; soonest first.
-        certain: whether it has come in every assignment of the other acknowledgements.
+        doubts: until when acknowledgements of other requests may come that look like this one;
+            soonest first.
+        certain: whether it has come, whichever requests the other acknowledgements belong to.
     """
 
     __slots__ = ("certain", "doubts", "offset", "request", "sent_at", "until")
@@ -58,7 +58,7 @@ class ExpectedAck:
         self.until = min(self.until, self.sent_at + seconds)
 
     def count(self, frame: Frame, began_at: float) -> None:
-        """Count an acknowledgement of the command; it is first counted for other requests."""
+        """Count an acknowledgement of the command; the first ones count for other requests."""
         self.doubts = [until for until in self.doubts if until > began_at]
         if self.doubts:
             if self.request.replier != ANYBODY:
@@ -277,7 +277,7 @@ class Acks:
         self.drop_done()
 
     def _end(self, pending: PendingAck, message: DecodedMessage) -> None:
-        """End a wait with its acknowledgement, which may say that the arm did not do it."""
+        """End a wait with its acknowledgement, which may say that the arm did not obey."""
         refusal = message.command.refusal(message.fields)
         if refusal is not None:
             call = as_call(pending.request, self._codec)

@@ -202,7 +202,7 @@ class Exchange:
         return self.end_overdue(now)
 
     def end_overdue(self, now: float) -> list[SessionEvent]:
-        """End the requests of callers that wait no longer; return what happened to a sent one."""
+        """End the requests of callers that wait no longer; return the events of a sent one."""
         if self._acks.waiting:
             self._acks.wake(now, self._echo.proven)
         for pending in self._queue:
@@ -253,7 +253,7 @@ class Exchange:
 
     @property
     def sent_last(self) -> PendingRequest | None:
-        """The request that :meth:`outgoing` gave last; it may be done by now."""
+        """The request that :meth:`outgoing` returned last; it may be done by now."""
         return self._last
 
     def written(self, pending: PendingRequest, now: float) -> None:
@@ -264,7 +264,7 @@ class Exchange:
             pending.written(now)
 
     def idle_seconds(self, now: float) -> float | None:
-        """Return for how long nothing is to be done unless bytes come; None: without end."""
+        """Return for how long nothing is to be done unless bytes come; None: for ever."""
         soonest = self._acks.next_end if self._acks.waiting else inf
         waiting = self._waiting()
         if waiting is not None:

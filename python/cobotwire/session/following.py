@@ -234,7 +234,7 @@ class Follow:
         begun, tick = self._now, 0
         self._heard = begun
         while True:
-            self._hear(plan)
+            self._take_targets(plan)
             if plan.done and (self._source is None or self._source.over):
                 return
             self._now, _ = yield Pause(begun + (tick + 1) * self._period)
@@ -261,7 +261,7 @@ class Follow:
                 if left > reply_seconds:
                     yield from self._compare(left)
 
-    def _hear(self, plan: Path | Live) -> None:
+    def _take_targets(self, plan: Path | Live) -> None:
         """Take the newest target of a live source."""
         if self._source is None or self._source.over or isinstance(plan, Path):
             return

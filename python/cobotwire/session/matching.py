@@ -1,4 +1,4 @@
-"""What a received frame can be, by pure functions. The protocol has no sequence numbers to tell."""
+"""What a received frame can be, by pure functions; the protocol has no sequence numbers."""
 
 from __future__ import annotations
 

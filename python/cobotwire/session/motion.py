@@ -31,7 +31,7 @@ FIRST_SECONDS = 0.05
 LOOK_SECONDS, CONFIRM_SECONDS = 0.5, 1.0
 # Near the end the position is read again after this time.
 AGAIN_SECONDS = 0.15
-# How long the event of the end is awaited before the arm is asked.
+# How long the event of the end is awaited before the arm is queried.
 EVENT_SECONDS = 0.15
 # An arm that nears its target by fewer tolerances a second may stand still and tremble.
 SLOWEST = 2.0
@@ -166,7 +166,7 @@ def ack_seconds(request: EncodedRequest) -> float | None:
 def until_reached(table: Table, goal: Goal, limit: float, started: float) -> Steps:
     """Yield the steps of waiting until the arm is at a target.
 
-    Two readings of where the arm is tell when it will be there. The position is queried rarely
+    Two readings of the position show when the arm will arrive. The position is queried rarely
     until shortly before the arrival; then the arm is often queried whether it is there. What the
     device itself sends about the end of a motion looks the same for an earlier motion, so a query
     confirms it.
@@ -251,7 +251,7 @@ class _Wait:
             speed = (self._goal.distance(before[1]) - left) / max(self._now - before[0], 1e-6)
             if speed >= SLOWEST:
                 self._still_since = None
-                # A bound: it may brake, but it is at full speed.
+                # The earliest time: the arm is at full speed, but may have to brake.
                 self._due += left / speed + (0.0 if self._ended is None else EVENT_SECONDS)
                 self._look_at = max(self._due, self._look_at)
                 return

@@ -92,4 +92,4 @@ class Source:
         raise NotImplementedError
 
     def close(self) -> None:
-        """Take no more."""
+        """Take no more targets."""

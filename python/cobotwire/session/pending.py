@@ -68,8 +68,8 @@ class RetryPolicy(_RetryFields):
     def attempts_of(self, command: Command, wait: float) -> int:
         """Return into how many attempts the ``wait`` of a request is split.
 
-        A command that is not a query gets one. So does a text reply: two that follow each other
-        look like one longer text.
+        A command that is not a query gets one. So does a query with a text reply: two texts in a
+        row look like a longer one.
         """
         if command.safety != "query" or command.text is not None:
             return 1

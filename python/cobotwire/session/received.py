@@ -39,7 +39,7 @@ _Item = FrameEvent | _NoiseSpan
 class ReceivedMeanwhile:
     """The last frames and spans of noise, for the text of a ReplyTimeout.
 
-    Noise is diagnosed only when the text is made: a request that gets its reply does not pay.
+    Noise is diagnosed only when the text is made, so it costs nothing if the reply comes.
     """
 
     __slots__ = ("_items",)

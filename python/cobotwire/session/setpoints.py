@@ -52,7 +52,7 @@ class OnLines:
         self._geometry, self._places, self._limits = geometry, places, limits
 
     def coords_at(self, angles: Point) -> Point:
-        """Return the coordinates of the flange, as far as targets have them."""
+        """Return those coordinates of the flange that targets have."""
         coords = coords_of(self._geometry, angles)
         return tuple(coords[place] for place in self._places)
 

@@ -17,7 +17,7 @@ from cobotwire.simulator.arm_connection import ArmConnection, Done, EventListene
 from cobotwire.simulator.behaviour import Behaviour, own
 from cobotwire.simulator.behaviour.external import installed
 from cobotwire.simulator.devices import new_state
-from cobotwire.simulator.effects import EVERY_JOINT, Asked, perform
+from cobotwire.simulator.effects import EVERY_JOINT, Requested, perform
 from cobotwire.simulator.events import Events
 from cobotwire.simulator.motion.hand import checked
 from cobotwire.simulator.state import ArmState
@@ -106,7 +106,7 @@ class SimulatedArm:
 
     @property
     def state(self) -> ArmState:
-        """The state of the arm; of several devices that have addresses, of the first."""
+        """The state of the arm; if devices have addresses, that of the first one."""
         return next(iter(self._states.values()))
 
     @state.setter
@@ -115,7 +115,7 @@ class SimulatedArm:
 
     @property
     def states(self) -> Mapping[int | None, ArmState]:
-        """The state of each device by its address; of None where frames have no address."""
+        """The state of each device by its address; the key is None where frames have no address."""
         return self._states
 
     def state_at(self, address: int | str) -> ArmState:
@@ -238,7 +238,7 @@ class SimulatedArm:
             if behaviour is not None:
                 request = behaviour.request_type.from_fields(fields)
                 return behaviour.behave(state, now, request)
-            return perform(Asked(self.table, state, now, command, fields), elsewhere=elsewhere)
+            return perform(Requested(self.table, state, now, command, fields), elsewhere=elsewhere)
         finally:
             self.events.watch(command, address)
             for event, at in state.emitted:

@@ -49,7 +49,7 @@ REGISTERS = "registers"
 Fields = Mapping[str, Any]
 
 
-class Asked(NamedTuple):
+class Requested(NamedTuple):
     """A request, and the arm that performs it.
 
     Attributes:
@@ -71,7 +71,7 @@ class Asked(NamedTuple):
         return named_fields(self.command.reply)[name][0]
 
 
-def perform(asked: Asked, *, elsewhere: bool = False) -> dict[str, Any]:
+def perform(requested: Requested, *, elsewhere: bool = False) -> dict[str, Any]:
     """Perform a command; return the fields that its reply has.
 
     With ``elsewhere`` the request is for a joint that the arm lacks: its values are stored and have
@@ -80,32 +80,32 @@ def perform(asked: Asked, *, elsewhere: bool = False) -> dict[str, Any]:
     Raises:
         Unanswerable: the arm does not know what the reply reports.
     """
-    effect = effect_of(asked.command)
+    effect = effect_of(requested.command)
     if isinstance(effect, Cases):
-        effect = effect.cases.get(asked.fields[effect.selector])
+        effect = effect.cases.get(requested.fields[effect.selector])
     if effect is None:
         return {}
     if elsewhere:
-        return _keep_or_recall(asked, effect)
+        return _keep_or_recall(requested, effect)
     does = _PERFORMED.get(type(effect))
-    return (does(asked, effect) if does is not None else None) or {}
+    return (does(requested, effect) if does is not None else None) or {}
 
 
-def _keep_or_recall(asked: Asked, effect: Effect) -> dict[str, Any]:
+def _keep_or_recall(requested: Requested, effect: Effect) -> dict[str, Any]:
     """Store or report a value for a joint that the arm lacks; it is zero at first."""
-    kept = asked.arm.elsewhere
+    kept = requested.arm.elsewhere
     at = getattr(effect, "at", ())
-    index = _index(asked, at)
+    index = _index(requested, at)
     if isinstance(effect, Reports):
         values = {f: kept.get(state, {}).get(index) for f, state in effect.values.items()}
         return {field: value for field, value in values.items() if value is not None}
     given: dict[str, Any] = {}
     if isinstance(effect, Stores):
-        given = {state: asked.fields[name] for name, state in effect.values.items()}
+        given = {state: requested.fields[name] for name, state in effect.values.items()}
     elif isinstance(effect, Sets):
         given = dict(effect.values)
     elif isinstance(effect, Moves) and isinstance(effect.to, str):
-        given = {"angles": asked.fields[effect.to]}
+        given = {"angles": requested.fields[effect.to]}
     for state, value in given.items():
         kept.setdefault(state, {})[index] = value
     return {}
@@ -126,50 +126,59 @@ def begin(table: Table, arm: ArmState) -> None:
         }
 
 
-def _reports(asked: Asked, effect: Reports) -> dict[str, Any]:
-    found = {field: _read(asked, field, state, effect.at) for field, state in effect.values.items()}
+def _reports(requested: Requested, effect: Reports) -> dict[str, Any]:
+    found = {
+        field: _read(requested, field, state, effect.at) for field, state in effect.values.items()
+    }
     return {field: value for field, value in found.items() if value is not None}
 
 
-def _read(asked: Asked, name: str, state: str, at: Sequence[str]) -> Any:
+def _read(requested: Requested, name: str, state: str, at: Sequence[str]) -> Any:
     """Return the value of a state as a field of the reply has it."""
-    field = None if asked.command.text is not None else asked.replied(name)
+    field = None if requested.command.text is not None else requested.replied(name)
     if state in READERS:
-        index = asked.fields[at[0]] if at else None
+        index = requested.fields[at[0]] if at else None
         assert field is not None, "a built-in state is no text"
-        arm, now, command, fields = asked.arm, asked.now, asked.command, asked.fields
+        arm, now, command, fields = (
+            requested.arm,
+            requested.now,
+            requested.command,
+            requested.fields,
+        )
         return READERS[state](Reported(arm, now, command, field, index, fields))
-    declared = states_of(asked.table)[state]
+    declared = states_of(requested.table)[state]
     if not declared.each:
-        return asked.arm.kept[state]
-    index = _index(asked, at)
+        return requested.arm.kept[state]
+    index = _index(requested, at)
     if len(index) == len(declared.each):
-        return _kept(asked.arm, declared, index)
+        return _kept(requested.arm, declared, index)
     assert field is not None, "a text has no index"
-    count = len(field.cases[0].numbers) if field.many else asked.arm.joints
-    row = tuple(_kept(asked.arm, declared, (*index, n)) for n in range(1, count + 1))
+    count = len(field.cases[0].numbers) if field.many else requested.arm.joints
+    row = tuple(_kept(requested.arm, declared, (*index, n)) for n in range(1, count + 1))
     return row if field.many else all(row)
 
 
-def _index(asked: Asked, at: Sequence[str]) -> tuple[int, ...]:
-    return tuple(asked.fields[name] for name in at)
+def _index(requested: Requested, at: Sequence[str]) -> tuple[int, ...]:
+    return tuple(requested.fields[name] for name in at)
 
 
-def _stores(asked: Asked, effect: Stores) -> None:
+def _stores(requested: Requested, effect: Stores) -> None:
     given = {
-        state: asked.fields[name] for name, state in effect.values.items() if name in asked.fields
+        state: requested.fields[name]
+        for name, state in effect.values.items()
+        if name in requested.fields
     }
-    _write(asked, given, effect.at)
+    _write(requested, given, effect.at)
 
 
-def _sets(asked: Asked, effect: Sets) -> None:
-    _write(asked, effect.values, effect.at)
+def _sets(requested: Requested, effect: Sets) -> None:
+    _write(requested, effect.values, effect.at)
 
 
-def _write(asked: Asked, given: Mapping[str, Any], at: Sequence[str]) -> None:
-    arm, index = asked.arm, _index(asked, at)
+def _write(requested: Requested, given: Mapping[str, Any], at: Sequence[str]) -> None:
+    arm, index = requested.arm, _index(requested, at)
     built_in = {state: value for state, value in given.items() if state in WRITERS}
-    declared = states_of(asked.table)
+    declared = states_of(requested.table)
     for state, value in given.items():
         if state in built_in:
             continue
@@ -178,8 +187,8 @@ def _write(asked: Asked, given: Mapping[str, Any], at: Sequence[str]) -> None:
         led = arm.released
         # Without power no joint can be held, so power is switched first.
         for state in sorted(built_in, key="powered".__ne__):
-            WRITERS[state](arm, asked.now, built_in[state], index[0] if index else None)
-        after_writing(arm, asked.now, built_in, led=led)
+            WRITERS[state](arm, requested.now, built_in[state], index[0] if index else None)
+        after_writing(arm, requested.now, built_in, led=led)
 
 
 def _keep(arm: ArmState, state: State, index: tuple[int, ...], value: Any) -> None:
@@ -206,13 +215,13 @@ def _kept(arm: ArmState, state: State, index: tuple[int, ...]) -> Any:
     return values.get(index, values.get(index[:-1], state.initial))
 
 
-def _moves(asked: Asked, effect: Moves) -> None:
-    move(asked.arm, asked.now, asked.command, effect, asked.fields)
+def _moves(requested: Requested, effect: Moves) -> None:
+    move(requested.arm, requested.now, requested.command, effect, requested.fields)
 
 
-def _zeroes(asked: Asked, effect: Zeroes) -> None:
-    arm, now = asked.arm, asked.now
-    joint = asked.fields[effect.at[0]] if effect.at else None
+def _zeroes(requested: Requested, effect: Zeroes) -> None:
+    arm, now = requested.arm, requested.now
+    joint = requested.fields[effect.at[0]] if effect.at else None
     if effect.part == "gripper" or joint == arm.joints + 1:
         arm.gripper.place((0.0,), now)
         return
@@ -223,8 +232,8 @@ def _zeroes(asked: Asked, effect: Zeroes) -> None:
     arm.angles.place(position, now)
 
 
-def _does(asked: Asked, effect: Does) -> None:
-    arm, now = asked.arm, asked.now
+def _does(requested: Requested, effect: Does) -> None:
+    arm, now = requested.arm, requested.now
     if effect.what == "pause":
         arm.paused = True
         arm.angles.pause(now)
@@ -240,18 +249,18 @@ def _does(asked: Asked, effect: Does) -> None:
             arm.resume(now)
 
 
-def _lists(asked: Asked, effect: Lists) -> dict[str, Any] | None:
-    values: list[Any] = asked.arm.kept[effect.state]
+def _lists(requested: Requested, effect: Lists) -> dict[str, Any] | None:
+    values: list[Any] = requested.arm.kept[effect.state]
     if effect.append:
         if len(values) < MOST_VALUES:
-            given = asked.fields[effect.append]
+            given = requested.fields[effect.append]
             values.append(tuple(given) if isinstance(given, list) else given)
         return None
     if effect.clear:
         values.clear()
-    if not asked.command.requires_reply:
+    if not requested.command.requires_reply:
         return None
-    field = asked.command.reply[0].fields[-1]
+    field = requested.command.reply[0].fields[-1]
     if effect.take:
         zeros = (0,) * len(field.cases[0].numbers) if field.many else 0
         return {field.name: values.pop(0) if values else zeros}
@@ -261,9 +270,9 @@ def _lists(asked: Asked, effect: Lists) -> dict[str, Any] | None:
     return {field.name: len(values)}
 
 
-def _computes(asked: Asked, effect: Computes) -> dict[str, Any]:
-    arm, given = asked.arm, tuple(asked.fields[effect.source])
-    name = asked.command.reply[0].fields[-1].name
+def _computes(requested: Requested, effect: Computes) -> dict[str, Any]:
+    arm, given = requested.arm, tuple(requested.fields[effect.source])
+    name = requested.command.reply[0].fields[-1].name
     if effect.what == "coords":
         # Joints rest on ticks, so for angles from get_angles the reply is the same as from
         # get_coords.
@@ -273,7 +282,7 @@ def _computes(asked: Asked, effect: Computes) -> dict[str, Any]:
         return {name: coords}
     if arm.geometry is None:
         raise Unanswerable
-    near = tuple(asked.fields[effect.near]) if effect.near else arm.standing(asked.now)
+    near = tuple(requested.fields[effect.near]) if effect.near else arm.standing(requested.now)
     if is_there(arm, given, near):
         return {name: near}
     # No source defines the reply without a solution: the angles near it, and an error.
@@ -281,12 +290,12 @@ def _computes(asked: Asked, effect: Computes) -> dict[str, Any]:
     return {name: near if found is None else found}
 
 
-def _unknown(asked: Asked, effect: Unknown) -> None:
-    if asked.command.safety != "query":
-        asked.arm.remarks.append(f"ignored: {effect.why[0].lower()}{effect.why[1:]}")
+def _unknown(requested: Requested, effect: Unknown) -> None:
+    if requested.command.safety != "query":
+        requested.arm.remarks.append(f"ignored: {effect.why[0].lower()}{effect.why[1:]}")
 
 
-_PERFORMED: dict[type, Callable[[Asked, Any], dict[str, Any] | None]] = {
+_PERFORMED: dict[type, Callable[[Requested, Any], dict[str, Any] | None]] = {
     Reports: _reports,
     Stores: _stores,
     Sets: _sets,

@@ -86,7 +86,7 @@ class Server:
         self._stopper.close()
 
     def _ready(self, descriptor: int, events: int) -> None:
-        """Handle a registered descriptor that is ready: a client's."""
+        """Handle the descriptor of a client that is ready."""
         client = self._clients.get(descriptor)
         # It may have been dropped since select() returned.
         if client is not None and events & READ and not client.receive():

@@ -164,7 +164,7 @@ class ArmState:
 
     @property
     def near(self) -> tuple[float, float]:
-        """How near to a target counts as there, in degrees and in millimetres."""
+        """The distances at which a target counts as reached, in degrees and in millimetres."""
         motion = self.motion
         return motion.near_degrees or NEAR_DEGREES, motion.near_millimetres or NEAR_MILLIMETRES
 

@@ -77,7 +77,7 @@ def go_to_angles(
             wish = min(max(arm.on_tick(wish), low), high)
         goal.append(wish)
     arm.angles.go(goal, rate(arm, speed), now, queue=arm.queues if queue is None else queue)
-    # Also if it is there already: then the motion takes no time.
+    # A motion also starts if the arm is there already; it then takes no time.
     arm.at_once = True
     _note_a_pause(arm)
     return True

@@ -117,7 +117,7 @@ class ArmLine:
         Args:
             command: what to send.
             arguments: its arguments by name.
-            force: whether a motion is sent without asking whether the arm obeys.
+            force: whether a motion is sent without a check that the arm obeys.
             permit: raises an error if the command may no longer be sent; called just before.
             stops: the value of ``stops`` when the page requested the command.
 

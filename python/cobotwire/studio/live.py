@@ -17,7 +17,7 @@ from cobotwire.studio.history import History
 from cobotwire.studio.viewers import Viewer
 
 PUMP_SECONDS = 0.04
-# What a page that opens gets of the past.
+# The past entries that a new page gets.
 FIRST_ENTRIES, FIRST_SAMPLES = 1000, 6000
 REMARKS = 1000
 

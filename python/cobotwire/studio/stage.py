@@ -165,7 +165,7 @@ class Stage:
         command = self.preparer.command(name)
         self.control.check(page, command)
         arguments = self.preparer.arguments(command, given)
-        # A wrong value is reported before the arm is asked whether it obeys.
+        # A wrong value is reported before the check that the arm obeys.
         self.preparer.encoded(command, arguments)
         permit = partial(self.control.check, page, command)
         result = await asyncio.get_running_loop().run_in_executor(

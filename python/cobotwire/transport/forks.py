@@ -13,7 +13,7 @@ from weakref import WeakSet
 
 
 class Inherited(Protocol):
-    """What a forked child has a copy of."""
+    """An object of which a forked child has a copy."""
 
     def leave_to_parent(self) -> None:
         """Let go of everything that is shared with the parent; called in the child, once."""

@@ -67,7 +67,8 @@ class OpenedTransport(PollableTransport, Protocol):
     def kind(self) -> str:
         """``serial`` for a port, ``socket`` for TCP, else the URL's scheme (``rfc2217``, ``loop``).
 
-        It serves messages, and checks of what only one kind has, such as a latency timer.
+        It is for messages, and for checks of a feature that only one kind has, such as a latency
+        timer.
         """
         ...
 

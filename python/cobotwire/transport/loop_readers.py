@@ -76,7 +76,7 @@ class LoopReaders:
                 context.run(call)
 
 
-# By the id of their loop, which they keep alive.
+# By the id of the loop, which the readers keep alive.
 _known: WeakValueDictionary[int, LoopReaders] = WeakValueDictionary()
 
 

@@ -32,7 +32,7 @@ class Tapped:
 
     @property
     def clock(self) -> object:
-        """The clock of the inner transport; None: it goes by the system's."""
+        """The clock of the inner transport; None: it uses the system's."""
         return getattr(self._inner, "clock", None)
 
     def write(self, data: bytes) -> None:

@@ -57,7 +57,7 @@ def recording(path: Path, packets: Iterable[Packet], *editions: str, finish: boo
 
 
 def polled(rounds: int, step_ns: int = 20_000_000) -> list[Packet]:
-    """Return the packets of an arm that is asked for its angles again and again."""
+    """Return the packets of an arm that is polled for its angles."""
     made = []
     for number in range(rounds):
         time = START + number * step_ns

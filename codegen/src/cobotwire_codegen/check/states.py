@@ -178,7 +178,7 @@ def _unlike_built_in(field: Field | None, name: str, effect: Effect, joints: int
 
 
 def _unlike(field: Field | None, state: State, at: Sequence[str], name: str) -> Iterator[str]:
-    """Yield why a field and a state have not the same kind of value."""
+    """Yield why a field and a state do not have the same kind of value."""
     if (field is None) != (state.type is None):
         text, other = (name, state.name) if field is None else (state.name, name)
         yield f"{text} is a text, but {other} is not"

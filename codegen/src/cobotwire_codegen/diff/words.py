@@ -125,7 +125,7 @@ def member(found: Member | Address) -> str:
 
 
 def truth(found: Member) -> str:
-    """Return what a member is in a condition."""
+    """Return whether a member is true in a condition."""
     return "true" if found.value and not found.falsy else "false"
 
 

@@ -1,4 +1,4 @@
-"""The robot behind an edition: what a simulated one needs to know, apart from its messages."""
+"""The robot of an edition: what a simulated one needs to know, apart from its messages."""
 
 from __future__ import annotations
 

@@ -194,8 +194,8 @@ def with_used_types(edition: Edition) -> Edition:
 def environment(templates: Path | None = None) -> Environment:
     """Return the environment of all templates; those in ``templates`` replace the shipped ones.
 
-    Jinja's sandbox stops the usual ways out of a foreign template. It is not a proof: what the
-    generator gives to templates was not written for it.
+    Jinja's sandbox stops the usual attacks by a foreign template. It guarantees nothing: the
+    objects that templates get were not written for it.
     """
     if templates is None:
         return _shipped()

@@ -12,7 +12,7 @@ from cobotwire_codegen.render import Files, environment, python_api
 from cobotwire_codegen.render.escape_markdown import escaped
 from cobotwire_codegen.render.words import allowed, decimal, lines, units
 
-# How a source is named that reports what an arm did.
+# The names of sources that report what an arm did.
 _REAL_ARM = re.compile(r"\breal arms?\b|\bfield reports?\b|\bcapture\b")
 _ABOUT_THE_SPEC = re.compile(r"(?:^| )[^.]*stated as the difference[^.]*\.")
 

@@ -31,9 +31,9 @@ from cobotwire_codegen.render.arguments import arguments
 from cobotwire_codegen.render.escape_markdown import escaped
 from cobotwire_codegen.render.parameters import Parameter, parameters, reply_parameters, results
 
-# What types use without an import, and what the module imports.
+# The types that annotations use without an import, and the names that the module imports.
 _TYPES = frozenset({"Client", "EventStream", "Promise", "Uint8Array", "describe", "table"})
-# What every client has, or a promise.
+# The methods and attributes of every client, and those that would make it a promise.
 _METHODS = frozenset(
     {"acknowledged", "at", "call", "close", "constructor", "events", "stream", "then", "withSignal"}
     | {"description", "line", "perform", "settings", "with"}
@@ -46,7 +46,7 @@ _WORDS = """
     void while with yield
 """
 _KEYWORDS = frozenset(_WORDS.split())
-# What a client does not read, because it is for people or simulators; a page would load it.
+# Keys that are for people or simulators, and that a client does not read; a page would load them.
 _WORDS_OF_OTHERS = """
     agrees_with changes disputed doc document encoders error_codes families firmware gripper
     joint_limits lines motion notes place samples servos title

@@ -85,7 +85,7 @@ class ArmServer:
                 with suppress(CobotwireError):
                     await self._arm._stop_all()
 
-    def _heard(self, moves: bool) -> None:
+    def _note_message(self, moves: bool) -> None:
         """Note a message of the client. The dead man's switch is active from a motion to a stop."""
         if self._dead_man is None:
             return
@@ -96,11 +96,11 @@ class ArmServer:
             self._dead_man.alive()
 
     async def _ping(self, context: Context, params: object) -> types.EmptyResult:
-        self._heard(False)
+        self._note_message(False)
         return types.EmptyResult()
 
     async def _list(self, context: Context, params: object) -> types.ListToolsResult:
-        self._heard(False)
+        self._note_message(False)
         shown = [
             types.Tool(
                 name=spec.name,
@@ -150,7 +150,7 @@ class ArmServer:
                 self._dead_man.rest()
             return spec.result(None)
         positional, named = spec.arguments(given)
-        self._heard(spec.command.starts_motion)
+        self._note_message(spec.command.starts_motion)
         return spec.result(await getattr(self._arm, name)(*positional, **named))
 
     def _unknown(self, name: str) -> str:

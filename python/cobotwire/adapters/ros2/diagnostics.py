@@ -74,7 +74,7 @@ class Diagnostics:
         return "; ".join(problem.text for problem in problems(table, states, self._url))
 
     async def report(self, rate: float) -> None:
-        """Publish all statuses; each time the arm is asked for one more value of its servos."""
+        """Publish all statuses; each time, query one more value of the servos."""
         found = await self.problems()
         if self._servos:
             query = self._servos.pop(0)

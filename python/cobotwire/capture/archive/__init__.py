@@ -102,7 +102,7 @@ def export(
 
     The output is a folder or an fsspec URL, and all workers must be able to write there. The files
     are parts: ``get_angles.reply-00012.parquet``, numbered in the order of the inputs. They get
-    their names when all are complete; an exception leaves none. ``progress`` gets the number of
+    their names when all are complete; an exception leaves no files. ``progress`` gets the number of
     stored bytes of each piece that is complete.
 
     Raises:

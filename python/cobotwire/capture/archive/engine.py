@@ -12,7 +12,7 @@ Result = TypeVar("Result")
 
 
 class Engine(Protocol):
-    """Runs tasks. A task may run more than once, and on any machine: it must not matter."""
+    """Runs tasks. A task may run again, and on any machine: its result must be the same."""
 
     def run(
         self, function: Callable[[Task], Result], tasks: Sequence[Task]

@@ -26,7 +26,7 @@ ECHO_COLUMNS = 3
 def print_line(line: str) -> None:
     """Print a line at once; do nothing if the reader of the output has closed it.
 
-    Not while a live table is shown: the line would be written into the table.
+    Do not call this while a live table is shown: the line would be written into it.
     """
     try:
         click.echo(line)

@@ -59,7 +59,7 @@ class Lacking:
         self._why = table.robot.why_no_geometry
 
     def note(self, note: Note) -> None:
-        """Keep a note of the arm if it says so."""
+        """Keep the reason, if a note of the arm says that it cannot reply."""
         if note.text.startswith(NO_REPLY) or note.text.endswith(self._why):
             id = self._table.command(note.command).id
             same = [command.name for command in self._table.commands if command.id == id]

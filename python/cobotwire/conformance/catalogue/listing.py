@@ -16,7 +16,7 @@ from cobotwire.conformance.suite import Group, Suite, TestCase
 from cobotwire.protocol.table import Command, Table
 
 SUITES: tuple[Suite[Any], ...] = (DEVICES, CLIENTS, CODECS)
-# The characters of a digest that are written.
+# The number of characters of a digest that are written.
 SHOWN = 12
 
 

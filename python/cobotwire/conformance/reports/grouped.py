@@ -9,7 +9,7 @@ from cobotwire.conformance.report import Report, Result, Verdict
 
 # A cell with several results shows the gravest of them.
 GRAVEST = (Verdict.FAIL, Verdict.INCONCLUSIVE, Verdict.NOT_RUN, Verdict.PASS)
-# The characters of a reason that are compared: a device may cause very long ones.
+# The number of characters of a reason that are compared: a device may cause very long ones.
 MOST = 600
 # What may differ between two reasons with one cause: bytes, numbers, arguments.
 BYTES = re.compile(r"\b(?:[0-9A-F]{2} ?)+\b")

@@ -106,7 +106,7 @@ class FusionSetting(IntEnum):
 
 
 class MovementType(IntEnum):
-    """Along which way the end moves."""
+    """Along which path the end moves."""
 
     JOINTS = 0
     """The joints turn evenly (moveJ)."""

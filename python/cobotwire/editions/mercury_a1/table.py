@@ -3,4 +3,4 @@
 
 from cobotwire.protocol.loading import load_table
 
-TABLE = load_table(__package__, checksum="2d60e73e")
+TABLE = load_table(__package__, checksum="def775ac")

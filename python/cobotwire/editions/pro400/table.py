@@ -3,4 +3,4 @@
 
 from cobotwire.protocol.loading import load_table
 
-TABLE = load_table(__package__, checksum="11c1c0af")
+TABLE = load_table(__package__, checksum="dd339542")

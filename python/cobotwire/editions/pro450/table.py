@@ -3,4 +3,4 @@
 
 from cobotwire.protocol.loading import load_table
 
-TABLE = load_table(__package__, checksum="bd227576")
+TABLE = load_table(__package__, checksum="ba27ffff")

@@ -3,4 +3,4 @@
 
 from cobotwire.protocol.loading import load_table
 
-TABLE = load_table(__package__, checksum="ad496c08")
+TABLE = load_table(__package__, checksum="9d530715")

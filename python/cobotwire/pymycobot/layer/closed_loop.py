@@ -20,11 +20,11 @@ from cobotwire.pymycobot.layer.naming import naming
 from cobotwire.pymycobot.layer.ranges import check_range
 from cobotwire.pymycobot.layer.results import plain, tenths
 
-# If the end of a motion is not reported for this long, the arm is asked whether it moves.
+# If the end of a motion is not reported for this long, queries ask whether the arm moves.
 ASK_SECONDS = 1.0
 # The report was lost if this many queries in a row find the arm at rest.
 STILL_TIMES = 3
-# How often it is asked: for five minutes, as the library waits.
+# The number of these queries: for five minutes, as the library waits.
 MOST_TIMES = 300
 # The library waits this long after the motors got power.
 POWER_SECONDS = 1.0

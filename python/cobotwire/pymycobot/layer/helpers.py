@@ -173,7 +173,7 @@ class StoppingGripper(TorqueGripper):
 
 
 class TwoPositions(CompatibleClient):
-    """Asks for two kinds of targets by one method, where the protocol has two commands."""
+    """Checks two kinds of targets by one method, where the protocol has two commands."""
 
     @naming(angles="data", target="data", coords="data")
     def is_in_position(self, data: Sequence[float], id: int = 0) -> Any:

@@ -32,7 +32,7 @@ class ByPort(Reporting):
         self._open(partial(native, port, baudrate=int(baudrate)), debug, errors)
 
     def open(self) -> None:
-        """Open the port again after ``close``, and ask whether the arm reports ends of motions."""
+        """Open the port again after ``close``; query whether the arm reports ends of motions."""
         super().open()
         try:
             self._waits = bool(self.arm.get_limit_switch().motion_ends)

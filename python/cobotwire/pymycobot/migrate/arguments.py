@@ -153,5 +153,5 @@ def is_about_motion(call: Call, known: dict[str, cst.BaseExpression], kind: Libr
     if call.result != "ended":
         return False
     quiet = code(known[QUIET]) if QUIET in known else call.parameters.get(QUIET)
-    # The Pro 450 is asked before it jogs.
+    # The layer sends the Pro 450 a query before a jog.
     return quiet != "True" or kind.native == "Pro450"

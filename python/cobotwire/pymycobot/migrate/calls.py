@@ -191,7 +191,7 @@ def library() -> dict[str, LibraryClass]:
 
 @lru_cache
 def counterparts() -> dict[str, str]:
-    """Return the class of the library that a class of ours is read as, by the name of ours."""
+    """Return, by the name of each class of ours, the library's class that it is read as."""
     return {kind.native: name for name, kind in library().items()} | {
         name: name for name, kind in library().items() if kind.native == name
     }

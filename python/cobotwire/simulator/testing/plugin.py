@@ -27,7 +27,7 @@ def pytest_configure(config: pytest.Config) -> None:
 def simulated_arm(request: pytest.FixtureRequest) -> Iterator[Any]:
     """Yield a client, connected to a simulated arm that is powered off, with all joints at zero.
 
-    By default in memory and in stepped time: a motion of ten seconds is over at once.
+    By default the arm is in memory and in stepped time: a motion of ten seconds is over at once.
     """
     from cobotwire.simulator.testing.simulation import connected
 

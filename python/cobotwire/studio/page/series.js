@@ -34,7 +34,7 @@ export class Series {
   thin() {
     const half = this.capacity >> 1;
     const [numbers] = this.columns;
-    // Keep every second row; if the other one marks a gap, keep that.
+    // Keep every second row; if the row between marks a gap, keep that instead.
     const kept = Uint32Array.from({ length: half >> 1 }, (_, at) => 2 * at + Number.isNaN(numbers[2 * at + 1]));
     for (const column of [this.times, ...this.columns]) {
       kept.forEach((from, at) => (column[at] = column[from]));

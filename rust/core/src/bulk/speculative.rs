@@ -1,8 +1,8 @@
 //! Reads contiguous bytes with several threads, with the results of one.
 //!
-//! The bytes are cut into chunks, which the threads read in turn. A piece starts at a guess: a
-//! position after its cut at which a frame seems to start. Each thread reads its chunk into its own
-//! memory, and then waits until the scan of the stream has reached the chunk. A scan has no state:
+//! The bytes are cut into pieces, which the threads read in turn. A piece starts at a guess: a
+//! position after its cut at which a frame seems to start. Each thread reads its piece into its own
+//! memory, and then waits until the scan of the stream has reached the piece. A scan has no state:
 //! if the scan of the stream reaches exactly the guessed position, it would find the same frames as
 //! the thread. If not, the thread reads the piece again, from the position at which the scan
 //! stands. Then it appends what it found to the results, and hands over to the thread with the next

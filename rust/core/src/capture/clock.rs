@@ -40,7 +40,7 @@ impl Clock {
         self.times.get(at).copied().unwrap_or_default()
     }
 
-    /// Forget the chunks before the one with this byte, which may not have come yet.
+    /// Forget the pieces before the one with this byte, which may not have come yet.
     pub(crate) fn forget_before(&mut self, offset: u64) {
         let at = self.piece(0, offset);
         self.starts.drain(..at);

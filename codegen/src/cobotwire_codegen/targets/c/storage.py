@@ -51,7 +51,7 @@ class Storage:
 
     @property
     def count(self) -> int:
-        """The highest number of numbers."""
+        """The largest possible count of numbers."""
         return self.most * self.each * max(map(len, self.cases))
 
 

@@ -132,10 +132,10 @@ class PlanningCommands(Client):
     ) -> None:
         """Set how the end moves.
 
-        Sets along which way the end moves to coordinates.
+        Sets along which path the end moves to coordinates.
 
         Args:
-            mode: Along which way the end moves (one of JOINTS (0), LINE (1), BLENDED (2), SPLINE
+            mode: Along which path the end moves (one of JOINTS (0), LINE (1), BLENDED (2), SPLINE
                 (3), CONTINUOUS (4)).
 
         Safety: setting. Command id 0x87.
@@ -145,9 +145,9 @@ class PlanningCommands(Client):
     def get_movement_type(self) -> MovementType:
         """Read how the end moves.
 
-        Reads along which way the end moves to coordinates.
+        Reads along which path the end moves to coordinates.
 
-        Returns: Along which way the end moves (one of JOINTS (0), LINE (1), BLENDED (2), SPLINE
+        Returns: Along which path the end moves (one of JOINTS (0), LINE (1), BLENDED (2), SPLINE
             (3), CONTINUOUS (4)).
         Safety: query. Command id 0x88.
         """

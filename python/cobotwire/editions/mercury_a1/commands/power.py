@@ -29,8 +29,7 @@ class PowerCommands(Client):
     def power_off(self, *, ack_within: float | None = None) -> None:
         """Power off.
 
-        Switches the arm off. Without power the motors hold no joint but by their brakes; support
-        the arm first.
+        Switches the arm off. Without power only the brakes hold the joints; support the arm first.
 
         Safety: power. Command id 0x11.
         """

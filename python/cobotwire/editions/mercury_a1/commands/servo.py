@@ -303,7 +303,7 @@ class ServoCommands(Client):
     def fourier_trajectories(self, trajectory: int, *, ack_within: float | None = None) -> None:
         """Identify the dynamics.
 
-        Moves the arm along a way that identifies its dynamics. The arm makes large motions for up
+        Moves the arm along a path that identifies its dynamics. The arm makes large motions for up
         to 20 seconds; keep clear of it.
 
         Args:

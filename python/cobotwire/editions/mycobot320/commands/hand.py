@@ -217,7 +217,7 @@ class HandCommands(Client):
     ) -> None:
         """Pinch with the hand.
 
-        Brings the hand into a pose that pinches, as far closed as a number tells. An opening hand
+        Brings the hand into a pose that pinches; a number says how far it closes. An opening hand
         drops what it holds; a closing one can pinch.
 
         Args:
