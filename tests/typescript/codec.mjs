@@ -39,9 +39,9 @@ const answers = {
     return bytes ? { bytes: hex(bytes) } : { error: "bad-value" };
   },
   decode({ direction, command, bytes }) {
-    const [found, fields] = session.ask("decode", index, direction, bytesOf(bytes), command);
-    if (typeof fields === "number") return { error: found, offset: fields };
-    return { command: found, fields: objectOf(fields.map(plain)) };
+    const [found, offset, readings] = session.ask("decode", index, direction, bytesOf(bytes), command);
+    if (typeof found === "string") return { error: found, offset };
+    return { command: readings[0][0], fields: objectOf(found.map(plain)) };
   },
   async stream({ direction, chunks }) {
     const decoder = await Decoder.load(table, direction);

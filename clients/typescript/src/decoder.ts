@@ -30,8 +30,6 @@ export interface Part {
 /** What a frame says. */
 export interface Message {
   command: string;
-  /** What the command is, in a few words, if the table says it. */
-  title: string;
   kind: "request" | "reply" | "event";
   /** Its values, in the units of the edition. */
   fields: Record<string, Value>;
@@ -48,8 +46,11 @@ export interface Rejection {
   text: string;
 }
 
-type Kind = Message["kind"];
-type Row = [string, fields: Value[], Kind, title: string, parts: Value[][], others: [string, Kind][]];
+type Row = [
+  fields: Value[],
+  parts: [number, number, string, string, Part["raw"]][],
+  readings: [string, Message["kind"]][],
+];
 
 export class Decoder {
   private rest = new Uint8Array();
@@ -85,13 +86,14 @@ export class Decoder {
     const row = this.machine.ask<Row | [Rejection["reason"], number, string]>(
       ...["decode", this.edition, this.listening, frame, undefined],
     );
-    if (row.length === 3) return { reason: row[0], offset: row[1], text: row[2] };
-    const [command, fields, kind, title, parts, others] = row;
-    const names = ["at", "size", "name", "meaning", "raw"];
+    if (typeof row[0] === "string") return { reason: row[0], offset: row[1] as number, text: row[2] as string };
+    const [fields, parts, readings] = row as Row;
+    const [first, ...others] = readings.map(([command, kind]) => ({ command, kind }));
     return {
-      ...{ command, title, kind, fields: objectOf(fields) },
-      parts: parts.map((part) => objectOf(part.flatMap((each, at) => [names[at], each])) as unknown as Part),
-      others: others.map(([command, kind]) => ({ command, kind })),
+      ...first!,
+      fields: objectOf(fields),
+      parts: parts.map(([at, size, name, meaning, raw]) => ({ at, size, name, meaning, raw })),
+      others,
     };
   }
 

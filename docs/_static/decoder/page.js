@@ -211,7 +211,6 @@
     const kindOf = (at) => KINDS[message.parts.find((part) => at < part.at + part.size).name] || "data";
     const card = element("section", { class: "event frame" },
       element("h3", {}, `${message.kind} at ${offset}: `, element("code", {}, message.command)),
-      element("p", {}, `${message.title}.`),
       chips(data, kindOf),
       table(message.parts, data));
     if (message.others.length) {

@@ -83,81 +83,79 @@ fn encoded(
     Some(Value::Absent)
 }
 
-/// Return the command of a frame, its fields, its direction or that it is an event, its title, its
-/// bytes explained, and what else it can be; or the reason, the offset and the text of what is wrong.
+/// Return the fields of a frame, its bytes explained, and the commands that it can be, the right one
+/// first, with their directions; or the reason, the offset and the text of what is wrong.
 fn decoded(encoder: &Encoder, listening: Listening, frame: &[u8], of: Option<usize>) -> Value {
     let (edition, table) = (&encoder.edition, &encoder.edition.protocol.table);
     let mut found: Vec<Decoded> = Vec::new();
     if let Verdict::Frame(start) = table.rules(listening).validate(frame) {
         for id in table.rules(listening).variants(start) {
-            let message = (id.direction, id.command);
-            let is_this =
-                |each: &Decoded| (each.variant.direction, each.variant.command) == message;
-            if of.is_none_or(|of| of == id.command) && !found.iter().any(is_this) {
+            let command = (id.direction, id.command);
+            let same = |each: &Decoded| (each.variant.direction, each.variant.command) == command;
+            if of.is_none_or(|of| of == id.command) && !found.iter().any(same) {
                 found.extend(decode(table, id.direction, frame, Some(id.command)));
             }
         }
     }
-    let text = |text: &str| Value::Text(text.to_owned());
-    let kind = |message: &Decoded| {
-        let facts = edition.protocol.facts.get(message.variant.command);
-        match facts {
-            Some(facts) if facts.event => text("event"),
-            _ => text(message.variant.direction.word()),
-        }
-    };
-    let command = |message: &Decoded| edition.commands.get(message.variant.command);
-    let name = |message: &Decoded| text(command(message).map_or("", |command| &command.name));
-    let Some((first, others)) = found.split_first() else {
+    let Some(first) = found.first() else {
         return rejected(encoder, listening, frame, of);
     };
     let part = |part: Explained| {
-        let raw = part.raw.map_or(Value::Absent, Value::Integer);
+        let (name, meaning) = (Value::Text(part.name), Value::Text(part.meaning));
         let (at, size) = (whole(part.bytes.start), whole(part.bytes.len()));
-        Value::Row(vec![
-            at,
-            size,
-            Value::Text(part.name),
-            Value::Text(part.meaning),
-            raw,
-        ])
+        let raw = part.raw.map_or(Value::Absent, Value::Integer);
+        Value::Row(vec![at, size, name, meaning, raw])
     };
-    let parts = edition.explain(frame, first).into_iter().map(part);
-    let other = |each: &Decoded| Value::Row(vec![name(each), kind(each)]);
-    Value::Row(vec![
-        name(first),
-        flat(encoder.named(first)),
-        kind(first),
-        text(command(first).map_or("", |command| &command.title)),
-        Value::Row(parts.collect()),
-        Value::Row(others.iter().map(other).collect()),
-    ])
+    let reading = |message: &Decoded| {
+        let (index, direction) = (message.variant.command, message.variant.direction);
+        let is_event = edition
+            .protocol
+            .facts
+            .get(index)
+            .is_some_and(|facts| facts.event);
+        let kind = if is_event { "event" } else { direction.word() };
+        let name = edition
+            .commands
+            .get(index)
+            .map_or("", |command| &command.name);
+        Value::Row([name, kind].map(|text| Value::Text(text.to_owned())).into())
+    };
+    let parts = edition
+        .explain(frame, first)
+        .into_iter()
+        .map(part)
+        .collect();
+    let readings = found.iter().map(reading).collect();
+    let fields = flat(encoder.named(first));
+    Value::Row(vec![fields, Value::Row(parts), Value::Row(readings)])
 }
 
 /// Return the reason, the offset and the text of what is wrong with a frame. A bad value in one
 /// direction explains more than a LEN that does not fit the other.
 fn rejected(encoder: &Encoder, listening: Listening, frame: &[u8], of: Option<usize>) -> Value {
-    let directions = match listening {
-        Listening::To(direction) => vec![direction],
-        Listening::Both => vec![Direction::Request, Direction::Reply],
-    };
-    let table = &encoder.edition.protocol.table;
-    let error = |way: Direction| Some((way, decode(table, way, frame, of).err()?));
-    let errors: Vec<_> = directions.into_iter().filter_map(error).collect();
-    let is_value = |(_, error): &&_| matches!(error, DecodeError::Raw(_));
-    let Some((direction, error)) = errors.iter().find(is_value).or(errors.first()) else {
-        return Value::Absent;
-    };
-    let (reason, offset) = match error {
-        DecodeError::Frame { reason, offset } => (reason.word(), *offset),
-        DecodeError::Raw(bad) => ("bad-value", bad.offset),
-    };
-    let text = encoder.edition.decode_error(*direction, *error, frame);
-    Value::Row(vec![
-        Value::Text(reason.to_owned()),
-        whole(offset),
-        Value::Text(text),
-    ])
+    let (edition, mut found) = (&encoder.edition, None);
+    for direction in [Direction::Request, Direction::Reply] {
+        if listening != Listening::Both && listening != Listening::To(direction) {
+            continue;
+        }
+        let error = decode(&edition.protocol.table, direction, frame, of).err();
+        let (reason, offset) = match error {
+            Some(DecodeError::Frame { reason, offset }) => (reason.word(), offset),
+            Some(DecodeError::Raw(bad)) => ("bad-value", bad.offset),
+            None => continue,
+        };
+        let better =
+            |(known, ..): &(&str, usize, String)| *known != "bad-value" && reason == "bad-value";
+        if found.as_ref().is_none_or(better) {
+            let text = error.map(|error| edition.decode_error(direction, error, frame));
+            found = Some((reason, offset, text.unwrap_or_default()));
+        }
+    }
+    let row = found.map(|(reason, offset, text)| {
+        let reason = Value::Text(reason.to_owned());
+        Value::Row(vec![reason, whole(offset), Value::Text(text)])
+    });
+    row.unwrap_or_default()
 }
 
 /// Return the events that each chunk of a stream made certain; an absent chunk is a silence.

@@ -30,10 +30,10 @@ async function run(table, { messages, rejected, malformed, streams }) {
   for (const record of messages) {
     const { command, direction, fields } = record;
     const bytes = bytesOf(record.bytes);
-    const [name] = session.ask("decode", index, direction, bytes, undefined);
-    if (name !== record.read_as) differs(record, `read as ${name}`);
-    const [, named, , , parts] = session.ask("decode", index, direction, bytes, command);
-    if (!parts) {
+    const [, , readings] = session.ask("decode", index, direction, bytes, undefined);
+    if (readings[0][0] !== record.read_as) differs(record, `read as ${readings}`);
+    const [named, parts] = session.ask("decode", index, direction, bytes, command);
+    if (typeof named === "string") {
       differs(record, "rejected");
       continue;
     }
