@@ -42,14 +42,11 @@ class OneCaller:
         self.receive = self.exchange.receive
         self.wake = self.exchange.wake
 
-    def encode(self, name: str, values: Sequence[Any]) -> EncodedRequest:
-        return self._encoder.encode(name, values)
-
     def request(
         self, name: str, values: Sequence[Any], now: float, timeout: float | None = None
     ) -> bytes:
         """Send a request; return its bytes, empty while it is held."""
-        request = self.encode(name, values)
+        request = self._encoder.encode(name, values)
         if not request.command.requires_reply:
             return self.exchange.send_one_way(request, now)[0]
         self.pending = submit(self.exchange, request, now, ONCE, timeout)
@@ -69,11 +66,3 @@ class OneCaller:
         """Stop waiting, as Ctrl-C does."""
         if self.pending is not None:
             self.exchange.give_up(self.pending)
-
-    def free_at(self, name: str, *values: Any, now: float) -> float:
-        """Return the time at which a request submitted now could be sent; send nothing."""
-        probe = submit(self.exchange, self.encode(name, values), now, ONCE)
-        seconds = self.exchange.idle_seconds(now)
-        self.exchange.give_up(probe)
-        assert seconds is not None, "a queued request has a time at which it can be sent"
-        return now + seconds
