@@ -26,6 +26,7 @@ from functools import cache
 from pathlib import Path, PurePosixPath
 
 from cobotwire_codegen.emit import Target, write
+from cobotwire_codegen.model import Edition
 from cobotwire_codegen.project import TYPESCRIPT_EDITIONS, editions, products
 from cobotwire_codegen.targets.typescript import literal
 from rust_package import HOSTILE

@@ -118,7 +118,7 @@ export class Session {
 // Return a message on one line: a request like a call, a reply with an arrow before it.
 function line({ command, kind, fields, parts }) {
   const shown = Object.keys(fields).map((field) => {
-    const own = parts.filter(({ name }) => name.split(/[ []/)[0] === field).map(({ meaning }) => meaning);
+    const own = parts.filter(({ name }) => name.split(/[.[]/)[0] === field).map(({ meaning }) => meaning);
     if (own.length < 2) return `${field}=${own[0] ?? ""}`;
     // Name each unit once.
     const [numbers, units] = [1, 2].map((at) => own.map((meaning) => /^(\S+) ?(.*)$/.exec(meaning)[at]));
