@@ -36,7 +36,7 @@ MEMBERS = {
 # The lowest and the highest number. The library numbers dynamic parameters, fingers and the
 # registers of grippers (ProGripper, FingerGripper); its requests for a whole hand have 0 as the
 # finger. Its radius goes to 655.5 mm, more than a word of hundredths can hold.
-ENDS = {
+ENDS: dict[str, tuple[Fraction | int, Fraction | int]] = {
     "joint_flag": (0, 1),
     "dynamic_parameter": (0, 62),
     "finger": (1, 6),
