@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 
 from cobotwire_codegen.model import Edition
-from spec_statements import effects, maker, meanings, quantities, recorded, requests
+from spec_statements import effects, maker, meanings, mercury, quantities, recorded, requests
 
 Statement = Callable[[Edition], Iterator[str]]
 
@@ -14,6 +14,7 @@ STATEMENTS: tuple[Statement, ...] = (
     *effects.RULES,
     *quantities.RULES,
     *maker.RULES,
+    *mercury.RULES,
     *recorded.RULES,
     *requests.RULES,
 )

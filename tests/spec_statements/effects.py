@@ -36,6 +36,8 @@ EFFECTS = (
     (r"init_electric_gripper", r"Initializes", "sets gripper_initialized=True"),
     (r"set_pro_gripper_pause", r"Pauses", "sets bus_paused=True at gripper_id"),
     (r"set_pro_gripper_resume", r"Continues", "sets bus_paused=False at gripper_id"),
+    # The maker: "set the current position to zero".
+    (r"set_gripper_calibration", r"Makes the present position", "zeroes gripper"),
     (r"angles_to_coords", r"Calculates the", "computes coords from=angles"),
     (r"solve_\w+", r"Calculates .*angles", "computes angles from=coords near=angles"),
 )
@@ -179,7 +181,7 @@ def effects(edition: Edition) -> Iterator[str]:
     """Report commands with another effect than their name and description tell."""
     for command in edition.commands:
         effect = command.effect
-        if effect is not None and effect.verb in ("sets", "does", "computes"):
+        if effect is not None and effect.verb in ("sets", "does", "computes", "zeroes"):
             found = (
                 (re.fullmatch(n, command.name), e) for n, d, e in EFFECTS if fits(command, n, d)
             )
@@ -192,12 +194,19 @@ def effects(edition: Edition) -> Iterator[str]:
 
 
 # Queries report these for more or fewer joints than the edition counts, or setters narrow them.
-UNLIKE = {
+# Such state has the type of the setter's field, or of each number that the query reports.
+PART_OF_FIELD = {
     *("calibrated", "collision_threshold", "torque_compensation", "model_direction", "run_errors"),
-    *("zero_encoders", "down_encoders", "written_registers", "hand_enabled"),
+    *("zero_encoders", "down_encoders"),
+}
+UNLIKE = {
+    *PART_OF_FIELD,
+    *("written_registers", "hand_enabled"),
     *("mercury_b1 servo_faults", "mercury_x1 servo_faults"),
     *("mercury_b1 servo_currents", "mercury_x1 servo_currents"),
 }
+# A type with this prefix numbers joints, and has a number for all of them.
+OR_ALL = "restored_"
 
 
 def states(edition: Edition) -> Iterator[str]:
@@ -225,6 +234,26 @@ def states(edition: Edition) -> Iterator[str]:
             unlike = {name, f"{edition.name} {name}"} & UNLIKE
             if not unlike and not _alike(state.type, widest, left):
                 yield f"{name} is unlike {field} of {command.name}"
+    for name in PART_OF_FIELD & declared.keys():
+        fields = [
+            (each.type, command.safety != "query")
+            for state, command, _, field in pairs
+            if state == name
+            for each in command.fields
+            if each.name == field
+        ]
+        stored = [type for type, is_set in fields if is_set]
+        reported = [part for type, _ in fields for _, part in type.parts]
+        if declared[name].type not in (stored or reported):
+            yield f"{name} has another type than the fields that set or report it"
+    for command in edition.commands:
+        effect = command.effect
+        if effect is not None and effect.verb == "sets":
+            given = {each.name: each.type.name for each in command.fields}
+            at = [given[each].removeprefix(OR_ALL) for each in effect.at]
+            for name, _ in effect.values if at else ():
+                if name in declared and at != list(declared[name].each[: len(at)]):
+                    yield f"{name} has other indices than {command.name}"
 
 
 def speeds(edition: Edition) -> Iterator[str]:

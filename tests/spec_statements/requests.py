@@ -30,9 +30,14 @@ Expected = tuple[Call, bytes | None]
 def requests(edition: Edition) -> Iterator[str]:
     """Report calls for which an edition sends other bytes than the maker's class, or rejects."""
     alike, _ = compared(edition.name)
-    if alike:
+    # A command that is as in the unchanged edition sends the same bytes.
+    known = vectors.edition(edition.name) if alike else edition
+    same = {c.name for c in edition.commands if known.by_name.get(c.name) == c}
+    if known.frame != edition.frame:
+        same = set()
+    if calls := [each for each in alike if each[0].command not in same]:
         codec = codec_of_edition(edition)
-        for call, wanted in alike:
+        for call, wanted in calls:
             if _sent(codec, call) != wanted:
                 yield f"{call.command}: {call.ours} differs from the maker's {call.method}"
 

@@ -38,13 +38,19 @@ TOOLS = [
     Call("set_pro_gripper_stop", (), "set_pro_gripper", (39, 0)),
     Call("get_pro_gripper_status", (), "get_pro_gripper", (14,)),
     Call("set_hand_gripper_id", (15,), "set_pro_gripper", (3, 15)),
-    Call("get_hand_gripper_id", (), "get_hand_gripper", (4, 0)),
+    Call("get_hand_gripper_id", (), "get_hand_gripper", (4,)),
     Call("set_hand_gripper_calibrate", (1,), "set_pro_gripper", (13, 1)),
     Call("set_hand_gripper_enabled", (1,), "set_pro_gripper", (10, 1)),
     Call("get_hand_gripper_status", (), "get_hand_gripper", (14, 0)),
     Call("get_hand_firmware_major_version", (), "get_hand_gripper", (1, 0)),
     Call("get_hand_firmware_minor_version", (), "get_hand_gripper", (2, 0)),
     Call("get_hand_model", (), "get_hand_gripper", (53, 0)),
+    Call(
+        "set_hand_gripper_angles",
+        ([1, 2, 3, 4, 5, 6], 50),
+        "set_hand_gripper_angles",
+        ([1, 2, 3, 4, 5, 6], 50),
+    ),
     Call("get_hand_gripper_angles", (), "get_hand_gripper", (50, 0), why=_TWICE),
     # Two bytes, which are one word.
     Call(
