@@ -125,7 +125,7 @@ def build(folder: Path, found: list[Model]) -> None:
         page = f'<!doctype html><html lang="en"><title>No page</title><p>{text}</p>'
         (folder / "index.html").write_text(page, "utf-8")
         return
-    package = npm_package.build(found)
+    package = npm_package.build(lambda: found)
     shutil.copytree(PAGE, folder, dirs_exist_ok=True)
     shutil.copytree(HERE, folder, dirs_exist_ok=True)
     for part, pattern in (("dist", "*.js"), ("dist", "*.wasm"), ("editions", "*.js")):
