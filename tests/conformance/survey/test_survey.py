@@ -9,6 +9,7 @@ import pytest
 import small_specs
 from cobotwire import editions
 from cobotwire.conformance.survey import Survey
+from cobotwire.conformance.survey.file import continued
 from cobotwire.protocol.table import Command, Number, Table
 from targets.specs import edition_of
 from vectors import sampled
@@ -145,3 +146,11 @@ def test_angle_beyond_a_limit_contradicts_the_limit_but_no_sign() -> None:
     survey.run()
     wrong = {fact.fact.rpartition("/")[2] for fact in survey.facts.with_verdict("contradicted")}
     assert wrong == {"limits"}
+
+
+def test_continued_survey_keeps_a_fact_that_only_the_earlier_one_could_decide() -> None:
+    late = {"fact": "mycobot280/set_fresh_mode/command/deadline", "verdict": "contradicted"}
+    unseen = {"fact": "mycobot280/set_fresh_mode/reply/id", "verdict": "not seen"}
+    content = {"facts": [unseen], "hashed": [], "level": 2}
+    merged, _ = continued(({"facts": [unseen, late], "level": 2}, b""), content, b"")
+    assert merged["facts"] == [unseen, late]

@@ -65,7 +65,8 @@ def continued(
             and decided.get(fact["fact"], fact)["verdict"] != "contradicted"
         ):
             decided[fact["fact"]] = fact
-    merged = [decided.get(fact["fact"], fact) for fact in content["facts"]]
+    # Some facts are in the content only if they were observed, such as a late acknowledgement.
+    merged = [decided.pop(fact["fact"], fact) for fact in content["facts"]] + [*decided.values()]
     hashed = list(dict.fromkeys([*old.get("hashed", ()), *content["hashed"]]))
     level = max(old.get("level", 1), content["level"])
     return {**content, "facts": merged, "hashed": hashed, "level": level}, recorded + recording
