@@ -30,16 +30,17 @@ export class Live extends Session {
       ...{ url, close: () => inner.close(), abort: () => inner.abort() },
       start: (take, ended) => {
         const heard = (data) => {
-          this.add(received.take(this.time, data));
+          this.note(() => received.take(this.time, data));
           clearTimeout(this.idle);
-          this.idle = setTimeout(() => this.add(received.silence()), IDLE_MS);
+          this.idle = setTimeout(() => this.note(() => received.silence()), IDLE_MS);
           take(data);
         };
         inner.start(heard, (detail) => (ended(detail), this.lose(arm, `${url}: ${detail}`)));
       },
       write: (data) => {
-        this.add([...sent.take(this.time, data), ...sent.silence()]);
-        return inner.write(data);
+        const written = inner.write(data);
+        this.note(() => [...sent.take(this.time, data), ...sent.silence()]);
+        return written;
       },
     };
     try {

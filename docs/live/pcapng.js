@@ -5,13 +5,33 @@ const [MAGIC, LINK_TYPE, NANOSECONDS] = [0x1a2b3c4d, 159, 9];
 const FLAGS = { unknown: 0, received: 1, sent: 2 };
 const text = (value) => new TextEncoder().encode(value);
 
-// Return the bytes of a recording of entries. Their times count from `startNs` after 1970.
-export function written(entries, { url, edition, baudrate, startNs }) {
+// So many entries take a few milliseconds. In between, the worker does what must not wait, such as a stop.
+const AT_ONCE = 500;
+
+function turn() {
+  const { port1, port2 } = new MessageChannel();
+  return new Promise((go) => {
+    port1.onmessage = () => (port1.close(), go());
+    port2.postMessage(null);
+  });
+}
+
+// Return a recording of the chosen entries as a blob. Their times count from `startNs` after 1970.
+export async function written(entries, chosen, { url, edition, baudrate, startNs }) {
   const names = [[2, text(url)], [3, text(`edition ${edition}`)], [8, words(baudrate, 0)], [9, Uint8Array.of(NANOSECONDS)]];
   const head = new Uint8Array([...words(MAGIC, 1), ...new Uint8Array(8).fill(255)]);
-  const blocks = [block(SECTION, head, [[4, text("cobotwire")]]), block(INTERFACE, words(LINK_TYPE, 0), names)];
-  let [first, last] = [undefined, startNs];
-  for (const { t, d, data, reason } of entries) {
+  const chunks = [];
+  let blocks = [block(SECTION, head, [[4, text("cobotwire")]]), block(INTERFACE, words(LINK_TYPE, 0), names)];
+  let [first, last, count] = [undefined, startNs, 0];
+  for (const [index, entry] of entries.entries()) {
+    if (index % AT_ONCE === AT_ONCE - 1) {
+      chunks.push(joined(blocks));
+      blocks = [];
+      await turn();
+    }
+    if (!chosen(entry)) continue;
+    count += 1;
+    const { t, d, data, reason } = entry;
     const ns = startNs + BigInt(Math.round(t * 1e9));
     if (first === undefined || ns < first) first = ns;
     if (ns > last) last = ns;
@@ -19,8 +39,8 @@ export function written(entries, { url, edition, baudrate, startNs }) {
     const body = joined([words(0, ...time(ns), data.length, data.length), padded(data)]);
     blocks.push(block(PACKET, body, [...comment, [2, words(FLAGS[d])]]));
   }
-  const counts = [[2, words(...time(first ?? last))], [3, words(...time(last))], [4, words(entries.length, 0)]];
-  return joined([...blocks, block(STATISTICS, words(0, ...time(last)), counts)]);
+  const counts = [[2, words(...time(first ?? last))], [3, words(...time(last))], [4, words(count, 0)]];
+  return new Blob([...chunks, ...blocks, block(STATISTICS, words(0, ...time(last)), counts)]);
 }
 
 const words = (...numbers) => new Uint8Array(Uint32Array.from(numbers).buffer);

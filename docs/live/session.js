@@ -51,6 +51,15 @@ export class Session {
     Object.assign(this, { publish, facts, streams, port, entries: [], dropped: 0, sampler: new Sampler(facts) });
   }
 
+  // Add what a function returns. A fault of the display must not keep bytes from the arm, or from its replies.
+  note(entries) {
+    try {
+      this.add(entries());
+    } catch (error) {
+      this.publish({ states: { refused: `an entry is missing here: ${error.message}` } });
+    }
+  }
+
   add(entries) {
     for (const entry of entries) {
       entry.n = this.dropped + this.entries.push(entry) - 1;
@@ -110,8 +119,9 @@ export class Session {
     const [from, to] = [Number(begin || -Infinity), Number(end || Infinity)];
     if (Number.isNaN(from) || Number.isNaN(to)) throw new Error("a time is a number of seconds");
     const inside = ({ t, d, data }) => data && t >= from && t < to && (!direction || d === direction);
-    const chosen = this.entries.filter((entry) => inside(entry) && (!command || this.read(entry)?.command === command));
-    return written(chosen, { ...this.port, edition: this.facts.robot.edition, startNs: this.startNs });
+    const chosen = (entry) => inside(entry) && (!command || this.read(entry)?.command === command);
+    // A copy, since entries come and go meanwhile.
+    return written([...this.entries], chosen, { ...this.port, edition: this.facts.robot.edition, startNs: this.startNs });
   }
 }
 

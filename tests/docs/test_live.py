@@ -48,8 +48,19 @@ const capture = read(readFileSync(process.argv[2]));
 const session = await Recorded.make(publish, facts, module, capture);
 session.advance(1e9);
 const explained = session.entries.map(({ n }) => session.explain(n));
-const file = Buffer.from(session.exported({})).toString("base64");
+const file = Buffer.from(await (await session.exported({})).arrayBuffer()).toString("base64");
 console.log(JSON.stringify({ ...got, explained, file }));
+"""
+
+
+# Save a long recording in Node; print how long another task had to wait, in seconds.
+LONG = """
+import { written } from "./pcapng.js";
+const entry = { t: 1, d: "sent", data: Uint8Array.of(0xfe, 0xfe, 2, 0x20, 0xfa) };
+const begun = performance.now();
+setTimeout(() => console.log((performance.now() - begun) / 1000), 1);
+const port = { url: "port", edition: "mycobot280", baudrate: 1000000, startNs: 0n };
+await written(new Array(200_000).fill(entry), () => true, port);
 """
 
 
@@ -159,6 +170,13 @@ def test_arm_is_connected_driven_and_saved(site: LiveSite, page: Page, tmp_path:
     assert site.sent.startswith(sent)
     assert len(sent) > 100
     assert page.complaints == []
+
+
+def test_stop_does_not_wait_until_a_long_recording_is_saved(folder: Path) -> None:
+    (folder / "long.mjs").write_text(LONG, "utf-8")
+    words = ("node", "long.mjs")
+    done = subprocess.run(words, cwd=folder, capture_output=True, text=True, check=True)
+    assert float(done.stdout) < 0.2
 
 
 def test_jog_lasts_while_the_button_is_held(site: LiveSite, page: Page) -> None:
