@@ -2,9 +2,14 @@
 
 const [PREFIX, VERSION, FILES] = ["cobotwire-live-", "VERSION", ["FILES"]];
 
+// Ask the server for each file: the browser may still keep one of an earlier version. The new version waits until no page
+// uses the old one, so that no page gets files of both.
 async function install() {
-  await (await caches.open(PREFIX + VERSION)).addAll(FILES);
-  await self.skipWaiting();
+  await (await caches.open(PREFIX + VERSION)).addAll(FILES.map((file) => new Request(file, { cache: "reload" })));
+}
+
+async function answer(request) {
+  return (await (await caches.open(PREFIX + VERSION)).match(request)) ?? fetch(request);
 }
 
 async function activate() {
@@ -14,4 +19,4 @@ async function activate() {
 
 self.addEventListener("install", (event) => event.waitUntil(install()));
 self.addEventListener("activate", (event) => event.waitUntil(activate()));
-self.addEventListener("fetch", (event) => event.respondWith(caches.match(event.request).then((kept) => kept ?? fetch(event.request))));
+self.addEventListener("fetch", (event) => event.respondWith(answer(event.request)));

@@ -82,6 +82,7 @@ export class Source {
 
   choose() {
     return this.attempt("connecting", async () => {
+      if (self !== top) throw new Error("open this page on its own: inside another page it connects no arm");
       const port = await navigator.serial.requestPort();
       // The worker finds the port by its information, so the page keeps no other port that looks like it.
       for (const other of await navigator.serial.getPorts()) if (other !== port && infoOf(other) === infoOf(port)) await other.forget();
