@@ -41,7 +41,8 @@ WASM = "dist/cobotwire.wasm"
 # What the package is made of.
 SOURCES = (
     *("spec/**/*.yaml", "codegen/src/**/*.py", "codegen/src/**/*.j2", "clients/typescript/src/*"),
-    *("clients/typescript/*.json", "rust/*/src/**/*.rs", "rust/*/Cargo.toml", "Cargo.*"),
+    *("clients/typescript/*.json", "rust/*/src/**/*.rs", "rust/*/*.json"),
+    *("rust/*/Cargo.toml", "Cargo.*"),
 )
 
 

@@ -2,7 +2,6 @@
 import { LinkError, failure } from "./errors.js";
 import type { Machine, Value } from "./machine.js";
 import { reason, within, type Transport } from "./transport.js";
-import { inNode } from "./wasm.js";
 
 /** What a step of the session asks for: bytes to write, calls that have ended, when to go on. */
 type Step = [
@@ -19,11 +18,8 @@ interface Caller {
 /** A line that takes no bytes for this long is stuck. */
 export const WRITE_SECONDS = 1;
 
-/**
- * Node reads a chunk at a time. After a shorter one the port was empty: within so many milliseconds,
- * less than a byte takes at 115,200 baud, a request is sent without another look at the port.
- */
-const [CHUNK, EMPTY_MS] = [1 << 16, 0.05];
+/** For so many milliseconds, less than a byte takes at 115,200 baud, a port stays as empty as it was. */
+const EMPTY_MS = 0.05;
 
 /** Return the time in nanoseconds. */
 export const now = (): number => Math.round(performance.now() * 1e6);
@@ -57,7 +53,7 @@ export class Line {
   ) {
     transport.start(
       (data) => {
-        if (inNode && data.length < CHUNK) this.emptyAt = performance.now();
+        if (data.length < (transport.chunk ?? 0)) this.emptyAt = performance.now();
         this.advance("receive", data);
       },
       (detail) => this.lose(detail),

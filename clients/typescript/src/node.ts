@@ -5,6 +5,8 @@ import { LinkError, UsageError } from "./errors.js";
 import { reason, within, type Transport } from "./transport.js";
 
 const CONNECT_SECONDS = 5;
+/** Node reads a socket into a new buffer of this size. */
+const TCP_CHUNK = 1 << 16;
 
 /** Read a file of the package. */
 export function read(url: URL): Promise<Uint8Array> {
@@ -22,7 +24,8 @@ export async function open(url: string, baudRate: number): Promise<Transport> {
     if (error instanceof UsageError) throw error;
     throw new LinkError(`${url}: cannot be opened: ${reason(error)}`, 0);
   }
-  return new NodeTransport(url, stream);
+  // A serial port is read into what is left of a buffer.
+  return new NodeTransport(url, stream, address ? TCP_CHUNK : 0);
 }
 
 /** What sockets and the ports of `serialport` have. */
@@ -70,6 +73,7 @@ class NodeTransport implements Transport {
   constructor(
     readonly url: string,
     private readonly stream: Stream,
+    readonly chunk: number,
   ) {
     this.closed = new Promise((done) => stream.on("close", done));
   }
