@@ -1,4 +1,4 @@
-"""A query is repeated at even intervals until its deadline; nothing else is ever repeated.
+"""Queries take turns and are repeated at even intervals; nothing else is ever repeated.
 
 ``test_explored.py`` holds the other promises of the exchange.
 """
@@ -35,6 +35,16 @@ def test_query_is_sent_at_even_intervals_until_its_deadline(codec: Codec) -> Non
     assert now == pytest.approx(0.5)
     with pytest.raises(ReplyTimeout, match=r"get_angles\(\) within 0\.500 s after 3 attempts"):
         pending.result()
+
+
+def test_queries_take_turns_in_the_order_of_submission(codec: Codec) -> None:
+    exchange, encode = Exchange(codec), RequestEncoder(codec).encode
+    names = ("get_angles", "is_moving", "get_coords")
+    queued = [submit(exchange, encode(name, ()), 0.0, THREE) for name in names]
+    for pending in queued:
+        assert exchange.outgoing(0.0, drained=True) == pending.request.frame
+        assert exchange.outgoing(0.0, drained=True) == b"", "one query waits at a time"
+        exchange.give_up(pending)
 
 
 @pytest.mark.parametrize(
