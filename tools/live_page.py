@@ -36,6 +36,7 @@ HERE = npm_package.ROOT / "docs" / "live"
 POLICY = HEADERS["content-security-policy"].replace("; frame-ancestors 'none'", "")
 POLICY = POLICY.replace("script-src 'self'", "script-src 'self' 'wasm-unsafe-eval'")
 META = f'<meta http-equiv="Content-Security-Policy" content="{POLICY}; worker-src \'self\'">'
+# A state that no edition names.
 UNNAMED = 173
 
 

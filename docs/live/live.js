@@ -48,6 +48,7 @@ export class Live extends Session {
       await arm.call(this.polled[0].name);
     } catch (error) {
       await (arm ?? inner).close();
+      if (!arm) throw error;
       const { edition } = this.facts.robot;
       throw new Error(`no legal reply: is it an arm of the edition ${edition}? \`cobotwire identify\` finds out (${error.message})`);
     }
@@ -91,7 +92,7 @@ export class Live extends Session {
 
   lose(arm, why) {
     if (!arm || this.arm !== arm) return;
-    this.add([{ t: this.time, d: "unknown", label: "port", text: why }]);
+    this.note(() => [{ t: this.time, d: "unknown", label: "port", text: why }]);
     this.end("the port is gone");
     this.refuse(`${why.replace(/\.$/, "")}. Stop cannot reach the arm: use its switch.`);
   }

@@ -1,6 +1,6 @@
 // What a session with an arm and a recording have in common: entries, as the studio's server describes and explains them.
 
-import { Decoder } from "./cobotwire/dist/decoder.js";
+import { Decoder, REASONS } from "./cobotwire/dist/decoder.js";
 import { written } from "./pcapng.js";
 import { Sampler } from "./samples.js";
 
@@ -9,14 +9,6 @@ export const MOST_ENTRIES = 1_000_000;
 const [DROPPED_AT_ONCE, SHOWN_BYTES, SHOWN_TEXT] = [10_000, 64, 400];
 const DIRECTIONS = { sent: "request", received: "reply", unknown: "both" };
 const ADVICE = "save the recording; cobotwire decode names the noise and its cause";
-const REASONS = {
-  "no-header": "no frame starts here",
-  "bad-address": "a header with an address that the edition lacks",
-  "bad-length": "a header with a LEN that is not legal for its id",
-  "unknown-id": "a header with an id that the edition lacks",
-  "bad-check": "starts like a frame, but does not end like one",
-  truncated: "starts like a frame; the bytes end before it does",
-};
 const hex = (bytes) => Array.from(bytes, (byte) => byte.toString(16).padStart(2, "0")).join(" ").toUpperCase();
 
 // Cuts the bytes of one direction. An entry has its number `n`, the time `t` of its first byte in seconds, the direction
@@ -26,13 +18,15 @@ export class Stream {
     return Object.assign(new Stream(), { direction, decoder: await Decoder.load(table, DIRECTIONS[direction]), times: [], size: 0 });
   }
 
-  // Return the entries that are certain after some bytes; then those that are because nothing follows.
+  // Take bytes that came at a time; return the entries that are certain now.
   take(t, data) {
+    if (!data.length) return [];
     this.times.push([this.size, t]);
     this.size += data.length;
     return this.entries(this.decoder.feed(data));
   }
 
+  // Return the entries that remain, since nothing follows.
   silence() {
     return this.entries(this.decoder.flush());
   }

@@ -17,7 +17,7 @@ export class Source {
     Object.assign(this, { page: "", onBatch, asked: new Map(), count: 0, connected: false });
     this.worker = new Worker("worker.js", { type: "module" });
     this.worker.onmessage = ({ data }) => this.take(data);
-    this.worker.onerror = () => this.say("The worker of this page does not start: the browser is too old.", true);
+    this.worker.onerror = () => this.say("The worker of this page has failed; the browser may be too old. Load the page again.", true);
     byId("source").textContent = "an arm in the browser";
     byId("status").textContent = "not connected";
     byId("stop").disabled = byId("control").disabled = true;

@@ -33,7 +33,7 @@ function begin(opened, hello) {
 
 // What the page requests and wishes; the session has the other methods.
 const requests = {
-  // Connect to the port at a place among all ports, which have this information.
+  // Connect to the port at an index; `infos` describes all ports, so that a change of their list is noticed.
   async connect({ name, speed, at, infos }) {
     const ports = await navigator.serial.getPorts();
     if (JSON.stringify(ports.map((port) => port.getInfo())) !== infos) throw new Error("the ports changed meanwhile: connect again");
@@ -50,7 +50,7 @@ const requests = {
 
   async open({ file, name, usual }) {
     const capture = read(file);
-    if (!capture.packets.length) throw new Error("the recording holds no packet");
+    if (!capture.packets.some(({ data }) => data.length)) throw new Error("the recording holds no bytes");
     const opened = await Recorded.make(publish, ...(await load(capture.edition || usual)), capture);
     const { seconds, remarks } = opened;
     begin(opened, { mode: "recording", recording: { name, seconds, remarks } });

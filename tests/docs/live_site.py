@@ -50,12 +50,11 @@ class LiveSite:
     Attributes:
         sent: the bytes that the page has written to its port.
         stopped_at: when the last stop was written, by the monotonic clock.
-        gone: whether files are no longer served.
     """
 
     def __init__(self, folder: Path, arm: TcpServer, before: str, url: str) -> None:
         self._folder, self._arm, self._before, self.url = folder, arm, before, url
-        self.sent, self.stopped_at, self.gone = bytearray(), 0.0, False
+        self.sent, self.stopped_at = bytearray(), 0.0
         self._sockets: set[WebSocket] = set()
         self._loop: asyncio.AbstractEventLoop | None = None
 
@@ -68,9 +67,9 @@ class LiveSite:
     async def file(self, request: Request) -> Response:
         """Serve a file; the worker has a port too."""
         name = request.path_params["name"] or "index.html"
-        if self.gone:
-            return Response(status_code=503)
-        headers = {"content-security-policy": POLICY, "cache-control": "no-store"}
+        headers = {"cache-control": "no-store"}
+        if name != "index.html":  # which has the policy in itself
+            headers["content-security-policy"] = POLICY
         if name in ("source.js", "worker.js"):
             text = self._before + (self._folder / name).read_text("utf-8")
             return Response(text, media_type="text/javascript", headers=headers)

@@ -264,6 +264,16 @@ def test_page_works_offline_with_a_recording(site: LiveSite, page: Page) -> None
         )
 
 
+@pytest.mark.usefixtures("site")
+def test_page_cannot_request_from_another_host(page: Page) -> None:
+    blocked = page.get(
+        "new Promise((done) => { addEventListener('securitypolicyviolation', (event) => "
+        "done(event.effectiveDirective)); setTimeout(done, 3000, 'nothing'); "
+        "fetch('http://127.0.0.2:9').catch(() => {}); })"
+    )
+    assert blocked == "connect-src"
+
+
 def test_browser_without_webserial_opens_recordings(folder: Path, page: Page) -> None:
     with serving(folder, "delete Navigator.prototype.serial;\n") as site:
         _open(page, site.url)

@@ -121,8 +121,6 @@ def test_arm_follows_a_drag_if_the_user_says_so(opened: Page) -> None:
     assert _sent(opened, "send_angle") < 12, "at most five a second"
 
 
-# A page that says nothing for half a second, for example because the machine stalls, stops the arm.
-@pytest.mark.stall(0.1)
 @pytest.mark.parametrize("by", ["mouse", "touch", "arrow key", "Enter"])
 def test_jog_moves_while_it_is_held_and_release_stops(opened: Page, by: str) -> None:
     # The speed is so low that the joint stays far from its limit even on a busy machine.

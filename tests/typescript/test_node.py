@@ -208,6 +208,15 @@ def test_first_program_moves_simulated_arm() -> None:
     assert re.fullmatch(r"-?[\d.]+ \[( -?[\d.]+,?){5} \]\n", done.stdout.replace("\n ", ""))
 
 
+def test_program_of_the_docs_decodes_bytes() -> None:
+    page = (npm_package.ROOT / "docs/typescript.md").read_text()
+    program = re.search(r"<!-- file: decode.mjs -->\n```js\n(.*?)```", page, re.DOTALL)
+    assert program is not None
+    words = ("node", "--input-type=module", "--eval", program[1])
+    done = subprocess.run(words, cwd=package(), capture_output=True, text=True, check=True)
+    assert done.stdout == "0 1 no-header \n1 6 is_power_on { powered: 1 }\n"
+
+
 def test_page_loads_few_bytes() -> None:
     package()
     assert npm_package.loaded() <= npm_package.LARGEST

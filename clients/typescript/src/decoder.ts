@@ -4,8 +4,16 @@ import { edition, machine, objectOf, type Machine, type Value } from "./machine.
 /** Which frames a stream has: those to the arm, those from it, or both. */
 export type Listening = "request" | "reply" | "both";
 
-/** Why bytes are not a frame. */
-export type Reason = "no-header" | "bad-address" | "bad-length" | "unknown-id" | "bad-check" | "truncated";
+/** Why bytes are not a frame, in words. */
+export const REASONS = {
+  "no-header": "no frame starts here",
+  "bad-address": "a header with an address that the edition lacks",
+  "bad-length": "a header with a LEN that is not legal for its id",
+  "unknown-id": "a header with an id that the edition lacks",
+  "bad-check": "starts like a frame, but does not end like one",
+  truncated: "starts like a frame; the bytes end before it does",
+} as const;
+export type Reason = keyof typeof REASONS;
 
 /** A frame, or noise. */
 export interface Found {
@@ -76,7 +84,7 @@ export class Decoder {
     return this.cut(all);
   }
 
-  /** Take a silence: the bytes that could begin a frame do not. */
+  /** Note that the line is silent: bytes that could have begun a frame are noise. */
   flush(): Found[] {
     return this.cut(this.rest, undefined);
   }

@@ -18,7 +18,7 @@ interface Caller {
 /** A line that takes no bytes for this long is stuck. */
 export const WRITE_SECONDS = 1;
 
-/** For so many milliseconds, less than a byte takes at 115,200 baud, a port stays as empty as it was. */
+/** A port that was empty counts as empty for these milliseconds; a byte takes longer at 115,200 baud. */
 const EMPTY_MS = 0.05;
 
 /** Return the time in nanoseconds. */

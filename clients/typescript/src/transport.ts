@@ -5,7 +5,7 @@ import { LinkError } from "./errors.js";
 export interface Transport {
   /** Its name in errors; late replies to an earlier client of that name are recognised. */
   readonly url: string;
-  /** How many bytes are read at once; after fewer, nothing is unread. Left out: fewer say nothing. */
+  /** The most bytes of one read; a shorter read leaves nothing unread. Left out: it may leave bytes. */
   readonly chunk?: number;
   /** Begin to report what comes, and the reason if the stream ends. */
   start(received: (data: Uint8Array) => void, ended: (detail: string) => void): void;

@@ -3,14 +3,6 @@
 // that a user can send it as a link.
 (function () {
   const HERE = document.currentScript.src;
-  const REASONS = {
-    "no-header": "no frame starts here",
-    "bad-address": "a header with an address that the edition lacks",
-    "bad-length": "a header with a LEN that is not legal for its id",
-    "unknown-id": "a header with an id that the edition lacks",
-    "bad-check": "starts like a frame, but does not end like one",
-    truncated: "starts like a frame; the bytes end before it does",
-  };
   const EXAMPLES = {
     "get_angles": "FE FE 02 20 FA FE FE 0E 20 00 8C 00 3D FF E6 FF 3F 00 AF FF 51 FA",
     "noise between": "FF FF 01 04 02 38 02 BE FE FE 03 12 01 FA 00 00",
@@ -53,7 +45,7 @@
 
     // Return an event as the page shows it, with the first bytes of long noise.
     function shown({ offset, data, noise }, limit) {
-      if (noise) return { offset, noise, size: data.length, data: data.slice(0, limit) };
+      if (noise) return { offset, noise, why: REASONS[noise], size: data.length, data: data.slice(0, limit) };
       return { offset, data, message: decoder.read(data) };
     }
 
@@ -182,7 +174,7 @@
     const shown = chips(event.data, () => "noise");
     const card = element("section", { class: "event noise" },
       element("h3", {}, `noise at ${event.offset}: ${event.noise}`),
-      element("p", {}, `${REASONS[event.noise]}.`),
+      element("p", {}, `${event.why}.`),
       shown);
     if (event.data.length < event.size) card.append(moreBytes(root, event, shown));
     return card;

@@ -32,7 +32,7 @@ impl Edition {
         let (id, format) = (message.variant, self.protocol.table.frame());
         let layout = format.layout;
         let mut parts: Vec<Explained> = Vec::new();
-        // The parts before the data have an order of their own.
+        // Address, LEN and CMD have the order of the edition.
         let mut push = |bytes: Range<usize>, name: &str, meaning, raw| {
             let before = |part: &Explained| part.bytes.start <= bytes.start;
             let place = parts.iter().rposition(before).map_or(0, |at| at + 1);

@@ -32,7 +32,7 @@ pub struct Request {
 pub enum RequestError<E> {
     /// The command has a reply, and nobody replies to the address.
     Unanswered,
-    /// The command has rows of a value for each joint, and the device has only so many.
+    /// The command has a value for each joint of the arm; the addressed device has this number of joints.
     LacksJoints(usize),
     /// A value is not allowed, or there is no such command or address.
     Values(E),
