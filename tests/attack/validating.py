@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from bisect import bisect_left, bisect_right
 from collections import Counter
+from collections.abc import Iterable
+from itertools import chain
 from typing import NamedTuple
 
 from attack.arm import HostilePeer, Made
@@ -123,7 +125,7 @@ class Validator:
         if call.ended <= due or call.ending == "interrupted":
             return
         excess = call.ended - due
-        stalled = max(_stalled(call, stalls) for stalls in self._scene.stalls)
+        stalled = _stalled(call, chain.from_iterable(self._scene.stalls))
         if stalled >= excess:
             self.tally.counts["stalled"] += 1
             return
@@ -199,10 +201,15 @@ class Validator:
             self.tally.failures.append("\n".join([str(self._plan), title, *lines]))
 
 
-def _stalled(call: Call, stalls: list[tuple[float, float]]) -> float:
-    """Return for how many seconds of a call something was kept from running."""
-    return sum(
-        min(at, call.ended) - max(at - seconds, call.began)
-        for at, seconds in stalls
-        if at > call.began and at - seconds < call.ended
-    )
+def _stalled(call: Call, stalls: Iterable[tuple[float, float]]) -> float:
+    """Return for how many seconds of a call something was kept from running.
+
+    A call waits for several threads in turn, so stalls of different threads add up; a time at which
+    two were stalled counts once.
+    """
+    total, counted = 0.0, call.began
+    for start, end in sorted((at - seconds, at) for at, seconds in stalls):
+        start, end = max(start, counted), min(end, call.ended)
+        if start < end:
+            total, counted = total + end - start, end
+    return total
