@@ -1,4 +1,4 @@
-"""Say what an Arrow table must hold, from messages that were decoded one by one."""
+"""Compute the rows that an Arrow table must hold from messages that were decoded one by one."""
 
 from __future__ import annotations
 

@@ -49,12 +49,11 @@ TEMPORARY = pytest.StashKey[tempfile.TemporaryDirectory[str]]()
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    """Restore Ctrl-C in tests and their subprocesses; give them temporary files of their own.
+    """Enable Ctrl-C, set a temporary folder, and collect no garbage until the tests start.
 
-    Nearly all that is created until tests start is kept: collect no garbage until then.
-
-    A background shell may have disabled Ctrl-C. The notes on ports are temporary files: a test in
-    another process may have left one on a TCP port that this process uses next.
+    A background shell may have disabled Ctrl-C. Notes on ports are temporary files: with its own
+    folder, this process does not read the notes of tests in other processes. Nearly all objects
+    that exist before the tests start are kept, so collecting garbage would be wasted time.
     """
     gc.disable()
     signal.signal(signal.SIGINT, signal.default_int_handler)
@@ -63,7 +62,7 @@ def pytest_configure(config: pytest.Config) -> None:
 
 
 def pytest_collection_finish() -> None:
-    """Keep the garbage collector from what lives to the end, such as tests and loaded editions."""
+    """Let the garbage collector ignore objects that live to the end: tests, loaded editions."""
     gc.collect()
     gc.freeze()
     gc.enable()
@@ -78,9 +77,9 @@ def pytest_unconfigure(config: pytest.Config) -> None:
 
 @pytest.fixture(autouse=True)
 def _ports_without_notes() -> None:
-    """Forget the notes on ports: the system gives a TCP port again to a server of another test.
+    """Remove the notes on ports: the system may give the same TCP port to a server of another test.
 
-    Such a note makes a client send what ends half a request, which that server never received.
+    Because of a note, a client would complete a request that this server never received.
     """
     persisted_state._here.clear()
     with suppress(FileNotFoundError):

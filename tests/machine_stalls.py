@@ -37,7 +37,7 @@ class ProcessorMeter(StallMeter):
 class PtyMeter(StallMeter):
     """A meter that sends a byte through a pseudo-terminal.
 
-    A thread of the system passes on the bytes of all pseudo-terminals; it may be late by itself.
+    A thread of the system forwards the bytes of all pseudo-terminals; it may be late by itself.
 
     Attributes:
         slave: the descriptor of the end that it writes to.

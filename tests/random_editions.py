@@ -20,7 +20,7 @@ SENSOR = edition_of("sensor")
 
 @st.composite
 def editions(draw: st.DrawFn, folder: Path, name: str) -> Edition:
-    """Draw an edition. If its frame format is changed here, its vectors are not."""
+    """Draw an edition. Some get another frame format, which their vectors do not have."""
     _, edition = draw(random_specs.specs(folder, name))
     check(edition)
     other = replace(edition.frame, replies_have_command=False)

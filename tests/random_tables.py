@@ -163,7 +163,7 @@ REQUESTS = st.lists(variants(), min_size=1, max_size=2)
 
 @cache
 def _replies(least: int) -> st.SearchStrategy[list[Variant]]:
-    """Draw the variants of a reply, each with at least as many bytes as asked for."""
+    """Draw the variants of a reply, each with at least ``least`` bytes."""
     return st.lists(variants().filter(lambda variant: variant.size >= least), max_size=2)
 
 

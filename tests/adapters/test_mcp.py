@@ -38,7 +38,7 @@ Call = Callable[..., Coroutine[Any, Any, Any]]
 
 
 def talk(work: Callable[[Any, Call], Coroutine[Any, Any, None]], **options: Any) -> list[bytes]:
-    """Run a client, a server and an arm in this process; return what the arm was sent."""
+    """Run a client, a server and an arm in this process; return the requests that arrived."""
     sent: list[bytes] = []
 
     def note(traffic: Traffic) -> None:
@@ -143,14 +143,14 @@ def test_motion_keeps_the_limits_and_reports_its_end() -> None:
         assert "angles.j1 is 169" in await call("move_angles", angles=[169] + [0] * 5, speed=9)
         found = await call("move_angles", angles=[5] + [0] * 5, speed=100)
         assert found == {"result": "the arm is there"}
-        # The arm itself says that it is there: near enough.
+        # The motion counts as ended when the arm reports the target as reached, within a tolerance.
         assert (await call("get_angles"))["result"]["j1"] == pytest.approx(5, abs=0.5)
 
     # The arm moved, so it is stopped when the client leaves.
     assert [each[3] for each in talk(work, **MOTION)] == [SEND_ANGLES, STOP[3]]
 
 
-def test_stop_works_while_another_tool_waits_and_cancelling_that_stops() -> None:
+def test_stop_works_while_another_tool_waits_and_cancelling_that_tool_stops_the_arm() -> None:
     async def work(client: Any, call: Call) -> None:
         moving = asyncio.create_task(call("move_angles", **FAR))
         await asyncio.sleep(0.3)

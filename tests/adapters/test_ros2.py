@@ -1,4 +1,4 @@
-"""``cobotwire ros2`` beside a participant that has types and bytes from elsewhere (rosbags)."""
+"""Run ``cobotwire ros2`` with a participant that takes its types and bytes from rosbags."""
 
 from __future__ import annotations
 
@@ -60,7 +60,7 @@ def in_loop(test: Callable[..., Coroutine[Any, Any, None]]) -> Callable[..., Non
 
 
 class Published:
-    """A simulated arm that is published while the block runs, and a participant beside it."""
+    """A simulated arm that is published while the block runs, and a participant."""
 
     def __init__(self, silence: float | None = None, limits: Limits | None = None) -> None:
         self.ahead = 0.0
@@ -216,7 +216,7 @@ async def test_trajectory_that_is_not_allowed_is_refused_whole_with_the_reason()
             refused = await here.report("motion", text)
             assert refused.level == 2
             assert refused.message.startswith("refused: ")
-        # Only queries were sent: these have no byte after the command.
+        # The arm received only queries, which carry no data.
         assert {each[2] for each in here.sent} == {2}
 
 

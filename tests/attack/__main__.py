@@ -1,4 +1,4 @@
-"""Attack the clients with a hostile peer; print what became of each call, a row a profile.
+"""Attack the clients with a hostile peer; print the outcomes of the calls, a row for each profile.
 
 PYTHONPATH=tests python -m attack                           every profile, 180 s
 PYTHONPATH=tests python -m attack --profile late --seed 7   one profile, from seed 7 on

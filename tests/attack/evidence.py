@@ -129,9 +129,9 @@ class Evidence:
         return self._displaced(found, made)
 
     def _displaced(self, found: Found, made: Made) -> str:
-        """Return the known limit because of which the call took another reply than this."""
+        """Return the known limit that explains why the call took another reply than this one."""
         for call in self._calls_of(made):
-            # Equal values do not show it, but a call cannot take what was delivered after its end.
+            # A call cannot take a reply that was delivered after its end, even of equal value.
             took_another = call.value != made.value or call.ended < found.at
             if call.ending == "value" and took_another:
                 limit = self._limit_of_taken(call)

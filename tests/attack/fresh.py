@@ -17,7 +17,7 @@ from attack.setting import Setting
 from attack.users import run_threads
 
 TESTS = Path(__file__).parents[1]
-# Besides the run itself: to start, to import, and to end.
+# The time that the process needs besides the run: to start, import and end.
 START_SECONDS = 5.0
 
 

@@ -1,4 +1,4 @@
-"""What all users of a run share: the client's class, the record, and when the run is over."""
+"""What all users of a run share: the client's class, the record, and the end of the run."""
 
 from __future__ import annotations
 

@@ -29,9 +29,10 @@ def call(number: int, x: float, began: float, ended: float, value: bool) -> Call
 
 
 def evidence_of_a_chain(second_ended: float) -> tuple[Evidence, Call]:
-    """Return a call that took the reply to the call before, which may have taken a copy.
+    """Return the evidence of three calls, and the third, which took the reply to the second.
 
-    All replies but its own have the same value, so that values do not distinguish them.
+    The first reply is delivered twice, and all values are equal. So the second call took the copy
+    if it ended before its own reply came.
     """
     first, second = reply(1.0, 10.00, False), reply(2.0, 10.07, False)
     calls = [

@@ -229,7 +229,7 @@ def _cancelled_after(seconds: float, arm: InLoop, name: str) -> Callable[..., An
 
     async def call(*arguments: Any, **options: Any) -> Any:
         task = asyncio.current_task()
-        assert task is not None, "the loop runs it in one"
+        assert task is not None, "the loop runs each call as a task"
         timer = asyncio.get_running_loop().call_later(seconds, task.cancel)
         try:
             return await getattr(arm.client, name)(*arguments, **options)

@@ -1,4 +1,4 @@
-"""Decide for each call of a run what became of it, from what the arm and the users wrote down."""
+"""Determine the outcome of each call of a run from the records of the arm and of the users."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Take the rows of a capture as arrays and tables; captures that are large, hostile or unusual."""
+"""Read the rows of ordinary, large, hostile and unusual captures as arrays and tables."""
 
 from __future__ import annotations
 
@@ -168,7 +168,7 @@ def test_error_of_the_function_that_returns_codecs_is_raised(
 
 
 def test_frame_in_pieces_has_the_time_of_its_first_byte() -> None:
-    # The framer finds the frame inside of a packet of another program: its bytes came later.
+    # The frame begins inside a packet of another program, and its bytes came after the packet's.
     data = b"\x00\x01" + REPLY
     packet = Packet(START, "received", data, "bytes", "", (Piece(2, START), Piece(17, START + 77)))
     found = read_columns(written([packet]), NATIVE)

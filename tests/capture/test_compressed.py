@@ -1,4 +1,4 @@
-"""Read compressed captures: like the capture itself, in bounded memory, whatever is damaged."""
+"""Compressed captures give the same packets as plain ones, in bounded memory, even if damaged."""
 
 from __future__ import annotations
 

@@ -132,7 +132,7 @@ def test_arbitrary_bytes_are_an_error_that_leaves_no_file(data: bytes) -> None:
             except DAMAGE:
                 assert not out.exists()
             out.unlink(missing_ok=True)
-        # It may name an unknown edition.
+        # The edited file may name an unknown edition.
         with suppress(UsageError):
             assert overview(source, recorded_codecs()).size <= len(data)
 
@@ -229,7 +229,7 @@ def test_chunks_cannot_be_cut_by_command(tmp_path: Path) -> None:
         cut(source, tmp_path / "out.pcapng", choose=by_command(recorded_codecs(), [], ["x"], False))
 
 
-def test_interrupted_or_refused_cut_leaves_nothing(tmp_path: Path) -> None:
+def test_interrupted_or_refused_cut_leaves_no_file(tmp_path: Path) -> None:
     source = recording(tmp_path / "in.pcapng", polled(3))
 
     def interrupt(size: int) -> None:

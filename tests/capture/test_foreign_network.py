@@ -1,4 +1,4 @@
-"""Join the TCP payloads of network captures: every byte once, in order, and no gap unseen."""
+"""Join the TCP payloads of network captures: each byte once, in order, with every gap reported."""
 
 from __future__ import annotations
 
@@ -64,7 +64,7 @@ LINKS: dict[int, Callable[[bytes], bytes]] = {
 
 
 @pytest.mark.parametrize("link_type", LINKS)
-def test_packet_is_found_behind_the_header_of_its_link(link_type: int) -> None:
+def test_packet_is_found_after_the_header_of_its_link(link_type: int) -> None:
     file = pcap([LINKS[link_type](packet(0, ANGLES) + b"padding")], link_type)
     assert directions(capture_of(opened(file))) == {"received": ANGLES}
 
@@ -99,7 +99,7 @@ def test_segments_that_overlap_repeat_and_overtake_give_each_byte_once(
 @pytest.mark.parametrize("acknowledged", [0, 40])
 def test_lost_segment_divides_the_stream_and_is_reported(acknowledged: int) -> None:
     packets = [packet(0, ANGLES[:4]), packet(14, b"after")]
-    # With an acknowledgement of the missing bytes, the client has them, and nothing is waited for.
+    # If the peer acknowledges the missing bytes, they are not sent again, so none are awaited.
     packets += [packet(0, acknowledged=acknowledged, sent=True), packet(19, b"!")]
     capture = capture_of(opened(pcap(packets)))
     found = [(each.interface, each.data) for each in capture]

@@ -88,7 +88,7 @@ def test_call_accepts_lists_enum_names_and_negative_numbers(
     assert moved.returncode == 0, moved.stderr
     assert run(*call, "set_end_type", "tool").returncode == 0
     assert run(*call, "set_digital_output", "23", "on").returncode == 0
-    # Requests without a reply have been received once a later one is answered.
+    # Once a later query has its reply, the earlier one-way requests have arrived.
     assert run(*call, "is_power_on").stdout == "True\n"
     assert simulated.state.angles.target(0.0) == pytest.approx((-10, 0, 0, 0, 0, 5.5), abs=0.044)
     assert (simulated.state.kept["end_type"], simulated.state.kept["pins"]) == (1, {(23,): True})

@@ -1,4 +1,4 @@
-"""A file or a peer that is hostile is a plain error, or is shown; it is never a traceback."""
+"""A hostile file or peer is shown, or causes a plain error, never a traceback."""
 
 from __future__ import annotations
 
@@ -69,7 +69,7 @@ def test_number_with_thousands_of_digits_in_a_comment_changes_nothing(
     tmp_path: Path, verb: list[str], comment: str
 ) -> None:
     code, _ = show(verb, write(tmp_path / "arm.pcapng", comment))
-    # It has no mark of its end, which decode reports.
+    # The recording lacks the mark of its end; only decode reports this.
     assert code == (verb[0] == "decode")
     [packet] = read(tmp_path / "arm.pcapng")
     assert packet.pieces in ((), (Piece(17, SECOND + 1),))

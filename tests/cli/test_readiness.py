@@ -122,7 +122,7 @@ def test_commands_that_end_a_motion_are_sent_to_any_arm() -> None:
         for name in ("pause", "resume", "stop", "clear_queue", "power_on"):
             result = cobotwire("call", server.url, name)
             assert (result.returncode, result.stderr[:6]) == (0, "sent; "), name
-        # Requests without a reply have been received once a later one is answered.
+        # Once a later query has its reply, the earlier one-way requests have arrived.
         assert cobotwire("call", server.url, "is_power_on").returncode == 0
     assert (arm.state.paused, arm.state.powered) == (False, True)
 
@@ -136,7 +136,7 @@ def test_motion_to_a_silent_arm_is_not_sent() -> None:
     assert received.replace(bytes.fromhex("FE FE 02 12 FA"), b"") == b""
 
 
-def test_state_that_a_firmware_does_not_report_does_not_keep_a_motion_back() -> None:
+def test_missing_reply_to_a_state_query_does_not_prevent_a_motion() -> None:
     on = bytes.fromhex("FE FE 03 12 01 FA")
     motion = bytes.fromhex("FE FE 0F 22 03 E8 00 00 00 00 00 00 00 00 00 00 1E FA")
     with ScriptedPeer([on]) as peer:

@@ -1,4 +1,4 @@
-"""Run ``cobotwire survey``: its file, its question, a key that stops it, and what is continued."""
+"""Run ``cobotwire survey``: the file, the confirmation of motion, the stop key, continuation."""
 
 from __future__ import annotations
 

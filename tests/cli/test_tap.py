@@ -55,7 +55,7 @@ def calling(url: str) -> Iterator[MyCobot280]:
     ended = threading.Event()
 
     def run() -> None:
-        # Until the tap ends, or the test.
+        # The loop ends with the tap or the test.
         with suppress(LinkError):
             while not ended.wait(0.02):
                 arm.get_angles()

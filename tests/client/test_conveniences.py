@@ -84,7 +84,7 @@ def test_arm_moves_to_a_target_with_the_mode_of_other_clients() -> None:
     assert driven.arm.is_moving()
 
 
-def test_speed_of_the_line_is_the_second_argument() -> None:
+def test_baud_rate_is_the_second_argument() -> None:
     for client in (MyCobot280, AsyncMyCobot280):
         second = list(inspect.signature(client).parameters.values())[1]
         assert (second.name, second.kind) == ("baudrate", second.POSITIONAL_OR_KEYWORD)

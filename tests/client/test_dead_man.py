@@ -42,7 +42,7 @@ def test_silence_ends_once_and_only_after_its_seconds(events: list[tuple[float, 
     silence, now, fed, stops, expected = Silence(1.0), 0.0, inf, 0, 0
     for gap, event in events:
         now += gap
-        # A driver acts when the time is over, which comes before the event.
+        # The owner of the switch acts as soon as the time is over, before the next event.
         if silence.left(now) <= 0:
             silence.rest()
             stops += 1

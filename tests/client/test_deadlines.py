@@ -112,7 +112,7 @@ def test_calls_end_by_the_deadline_and_errors_report_correctly_what_was_sent(
 ) -> None:
     with faulty_arm(*faults, kind=kind) as (url, received):
         calls = run(url, timeout=TIMEOUT, deadline=DEADLINE, retry=ONCE, codec=codec)
-        # What was not sent by its deadline would come now.
+        # A request that was sent after its deadline would arrive now.
         time.sleep(0.1)
     assert max(call.seconds for call in calls) < DEADLINE + MORE
     assert sum(call.attempts for call in calls) == sum(
@@ -135,7 +135,7 @@ def test_error_says_what_the_call_waited_for() -> None:
     late = submit(exchange, encode("get_angles", ()), 0.8, ONCE, 0.2, 0.8)
     assert not exchange.outgoing(0.8, drained=True), "its caller no longer waits"
     submit(exchange, encode("is_power_on", ()), 0.8, ONCE, 0.2, 1.0)
-    assert not exchange.outgoing(0.8, drained=True), "a late reply could pass for its own"
+    assert not exchange.outgoing(0.8, drained=True), "a late reply could be mistaken for its own"
     exchange.note_full(True)
     exchange.advance(b"", 0.9)
     texts = [str(pending._error) for pending in (first, turn, hold, reply, late)]
@@ -218,7 +218,7 @@ def test_query_that_is_repeated_into_a_full_line_ends_in_time(open_arm: Opener) 
 
 
 @pytest.mark.parametrize("who", [MyCobot280, lambda *a, **o: InLoop(AsyncMyCobot280, *a, **o)])
-def test_acknowledgement_is_not_waited_for_longer(who: Callable[..., Any]) -> None:
+def test_wait_for_an_acknowledgement_ends_by_the_deadline(who: Callable[..., Any]) -> None:
     with ScriptedPeer() as peer, who(peer.url, deadline=0.1) as arm:
         began = time.monotonic()
         with pytest.raises(ReplyTimeout, match=r"within its deadline, 0\.1.. s after 1 attempt"):
@@ -226,7 +226,7 @@ def test_acknowledgement_is_not_waited_for_longer(who: Callable[..., Any]) -> No
         assert time.monotonic() - began < 0.1 + MORE
 
 
-def test_waited_motion_has_a_time_of_its_own(open_arm: Opener) -> None:
+def test_waited_motion_has_a_timeout_of_its_own(open_arm: Opener) -> None:
     with PtyServer(SimulatedArm(TABLE)) as server, open_arm(server.url, deadline=0.2) as arm:
         arm.power_on()
         began = time.monotonic()

@@ -196,7 +196,7 @@ def test_asyncio_client_iterates_events(staged: Any) -> None:
         assert asyncio.run(collect(server.url)) == [ended, ended]
 
 
-def test_refused_status_is_an_error_with_its_word(staged: Any) -> None:
+def test_refused_status_is_an_error_with_its_name(staged: Any) -> None:
     arm = staged.Trial(MemoryTransport(MemoryPeer(frame(staged, "power_on", 255, 3))))
     with pytest.raises(RequestRefused, match=r"power_on\(\): status is NO_POWER \(3\)") as caught:
         arm.power_on(ack_within=0.5)
@@ -287,7 +287,7 @@ def test_device_may_send_events_at_any_time(staged: Any, mark: int) -> None:
         ("event: true,\n     reply", "event: true,\n     ack: true, reply", "bad-event"),
     ],
 )
-def test_wrong_statement_is_reported(tmp_path: Any, old: str, new: str, code: str) -> None:
+def test_spec_with_a_wrong_event_is_reported(tmp_path: Any, old: str, new: str, code: str) -> None:
     assert old in STAGED
     try:
         _, problems = edition_of(STAGED.replace(old, new), tmp_path)

@@ -1,4 +1,4 @@
-"""Follow paths and live targets on the simulated arm: no pause, the ends, and exactly one stop."""
+"""Follow paths and live targets: without pauses, with each way to end, with exactly one stop."""
 
 from __future__ import annotations
 
@@ -87,7 +87,10 @@ def test_each_edition_follows_or_says_why_not(name: str) -> None:
 
 
 def once(values: dict[float, Any], clock: Watched) -> Callable[[], Any]:
-    """Return a source that turns joint 1 and then does what ``values`` has from a time on."""
+    """Return a source that turns joint 1, until it gives or raises the newest of timed values.
+
+    ``values`` has the time from which each value is given; a type is raised.
+    """
 
     def source() -> Any:
         for since, value in reversed(values.items()):
@@ -237,7 +240,7 @@ def test_asyncio_client_follows_paths_and_asynchronous_iterators_and_stops_once_
             ]
             assert STOP not in frames(traffic)
             sent, moving = len(traffic), asyncio.create_task(arm.follow([[90, 0, 0, 0, 0, 0]]))
-            # It reads the joints and chooses the mode before it moves them.
+            # follow() reads the joints and chooses the mode before it moves them.
             while not any(frame[3] == 0x22 for frame in frames(traffic[sent:])):
                 await asyncio.sleep(0.01)
             with pytest.raises(UsageError, match="another follow"):
@@ -254,7 +257,7 @@ def test_asyncio_client_follows_paths_and_asynchronous_iterators_and_stops_once_
         assert report.sent > 10
 
 
-def test_stop_of_another_part_of_the_program_ends_follow() -> None:
+def test_stop_by_another_thread_ends_follow() -> None:
     arm = MyCobot280(Watched().transport)
 
     def targets() -> Sequence[float]:
@@ -268,7 +271,7 @@ def test_stop_of_another_part_of_the_program_ends_follow() -> None:
 
 
 @pytest.mark.parametrize(("argument", "value"), [("limits", Limits(speed=3)), ("rate", 4.9)])
-def test_argument_of_another_kind_is_named(argument: str, value: Any) -> None:
+def test_argument_of_a_wrong_type_is_named(argument: str, value: Any) -> None:
     with MyCobot280(Watched().transport) as arm, pytest.raises(UsageError) as caught:
         arm.follow([[1, 0, 0, 0, 0, 0]], **{argument: value})
     assert caught.value.argument == argument

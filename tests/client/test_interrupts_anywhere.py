@@ -23,8 +23,8 @@ from stalls import StallMeter
 ROOMS = ("client", "session", "transport", "codec/reference")
 STOP = "FE FE 02 29 FA"
 TIMEOUT = 0.4
-# The interrupt may lose bytes that were just read. Then the request that they replied to is sent
-# again, and the next one like it is held.
+# The interrupt may lose a reply that was just read. Then the request is sent again, and the next
+# request like it waits until no second reply can come.
 RETRY = RetryPolicy(grace=0.05)
 # The extra time that the others may take to notice that the leader is gone, and to take over.
 LATE = TIMEOUT + RETRY.grace + 0.1
@@ -112,11 +112,11 @@ class OtherThreads:
 
 @contextmanager
 def tracing(tracer: InterruptAt) -> Iterator[None]:
-    """Trace a block; its interrupt ends here."""
+    """Trace a block, and catch the interrupt that the tracer raises in it."""
     try:
         sys.settrace(tracer)
         yield
-        # An interrupt at the last line comes only now.
+        # An interrupt at the last line of the block is raised only here.
         time.sleep(0)
     except KeyboardInterrupt:
         pass

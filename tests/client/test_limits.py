@@ -230,7 +230,7 @@ def test_no_encoded_request_exceeds_a_speed_or_leaves_a_workspace(
         for each in variants_of(table)
         if each.direction == "request" and each.command.safety == "motion"
     ]
-    # Half of the draws, since they are few.
+    # Half of the draws are joint targets, which are only a few of the motions.
     targets = [each for each in moving if each.command.role in ("joint targets", "joint target")]
     often: bool = data.draw(st.booleans())
     moving = targets if targets and often else moving

@@ -220,7 +220,7 @@ def test_motion_that_timed_out_is_stopped_once(simulated: SimulatedArm, way: str
 
 
 @pytest.mark.parametrize("way", OPENERS)
-def test_arm_is_left_alone_if_its_user_says_so(simulated: SimulatedArm, way: str) -> None:
+def test_moving_arm_is_not_stopped_with_on_error_leave(simulated: SimulatedArm, way: str) -> None:
     traffic: list[Traffic] = []
     with PtyServer(simulated) as server:
         with pytest.raises(MotionTimeout) as caught:
@@ -245,6 +245,6 @@ def test_leaving_the_block_without_an_exception_changes_nothing(
             assert arm.is_moving() is True
 
 
-def test_other_word_for_on_error_is_rejected() -> None:
+def test_unknown_value_of_on_error_is_rejected() -> None:
     with pytest.raises(UsageError, match="on_error is 'halt'; allowed: 'stop' or 'leave'"):
         MyCobot280("loop://", on_error="halt")  # type: ignore[arg-type]

@@ -135,7 +135,7 @@ def test_motion_at_speed_0_is_reported(tmp_path: Path) -> None:
         edition_of(SPECS["four joints"].replace("frame:", stated, 1), tmp_path)
 
 
-def test_arm_that_does_not_get_there_is_stopped(package: Any) -> None:
+def test_arm_that_misses_its_target_is_stopped(package: Any) -> None:
     arm, simulated = powered(package)
     simulated.state.maximum[1] = 10.0
     target = [0.0, 90.0] + [0.0] * (package.TABLE.joints - 2)
@@ -167,7 +167,7 @@ def test_limits_find_the_targets_in_any_order(package: Any) -> None:
     arm.turn_joint(50, 6.0, 2)
 
 
-def test_target_with_another_number_of_parts_is_rejected_before_it_is_sent(package: Any) -> None:
+def test_target_with_a_wrong_number_of_values_is_rejected_before_it_is_sent(package: Any) -> None:
     arm, _ = powered(package)
     with pytest.raises(UsageError):
         arm.move_angles([0.0] * (package.TABLE.joints + 1), 50)

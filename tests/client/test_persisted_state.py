@@ -170,7 +170,7 @@ def test_clock_that_shows_less_than_the_note_is_of_another_boot(
 
 
 def _damage(memory: PortMemory, folder: Path, **values: object) -> None:
-    """Leave a note with these values in the place of its own."""
+    """Leave a note, and replace these values in it."""
     until = time.monotonic() + 10
     memory.leave(PersistedState((LateFrame(GET_ENCODER, until),), (Part(MOTION, 8),)))
     persisted_state._here.clear()
@@ -193,7 +193,7 @@ FRAMES = st.sampled_from([GET_ENCODER, MOTION, b"\xfe\xfe\x1a"]).map(bytes.hex) 
     max_size=8
 ).map(bytes.hex)
 NUMBERS = st.floats() | st.integers() | st.just(10**400)
-# Each value is the right one for its key in a note, or any other.
+# For each key of a note: sometimes a value of the right type, sometimes any JSON.
 VALUES = {
     "port": ANY_JSON,
     "boot": ANY_JSON,
@@ -229,7 +229,7 @@ def test_whatever_a_note_holds_a_port_is_opened_and_holds_no_request_for_longer_
     found = memory.recall()
     assert all(late.until <= time.monotonic() + LONGEST for late in found.late)
     assert bool(caplog.records) <= found.empty, "what is used needs no warning"
-    assert bool(caplog.records) or isinstance(content, dict), "bytes are no note"
+    assert bool(caplog.records) or isinstance(content, dict), "only an object needs no warning"
     assert not list(folder.iterdir())
     exchange = Exchange(CODEC)
     exchange.restore(found)

@@ -1,4 +1,4 @@
-"""Periods of asyncio streams that are closed, cancelled, or share the arm."""
+"""Asyncio streams that are closed or cancelled during a period, or that share the arm."""
 
 from __future__ import annotations
 
@@ -21,11 +21,11 @@ OTHERS = bytes.fromhex("FE FE 0E 20 01 8C 00 3D FF E6 FF 3F 00 AF FF 51 FA")
 ASK_POWER = bytes.fromhex("FE FE 02 12 FA")
 POWER = bytes.fromhex("FE FE 03 12 01 FA")
 NO_GRACE = RetryPolicy(attempts=1, grace=0.0)
-# Far longer than a test takes.
+# The grace time is far longer than a test takes.
 LONG = RetryPolicy(attempts=1, grace=60.0)
-# A reply that is this late leaves time to act before it.
+# A delay of replies, in seconds, during which a test can act.
 SLOW = 0.2
-# A test that takes longer hangs, in seconds.
+# A test that takes longer has hung, in seconds.
 LONGEST = 15
 
 
@@ -120,7 +120,7 @@ def test_sample_that_is_cancelled_before_its_period_sends_nothing() -> None:
     assert run(ScriptedPeer(*[[ANGLES]] * 3), drive) == ((True, 1), REQUEST * 2)
 
 
-def test_request_that_is_under_way_is_left_to_the_next_session() -> None:
+def test_outstanding_request_is_noted_for_the_next_session() -> None:
     peer = ScriptedPeer()
 
     async def drive(arm: AsyncMyCobot) -> Any:

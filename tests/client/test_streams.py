@@ -32,7 +32,7 @@ NEWER = openers(MyCobot280, AsyncMyCobot280)
 
 def test_samples_are_numbered_timed_and_typed(open_arm: Opener, server: PtyServer) -> None:
     with open_arm(server.url) as arm:
-        # Three requests take turns with other programs of a busy machine.
+        # The rate leaves room for the delays of a busy machine.
         stream = arm.stream(GET_ANGLES, get_encoder(2), GET_COORDS, rate=20)
         started = time.monotonic()
         samples = list(islice(stream, 25))
@@ -96,7 +96,7 @@ def test_missing_and_illegal_replies_are_counted_and_the_stream_continues(
     open_arm: Opener, peer_on: Any
 ) -> None:
     powered, nonsense = (bytes.fromhex(f"FE FE 03 12 {value} FA") for value in ("01", "05"))
-    # A sixth request, after a reply that was too late, closes the line: the test does not wait on.
+    # The peer closes the line at a sixth request, so that a late fifth reply fails at once.
     script = [[powered], [], [powered], [nonsense], [powered], [None]]
     with peer_on(*script) as peer, open_arm(peer.url, retry=QUICK) as arm:
         stream = arm.stream(IS_POWER_ON, rate=20, timeout=0.2)

@@ -50,7 +50,7 @@ def test_call_that_raises_does_not_stop_the_others() -> None:
     assert asyncio.run(run()) == ["failed", "failed"]
 
 
-def test_call_can_set_another_one() -> None:
+def test_call_can_set_another_timer() -> None:
     async def run() -> int:
         timers, done = timers_of(asyncio.get_running_loop()), asyncio.Event()
         count = 0

@@ -142,7 +142,7 @@ def test_motion_of_one_limb_that_fails_stops_the_other_limb_too() -> None:
     robot.right.jog_angle(1, 1, 30)
     with pytest.raises(MotionTimeout), robot:
         robot.left.move_angles([100, 0, 0, 0, 0, 0], 1, timeout=0.5)
-    # One for each limb, and one for the address of the client itself.
+    # Each limb gets a stop, and so does the address of the client itself.
     assert buddy.stops == 3
 
 

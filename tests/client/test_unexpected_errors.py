@@ -51,7 +51,7 @@ def test_stop_is_sent_and_the_port_is_closed_whatever_stop_and_close_raise(
     # For asyncio a thread writes, and counts any error of the transport as a lost line.
     repeated = open_arm is MyCobot
     sent = failures == 0 or (failures == 1 and repeated)
-    # The bytes before it end what the arm may have of the first one.
+    # Bytes before the second stop complete the first one, of which the arm may have a part.
     assert transport.written.endswith(STOP) if sent else transport.written == b""
     assert transport.closed
     notes = getattr(error, "__notes__", [])
@@ -75,5 +75,5 @@ def test_stop_is_sent_to_other_addresses_if_one_raises() -> None:
     arm.at("right")
     with pytest.raises(ValueError, match="own"):
         leave_by(ValueError("own"), arm)
-    assert transport.written.endswith(bytes.fromhex("FE FE 02 02 29 29")), "the second one's"
+    assert transport.written.endswith(bytes.fromhex("FE FE 02 02 29 29")), "the second stop"
     assert transport.closed

@@ -31,7 +31,7 @@ def plain(columns: Columns) -> Any:
 
 
 @given(random_tables.any_tables(), LISTENING, st.booleans(), st.data())
-def test_stream_in_pieces_has_the_same_rows(
+def test_stream_in_chunks_has_the_same_rows(
     table: Table, listening: Listening, raw: bool, data: st.DataObject
 ) -> None:
     codec = codecs.load(table, data.draw(st.sampled_from(CODECS)))

@@ -12,7 +12,7 @@ from cobotwire.protocol.errors import ProtocolError, UsageError
 from cobotwire.protocol.table import FrameFormat, Number, Variant
 
 WORDS = 65_536
-# The numbers of a frame share the raw values between them; the reference decodes each frame slowly.
+# How many raw values share a frame: the reference codec decodes each frame slowly.
 EACH = 64
 
 

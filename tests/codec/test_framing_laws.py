@@ -177,7 +177,7 @@ def test_noise_seen_in_the_field_hides_no_frame(codec: Codec, noise: str) -> Non
 @pytest.mark.parametrize(
     ("text", "inside"),
     [
-        # A header of get_angles, and an FA where that frame would end: it is false but legal.
+        # By chance an FA is where the frame of a false header would end: that frame is legal.
         ("FE FE 0E 20 FE FE 03 12 01 FA FE FE 03 53 87 FA FA", [4, 10]),
         ("FE FE 0E 20 00 00 FE FE 03 12 01 FA 00 00 00 00 FA", [6]),
     ],

@@ -57,7 +57,7 @@ print(round((peak() - before) * 1000 / (len(data) + output)))
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="reads the peak from Linux's /proc")
-def test_stream_in_pieces_needs_no_more_memory_for_more_pieces() -> None:
+def test_memory_for_a_stream_does_not_grow_with_the_number_of_chunks() -> None:
     grown = _run("""
 reader = native.column_reader("reply")
 piece = frame * (1 << 16)

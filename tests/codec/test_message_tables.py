@@ -83,7 +83,7 @@ def filled(row: dict[str, Any], names: list[str]) -> dict[str, Any]:
 
 
 def lacks_pandas_type(field: Any) -> bool:
-    """Return whether it holds bytes, lists, or flags that may be missing."""
+    """Return whether a column holds bytes, lists, or flags that may be missing."""
     if pa.types.is_boolean(field.type):
         return bool(field.nullable)
     return bool(pa.types.is_binary(field.type) or pa.types.is_list(field.type))

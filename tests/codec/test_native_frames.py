@@ -1,6 +1,6 @@
 """The native classes of frames and framers: their memory, arguments and attributes.
 
-test_agreement compares its values with those of the reference.
+``test_agreement.py`` compares their values with those of the reference.
 """
 
 from __future__ import annotations

@@ -29,7 +29,7 @@ SCALES = [(-1, 10), (1, -10), (-1, 1), (-7, 100), (-3, -20), (1, 10)]
 
 @pytest.mark.parametrize("frames", [2, 40_000])
 def test_rejected_frames_are_listed_in_the_order_of_the_stream(frames: int) -> None:
-    """Also where commands take turns, and where the native codec reads whole blocks."""
+    """This holds for interleaved commands, and where the native codec reads whole blocks."""
     request = (Variant((BOUNDED,)),)
     table = small_tables.table(*(small_tables.command(id, f"c{id}", request) for id in (9, 5, 7)))
     each = [table.frame.enclose(id, b"\0") for id in (7, 9, 5, 9, 7)]
@@ -67,7 +67,7 @@ def test_zero_of_a_negative_scale_has_the_sign_that_the_reference_gives_it(
 
 @pytest.mark.parametrize("listening", ["request", "reply", "both"])
 @pytest.mark.parametrize("way", [None, "request", "reply"])
-def test_error_about_an_unknown_id_names_the_direction_that_was_asked_for(
+def test_error_about_an_unknown_id_names_the_requested_direction(
     listening: Listening, way: Any
 ) -> None:
     empty = (Variant(()),)

@@ -31,7 +31,7 @@ from vectors import ROOT
 pytestmark = needed
 EDITIONS = sorted((ROOT / "python/cobotwire/editions").glob("*/edition.json"))
 MYCOBOT = ROOT / "python/cobotwire/editions/mycobot/edition.json"
-# Beside the smallest one: with addresses, floats and lists.
+# Besides the smallest edition: editions with addresses, floats and lists.
 DAMAGED = ["mycobot", "mybuddy", "pro450"]
 OTHERS: list[Any] = [
     *(None, True, -1, 0, 1, 2, 8, 255, 1 << 14, -(1 << 63), (1 << 63) - 1, (1 << 64) - 1, 1e300),

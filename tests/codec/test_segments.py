@@ -97,7 +97,7 @@ def adversarial(draw: st.DrawFn) -> bytes:
 
 @st.composite
 def streams(draw: st.DrawFn, table: Table) -> bytes:
-    """Draw the bytes of a bad line, with segments that were made to mislead among them."""
+    """Draw the bytes of a bad line, some of them made to mislead a scan."""
     parts = [draw(random_tables.any_streams(table))]
     if table in TABLES.values() and draw(st.booleans()):
         parts += [adversarial(draw), draw(strategies.streams(table))]
@@ -105,10 +105,10 @@ def streams(draw: st.DrawFn, table: Table) -> bytes:
 
 
 @given(table=random_tables.any_tables(), data=st.data(), listening=LISTENING, raw=st.booleans())
-def test_pieces_cut_at_any_bytes_hold_what_one_scan_finds(
+def test_segments_cut_at_any_bytes_hold_what_one_scan_finds(
     table: Table, data: st.DataObject, listening: Listening, raw: bool
 ) -> None:
-    """With other headers, layouts, checks and ids, too, and replies without an id."""
+    """This holds for any header, layout, check and id, and for replies without an id."""
     codec = codecs.load(table, data.draw(st.sampled_from(CODECS)))
     stream = data.draw(streams(table))
     pieces = divided(

@@ -1,4 +1,4 @@
-"""A column reader serves one thread at a time: a second one gets an error, and spoils nothing."""
+"""A column reader serves one thread; a second thread gets an error and changes nothing."""
 
 from __future__ import annotations
 
@@ -66,7 +66,7 @@ def test_second_thread_gets_an_error_while_the_first_one_reads(codec: Codec, nam
     assert errors[0].argument == "column_reader"
 
 
-def test_reader_works_on_after_an_error_of_a_second_thread(codec: Codec) -> None:
+def test_reader_continues_after_an_error_of_a_second_thread(codec: Codec) -> None:
     with busy(codec) as thread:
         while thread.is_alive():
             try:

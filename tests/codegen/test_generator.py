@@ -120,7 +120,7 @@ def test_products_are_written_only_with_their_option(generated: Path) -> None:
     assert run(generated, "--products", "--check").returncode == 1
 
 
-def test_files_of_the_rust_crates_are_written_alone(generated: Path) -> None:
+def test_option_rust_data_writes_only_the_files_of_the_rust_crates(generated: Path) -> None:
     stale = generated / GENERATED[0] / "values.py"
     stale.write_text("")
     assert run(generated, "--rust-data", "--check").returncode == 1
@@ -222,7 +222,7 @@ def _stated(record: object, value: object) -> object:
 
 
 def test_table_as_json_equals_the_table_of_python() -> None:
-    """Check what the Rust tests read: all that it states, and defaults for the rest."""
+    """The JSON that the Rust tests read states the table; what it leaves out has its default."""
     from cobotwire.editions.mycobot import TABLE
     from json_tables import table_of
 

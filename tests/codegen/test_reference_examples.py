@@ -20,9 +20,9 @@ from cobotwire_codegen.render import render_reference
 from memory_peer import MemoryPeer
 
 SECTION = re.compile(r"^## (\w+)$(.*?)(?=^## |\Z)", re.DOTALL | re.MULTILINE)
-# The first thing of a section.
+# A section begins with its call.
 CALL = re.compile(r"\n\n```pycon\n>>> (arm\..*)\n(?:(.*)\n)?```$", re.MULTILINE)
-# A message without fields is its only frame; others have the example's bytes below the boxes.
+# A message without fields is shown as its only frame, others as boxes with example bytes below.
 MESSAGE = re.compile(
     r"^\*\*(Request|Reply)\*\*(?: \([\w ]+\))?(?:: `([0-9A-F ]+)`$|\n\n```text\n(.*?)```)",
     re.MULTILINE | re.DOTALL,

@@ -101,7 +101,7 @@ def test_clock_that_was_set_during_the_run_is_named(wall: float, mistake: bool) 
     assert ("The clocks of the host disagree" in to_html(report)) is mistake
 
 
-def test_known_failure_of_a_device_is_excused_and_what_was_not_run_may_fail() -> None:
+def test_known_failure_is_excused_and_known_failure_that_was_not_run_is_ignored() -> None:
     def result(case: str, verdict: Verdict, cause: Cause = Cause.NONE) -> Result:
         return Result(case, "get_x", verdict, "", cause=cause)
 

@@ -27,7 +27,7 @@ START = """import sys
 from Server_280 import MycobotServer
 MycobotServer("127.0.0.1", int(sys.argv[1]), sys.argv[2], 115200)
 """
-# It accepts only one connection, so none can be spent to find out whether it listens.
+# The server accepts only one connection, so a test connection would use it up.
 START_SECONDS = 2.0
 BY_DEFECT: dict[str, tuple[str, ...]] = {
     "drops-text": (),

@@ -1,4 +1,4 @@
-"""Recognise what is longer than one item, or cut; summarize findings."""
+"""Recognise findings that span several items or are truncated, and summarize them."""
 
 from __future__ import annotations
 
@@ -46,14 +46,14 @@ def test_crash_is_recognised_from_the_error_to_the_boot(codec: Codec) -> None:
     assert "cmd_len error 2 times" in sentence
 
 
-def test_very_many_nuls_are_one_reboot_in_pieces(codec: Codec) -> None:
+def test_long_run_of_nuls_is_split_into_items_of_one_reboot(codec: Codec) -> None:
     items = [item for item in diagnose(codec, bytes(100_000)) if isinstance(item, Nuls)]
     assert sum(item.count for item in items) == 100_000
     assert [item.continued for item in items] == [False] + [True] * (len(items) - 1)
     assert summarize(items) == "the controller possibly rebooted"
 
 
-def test_boot_line_has_its_cause(codec: Codec) -> None:
+def test_boot_line_is_described_by_its_cause(codec: Codec) -> None:
     boot = only(codec, b"rst:0xc (SW_CPU_RESET),boot:0x13 (SPI_FAST_FLASH_BOOT)\r\n")
     assert isinstance(boot, Finding)
     assert boot.describe() == "the controller boots: SW_CPU_RESET"

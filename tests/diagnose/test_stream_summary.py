@@ -107,7 +107,7 @@ def check(
 @pytest.mark.parametrize("edition", NATIVE)
 @given(listening=LISTENING, data=st.data())
 @settings(max_examples=25)
-def test_survey_equals_diagnosis_frame_by_frame(
+def test_summary_equals_diagnosis_frame_by_frame(
     edition: str, listening: Listening, data: st.DataObject
 ) -> None:
     table = editions.load(edition).TABLE
@@ -117,7 +117,7 @@ def test_survey_equals_diagnosis_frame_by_frame(
 
 @given(st.sampled_from(FORMATS), LISTENING, st.data())
 @settings(max_examples=35)
-def test_survey_equals_diagnosis_for_any_frame_format(
+def test_summary_equals_diagnosis_for_any_frame_format(
     codec: Codec, listening: Listening, data: st.DataObject
 ) -> None:
     frame = codec.encode("get_angles", "request", [])
@@ -126,7 +126,7 @@ def test_survey_equals_diagnosis_for_any_frame_format(
 
 @given(random_tables.tables(), LISTENING, st.data())
 @settings(max_examples=35)
-def test_survey_equals_diagnosis_for_any_table(
+def test_summary_equals_diagnosis_for_any_table(
     table: Table, listening: Listening, data: st.DataObject
 ) -> None:
     codec = codecs.load(table, "native")
@@ -137,7 +137,7 @@ def test_survey_equals_diagnosis_for_any_table(
 
 @given(LISTENING, st.data())
 @settings(max_examples=25)
-def test_survey_finds_the_same_ends_of_damaged_frames(
+def test_summary_finds_the_same_ends_of_damaged_frames(
     listening: Listening, data: st.DataObject
 ) -> None:
     codec = NATIVE["mycobot280"]
@@ -150,7 +150,7 @@ FOOTERS = [found for size in range(1, 4) for found in combinations(range(-2, 3),
 
 
 @pytest.mark.parametrize("footers", FOOTERS, ids=str)
-def test_survey_ends_damaged_frame_at_same_of_several_footers(footers: tuple[int, ...]) -> None:
+def test_summary_ends_damaged_frame_at_same_of_several_footers(footers: tuple[int, ...]) -> None:
     # LEN is one less than in a reply; the footers are near the end of an undamaged reply.
     frame = bytearray(b"\xfe\xfe\x0d\x20" + bytes(range(0x81, 0x90)))
     for place in footers:
@@ -171,7 +171,7 @@ def _status_of(servo: int, size: int) -> bytes:
 
 @given(st.data())
 @settings(max_examples=40)
-def test_survey_names_same_registers_if_python_diagnoses_noise_in_between(
+def test_summary_names_same_registers_if_python_diagnoses_noise_in_between(
     data: st.DataObject,
 ) -> None:
     codec = NATIVE["mycobot280"]
@@ -198,7 +198,7 @@ def test_lines_hold_texts_as_python_writes_them(texts: list[str]) -> None:
     assert summarized(codec, "both", False, [data]) == diagnosed(codec, "both", False, data)
 
 
-def test_survey_reads_servo_packets_in_noise_that_is_too_long_to_wait_for() -> None:
+def test_summary_reads_servo_packets_in_noise_that_is_too_long_to_wait_for() -> None:
     codec = NATIVE["mycobot280"]
     apart = codec.encode("stop", "request", []) * 20
     packets = _read_of(1, 0x38, 2) + _status_of(1, 2) + _read_of(2, 0x3C, 2)

@@ -61,7 +61,7 @@ def test_pick_and_place_grips_at_one_place_and_opens_at_the_other(
     assert [note for note in arm.notes if "ignored" in note.text or "rejected" in note.text] == []
 
 
-def test_teach_and_replay_repeats_the_way_of_the_hand(arms: _Arms) -> None:
+def test_teach_and_replay_repeats_the_path_of_the_hand(arms: _Arms) -> None:
     # Slow enough that a busy machine takes some samples on the way.
     arm, port = arms.new(rate=10.0, powered=True)
     last = (40.0, -30.0, 10.0, 0.0, 0.0, 20.0)

@@ -150,7 +150,7 @@ def test_keys_of_a_terminal_jog_the_arm(arm: tuple[SimulatedArm, str]) -> None:
 
 
 def _press(master: int, keys: bytes, expected: str) -> str:
-    """Send keys; return what is shown from then on, once the expected text was shown."""
+    """Send keys; wait for the expected text, and return all that was shown since."""
     if keys:
         os.write(master, keys)
     shown, deadline = "", time.monotonic() + SECONDS
@@ -209,7 +209,7 @@ def test_capture_of_wireshark_is_decoded(
     assert not any("noise" in line for line in lines)
 
 
-def test_device_of_ones_own_is_built_simulated_and_used(tmp_path: Path) -> None:
+def test_device_of_the_user_is_built_simulated_and_used(tmp_path: Path) -> None:
     for path in (FOLDER / "own_protocol").iterdir():
         if path.is_file():
             shutil.copy(path, tmp_path)

@@ -31,7 +31,8 @@ SPEED = bytes.fromhex("FE FE 03 40 32 FA")
 
 # One edition for each kind of evidence: queries, frames, or a limit. Another test has all editions.
 KINDS = [("mycobot", "pty"), ("mycobot280", "pty"), ("mybuddy", "tcp"), ("mecharm270", "pty")]
-# Their simulated arms reply to the same queries: the others need a geometry, or an argument.
+# Simulated arms of these editions reply to the same queries: the queries that differ need a known
+# geometry or an argument.
 ALIKE = ("mercury_a1", "mercury_b1", "mercury_x1")
 CANDIDATES: dict[str, tuple[str, ...]] = dict.fromkeys(ALIKE, ALIKE)
 # The M750 has every query of the C650, so only missing replies show a C650.

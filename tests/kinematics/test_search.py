@@ -43,7 +43,7 @@ LEVEL = Geometry(
     )
 )
 WIDE = (-160.0, 160.0)
-# Steps for all starts of a search.
+# As many steps as a search from all its starting points needs.
 ENOUGH = 3000
 
 lengths = st.integers(0, 200).map(float)
@@ -100,7 +100,7 @@ def test_pose_near_the_present_one_is_found_with_any_geometry(
 
 
 @pytest.mark.parametrize("name", ARMS)
-def test_search_along_a_way_finds_the_next_point_and_leaves_out_jumps(name: str) -> None:
+def test_search_along_a_path_finds_the_next_point_and_excludes_jumps(name: str) -> None:
     rows, rng = ARMS[name], random.Random(6)
     geometry, limits = Geometry(tuple(Link(*row) for row in rows)), [WIDE] * len(rows)
     jumps = 0

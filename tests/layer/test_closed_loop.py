@@ -113,7 +113,7 @@ def test_motions_do_not_wait_if_their_ends_are_not_reported() -> None:
     assert arm.send_angles(HOME, 5) == 1
 
 
-def test_simulated_arm_reports_ends_only_while_that_is_on() -> None:
+def test_simulated_arm_reports_ends_only_while_the_reports_are_on() -> None:
     arm, _ = made("Mercury", "mercury_a1")
     assert arm.get_limit_switch() == [1, 1]
     arm.set_limit_switch(2, 0)

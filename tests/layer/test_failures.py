@@ -1,4 +1,4 @@
-"""What a call of the layer does when the robot does not answer."""
+"""Calls of the layer raise, or return a value, if the robot does not reply."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def test_asynchronous_motion_waits_for_nothing() -> None:
     assert found.clock() < 0.1
 
 
-def test_wrong_argument_raises_in_both_cases() -> None:
+def test_wrong_argument_raises_with_both_error_policies() -> None:
     for errors in ("raise", "return"):
         with pytest.raises(UsageError):
             made("MyCobot280", errors=errors)[0].send_angle(9, 0, 50)
@@ -55,7 +55,7 @@ SYNC = [name for name in layer.__all__ if hasattr(getattr(layer, name), "sync_se
 
 @pytest.mark.parametrize("errors", ["raise", "return"])
 @pytest.mark.parametrize("name", SYNC)
-def test_motion_that_is_late_is_stopped_once_whatever_errors_do(name: str, errors: Any) -> None:
+def test_late_motion_is_stopped_once_with_both_error_policies(name: str, errors: Any) -> None:
     received: list[str] = []
     found, arm = made(
         name, errors=errors, on_event=lambda e, _: received.append(e.message.command.name)

@@ -266,7 +266,7 @@ def test_rewritten_program_is_not_changed_again_and_has_the_same_undecided_place
 
 
 @pytest.mark.parametrize("rewritten_before", [False, True])
-def test_class_of_a_parameter_is_asked_once_and_may_be_written_at_any_time(
+def test_unknown_class_of_a_parameter_is_one_decision_and_may_be_annotated_later(
     rewritten_before: bool,
 ) -> None:
     used = "    it.send_angle(id=1, degree=20, speed=30)\n    print(it.get_angles())\n"

@@ -54,7 +54,7 @@ LISTED = [
     "def check(row):\n    if row is None:\n        mc.stop()\ncheck(mc.get_angles())",
     "class Robot:\n    def __init__(self):\n        self.row = mc.get_angles()\n"
     "        if self.row is None:\n            mc.stop()\nRobot()",
-    # Arms whose calls are not seen.
+    # Uses of an arm in which migrate cannot find the calls.
     "getattr(mc, 'stop')()",
     "stop = mc.stop\nstop()",
     "mc.debug = True",

@@ -128,7 +128,7 @@ def test_missing_program_and_missing_module_are_named(tmp_path: Path) -> None:
     assert "cobotwire has no pymycobot.ultraArm: these robots take G-code" in ended.stderr
 
 
-# It reads the language of the system in a way that Python deprecates.
+# pymycobot reads the locale in a way that Python deprecates.
 @pytest.mark.filterwarnings("ignore:.*getdefaultlocale:DeprecationWarning")
 def test_every_class_that_is_not_offered_is_refused_with_its_reason() -> None:
     import pymycobot
@@ -146,7 +146,7 @@ def test_every_class_that_is_not_offered_is_refused_with_its_reason() -> None:
                 exec(f"from {source} import {name}", {})
 
 
-# It reads the language of the system in a way that Python deprecates.
+# pymycobot reads the locale in a way that Python deprecates.
 @pytest.mark.filterwarnings("ignore:.*getdefaultlocale:DeprecationWarning")
 def test_installed_library_is_the_same_before_and_after() -> None:
     import pymycobot

@@ -76,7 +76,7 @@ def test_distributions_have_the_same_links_and_licence(name: str) -> None:
 
 
 def declared() -> set[str]:
-    """Return the names of everything third-party that a file of the project asks for."""
+    """Return the names of the third-party packages that a file of the project requires."""
     stated: list[str] = []
     for path in PROJECTS.values():
         table = tomllib.loads(path.read_text("utf-8"))

@@ -152,7 +152,7 @@ def test_last_release_is_the_highest_tag_below(tags: list[str], current: str, la
     assert promises.last_release(tags, current) == last
 
 
-def test_part_that_was_raised() -> None:
+def test_raised_part_of_a_version_number_is_named() -> None:
     found = [promises.raised("1.2.3", new) for new in ("1.2.3", "1.2.4", "1.3.0", "2.0.0")]
     assert found == ["none", "patch", "minor", "major"]
 

@@ -126,7 +126,7 @@ def _is_number(value: Any) -> bool:
 
 
 def _checks(kind: type, method: str, name: str) -> list[str]:
-    """Return by which names a method has the library check a parameter."""
+    """Return the names under which a method has the library check a parameter."""
     tree = ast.parse(textwrap.dedent(inspect.getsource(getattr(kind, method))))
     calls = (each for each in ast.walk(tree) if isinstance(each, ast.Call))
     words = (word for call in calls for word in call.keywords if isinstance(word.value, ast.Name))

@@ -45,7 +45,7 @@ from strategies import legal_values
 MOST_VARIANTS = 3
 # The calls of a method that are tried, until the library accepts one.
 MOST_CALLS = 3
-# Larger data are not drawn: the library reads LEN as a signed byte, and no more than 30.
+# Larger data are not drawn: the library reads LEN as a signed byte, and accepts at most 30.
 LARGEST = 64
 # The fillings of data of any size; sizes that the edition lacks use only the last.
 FILLINGS = (0x01, 0x82)
@@ -57,7 +57,7 @@ _NUMBER = re.compile(r"-?\b\d+\b")
 
 
 class Reply(NamedTuple):
-    """A reply: its kind, by which rulings name it; its data; and the number if it is documented."""
+    """A reply: its kind, as rulings name it; its data; the number that it carries if documented."""
 
     kind: str
     data: bytes

@@ -26,7 +26,7 @@ def on_socket(peer_class: str, port: Any) -> Any:
     peer.calibration_parameters = sys.modules[kind.__module__].calibration_parameters
     peer.lock, peer.sock = threading.Lock(), PortSocket(port)
     if not hasattr(kind, "_write"):
-        # Its constructor sets them.
+        # The constructor of the class would set these attributes.
         peer.thread_lock = True
         peer._write = partial(write, peer, method="socket")
         peer._read = partial(read, peer, method="socket")

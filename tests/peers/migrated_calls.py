@@ -80,7 +80,7 @@ def _is_same(kind: LibraryClass, other: LibraryClass, name: str) -> bool:
 
 
 def done(arm: Any, transport: Recorded, line: str) -> Done:
-    """Run a line with an arm; an error stands for what it keeps."""
+    """Run a line of a program with an arm; if it fails, a constant replaces the value it keeps."""
     kept: list[Any] = []
     transport.written = b""
     try:

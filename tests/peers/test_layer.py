@@ -91,7 +91,7 @@ def test_class_has_the_methods_and_parameters_of_the_makers(name: str) -> None:
     assert different == {}
 
 
-# It reads the language of the system in a way that Python deprecates.
+# pymycobot reads the locale in a way that Python deprecates.
 deprecated = pytest.mark.filterwarnings("ignore:.*getdefaultlocale:DeprecationWarning")
 
 

@@ -13,7 +13,7 @@ from layer_robots import ALL_ROBOTS
 from migrated_calls import kinds
 from robots.robot import Call, Robot
 
-# It reads the language of the system in a way that Python deprecates.
+# pymycobot reads the locale in a way that Python deprecates.
 pytestmark = pytest.mark.filterwarnings("ignore:.*getdefaultlocale:DeprecationWarning")
 MERCURY = ("Mercury (A1)", "Mercury (B1, X1)", "MercurySocket")
 POWER = (*MERCURY, "Pro400", "Pro400Client", "Pro630", "Pro630Client", "Pro450Client")

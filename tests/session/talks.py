@@ -16,7 +16,8 @@ from cobotwire.session import EncodedRequest, Exchange, Pending, PendingRequest,
 from cobotwire.session.events import SessionEvent, as_traffic
 from cobotwire.session.request import RequestEncoder
 
-# Exact as a float and in nanoseconds; the fractions of a second in the exchange are no multiples.
+# A tick is exact as a float and in nanoseconds. No time constant of the exchange is a multiple of
+# it, so no event coincides with a deadline.
 TICK = 1 / 512
 LINK_ERROR = LinkError("port", "gone")
 

@@ -1,4 +1,4 @@
-"""Acknowledgements of one id that a constant or an argument tells apart, as behind a bus."""
+"""Acknowledgements of one id are distinguished by a constant or an argument, as on a bus."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ def loaded(tmp_path_factory: pytest.TempPathFactory, request: pytest.FixtureRequ
 
 
 class Bus:
-    """An exchange with grippers that acknowledge what the test lets them acknowledge."""
+    """An exchange with grippers on a bus; the test chooses the requests that they acknowledge."""
 
     def __init__(self, codec: Codec) -> None:
         self._codec, self._encoder = codec, RequestEncoder(codec)

@@ -56,7 +56,7 @@ def test_next_request_is_the_only_frame_after_a_cut_at_any_position(
         received = cut[:written] + alignment.align + following
         [part] = alignment.held
         if alignment.align == part.rest:
-            # Fill bytes would expose a frame inside the part.
+            # The cut request is completed: with fill bytes, a frame inside it would become legal.
             assert holds_a_frame(by_the_law, codec, cut[:written])
             assert by_the_law(codec, received) == [
                 cut,
@@ -128,7 +128,7 @@ def test_whole_write_leaves_the_line_aligned() -> None:
     assert alignment.align == b""
 
 
-def test_frame_around_a_whole_frame_is_completed_instead() -> None:
+def test_cut_request_that_contains_a_legal_frame_is_completed() -> None:
     codec = codecs.load(mycobot280.TABLE)
     # -2.58 degrees are FE FE, 5.31 are 02 13, and FA is the first byte of -14.64.
     angles = [(-2.58, 5.31, -14.64, 0, 0, 0), 50]

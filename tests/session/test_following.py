@@ -57,7 +57,7 @@ def test_path_begins_and_ends_where_it_must_and_stays_within_the_bounds(
     assert rows[0] == pytest.approx(start, abs=1e-6)
     assert rows[-1] == pytest.approx(targets[-1], abs=1e-6)
     stays_within(rows, bounds, 1 / RATE)
-    # It passes each point at a distance of at most the way of a tick.
+    # The path comes as near to each point as the distance that the arm moves in a tick or two.
     for target in targets:
         assert min(math.dist(target, row) for row in rows) <= 2 * max(bounds.speed) / RATE
 
@@ -113,7 +113,7 @@ def drive(
 ) -> list[tuple[float, EncodedRequest]]:
     """Take the steps of a call with an arm that is always at its last target; return what it sent.
 
-    ``late`` has the excess of each pause, in turn.
+    ``late`` has the seconds by which each pause is too long, one after another.
     """
     now, mode, at = 100.0, 0, (0.0,) * 6
     sent: list[tuple[float, EncodedRequest]] = []

@@ -1,4 +1,4 @@
-"""Replies of one id that only a constant tells apart, as behind a bus of grippers."""
+"""Replies of one id are distinguished only by a constant, as on a bus of grippers."""
 
 from __future__ import annotations
 

@@ -53,12 +53,12 @@ commands = st.sampled_from(["go", "queue", "brake", "pause", "resume", "forget",
 
 
 @given(st.lists(st.tuples(st.floats(0.001, 1.5), commands, points, rates), max_size=12))
-def test_lagging_axes_are_where_others_were_before(
+def test_axes_with_a_lag_follow_the_path_of_axes_without_after_the_lag(
     orders: list[tuple[float, str, tuple[float, ...], float]],
 ) -> None:
     lag, now, times = 0.125, 1.0, []
     prompt, late = Axes((0.0, 0.0, 0.0), MOST), Axes((0.0, 0.0, 0.0), MOST, lag)
-    # Where the prompt axes are, each with the time at which the late axes must be there.
+    # Positions and speeds of the prompt axes, each with the time at which the late axes have them.
     expected: list[tuple[float, tuple[float, ...], tuple[float, ...]]] = []
     for wait, command, target, rate in orders:
         for _ in range(3):

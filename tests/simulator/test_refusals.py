@@ -1,6 +1,6 @@
-"""Test that each user learns why a simulated arm cannot reply, and sends such a query once.
+"""Test that a simulated arm says why it cannot reply, and that the query is not sent again.
 
-A real arm of the same edition replies, so nothing may be left out before the arm has refused.
+A real arm of the same edition replies, so each query is sent until the arm has refused it.
 """
 
 from __future__ import annotations
@@ -109,7 +109,9 @@ def test_stream_of_a_query_that_the_arm_refuses_ends_with_the_reason() -> None:
 
 
 @pytest.mark.parametrize(("silent", "unanswered"), [(False, 3), (True, 9)])
-def test_monitor_asks_again_only_if_the_arm_did_not_refuse(silent: bool, unanswered: int) -> None:
+def test_monitor_repeats_a_query_only_if_the_arm_did_not_refuse(
+    silent: bool, unanswered: int
+) -> None:
     with _in_memory(EDITION, silent=silent) as arm:
         *_, last = Monitor(arm, codecs.load(EDITION.TABLE), 10).samples(3)
     assert last.values["get_coords"] is None

@@ -119,7 +119,7 @@ def test_pose_of_any_angles_is_found_by_the_shipped_arms(edition: str) -> None:
         assert max(flange(geometry, found).distance(target)) <= 2e-3
 
 
-def test_search_that_is_too_long_ends_and_says_so() -> None:
+def test_search_that_is_too_long_ends_with_a_note() -> None:
     edition: Any = load("mycobot320")
     stated = geometry_of(edition.TABLE)
     assert stated is not None

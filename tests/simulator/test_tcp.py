@@ -120,7 +120,7 @@ def test_client_with_a_reset_connection_is_dropped(server: TcpServer) -> None:
 
 
 def test_client_that_floods_and_never_reads_does_not_block_others(server: TcpServer) -> None:
-    # Connections inherit it. To fill the system's own buffers of megabytes takes most of the time.
+    # Connections inherit the size. Filling the default buffers of megabytes would take too long.
     server._listening.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, 4096)
     with _connect(server) as flooding, MyCobot280(server.url, timeout=60) as arm:
         stop = threading.Event()

@@ -336,9 +336,10 @@ def switches(edition: Edition) -> Iterator[str]:
 
 
 def _alike(kept: Type | None, type: Type | None, left: list[Type | None]) -> bool:
-    """Return whether a field has the values of a state: a row of them if an index is left.
+    """Return whether a field has the type of a state, or a row of such values.
 
-    A text has no type.
+    ``left`` are the indices of the state that no argument chooses: the field has a value for each.
+    The type of a text is None.
     """
     if not left or kept is None or type is None:
         return kept == type

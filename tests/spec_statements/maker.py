@@ -118,7 +118,7 @@ BESIDE = {11, 12, 13, 254}
 
 @lru_cache(maxsize=32)
 def _limits(edition: str) -> tuple[int | None, dict[str, tuple[float, float]]]:
-    """Return how many joints the library's table of limits has, and its limits by what they are."""
+    """Return the number of joints in the library's table of limits, and its limits by name."""
     name = TABLES.get(edition) or getattr(CLASSES.get(edition), "peer", "")
     table = RobotLimit.robot_limit.get(name)
     if table is None:
@@ -139,9 +139,9 @@ def _limits(edition: str) -> tuple[int | None, dict[str, tuple[float, float]]]:
 
 
 def _limited(edition: Edition) -> Iterator[tuple[str, str, bool, Quantity]]:
-    """Yield the types that have limits by their names or by the roles of commands.
+    """Yield the types that must have limits, by their names or by the roles of commands.
 
-    A name, what the limits are of, and whether the type is a step comes with each.
+    Each comes with a name, the name of its limits, and whether it is a step.
     """
     for command in edition.commands:
         for field in command.fields:

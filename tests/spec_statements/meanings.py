@@ -213,7 +213,7 @@ def agreement(edition: Edition) -> Iterator[str]:
             yield f"{command.name} agrees with {command.agrees_with}, but its name says {wanted}"
 
 
-# What a request asks about, which its reply repeats.
+# The arguments that choose what a query reports; its reply repeats them.
 ABOUT = {"joint", "pin", "servo", "register", "address", "gripper", "gripper_id"}
 
 

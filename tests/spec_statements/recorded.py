@@ -54,7 +54,7 @@ def _end(geometry: Geometry, angles: tuple[float, ...]) -> tuple[np.ndarray, Rot
 
 
 def motion(edition: Edition) -> Iterator[str]:
-    """Report a simulated arm whose full speed is not its fastest, or that states no motion.
+    """Report a simulated arm that at full speed does not reach its fastest motion, or states none.
 
     The notes on kinematics say that a joint turns 1.5 degrees per second for each percent.
     """
@@ -67,7 +67,7 @@ def motion(edition: Edition) -> Iterator[str]:
 
 
 def encoders(edition: Edition) -> Iterator[str]:
-    """Report ticks on which a recorded angle is not, or another zero than the maker states.
+    """Report encoders without a tick at a recorded angle, or with another zero than the maker's.
 
     The maker's documentation of the calibration says that the present position becomes 2048.
     """

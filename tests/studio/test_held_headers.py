@@ -1,4 +1,4 @@
-"""Hold connections open without the token: pages with it must go on, and new ones must open."""
+"""Hold connections open without the token: pages with it must continue, and new ones must open."""
 
 from __future__ import annotations
 

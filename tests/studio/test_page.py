@@ -84,7 +84,7 @@ def _plain(number: float) -> str:
     return f"{number:g}"
 
 
-def test_frame_is_shown_before_it_goes_and_a_wrong_value_is_named(opened: Page) -> None:
+def test_frame_is_shown_before_it_is_sent_and_a_wrong_value_is_named(opened: Page) -> None:
     opened.until("document.querySelector('#command option[value=send_angle]')")
     opened.show_tab("send")
     opened.choose("command", "send_angle")
@@ -196,7 +196,7 @@ def test_page_is_used_with_the_keyboard_alone(opened: Page) -> None:
     opened.until("!document.getElementById('motion').checked")
 
 
-def test_fault_scenario_is_seen_at_work(opened: Page) -> None:
+def test_page_starts_a_fault_scenario_and_shows_its_faults_and_noise(opened: Page) -> None:
     opened.control()
     opened.show_tab("line")
     opened.choose("scenario", "servo-leaks")

@@ -79,7 +79,7 @@ def test_loop_watches_one_descriptor_for_all_beyond_the_first_few() -> None:
 
 
 @needs_readers
-def test_each_descriptor_is_read_once_for_what_came() -> None:
+def test_each_descriptor_with_received_bytes_is_read_once() -> None:
     async def run() -> list[tuple[int, bytes]]:
         ends = Ends()
         ends.send_all()

@@ -42,13 +42,13 @@ TTY = "/dev/tty.usbserial-1"
         (ALICE._replace(user="a\x1b"), USB, errno.EACCES, r"(a\x1b) are not in the group"),
     ],
 )
-def test_error_says_what_to_do_on_the_system(
+def test_opening_error_gives_advice_for_the_operating_system(
     computer: Computer, device: str, number: int, text: str
 ) -> None:
     assert text in explain(computer, device, number, "why", "BY")
 
 
-def test_steps_of_linux_name_every_chip_and_the_group_unless_the_login_has_it() -> None:
+def test_linux_advice_covers_every_chip_and_omits_the_group_once_joined() -> None:
     group, rule, _ = remedies(ALICE)
     assert (group.state, group.commands) == ("needed", ("sudo usermod -aG dialout alice",))
     for chip, line in zip(CHIPS, rule.commands[1:]):
@@ -57,7 +57,7 @@ def test_steps_of_linux_name_every_chip_and_the_group_unless_the_login_has_it() 
     assert remedies(ALICE._replace(member=True, in_login=True))[0].state == "done"
 
 
-def test_other_systems_name_the_driver_of_every_chip() -> None:
+def test_macos_and_windows_advice_names_the_driver_of_every_chip() -> None:
     for system in ("darwin", "win32"):
         name, *drivers = remedies(Computer(system))
         assert ("/dev/cu.NAME" in name.text) == (system == "darwin")
@@ -70,16 +70,16 @@ def test_other_systems_name_the_driver_of_every_chip() -> None:
 @pytest.mark.parametrize(
     ("error", "text"),
     [
-        # The texts of Windows are in the language of its user.
+        # Windows writes messages in the user's language, so only the error number identifies them.
         (FileNotFoundError(2, "Datei nicht gefunden", None), "this computer has no serial port"),
         (PermissionError(13, "Zugriff verweigert", None), "another program has it open, such as"),
         (OSError(22, "Falscher Parameter", None), "Falscher Parameter"),
     ],
 )
-def test_number_of_an_error_of_windows_is_read_from_the_text_of_pyserial(
+def test_windows_error_number_is_read_from_the_message_of_pyserial(
     monkeypatch: pytest.MonkeyPatch, error: OSError, text: str
 ) -> None:
-    # Replaces the facts about this machine, which is not one with Windows.
+    # Pretend that this machine runs Windows.
     monkeypatch.setattr(ports, "this_computer", lambda device: Computer("win32"))
     with pytest.raises(LinkError, match=text), opening("COM3", "COM3"):
         raise SerialException(f"could not open port 'COM3': {error!r}")

@@ -32,7 +32,7 @@ class Bench:
         self.edition, self.requests = edition, list[str]()
 
     def connect(self, kind: str = "Robot", **options: Any) -> Any:
-        """Return a device that is connected; note its requests that are no queries."""
+        """Return a connected device; record its requests except queries."""
         port: Any = MemoryTransport(self.arm.connect(), self.clock)
         config = getattr(plugin, f"Cobotwire{kind}Config")
         device = getattr(plugin, f"Cobotwire{kind}")(
@@ -80,7 +80,7 @@ def test_targets_are_clipped_and_the_newest_replaces_those_before_it() -> None:
     robot.send_action(dict.fromkeys(JOINTS, -1000.0))
     sent = robot.send_action(POSE)
     assert sent == POSE | {"joint1.pos": 5.0}
-    assert bench.requests == ["send_angles"] * 2, "nothing is waited for"
+    assert bench.requests == ["send_angles"] * 2, "send_action() does not wait"
     bench.clock.sleep(5.0)
     assert robot.get_observation() == pytest.approx(sent, abs=0.1)
     for wrong in ({}, POSE | {"joint7.pos": 0.0}, POSE | {"joint3.pos": math.nan}):

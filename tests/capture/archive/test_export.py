@@ -119,7 +119,7 @@ def test_file_that_becomes_shorter_is_an_error(tmp_path: Path) -> None:
         archive.export(plan(tmp_path / "out"), inputs, piece_bytes=1000)
 
 
-def test_bytes_that_are_added_meanwhile_do_not_count(tmp_path: Path) -> None:
+def test_bytes_appended_during_the_export_are_not_exported(tmp_path: Path) -> None:
     path = tmp_path / "arm.bin"
     path.write_bytes(noisy_stream(500))
     inputs = Inputs.find([str(path)])

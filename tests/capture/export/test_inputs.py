@@ -207,7 +207,7 @@ def test_noise_rejected_frames_and_pauses_are_counted(tmp_path: Path) -> None:
     assert not report.clean
 
 
-def test_time_range_takes_its_start_and_leaves_its_end_out(tmp_path: Path) -> None:
+def test_time_range_includes_its_start_and_excludes_its_end(tmp_path: Path) -> None:
     packets = [Packet(START + second * 10**9, "received", POWERED) for second in range(10)]
     path = recording(tmp_path / "arm.pcapng", packets)
     report = export(tmp_path / "out", path, begin_ns=START + 2 * 10**9, end_ns=START + 5 * 10**9)

@@ -92,7 +92,7 @@ def test_joint_states_are_in_radians(arm: list[Written]) -> None:
     )
 
 
-def test_pose_of_the_end_is_that_of_the_geometry(tmp_path: Path) -> None:
+def test_pose_of_the_end_is_computed_from_the_joints(tmp_path: Path) -> None:
     angles = [10.0, -20.0, 30.0, -40.0, 50.0, -60.0]
     packets = [Packet(START, "received", reply("get_angles", angles))]
     export(tmp_path / "arm.mcap", recording(tmp_path / "a.pcapng", packets), format="mcap")
@@ -147,7 +147,7 @@ def test_raw_bytes_have_no_times_for_an_mcap_file(tmp_path: Path) -> None:
         export(tmp_path / "arm.mcap", tmp_path / "arm.bin", format="mcap")
 
 
-def test_mcap_file_for_each_robot_and_day(tmp_path: Path) -> None:
+def test_partitioned_export_writes_an_mcap_file_for_each_robot_and_day(tmp_path: Path) -> None:
     recording(tmp_path / "left.pcapng", polled(2))
     recording(tmp_path / "right.pcapng", polled(2))
     export(

@@ -122,7 +122,7 @@ def test_survey_adds_vectors_disputes_and_confidence(tmp_path: Path) -> None:
     assert (again.returncode, "was added before: evidence/bus-2026" in again.stderr) == (2, True)
 
 
-def test_new_frames_of_undoubted_commands_become_vectors() -> None:
+def test_new_frames_of_undisputed_commands_become_vectors() -> None:
     right = fact("light/request/length", "confirmed", LIT)
     wrong = fact("light/reply/length", "contradicted")
     given = submitted(packed(survey(right)))
@@ -136,7 +136,7 @@ def test_new_frames_of_undoubted_commands_become_vectors() -> None:
     assert checked(bare, submitted(packed(survey(right, wrong)))).vectors == []
 
 
-def test_sealed_file_is_taken_and_a_changed_one_is_not() -> None:
+def test_sealed_file_is_accepted_and_a_changed_one_is_refused() -> None:
     with zipfile.ZipFile(io.BytesIO(GOOD)) as archive:
         document, recording = (archive.read(name) for name in MEMBERS)
     sealed = survey_file(json.loads(document), recording)
@@ -162,7 +162,7 @@ def test_sealed_file_is_taken_and_a_changed_one_is_not() -> None:
         (fact("light/reply/length", "contradicted", "", ""), "no frame shows it"),
     ],
 )
-def test_fact_without_a_fitting_frame_is_not_taken(wrong: Any, why: str) -> None:
+def test_fact_without_a_matching_frame_is_refused(wrong: Any, why: str) -> None:
     with pytest.raises(NotEvidence, match=why):
         checked(BUS, submitted(packed(survey(wrong))))
 
@@ -243,13 +243,13 @@ def test_report_of_a_device_gives_facts_of_its_test_cases() -> None:
 @pytest.mark.parametrize("edition", vectors.sampled())
 def test_survey_reports_the_facts_that_the_generator_counts(edition: str) -> None:
     described, table = vectors.edition(edition), load(edition).TABLE
-    # A survey reports an alias as well.
+    # A survey also reports aliases, which are not counted.
     others = {command.name for command in described.commands if not command.alias}
     reported = {name for name in Facts(table) if name.split("/")[1] in others}
     counted = {*facts_of(described)}
     assert reported <= counted
     left = {name.split("/", 2)[2] for name in counted - reported}
-    # The text after a frame is not read, and a range may be all that the bytes can hold.
+    # A survey cannot report these aspects, nor a range that equals all that the bytes can hold.
     beyond = {"command/present", "command/agreement", "request/length", "reply/length", "reply/id"}
     assert {each for each in left - beyond if not each.endswith("/range")} == set()
     assert {*ASPECTS} == {*SURVEYED}

@@ -1,4 +1,4 @@
-"""Proposed vectors would show a mistake; ``ids`` and ``explain`` help to write a command."""
+"""Proposed vectors reveal mistakes; ``ids`` and ``explain`` help to write a command."""
 
 from __future__ import annotations
 

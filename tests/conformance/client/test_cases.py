@@ -116,7 +116,7 @@ def test_session_fails_the_test_case_that_it_violates(case: str) -> None:
 
 
 def test_every_test_case_has_a_failing_session() -> None:
-    # This edition's frames have no address byte; a known failure needs a file.
+    # The frames of this edition have no address byte, and expected failures come from a file.
     expected = {*FAILING, *GIVEN, "frame-address", "sent-address", "expected-failure"}
     assert {case.id for case in SUITE.cases} == expected
 

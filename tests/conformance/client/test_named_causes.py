@@ -31,7 +31,7 @@ def test_frame_in_pieces_is_one_occurrence_and_shown_whole() -> None:
     assert "of" not in found.reason.rpartition("FA")[2]
 
 
-def test_pause_inside_a_frame_is_named_as_one() -> None:
+def test_pause_inside_a_frame_is_reported_as_a_pause() -> None:
     first, rest = Noise(0, STEP[:6], "truncated"), Noise(6, STEP[6:], "no-header")
     [whole] = joined([Received(1.2, first), Received(1.25, rest)])
     assert isinstance(whole.event, Noise)

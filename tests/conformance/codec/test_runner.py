@@ -1,4 +1,4 @@
-"""Implementations that crash, hang, babble or answer wrongly fail without an exception."""
+"""Implementations that crash, hang, print garbage or answer wrongly fail without an exception."""
 
 from __future__ import annotations
 
@@ -313,7 +313,7 @@ def test_answer_of_any_values_gets_a_verdict(answers: list[Any]) -> None:
 
 @pytest.mark.parametrize("depth", [17, 500, 990, 1000, 3000, 100_000])
 @pytest.mark.parametrize("brackets", ["[]", "{}"], ids=["lists", "objects"])
-def test_answer_that_is_nested_deeply_is_babbling(
+def test_deeply_nested_answer_is_invalid_output(
     decoding: list[Question], depth: int, brackets: str
 ) -> None:
     opening = "[" if brackets == "[]" else '{"a":'

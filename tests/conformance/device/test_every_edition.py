@@ -22,7 +22,7 @@ from vectors import sampled
 
 
 def _tester(edition: str, *, stated: bool = True, **options: Any) -> Tester:
-    """Return a tester with all permissions; if it is not ``stated``, the arm states nothing."""
+    """Return a tester with all permissions; ``stated``: the arm says which queries it lacks."""
     table = editions.load(edition).TABLE
     clock, lacking = SteppedClock(), Lacking(table)
     arm = SimulatedArm(table, clock=clock, on_note=lacking.note if stated else None)

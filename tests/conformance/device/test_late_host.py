@@ -1,4 +1,4 @@
-"""A host that is late accuses no device. The clock is stepped, so load does not matter.
+"""Stalls of the host fail no device. The clock is stepped, so load does not matter.
 
 A stall is time that passes between a request and the next look at the port.
 """
@@ -42,7 +42,7 @@ def run(way: str, every: int, seconds: float, table: Table = CLOSED_LOOP) -> Rep
     ("every", "seconds"), [(2, 0.02), (3, 0.06), (5, 0.3), (7, 0.8), (13, 3.0)]
 )
 @pytest.mark.parametrize("way", ["", "acknowledges-late", "fast"])
-def test_late_host_accuses_no_device(way: str, every: int, seconds: float) -> None:
+def test_stalls_of_the_host_fail_no_device(way: str, every: int, seconds: float) -> None:
     report = run(way, every, seconds)
     assert [f"{r.group}, {r.case} {r.command}: {r.reason}" for r in report.failures] == []
 

@@ -14,7 +14,7 @@ from cobotwire.editions.mycobot import TABLE
         ("FE FE 02 20 FA FE FE 02 2B FA", ""),
         ("FE FE 02 FE FE 02 86 FA", "the unknown id FE in FE FE 02 FE"),
         ("FE FE 02 9A FA", "the unknown id 9A in FE FE 02 9A"),
-        # The bytes of a number are no header.
+        # FE FE inside the data of a legal request is a number, not a header.
         ("FE FE 06 21 01 FE FE 10 FA", ""),
         ("FE FE", ""),
     ],

@@ -109,7 +109,9 @@ def test_program_that_does_not_start_is_named(
         ("firmware", "serial", "attach is 'serial'"),
     ],
 )
-def test_command_that_is_not_one_is_rejected(text: str, attach: str | None, message: str) -> None:
+def test_text_that_is_not_a_command_is_rejected(
+    text: str, attach: str | None, message: str
+) -> None:
     with pytest.raises(UsageError, match=message):
         parse_command(text, attach)
 

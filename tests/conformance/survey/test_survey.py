@@ -99,7 +99,7 @@ def test_arm_that_goes_further_than_sent_is_stopped() -> None:
 
 
 @pytest.mark.parametrize("name", ["feetech", "ublox"])
-def test_survey_of_an_own_protocol_contradicts_nothing(name: str, tmp_path: Path) -> None:
+def test_survey_of_a_users_protocol_contradicts_nothing(name: str, tmp_path: Path) -> None:
     table = small_specs.package(tmp_path, edition_of(name)).TABLE
     survey = Survey(connected(table), table, settings=True, motion=True)
     survey.run()

@@ -38,7 +38,7 @@ JOINTS = (0x3B, 0x4A, 0x4B, 0x50, 0x53, 0x4C, 0x4D, 0x52, 0x54, 0x55, 0x56, 0x57
 
 
 class Arm:
-    """The arm: bytes in, bytes out."""
+    """The arm: it receives bytes, and returns bytes."""
 
     def __init__(self, clock: Callable[[], float]) -> None:
         self.clock = clock
@@ -90,7 +90,7 @@ class Arm:
         self._due.append((self.clock() + seconds, data))
 
     def receive(self, data: bytes) -> bytes:
-        """Take bytes; return the replies."""
+        """Receive bytes; return the replies."""
         self._at = self.clock()
         self.buffer += data
         sent = b""
@@ -124,7 +124,7 @@ class Arm:
         return data[: size + 5]
 
     def lose_state(self, why: str) -> None:
-        """Lose nothing when malformed bytes come."""
+        """Do nothing: only a planted defect loses state when malformed bytes come."""
 
     def reply(self, id: int, data: bytes) -> bytes:
         """Return what is sent in reply to a request."""
@@ -150,7 +150,7 @@ class Arm:
 
     @property
     def ticks(self) -> list[int]:
-        """Where the joints are."""
+        """The positions of the joints."""
         return [round(tick) for tick in self.travel.place()]
 
     def angles(self) -> list[float]:
@@ -271,7 +271,7 @@ class Arm:
         self._width.go([width + self._width_zero], PERCENT_PER_SECOND * max(speed, 1) / 100)
 
     def go(self, ticks: Sequence[float], speed: int) -> None:
-        """Leave for a target within the limits, or let it wait for the one before."""
+        """Start a motion to a target, clipped to the limits; or queue it during another motion."""
         low, high = (
             [limit / 10 * TICKS_PER_DEGREE for limit in self.limits[id]] for id in (0x4A, 0x4B)
         )
@@ -284,7 +284,7 @@ class Arm:
             self.travel.go(*target)
 
     def _with(self, joint: int, tick: float) -> list[float]:
-        """Return the places of all joints, with one of them replaced."""
+        """Return the positions of all joints, with one of them replaced."""
         return [tick if at == joint else now for at, now in enumerate(self.ticks, 1)]
 
     def send_angle(self, data: bytes) -> None:

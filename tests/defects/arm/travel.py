@@ -16,12 +16,12 @@ class Travel:
         self.put(start)
 
     def put(self, place: Sequence[float]) -> None:
-        """Be there, at rest."""
+        """Set the position, at rest."""
         self._start, self.goal, self._rate = list(place), list(place), 1.0
         self._since, self._held_at = self._clock(), None
 
     def go(self, goal: Sequence[float], rate: float) -> None:
-        """Leave for a goal."""
+        """Start to move to a goal."""
         self._start, self.goal, self._rate = self.place(), list(goal), rate
         self._since, self._held_at = self._clock(), None
 
@@ -35,17 +35,17 @@ class Travel:
         ]
 
     def hold(self) -> None:
-        """Stay here for now."""
+        """Pause the motion."""
         self._held_at = self._clock()
 
     def resume(self) -> None:
-        """Leave for the same goal again."""
+        """Continue the motion."""
         if self._held_at is not None:
             self.go(self.goal, self._rate)
 
     @property
     def ends_at(self) -> float:
-        """When the numbers are all at their goals, unless a pause holds them."""
+        """The time at which all numbers reach their goals, without regard to a pause."""
         way = max(abs(b - a) for a, b in zip(self._start, self.goal))
         return self._since + way / self._rate
 

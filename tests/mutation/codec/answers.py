@@ -100,7 +100,7 @@ def _first_header(table: Table, data: bytes) -> bytes:
 
 
 def _unnamed(table: Table) -> OurCodec:
-    """Make a codec that ignores the command that the bytes must be."""
+    """Make a codec that decodes bytes as any command, although a question names one."""
 
     def question(question: Json) -> Json:
         if question["do"] != "decode":

@@ -1,4 +1,4 @@
-"""Run a demo on a simulated robot, and tell how it ended."""
+"""Run a demo on a simulated robot, and report how it ended."""
 
 from __future__ import annotations
 

@@ -31,7 +31,7 @@ class Demo(NamedTuple):
     refused: str = ""
 
 
-# What port_setup asks: the number of the port, the speed, debugging.
+# What a person types for port_setup: the number of the port, the speed, debugging.
 _CHOSEN = "1\n\nn\n"
 # Record, stop, save, load, play, release, quit.
 _TEACHING = "rcslpfqqq"

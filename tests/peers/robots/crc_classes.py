@@ -57,7 +57,7 @@ def opened_as(name: str) -> Any:
         kind = library(peer_class)
         peer = object.__new__(kind)
         with warnings.catch_warnings():
-            # It reads the language of the system in a way that Python deprecates.
+            # pymycobot reads the locale in a way that Python deprecates.
             warnings.simplefilter("ignore")
             base = (
                 MercuryCommandGenerator if issubclass(kind, MercuryCommandGenerator) else CloseLoop

@@ -36,7 +36,7 @@ class PortSocket:
 
 
 class SteppedEvent:
-    """Stand in for the event that the thread sets which reads the socket: time passes."""
+    """Stand in for the event that the socket's reading thread sets: a wait lets the time pass."""
 
     def wait(self, seconds: float) -> None:
         from pymycobot import pro450_close_loop
@@ -44,7 +44,7 @@ class SteppedEvent:
         pro450_close_loop.time.sleep(seconds)
 
     def clear(self) -> None:
-        """Do nothing: nothing sets it."""
+        """Do nothing: the event is never set."""
 
 
 class SocketFrames(ReadFrames):

@@ -10,7 +10,7 @@ from session.exploring.topics import KINDS, REQUESTS
 
 @dataclass(eq=False)
 class Call:
-    """A request of a caller, who waits until ``pending`` is done, unless nothing is waited for."""
+    """A request of a caller; ``pending`` is None if the caller does not wait."""
 
     kind: str
     ends_by: float
@@ -18,12 +18,12 @@ class Call:
     ended: bool = False
     writes: list[float] = field(default_factory=list)
     received_by_arm: int = 0
-    # The forms of its replies that were read while it waited.
+    # The variants of its replies that were read while it waited.
     read: set[int] = field(default_factory=set)
     # The texts that were read while it waited for a text.
     texts: list[Arrival] = field(default_factory=list)
     answered: bool = False
-    # The limit by which the reply to another request has ended it.
+    # The limit of the protocol because of which the reply to another request ended this call.
     misled: str | None = None
 
     @property

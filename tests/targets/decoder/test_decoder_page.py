@@ -119,7 +119,7 @@ EXPLAINED = [
 ]
 
 
-def test_page_of_a_site_without_the_module_names_another_way(tab: Tab, page: Path) -> None:
+def test_page_without_the_module_names_the_command_that_decodes(tab: Tab, page: Path) -> None:
     bare = page.with_name("bare.html")
     bare.write_text(page.read_text().replace("module.js", "none.js"))
     tab.open(bare.as_uri())

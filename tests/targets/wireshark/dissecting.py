@@ -149,12 +149,12 @@ def _fill(item: Item, parent: ET.Element, edition: str) -> None:
 
 def _groups(element: ET.Element) -> bool:
     """Return whether an element only groups others; a list may have none."""
-    # A name that stands for values of several sorts ends with the sort.
+    # A name that fields of several kinds share has the kind as its suffix.
     name = re.sub(r"_(group|number|bytes|text)$", "", element.get("name", ""))
     inner = any(each.get("name", "").startswith(f"{name}.") for each in element.iter())
     return inner or name == TEXT or element.get("showname", "").endswith(": nothing")
 
 
 def _data(element: ET.Element) -> bytes:
-    # For a field of some bits, the value is only these bits.
+    # In a bit field, the unmasked value is the whole byte or word.
     return bytes.fromhex(element.get("unmaskedvalue") or element.get("value") or "")
