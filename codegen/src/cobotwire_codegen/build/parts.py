@@ -63,7 +63,7 @@ class Parts:
     transport: Node | None = None
     joints: int | None = None
     robot: dict[str, Node] = field(default_factory=dict)
-    # Why there is no geometry; it has no effect beside one.
+    # Why there is no geometry; ignored if the edition states one.
     geometry_unknown: str = ""
     # The state of the arm, by name; and the names that the edition itself states, not its base.
     state: Named = field(default_factory=dict)

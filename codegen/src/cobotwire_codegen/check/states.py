@@ -201,7 +201,10 @@ def _beyond(
     types: Mapping[str, Type],
     chosen: str,
 ) -> Iterator[str]:
-    """Yield which index of a command a state does not have; a row runs along the last one."""
+    """Yield the indices of a command that a state does not have.
+
+    If ``at`` names no argument for the last index, the command has a row: a value for each.
+    """
     at = effect.at
     if len(state.each) - len(at) not in (0, 1):
         count = f"{len(state.each)} {'index' if len(state.each) == 1 else 'indices'}"

@@ -76,7 +76,7 @@ def _edition(old: Edition, new: Edition) -> Iterator[Finding]:
 
 
 def _bases(old: Edition, new: Edition) -> tuple[str, str]:
-    """Return the bases of both; if those are the same, the bases of these."""
+    """Return both bases; if they are equal, all bases of each edition, since these may differ."""
     if old.base != new.base:
         return old.base, new.base
     return ", ".join(old.bases), ", ".join(new.bases)

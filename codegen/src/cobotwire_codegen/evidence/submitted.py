@@ -127,7 +127,7 @@ def submitted(data: bytes) -> Submitted:
 def _check_digest(document: dict[str, Any], recording: str = "") -> None:
     """Check the digest that a document states, as ``cobotwire.inspect.seal`` defines it.
 
-    The files of the first surveys state none. Who signed a file, ``conform verify`` checks.
+    The files of the first surveys state none. ``conform verify`` checks who signed a file.
     """
     if "digest" not in document:
         return

@@ -21,7 +21,7 @@ class Address(Record):
     doc = required(Text(), "Which device has this address.")
     replies = optional(
         Word(REPLIES, REPLIES.values()),
-        "From which address the replies to a request come that is sent to this one.",
+        "The address from which the replies to a request to this address come.",
         "own",
     )
     joints = optional(
@@ -68,7 +68,7 @@ class Frame(Record):
     )
     layout = optional(
         Texts(),
-        "The order of address, LEN and CMD between header and data; an address is not the last. "
+        "The order of address, LEN and CMD between header and data; the address cannot be last. "
         "Left out: `[address, length, command]`.",
         ("address", "length", "command"),
     )
@@ -83,8 +83,8 @@ class Frame(Record):
     )
     replies_have_command = optional(
         YesNo(),
-        "Whether replies carry CMD. If not, their data starts in its place, each reply has at "
-        "least its size, and a client matches replies by address and size. Left out: true.",
+        "Whether replies carry CMD. If not, their data starts where CMD would, each reply is at "
+        "least as long as CMD, and a client matches replies by address and size. Left out: true.",
         True,
     )
     addresses = optional(

@@ -1,4 +1,4 @@
-"""The robot of an edition: what a simulated arm needs besides the messages."""
+"""What an edition states about its robot for simulation: everything except its messages."""
 
 from __future__ import annotations
 

@@ -139,7 +139,7 @@ def _other(reader: Reader, stated: _Stated) -> _Other:
         message = f"{reader.what} has no class {name}{nearest(name, stated.classes)}"
         reader.problem("unknown-word", message, reader.place_of(key))
         return _Other({}, {}, ())
-    # Its mistakes are reported with that class.
+    # Mistakes of the other class are reported when that class is built.
     other = Reader(entry[2], language.Class, f"the class {name}", [])
     methods = {each[0]: each for each in other.get(language.Class.methods)}
     calls = {

@@ -35,7 +35,7 @@ def render_library(library: Library) -> Files:
 
 
 def render_page(library: Library) -> Files:
-    """Return the page with the calls of the library beside ours."""
+    """Return the page that lists the library's calls with ours."""
     jinja = environment()
     jinja.globals.update(
         differing=differing, native_call=native_call, results=RESULTS, their_call=their_call

@@ -30,14 +30,11 @@ def exact_of(rank: int, width: int) -> Fraction:
 
 
 def nearest(value: Fraction, width: int) -> int:
-    """Return the rank of the float nearest to a value, ties to even.
-
-    For too large values the rank of infinity.
-    """
+    """Return the rank of the nearest float, ties to even; of infinity if the value overflows."""
     if value < 0:
         return -1 - nearest(-value, width)
     below = floor(value, width)
-    # Infinity stands where the next float would be, if the exponent had no end.
+    # Rounding treats infinity as the float after the largest one, with the next exponent.
     low = exact_of(below, width)
     high = low + _step(max(below >> _FRACTION_BITS[width], 1), width)
     beyond = value - low > high - value

@@ -1,4 +1,4 @@
-"""The robot of an edition: what a simulated one needs to know, apart from its messages."""
+"""What an edition states about its robot for simulation: everything except its messages."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ class Encoders:
 
 @dataclass(frozen=True, slots=True)
 class Gripper:
-    """A gripper: percent of its way a second for each percent, and readings of its encoder."""
+    """A gripper: percent of its stroke a second for each percent of speed; encoder readings."""
 
     speed: Fraction
     closed: int

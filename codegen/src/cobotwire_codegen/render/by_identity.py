@@ -8,7 +8,7 @@ from typing import Generic, TypeVar
 
 T = TypeVar("T")
 Result = TypeVar("Result")
-# More than the commands of all editions together.
+# The limit of results: more than all editions have commands.
 _MOST = 8192
 
 

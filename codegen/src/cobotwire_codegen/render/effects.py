@@ -107,7 +107,7 @@ def _fixed(effect: Effect, flags: Set[str]) -> Iterator[str]:
 
 
 def _way(effect: Effect) -> str:
-    """Return to where, by how much or how long a part moves, and about which axis."""
+    """Return the target, distance or duration of a motion, and its axis."""
     about = effect.option("about")
     axis = _chosen((str(about),)) if about else ""
     if effect.option("until"):

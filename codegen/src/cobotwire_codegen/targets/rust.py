@@ -78,21 +78,21 @@ def render_every_rust(found: Sequence[Edition]) -> Files:
 
 
 def identifier(name: str) -> str:
-    """Return the name of a field or argument in Rust; keywords have additions."""
+    """Return the name of a field or argument in Rust; keywords become raw, or end with ``_``."""
     if name in _NOT_EVEN_RAW:
         return f"{name}_"
     return f"r#{name}" if name in _KEYWORDS else name
 
 
 def type_name(name: str) -> str:
-    """Return the name of a type, other than those that the module uses."""
+    """Return the name of a type; ``_`` distinguishes it from names that the module uses."""
     return f"{name}_" if name in _TYPES else name
 
 
 def camel(name: str) -> str:
     """Return the name of an enum's variant: ``POWER_ON`` gives ``PowerOn``."""
     words = [word[:1] + word[1:].lower() for word in name.split("_")]
-    # Digits that follow digits keep their line: 1_2 is not 12.
+    # An underscore between digits stays: 1_2 is not 12.
     joined = re.sub(r"(?<=\d)_(?=\d)", "_", "_".join(words))
     made = re.sub(r"_(?=\D)|(?<=\D)_", "", joined)
     return type_name(made)

@@ -104,7 +104,7 @@ def camel(name: str) -> str:
 
 
 def type_name(name: str) -> str:
-    """Return the name of a type, other than those that the module uses."""
+    """Return the name of a type; ``_`` distinguishes it from names that the module uses."""
     return f"{name}_" if name in _TYPES else name
 
 

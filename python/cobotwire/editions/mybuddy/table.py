@@ -3,4 +3,4 @@
 
 from cobotwire.protocol.loading import load_table
 
-TABLE = load_table(__package__, checksum="c7a06d61")
+TABLE = load_table(__package__, checksum="93f42e5e")

@@ -72,7 +72,7 @@ EXPLANATIONS = (
     ),
     Explanation(
         "bad-size",
-        "Bits lie outside of their word or in two parts, a size cannot be encoded, or it varies "
+        "Bits lie outside of their word, or two parts overlap; a size cannot be encoded, or varies "
         "in a message that has several variants or several hundred sizes.",
         "Each size of a message is a variant of its own, which decoders find by LEN.",
         "Correct the bits; bound the sizes, or give the message one variant.",
@@ -81,8 +81,8 @@ EXPLANATIONS = (
     ),
     Explanation(
         "bad-count",
-        "`count` names no earlier field that can count the elements, or the end of the data is "
-        "that of two fields.",
+        "`count` names no earlier field that can count the elements, or two fields extend to the "
+        "end of the data.",
         "A decoder reads the number of elements before the elements.",
         "Name an earlier whole number whose range includes the sizes.",
         "- {name: data, type: blob, count: missing}",
