@@ -26,7 +26,7 @@ from speed_table import human
 
 ROOT = Path(__file__).parents[1]
 MODULE = Path("python", "cobotwire", "_native.abi3.so")
-# Two processes that run the same program differ by this much, by where their memory lies.
+# Two processes of the same program differ by up to this share, because of their memory addresses.
 SAME = 0.02
 
 
@@ -92,7 +92,7 @@ def _seconds(tree: Path, folder: Path, more: Sequence[str]) -> dict[str, float]:
     command += ["--streams", str(folder), *more]
     subprocess.run(command, env=environment, check=True, stdout=subprocess.DEVNULL)
     rows = enumerate(json.loads(report.read_text()))
-    # The same work is a row of several parts.
+    # Several groups of the table have a row of the same name, so the number makes it unique.
     return {f"{number:2} {row['row']}": row["seconds"] for number, row in rows}
 
 

@@ -62,7 +62,7 @@ BENCHES = {
     "frames": ["speed.py", "--rounds", "9", "--megabytes", "15", "--rows", "feed|encode"],
     "starts": ["imports.py"],
 }
-# The first characters of the lines of a table that have no cells.
+# The lines between the rows of a table start with these characters.
 RULES = ("┏", "┡", "└")
 
 

@@ -55,7 +55,7 @@ STARTS: dict[str, tuple[str, float | None]] = {
     "cobotwire decode HEX": (START.format(["decode", "FE FE 02 12 FA"]), 8.0),
     "cobotwire decode HEX, noise": (START.format(["decode", "FF FE 02 12 FA"]), 8.0),
     OUR_CLIENT: (OPEN, 7.0),
-    # These have no limit of their own.
+    # Rows without a limit.
     THE_LAYER: (OPEN_LAYER, None),
     "import and open an asyncio client": (OPEN_ASYNC, None),
     # Parts of the time that imports take.

@@ -84,13 +84,13 @@ def _readiness(table: Table, role: Role) -> dict[str, Any]:
     def text(raw: int) -> str:
         stated: Any = raw
         if role == "powered" and raw > 1:
-            # As the enum of the edition: false, and not 0.
+            # A stand-in for the enum's member, which counts as false.
             stated = type("State", (str,), {"__bool__": lambda _: False})()
             stated.name = field.labels[field.choices.index(raw)]
         found = [f"{each.text}; {each.advice}" for each in problems(table, {role: stated}, "")]
         return "; ".join(found).replace("cobotwire call '' ", "")
 
-    # What no source explains differs only in the number.
+    # The texts of values that no source explains differ only in the number.
     usual = "" if field.choices else text(UNNAMED).replace(str(UNNAMED), "{}")
     states = field.choices or range(256)
     texts = {raw: text(raw) for raw in states if text(raw) != usual.replace("{}", str(raw))}
@@ -113,7 +113,7 @@ def record_example(path: Path) -> None:
 
 
 def missing() -> str:
-    """Return what the page needs and is not here; empty: nothing."""
+    """Return what the page needs and is missing; empty: nothing."""
     return npm_package.missing() or ("" if CURVES.is_file() else "needs uPlot: make front-end")
 
 

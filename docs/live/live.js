@@ -5,9 +5,9 @@ import { nameOf, openWebSerial } from "./cobotwire/dist/transport.js";
 import { Session, Stream } from "./session.js";
 
 const POLL_MS = 100;
-// A query without a reply, although another one has, is sent again only after a pause.
+// If one query gets no reply and another one does, the first is sent again only after a pause.
 const [UNANSWERED, PAUSE_MS] = [2, 60_000];
-// A page says at least this often that it holds a button; noise waits this long for more bytes.
+// The longest silence of a page that holds a button; how long noise waits for more bytes.
 const [SILENCE_MS, IDLE_MS] = [500, 300];
 const now = () => performance.now();
 
@@ -150,7 +150,7 @@ export class Live extends Session {
     const form = this.permitted(name);
     const { arm, stops } = this;
     const given = values(form, texts);
-    // A wrong value is reported before the arm is asked whether it obeys.
+    // A wrong value is reported before the state of the arm is queried.
     arm.prepare(name, given);
     const checks = form.moves && !force;
     if (checks) await this.check(arm, this.facts.ready, false, `${name} was not sent:`);
@@ -169,7 +169,7 @@ export class Live extends Session {
     return results.length > 1 ? results : (results[0] ?? null);
   }
 
-  // Ask the arm for states; throw if it does not obey. A state that gets no reply after another one did is not known.
+  // Query states of the arm; throw if it does not obey. After one reply, a query without a reply is ignored.
   async check(arm, queries, replied, how) {
     const problems = [];
     for (const { command, field, texts, usual } of queries) {
@@ -184,7 +184,7 @@ export class Live extends Session {
     if (problems.some(Boolean)) throw new Error(`${how} ${problems.filter(Boolean).join(". Also, ")}`);
   }
 
-  // Stop the arm at once. Nothing but a query follows that was requested before.
+  // Stop the arm at once, and drop the motions that were requested before.
   async stop() {
     this.stops += 1;
     await this.sendStop();

@@ -2,7 +2,7 @@
 
 const [PREFIX, VERSION, FILES] = ["cobotwire-live-", "VERSION", ["FILES"]];
 
-// Ask the server for each file: the browser may still keep one of an earlier version. The new version waits until no page
+// Fetch each file from the server: the browser may have cached an earlier version. The new version waits until no page
 // uses the old one, so that no page gets files of both.
 async function install() {
   await (await caches.open(PREFIX + VERSION)).addAll(FILES.map((file) => new Request(file, { cache: "reload" })));

@@ -3,7 +3,7 @@ import { LinkError, failure } from "./errors.js";
 import type { Machine, Value } from "./machine.js";
 import { reason, within, type Transport } from "./transport.js";
 
-/** What a step of the session asks for: bytes to write, calls that have ended, when to go on. */
+/** The result of a step of the session: bytes to write, calls that have ended, when to continue. */
 type Step = [
   bytes: Uint8Array | undefined,
   ended: [call: number, good: boolean, answer: readonly Value[]][],
@@ -27,7 +27,7 @@ export const now = (): number => Math.round(performance.now() * 1e6);
 /** Run a function when everything that has come by now was received. */
 const afterTurn: (run: () => void) => void =
   typeof setImmediate === "function"
-    ? // The loop reads between two of its turns.
+    ? // Node reads sockets between two turns of its loop.
       (run) => setImmediate(() => setImmediate(run))
     : (run) => {
         const { port1, port2 } = new MessageChannel();
@@ -177,7 +177,7 @@ export class Line {
     return written;
   }
 
-  /** Go on when nothing that has come is unread, and the transport is free. */
+  /** Continue when everything that has come was read, and the transport is free. */
   private turn(): void {
     if (this.turning || this.writing) return;
     const go = (): void => {

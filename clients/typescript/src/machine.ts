@@ -57,7 +57,7 @@ export class Machine {
     return this.at;
   }
 
-  /** Look at the memory again: it may have grown. */
+  /** Take a new view of the memory: it may have grown. */
   private refresh(): void {
     const { buffer } = this.wasm.memory;
     if (this.heap.buffer !== buffer) {

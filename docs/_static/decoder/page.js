@@ -113,7 +113,7 @@
     const { text, edition, direction, output } = parts(root);
     output.setAttribute("aria-busy", "true");
     const mine = (shows += 1);
-    job += 1; // an answer about the input before comes too late
+    job += 1; // answers about earlier input are outdated
     load(edition.value, (table) => {
       if (mine === shows) decode(root, { table, direction: direction.value, text: text.value });
     });

@@ -40,9 +40,9 @@ class Client:
 
     One-way requests are sent once and at once, also while another thread waits for a reply; their
     methods return when the bytes are written. Requests that have a reply take turns. Queries are
-    sent again within their ``timeout``, as ``retry`` says. After a request was given up, the next
-    one like it is held until its late reply can no longer come, since the two look alike. With a
-    ``deadline``, none of this makes a call take longer.
+    sent again within their ``timeout``, as ``retry`` says. If a request got no reply in time, the
+    next similar request waits until the late reply can no longer come, because it could be
+    mistaken for the new reply. A ``deadline`` limits all of this.
 
     Many threads may share one arm. Ctrl-C leaves it usable.
     """
@@ -72,7 +72,7 @@ class Client:
             baudrate: bits a second; default: that of the edition.
             timeout: seconds that the arm has to reply once a request is sent, all attempts
                 included; default: those of the command in the edition. Before it is sent, a call
-                waits for its turn, and until no late reply can pass for its own.
+                waits for its turn, and until no late reply can be mistaken for its own.
             deadline: seconds that a call may take from its beginning, all of this included;
                 default: any time. Then it raises :class:`ReplyTimeout`, which says what the call
                 waited for, and whether it was sent; if it was not, it never will be. Waited motions

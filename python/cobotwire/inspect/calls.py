@@ -1,4 +1,4 @@
-"""Send one command, or run one motion of the client, and report what became of it."""
+"""Send one command, or run one motion of the client, and report the outcome."""
 
 from __future__ import annotations
 

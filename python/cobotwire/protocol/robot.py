@@ -1,4 +1,4 @@
-"""What an edition states about its robot, apart from its messages: a simulated one needs it.
+"""What an edition states about its robot for simulation: everything except its messages.
 
 Everything that is not stated is None or empty.
 """

@@ -86,7 +86,7 @@ __all__ = [
 ]
 
 
-# Programs compare it.
+# Programs compare the version.
 __version__ = "4.0.7"
 
 
@@ -94,7 +94,7 @@ def __getattr__(name: str) -> Any:
     # A class is made when it is used.
     if name in __all__:
         return getattr(classes, name)
-    # An AttributeError would lose its text, if the name is imported.
+    # Python replaces the text of an AttributeError if the name is imported.
     if why := why_no(name):
         raise ImportError(why, name=name)
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

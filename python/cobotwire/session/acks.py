@@ -50,15 +50,15 @@ class ExpectedAck:
         self.certain = False
 
     def doubt(self, until: list[float]) -> None:
-        """Note until when the acknowledgements of other requests, which look alike, may come."""
+        """Note until when similar acknowledgements of other requests may come."""
         self.doubts = sorted(until)
 
     def shorten(self, seconds: float) -> None:
-        """Expect it only that long after its request."""
+        """Stop expecting the acknowledgement this many seconds after its request."""
         self.until = min(self.until, self.sent_at + seconds)
 
     def count(self, frame: Frame, began_at: float) -> None:
-        """Count an acknowledgement of the command; the first ones count for other requests."""
+        """Count an acknowledgement that looks like this; the first may belong to other requests."""
         self.doubts = [until for until in self.doubts if until > began_at]
         if self.doubts:
             if self.request.replier != ANYBODY:
@@ -146,7 +146,7 @@ class _CommandAcks:
         self.expected.append(ack)
 
     def shorten(self, seconds: float, now: float) -> None:
-        """Expect each acknowledgement only that long after its request."""
+        """Stop expecting each acknowledgement this many seconds after its request."""
         for ack in self.expected:
             ack.shorten(seconds)
         self.forget_expired(now)
@@ -170,7 +170,7 @@ class _CommandAcks:
                 ack.count(received.frame, began_at)
 
     def doubts_of(self, request: EncodedRequest, ack: ExpectedAck | None = None) -> list[float]:
-        """Return until when acknowledgements other than ``ack`` may look like one of a request."""
+        """Return until when acknowledgements other than ``ack`` may seem to belong to a request."""
         others = (other for other in self.expected if other is not ack)
         return [each.until for each in others if not replies_differ(each.request, request)]
 
@@ -250,7 +250,7 @@ class Acks:
         if oldest is None or message is None or frame.offset < oldest.offset:
             return None
         self._learn(acks, received, now)
-        # By what was learned, some expected acknowledgements may have expired.
+        # _learn may have shortened the wait for some acknowledgements, which then expired.
         acks.take(received, began_at)
         self._end_certain(message)
         return Acknowledged(oldest.request, message)
@@ -308,7 +308,7 @@ class Acks:
         self.drop_done()
 
     def note(self, event: FrameEvent | Noise) -> None:
-        """Have those who wait remember an event, for the text of a timeout."""
+        """Add an event to each waiting request, for the text of a timeout."""
         for pending in self.waiting:
             pending.note(event)
 

@@ -228,7 +228,7 @@ class Exchange:
         """Return the bytes of the request to be sent now, for the first time or again.
 
         ``drained``: whether everything that has come by now was received. A request is sent on a
-        drained line, so that earlier bytes cannot pass for its reply.
+        drained line, so that earlier bytes cannot be mistaken for its reply.
         """
         waiting = self._waiting()
         if waiting is not None:
@@ -296,7 +296,7 @@ class Exchange:
             self._acks.drop_done()
 
     def _free_times(self, now: float) -> list[tuple[PendingRequest, float]]:
-        """Return each queued request, and from when on no late reply can be mistaken for its."""
+        """Return each queued request with the time after which no late reply looks like its own."""
         queued = self._queued()
         if not self._outstanding.replies:
             return [(pending, now) for pending in queued]
@@ -461,7 +461,7 @@ class Exchange:
         return [RequestExpired(waiting.request.command, waiting.requested_at, attempts)]
 
     def _note(self, event: FrameEvent | Noise) -> SessionEvent:
-        """Have everybody who waits remember an event, for the text of a timeout."""
+        """Add an event to each waiting request, for the text of a timeout."""
         waiting = self._waiting()
         if waiting is not None:
             waiting.note(event)

@@ -83,7 +83,7 @@ class Pending:
 
     Attributes:
         request: what is sent.
-        done: whether it has ended; then :meth:`result` tells how.
+        done: whether it has ended; :meth:`result` then returns its outcome.
         ends_by: when its caller waits no longer; inf: its caller has no deadline.
     """
 

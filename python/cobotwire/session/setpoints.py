@@ -25,13 +25,13 @@ SAME_DEGREES = 1e-6
 SPREAD_SECONDS = 0.25
 
 
-# Takes start, target and the number of steps (0: as many as the way needs). Returns the angles
+# Takes start, target and the number of steps (0: as many as the path needs). Returns the angles
 # after each step; the last ones are the target. Raises UsageError if the joints cannot go there.
 Ways = Callable[[Point, Point, int], list[Point]]
 
 
 def evenly(start: Point, target: Point, steps: int) -> list[Point]:
-    """Return the angles on the way; each joint turns evenly."""
+    """Return the angles at each step; each joint turns evenly."""
     count = steps or 1
     return [
         tuple(a + (b - a) * step / count for a, b in zip(start, target))

@@ -34,7 +34,7 @@ Fields = Mapping[str, Any]
 
 
 def move(arm: ArmState, now: float, command: Command, effect: Moves, fields: Fields) -> None:
-    """Begin the motion that a request asks for; if the arm rejects it, its state does not change.
+    """Begin the requested motion; if the arm rejects it, its state does not change.
 
     Args:
         arm: the arm.
@@ -164,7 +164,8 @@ def _move_end(
         arm.remarks.append("rejected: the arm has no inverse kinematics for these coordinates")
         return
     row, straight = fields[field.name], _is_straight(arm, command, fields)
-    # The same coordinates as reported are the same place, whatever the rounding.
+    # A full set of coordinates is the target as it is: the present pose, which is rounded, is not
+    # needed, so reported coordinates that are sent back lead to the same place.
     target = row if places == arm.coordinates else pose_with(row, places, end)
     go_to_coords(arm, target, speed, now, straight=straight)
 

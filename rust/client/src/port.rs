@@ -96,7 +96,7 @@ impl Port for Box<dyn serialport::SerialPort> {
             }
             std::thread::sleep(Duration::from_millis(1));
         }
-        // Or the system would wait for the line when the port is closed.
+        // With unsent bytes, the system would wait for the line when the port is closed.
         self.clear(serialport::ClearBuffer::Output)?;
         Err(std::io::ErrorKind::TimedOut.into())
     }

@@ -11,7 +11,7 @@ use cobotwire_core::exchange::{
 use crate::encoder::{Encoder, Handle, Named, Outcome, Prepared};
 use crate::{Error, OnDrop};
 
-/// What a write has without a deadline: the line takes nothing for so long only if it is stuck.
+/// The deadline of a write that has no other: a line that takes nothing for longer is stuck.
 const LONGEST_WRITE: Nanos = 1_000_000_000;
 /// A write that takes longer than this was held up by a full line.
 const SLOW_WRITE: Nanos = 5_000_000;
@@ -48,7 +48,7 @@ struct Call {
     called_at: Nanos,
     ends_by: Nanos,
     ack_within: Option<Nanos>,
-    /// By which the exchange knows it; `None`: it does not, or not yet.
+    /// Its ticket in the exchange; `None`: it has none, or none yet.
     ticket: Option<Ticket>,
     /// How many of its bytes were written.
     written: usize,

@@ -20,7 +20,7 @@ impl Case {
     }
 }
 
-/// What the value of a field with several numbers is.
+/// How the numbers of a field form one value.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Shape {
     /// A row of numbers.
@@ -45,7 +45,7 @@ pub struct Field {
     pub selector: Option<usize>,
     /// Its cases; without a selector only the first one counts.
     pub cases: Vec<Case>,
-    /// What its value is.
+    /// How its numbers form a value.
     pub shape: Shape,
     /// The count of numbers in each element of a list of rows or texts; 0 for other fields.
     pub each: usize,

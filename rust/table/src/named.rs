@@ -10,8 +10,8 @@ use crate::{Edition, Field, Shown};
 impl Edition {
     /// Return the values of the request's variant that takes exactly the given arguments, in the
     /// order of the wire, and the index of the variant. If several variants take them, the index is
-    /// `None`, and the values must decide. `filled` makes the value of a constant or a default; for
-    /// `None` it makes the mark of a field that counts elements: the encoder counts them.
+    /// `None`, and the values must decide. `filled` makes the value of a constant or a default. For
+    /// a field that counts elements, it gets `None` and returns a mark: the encoder counts them.
     ///
     /// # Errors
     /// No variant takes exactly these arguments; the text names a missing or an unknown one.

@@ -83,7 +83,7 @@ def messages_of(table: Table) -> list[Message]:
 
 
 def _leading(rows: Rows, columns: Columns, origin: Origin) -> Mapping[str, Any]:
-    """Return the columns OWN for some rows; ``to_arrow`` adds the address itself."""
+    """Return the columns of ``OWN`` for some rows, without the address: ``to_arrow`` adds it."""
     size = len(rows)
     time = pa.nulls(size, TIME)
     if origin.stream is not None:

@@ -28,7 +28,7 @@ from cobotwire.protocol.errors import (
 USAGE, LINK_FAILED, NO_REPLY, NOT_READY, NOT_WRITTEN, INTERRUPTED = 2, 3, 4, 7, 8, 130
 # What a shell reports for a process that SIGPIPE ended.
 OUTPUT_CLOSED = 141
-# The signals that end a program in order, as Ctrl-C does; SIGHUP: its terminal is gone.
+# The signals that end a program gracefully, as Ctrl-C does. SIGHUP: its terminal is gone.
 ENDING = [number for name in ("SIGTERM", "SIGHUP") if (number := getattr(signal, name, None))]
 
 CODES: tuple[tuple[type[CobotwireError], int], ...] = (

@@ -189,7 +189,7 @@ class Requester:
         command = response.request.command
         if command.requires_reply and not response.replies:
             return self._timing.grace
-        # Without an acknowledgement, the silence is over by now.
+        # If an acknowledgement was awaited in vain, the silence has already been observed.
         waited = bool(response.replies) or command.ack
         return self._timing.linger if waited else self._timing.silence
 

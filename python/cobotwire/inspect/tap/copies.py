@@ -65,7 +65,7 @@ class Copies:
         return True
 
     def close(self) -> None:
-        """End the copies. What was dropped last is reported if the reader takes it in a second."""
+        """Close the pipe. Wait up to a second to report the bytes that were dropped last."""
         if self._dropped:
             select.select([], [self._descriptor], [], 1.0)
             self._write("dropped", b"%d" % self._dropped, 0.0)

@@ -20,7 +20,7 @@ def given(
 ) -> dict[str, cst.BaseExpression] | None:
     """Return the arguments by the library's parameters; None if they are not known.
 
-    They are hidden by ``*`` and ``**``; or there are too many, or one that the library lacks.
+    They are not known if ``*`` or ``**`` hides them, or if the library's method does not take them.
     """
     found: dict[str, cst.BaseExpression] = {}
     for index, argument in enumerate(arguments):
@@ -63,10 +63,10 @@ def ours(call: Call, arguments: Sequence[cst.Arg]) -> list[cst.Arg] | str:
 def _passed(
     call: Call, parameter: str, default: str, value: cst.BaseExpression | None
 ) -> cst.BaseExpression | None:
-    """Return what our method is given for a parameter; None if nothing.
+    """Return the argument of our method for a parameter; None: the argument is left out.
 
-    A number that no parameter gives is always written. 0 and False count as left out where they are
-    the library's default, and None is ours.
+    ``parameter`` may also be a constant, which is always written. Where the library's default is 0
+    or False and ours is None, 0 and False count as left out.
     """
     if parameter not in call.parameters:
         return cst.parse_expression(parameter)

@@ -56,7 +56,7 @@ class FaultyConnection:
         self.outlet.put(max(self._clock() + delay, self.stalled_until), reply, number)
 
     def hold(self, seconds: float, reply: Reply, number: int | None = None) -> None:
-        """Keep a reply for the next one, at most for that long."""
+        """Keep a reply until the next one, at most for some seconds."""
         self.outlet.hold(self._clock() + seconds, reply, number)
 
     def wake(self) -> None:

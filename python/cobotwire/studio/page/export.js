@@ -12,7 +12,7 @@ export function wireExport(source) {
   });
 }
 
-// Let the browser keep the file of a response, and say what became of it.
+// Save the body of a response as a file, and show the result or the error.
 export async function keep(coming, say) {
   say("writing");
   try {

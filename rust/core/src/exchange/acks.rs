@@ -25,7 +25,7 @@ pub(super) type Ended = Vec<(Ticket, Result<Answer, Failure>)>;
 /// An acknowledgement that may come.
 #[derive(Clone, Debug)]
 struct ExpectedAck {
-    /// Which no other one shares: a request that is sent again is another one.
+    /// The request. Sending the same request again makes another object.
     request: Arc<Request>,
     sent_at: Nanos,
     /// After this it no longer counts.
@@ -48,13 +48,13 @@ impl ExpectedAck {
         self.doubts.sort_unstable();
     }
 
-    /// Count an acknowledgement of the command. It counts for another request as long as it can.
+    /// Count an acknowledgement that looks like this; the first may belong to other requests.
     fn count(&mut self, frame: &SeenFrame, began_at: Nanos) {
         self.doubts.retain(|until| *until > began_at);
         if self.doubts.is_empty() {
             self.certain |= frame.offset >= self.offset;
         } else if self.request.replier != Replier::Anybody {
-            // Of a broadcast several devices may acknowledge each other request.
+            // After broadcasts, each other request may have several acknowledgements.
             self.doubts.remove(0);
         }
     }
@@ -97,7 +97,7 @@ impl CommandAcks {
         self.known.push(ack);
     }
 
-    /// Expect each acknowledgement only that long after its request.
+    /// Stop expecting each acknowledgement this long after its request.
     fn shorten(&mut self, protocol: &Protocol, within: Nanos, now: Nanos) {
         for ack in self.known.iter_mut().filter(|ack| ack.expected) {
             ack.until = ack.until.min(ack.sent_at.saturating_add(within));
@@ -255,7 +255,7 @@ impl Acks {
             self.motions_at_once = true;
             acks.shorten(protocol, GRACE, now);
         }
-        // What learning has shortened may be over by now.
+        // Learning may have shortened the wait for some acknowledgements, which then expired.
         acks.take(fits, frame, began_at);
         // The acknowledgement may say that the arm did not do it.
         let refused = Failure::refusal(protocol, &message);

@@ -37,7 +37,7 @@ impl Protocol {
         Some(self.table.commands().get(command)?.id)
     }
 
-    /// Return whether a command is such as a function of its facts says.
+    /// Return whether a condition holds for the facts of a command.
     pub(super) fn is(&self, command: usize, such: impl Fn(&Facts) -> bool) -> bool {
         self.facts.get(command).is_some_and(such)
     }

@@ -65,7 +65,7 @@ pub struct Exchange {
     last: Option<Pending>,
     /// Whether the line took no bytes when the next request was to be sent.
     line_is_full: bool,
-    /// How the requests have ended whose callers have not asked yet.
+    /// The outcomes that callers have not taken yet.
     finished: BTreeMap<Ticket, Result<Answer, Failure>>,
     tickets: u64,
 }
@@ -153,8 +153,8 @@ impl Exchange {
         self.finished.remove(&ticket)
     }
 
-    /// End every request: the transport is gone. Return what the bytes are that still waited: what
-    /// comes after the transport is open again does not complete them.
+    /// End every request: the transport is gone. Return the events of the bytes that still waited,
+    /// since bytes of a new connection cannot complete them.
     pub fn fail(&mut self, now: Nanos) -> Vec<Event> {
         let events = self.flush(now);
         self.alignment.lose(&self.protocol);
@@ -241,7 +241,7 @@ impl Exchange {
     }
 
     /// Return the bytes of the request to be sent now, for the first time or again. `drained`:
-    /// whether everything that has come by now was received, so that it cannot pass for its reply.
+    /// whether everything that has come by now was received, so that it is not taken for its reply.
     pub fn outgoing(&mut self, now: Nanos, drained: bool) -> Vec<u8> {
         if self.waiting().is_some() {
             return self.next_attempt(now).unwrap_or_default();
@@ -349,7 +349,7 @@ impl Exchange {
     }
 
     /// Return whether a queued request is sent on a line that brings more than can be read, which is
-    /// never drained. It ends if the late reply that has held it may be among the unread bytes.
+    /// never drained. End the request if the late reply that held it may be among the unread bytes.
     fn sends_undrained(&mut self, index: usize, now: Nanos) -> bool {
         let Some(pending) = self.queue.get_mut(index) else {
             return false;
@@ -597,7 +597,7 @@ impl Exchange {
         })
     }
 
-    /// Have everybody who waits remember an event.
+    /// Add an event to each waiting request.
     fn note(&mut self, event: Event) -> Event {
         let waiting = waiting(&mut self.last).into_iter();
         for waiting in waiting.chain(&mut self.acks.waiting) {

@@ -9,7 +9,7 @@ use crate::decode::Decoded;
 use crate::message::VariantId;
 use crate::number::Value;
 
-/// What a request that has succeeded has got.
+/// The result of a request that succeeded.
 #[derive(Clone, Debug, PartialEq)]
 #[allow(missing_docs)] // of times, whose names say what they are
 pub struct Answer {

@@ -1,6 +1,6 @@
 //! Writes numbers as Python does.
 
-/// Doubles tell all decimal numbers of 15 digits apart.
+/// Doubles distinguish all decimal numbers of 15 digits, which this number bounds.
 const EXACT: f64 = 1e15;
 /// Most values are multiples of a thousandth.
 const FINE: f64 = 1000.0;

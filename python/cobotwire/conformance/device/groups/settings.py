@@ -41,7 +41,7 @@ RESTORED = TestCase("restored", "The value before a test can be set again, and i
 OTHERS = TestCase("others-stay", "A setting changes nothing but what it sets.")
 AMONG = TestCase("set-is-reported", "One of the numbers that the query reports is what was set.")
 
-# The values of a setting that is among other numbers, as shares of the range.
+# The values to set if the query reports several numbers, as shares of the setting's range.
 SHARES = (0.3, 0.7)
 
 
@@ -90,8 +90,7 @@ def _try(probe: Probe, spot: Spot, spots: list[Spot]) -> None:
         reason = f"{spot} reports failure, but {wanted} is read back"
         probe.expect(REPLIED, not failed, reason)
         for other in spots if index == 0 else ():
-            # A setting with an obstacle was changed earlier and not restored, so it no longer has
-            # its old value.
+            # A setting that could not be restored no longer has its old value.
             if other.index != spot.index and not other.obstacle:
                 _expect(probe, NEIGHBOURS, other, other.old, f"after {spot}: ")
     if not spot.obstacle:
