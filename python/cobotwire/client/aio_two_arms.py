@@ -85,7 +85,7 @@ class AsyncTwoArms(Generic[ArmT]):
     ) -> None:
         try:
             if error is not None:
-                # Both arms are stopped before a port is closed. The right one stops as it leaves.
+                # Both arms are stopped before a port is closed; the right one is stopped on exit.
                 await self.left._stop_all_for(error)
         finally:
             try:

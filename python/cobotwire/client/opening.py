@@ -207,7 +207,7 @@ class PortOpener(NamedTuple):
                 self.record, self.codec, url=transport.url, baudrate=self.baudrate
             )
         except BaseException:
-            # An open transport of the caller's remains the caller's.
+            # A transport that the caller opened stays open.
             if transport is not self.port:
                 transport.close()
             raise

@@ -99,7 +99,7 @@ def _take(path: str) -> bytes:
         finally:
             os.close(descriptor)
     finally:
-        # Whatever it is, it occupies the path of the next note. A folder is not removed.
+        # Anything but a folder is removed, even if it is no note: the next note needs the path.
         with suppress(OSError):
             os.unlink(path)
 
@@ -163,7 +163,7 @@ def _folder(create: bool) -> str:
         OSError: it does not exist or cannot be made, or others can write it.
     """
     user = str(os.getuid()) if hasattr(os, "getuid") else "user"
-    # As tempfile chooses it; importing that takes milliseconds.
+    # The folder that tempfile would choose; importing tempfile takes milliseconds.
     parent = os.environ.get("TMPDIR") or os.environ.get("TEMP") or "/tmp"  # noqa: S108 - see below
     folder = os.path.join(parent, f"cobotwire-{user}")
     if create:

@@ -73,7 +73,7 @@ class TwoArms(Generic[ArmT]):
     ) -> None:
         try:
             if error is not None:
-                # Both arms are stopped before a port is closed. The right one stops as it leaves.
+                # Both arms are stopped before a port is closed; the right one is stopped on exit.
                 self.left._stop_all_for(error)
         finally:
             try:

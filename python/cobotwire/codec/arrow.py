@@ -1,4 +1,4 @@
-"""Make Arrow tables of messages. Only the modules ``arrow*`` of this room import pyarrow."""
+"""Make Arrow tables of messages. Only the modules ``arrow*`` of this package import pyarrow."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ class Part:
     leading: Mapping[str, Any]
 
     def pieces(self) -> Iterator[Part]:
-        """Yield the rows in pieces that fit into Arrow's arrays."""
+        """Yield the rows in chunks that fit into Arrow's arrays."""
         rows = len(self.offset)
         longest = max([field.size for field in self.variant.fields], default=0)
         most = LARGEST // max(2 * longest, 1)  # a Latin-1 letter has at most two bytes in UTF-8

@@ -32,7 +32,7 @@ class Spans(NamedTuple):
 
 
 class Scan:
-    """The places of the frames and the noise in a stream; ``counters`` counts both."""
+    """The offsets of the frames and the noise in a stream; ``counters`` counts both."""
 
     def __init__(self, offset: Buffer, noise: tuple[Buffer, Buffer], counters: Counters) -> None:
         self._offset = offset

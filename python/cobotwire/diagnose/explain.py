@@ -85,7 +85,7 @@ def frame_parts(table: Table, data: bytes, message: DecodedMessage) -> Iterator[
             continue
         for at, (number, single) in enumerate(_numbers(message, field, value)):
             name = element_name(field, number, at)
-            # Several parts of a word share its bytes: the last one has them.
+            # If several numbers share bytes, the bytes are shown with the last of them.
             chunk = data[offset : offset + number.step]
             raw = number.unpack(data, offset)
             yield Part(offset, chunk, name, format_value(field, number, single), raw)

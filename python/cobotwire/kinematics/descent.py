@@ -93,7 +93,7 @@ def _errors(here: Pose, target: Pose, radian: float) -> list[float]:
     angle = math.atan2(sine, cosine)
     scale = radian * (angle / (2 * sine) if sine > 1e-9 else 0.5)
     if sine <= 1e-9 and cosine < 0:
-        # Half a turn has no direction that the axes show: turn about any of them.
+        # For half a turn the cross products are zero, so the axis is unknown: turn about x.
         return [*way, *(math.pi * radian * part for part in here.x)]
     return [*way, *(scale * part for part in turn)]
 

@@ -136,7 +136,7 @@ class Chase:
         self.arrived = True
 
     def step(self, target: Sequence[float]) -> tuple[Point, float]:
-        """Move on for the time of a step; return where the joints are, and the highest speed."""
+        """Advance by one step; return where the joints are, and the highest speed."""
         self._state.target_position = list(target)
         self.arrived = self._ruckig.update(self._state, self._next) == self._finished
         self._next.pass_to_input(self._state)
@@ -171,7 +171,7 @@ def _needs(curve: Curve, order: int, bounds: Bounds) -> list[float]:
 
 
 def _along(curve: Curve, bounds: Bounds) -> tuple[float, float, float]:
-    """Return a speed, acceleration and jerk along a curve that each joint may reach, each alone."""
+    """Return limits of speed, acceleration and jerk along a curve; each ignores the other two."""
     speed = 1 / max(max(_needs(curve, order, bounds)) for order in (1, 2, 3))
     first = [max((STRAIGHT, *axis)) for axis in zip(*curve.largest(1))]
     acceleration = min(map(truediv, bounds.acceleration, first))

@@ -352,7 +352,7 @@ class CaptureError(CobotwireError, ValueError):
 
 
 class OutputError(CobotwireError, OSError):
-    """An error of the system while it writes the files of an export: the disk is full, say.
+    """An error of the system while it writes the files of an export, such as a full disk.
 
     No file with a final name is incomplete: what was written had a temporary name, and is removed.
 

@@ -29,7 +29,7 @@ def load_parts(package: str) -> None:
 def import_aside(module: str, *names: str) -> None:
     """Import a module, and the parts of it that define ``names``, in a thread of its own.
 
-    Ctrl-C reaches the main thread alone, so it cannot end this import half-way. An ``import``
+    Ctrl-C reaches only the main thread, so it cannot end this import half-way. An ``import``
     statement after this call finds the module loaded, or raises what the import raises.
     """
     loaded = vars(sys.modules.get(module, object)).keys()

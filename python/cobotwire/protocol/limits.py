@@ -25,9 +25,9 @@ AXES = ("x", "y", "z")
 class Limits(NamedTuple):
     """The lowest and the highest target of each joint and coordinate.
 
-    None keeps the edition's limit of one part, or of all parts. ``joints`` and ``coords`` limit
-    targets alone: commands that move the arm by a distance (``jog_increment``), or until it is
-    stopped, stay as they are. ``speed`` and ``workspace`` hold for everything that moves the arm:
+    None keeps the edition's limit of one joint or coordinate, or of all. ``joints`` and ``coords``
+    limit only targets: commands that move the arm by a distance (``jog_increment``), or until it
+    is stopped, stay as they are. ``speed`` and ``workspace`` limit everything that moves the arm:
     commands that could exceed them are refused (``protocol/refusals``). Nothing limits ``stop``.
 
     Attributes:

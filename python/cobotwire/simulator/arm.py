@@ -146,7 +146,7 @@ class SimulatedArm:
         points: Iterable[tuple[float, Sequence[float]]],
         address: int | str | None = None,
     ) -> None:
-        """Lead the arm by hand whenever no joint is held; if none is now, begin at once.
+        """Lead the arm by hand whenever no joint is held; if no joint is held now, begin at once.
 
         Args:
             points: for each point, the seconds since the release, and the joints' angles. From

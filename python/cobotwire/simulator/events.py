@@ -15,7 +15,7 @@ from cobotwire.protocol.table import Command, Table
 from cobotwire.simulator.motion_ends import MotionEnds
 from cobotwire.simulator.state import ArmState
 
-# How often an arm looks whether another thread has emitted an event.
+# How often an arm checks whether another thread has emitted an event, in seconds.
 POLL_SECONDS = 0.1
 # A client that reads nothing loses the oldest events.
 KEPT = 1000

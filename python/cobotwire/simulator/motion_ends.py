@@ -9,7 +9,7 @@ from cobotwire.protocol.table import Command, Table
 from cobotwire.simulator.replies import completed
 from cobotwire.simulator.state import ArmState
 
-# How often a moving arm looks whether it has come to rest.
+# How often it is checked whether a moving arm has come to rest, in seconds.
 LOOK_SECONDS = 0.01
 
 

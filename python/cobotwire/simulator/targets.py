@@ -205,7 +205,7 @@ def solve(arm: ArmState, end: Pose, start: Point, effort: Effort) -> Point | Non
 
 
 def _ended(effort: Effort) -> str:
-    """Return what to add to a reason if the search has come to its end."""
+    """Return what to add to a reason if the search has used up its effort."""
     return "" if effort.left else f"; the search ended after {STEPS_OF_A_REQUEST} steps"
 
 

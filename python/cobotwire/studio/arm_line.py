@@ -145,13 +145,13 @@ class ArmLine:
         return result
 
     def stop(self) -> None:
-        """Send the edition's stop at once: it takes no turns with requests that wait.
+        """Send the edition's stop at once, before all requests that wait.
 
         Raises:
             UsageError: the edition has no stop.
             LinkError: the port is gone.
         """
-        # Counted first, so that no motion that waits follows.
+        # The stop is counted first, so that no waiting motion is sent after it.
         self.stops += 1
         self._send_stop()
 

@@ -87,7 +87,7 @@ class Connections:
 
     def _unknown(self) -> list[Connection]:
         """Return the connections without the token; the one that was idle for longest is first."""
-        # Whether one is being served makes no difference: a body can be held like a header.
+        # Those that are being served are included: a client can hold back a body like a header.
         return sorted([each for each in self._open if not each.known], key=attrgetter("since"))
 
     def _close(self, connection: Connection) -> None:

@@ -50,7 +50,7 @@ def controls(table: Table, refused: Container[str] = ()) -> dict[str, Any]:
         for name, arguments in _uses(command):
             if found[name] is None and _suffices(command, arguments):
                 found[name] = _control(command, arguments, table.joints)._asdict()
-    # Where no joint may be sent alone, the page sends all of them.
+    # Without a command for a single joint, the page sends the targets of all joints.
     found["joint"] = found["joint"] or found["joints"]
     reachable = all(low <= 0 <= high for low, high in joint_limits(table))
     speeds = [each for each in (found["joint"], found["joints"]) if each]

@@ -15,7 +15,7 @@ from cobotwire.studio.entries import Entry
 
 # Replies that are later than this belong to no request that a person would look for.
 LONGEST_REPLY_SECONDS = 5.0
-# An arm that is as near as this to its target has reached it.
+# An arm within this distance of its target has reached it.
 REACHED_DEGREES, REACHED_MILLIMETRES = 0.5, 1.0
 
 Sample = dict[str, Any]

@@ -60,7 +60,7 @@ class SimulatedLine:
             UsageError: there is no such scenario, or the edition lacks a command of it.
             ScenarioError: the scenario does not fit the edition.
         """
-        # By name alone: a page must not read files.
+        # Only by name: a page must not read files.
         if name and name not in shipped():
             raise UsageError("scenario", name, ", ".join(shipped()))
         self._scenario = find(name, self.table) if name else None

@@ -78,7 +78,7 @@ class PolledTransport:
         return not self._unwritten and has_room(self._transport)
 
     def end_writing(self) -> None:
-        """Send no more of what was written and not taken yet."""
+        """Stop sending the writes that were not taken yet."""
         if self._unwritten:
             taken = f"only {self._taken} of {len(self._unwritten[0][0])} bytes were taken in time"
             self._end_writing(LinkError(self._transport.url, f"cannot be written: {taken}"))
@@ -151,7 +151,7 @@ class ThreadedTransport:
         self._loop = asyncio.get_running_loop()
         self._ready = ready
         self._read_queue: queue.SimpleQueue[bytes | LinkError] = queue.SimpleQueue()
-        # Each write with the number of failed writes that the loop knew of when it queued it.
+        # Each write, with the number of failures that the loop knew of when the write was queued.
         self._write_queue: queue.SimpleQueue[tuple[bytes, Done, int] | None] = queue.SimpleQueue()
         self._failures = self._unwritten = 0
         self._lost: LinkError | None = None

@@ -118,7 +118,7 @@ class AsyncTransport(Protocol):
         ...
 
     def end_writing(self) -> None:
-        """Send no more of what was written and not taken yet, where that is possible."""
+        """Stop sending the writes that were not taken yet, where that is possible."""
         ...
 
     def close(self) -> None:

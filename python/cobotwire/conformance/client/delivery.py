@@ -36,7 +36,7 @@ SOON_SECONDS = 0.02
 
 
 def _late(every: int, first: int) -> tuple[Fault, ...]:
-    """Return faults that delay replies, with ``every`` or one more other replies in between.
+    """Return faults that delay replies; ``every`` or ``every + 1`` other replies lie in between.
 
     A client may send its queries in a fixed order. With a fixed distance, the same query would
     always be late, and the client would wait for that query when its late reply comes.

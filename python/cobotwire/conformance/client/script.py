@@ -74,7 +74,7 @@ class Script:
             for line in lines
         ]
         self._at = 0
-        # The frame that was matched with the previous line: a wrong one may be repeated, too.
+        # The frame that was matched with the previous line: a client may repeat it, even if wrong.
         self._taken = b""
 
     def check(self, now: Received) -> Iterator[Observation]:

@@ -14,7 +14,7 @@ from cobotwire.protocol.table import Field, Number, Variant
 # The number that is sent, and the number that reports it.
 Numbers = tuple[Number, Number]
 
-# Texts that differ in every place, of characters that a name may have.
+# Texts that differ at every position, made of characters that a name may have.
 _TEXTS = (("cobot 1", "pass-word 2"), ("A", "B8"))
 # The ordinary values of bytes, texts and lists that are set one after the other.
 _TURNS = (0, 7)

@@ -87,7 +87,7 @@ class Survey:
         self.finished = False
         # Why the arm was not moved, or not surveyed at all; empty: it was, or need not be.
         self.obstacle = ""
-        # Whether the arm is another one than the edition's.
+        # Whether the arm speaks another edition.
         self.other = False
         self.mistakes: list[Mistake] = []
         self._package, self._motion = package or table.edition, motion

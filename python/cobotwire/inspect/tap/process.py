@@ -30,8 +30,8 @@ class WatchingProcess:
     def __init__(self, watch: Watch) -> None:
         """Start it, and wait until watching begins.
 
-        From now on this process ignores Ctrl-C and SIGTERM, until it sets handlers; the watching
-        process always does, as a terminal sends Ctrl-C to both.
+        From now on this process ignores Ctrl-C and SIGTERM until it sets handlers. The watching
+        process always ignores them, since a terminal sends Ctrl-C to both processes.
         """
         for number in (signal.SIGINT, signal.SIGTERM):
             signal.signal(number, signal.SIG_IGN)

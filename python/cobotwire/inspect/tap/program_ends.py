@@ -28,7 +28,7 @@ class PtyEnd:
         self._left = False
 
     def arrive(self) -> tuple[str, bool]:
-        """Take note of openings; return what happened, and whether another program has opened it.
+        """Read the openings of the pty; return what happened, and whether a new program opened it.
 
         What the last program did not read is dropped.
         """

@@ -132,7 +132,7 @@ class Homing(CompatibleClient):
 
 
 class HomingQuietly(Homing):
-    """Sends all joints to 0, and may leave without the acknowledgement."""
+    """Sends all joints to 0; may return without waiting for the acknowledgement."""
 
     def go_home(self, _async: bool = False) -> Any:
         """Send all joints to 0 degrees, at a tenth of the fastest speed."""

@@ -114,7 +114,7 @@ class Fault:
     kind: ClassVar[str] = ""
     # Whether the fault does something only where there is a reply.
     wants_reply: ClassVar[bool] = True
-    # Whether the fault is applied to all of malformed input or of a text, in whatever pieces.
+    # Whether the fault is applied to every piece of malformed input, or of a text.
     goes_on: ClassVar[bool] = False
 
     commands: tuple[str | int, ...] = ruled(Several(command), ())

@@ -53,7 +53,7 @@ def quickest(speed: float, way: float, fastest: float, acceleration: float) -> T
     cruise = forth * min(peak, fastest)
     ramp_up = (speed + cruise) / 2 * abs(cruise - speed) / acceleration
     ramp_down = cruise * abs(cruise) / (2 * acceleration)
-    # If it turns back very near to where it would stop, it cruises at speed 0.
+    # A target very near the stopping point gives a cruising speed of 0.
     cruising = max((way - ramp_up - ramp_down) / cruise, 0.0) if cruise else 0.0
     ramps = (abs(cruise - speed) + abs(cruise)) / acceleration
     return Travel(speed, cruise, way, acceleration, ramps + cruising)

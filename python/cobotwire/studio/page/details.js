@@ -13,7 +13,7 @@ export class Details {
     this.wanted = number;
     try {
       const found = await this.source.explain(number);
-      // A later choice may have been answered first.
+      // The explanation of a later choice may have come first.
       if (this.wanted === number) this.place.replaceChildren(...explanation(found));
     } catch (error) {
       if (this.wanted === number) this.place.replaceChildren(el("p", {}, error.message));

@@ -39,7 +39,7 @@ export class Line {
     });
     this.place.addEventListener("click", (event) => {
       const row = event.target.closest(".row");
-      // By its key, since the list may have changed since it was drawn.
+      // The row is found by its key, since the list may have changed since it was drawn.
       if (row) this.select(this.shown.findIndex((each) => each.key === Number(row.dataset.key)));
     });
     this.place.addEventListener("keydown", (event) => this.key(event));

@@ -22,7 +22,7 @@ BUSY = errno.EBUSY, errno.EAGAIN
 _HOST_AND_PORT = re.compile(r"[\w.-]+:\d+", re.ASCII)
 # The most ports that a message names; `cobotwire ports` lists all.
 MOST_NAMED = 4
-# The names of the two devices that macOS has for each port begin so.
+# macOS has two devices for each port; their names begin with these texts.
 _DIAL_IN, _CALL_OUT = "/dev/tty.", "/dev/cu."
 _WHY_CALL_OUT = "the names with tty wait for a signal that these arms do not send"
 

@@ -18,7 +18,7 @@ from cobotwire.protocol.messages import Request
 
 # A step by unit: far more than a tick, but still near.
 DISTANCES = {"degree": 4.0, "millimetre": 8.0}
-# How far the other joints or axes may stray. The end follows joints that rest on ticks.
+# How far the other joints or axes may stray: joints rest on encoder ticks, and so move the end.
 STRAYS = {"degree": 0.6, "millimetre": 2.5}
 # Slow enough to be stopped near the start, in percent of the fastest.
 SLOW = 20

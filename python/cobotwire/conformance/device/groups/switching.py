@@ -57,7 +57,7 @@ POLL = 0.05
 
 
 def _switch_of(table: Table, command: Command) -> Fixed | None:
-    """Return a command's fixed effect that can be reverted; None if it is of one part alone."""
+    """Return a command's fixed effect that can be reverted; None if it concerns only one part."""
     fixed, part = fixed_effect(table, command), _part_of(table, command)
     of_one = fixed and part and part.query.name == fixed.query.name
     return None if command.safety == "persistent write" or of_one else fixed

@@ -100,7 +100,7 @@ class Noise(Addition):
         return NOISE[context.random.choice(self.classes)].draw(context.random, context.table)
 
     def change_reply(self, reply: Reply, context: Context) -> Reply:
-        """Add the noise; without a reply, send it alone."""
+        """Add the noise; if there is no reply, send only the noise."""
         if reply or self.of == "request":
             # Not super(): a dataclass with slots is a new class, which super() does not know.
             return Addition.change_reply(self, reply, context)
