@@ -246,7 +246,7 @@ faults: .venv/.tools .venv/.native ## run our client and pymycobot on each fault
 figures-page: .venv/.tools .venv/.native ## write docs/figures.md: all blocks (minutes), or make figures-page FIGURES="compared calls"
 	$(BIN)/python bench/figures.py $(FIGURES)
 
-figures: .venv/.tools .venv/.native ## count files and lines of each room, and the files that a call uses
+figures: .venv/.tools .venv/.native ## count files and lines of each folder, and the files that a call uses
 	$(BIN)/python tests/house_figures.py
 
 clean: ## remove the environment and all build products

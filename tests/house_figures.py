@@ -1,9 +1,9 @@
-"""Print the size of each room, and what the rooms import.
+"""Print the size of each folder, and what the folders import.
 
     python tests/house_figures.py          measure this checkout
-    python tests/house_figures.py FOLDER   measure another one
+    python tests/house_figures.py FOLDER   measure another checkout
 
-A room is an entry of ``python/cobotwire``, or a folder next to it. Generated files are counted
+The folders are the entries of ``python/cobotwire`` and of the checkout. Generated files are counted
 separately, and so are the helpers of the tests: the files in ``tests/`` that hold no test.
 """
 
@@ -54,17 +54,17 @@ class Size(NamedTuple):
 
 
 class Source(NamedTuple):
-    """A text file and its room."""
+    """A text file and its folder."""
 
     path: str
-    room: str
+    folder: str
 
 
 def main() -> None:
     """Print all figures of a checkout."""
     root = Path(sys.argv[1] if len(sys.argv) > 1 else Path(__file__).parents[1]).resolve()
     counts = _sizes(root)
-    _print_rooms(counts)
+    _print_folders(counts)
     _print_longest(counts)
     _print_arrows(root / "python" / "cobotwire")
 
@@ -104,19 +104,19 @@ def _other_code(text: str) -> int:
     return sum(1 for line in lines if line and not line.startswith(("//", "#")))
 
 
-def _print_rooms(counts: dict[Source, Size]) -> None:
-    rooms: dict[str, list[Size]] = {}
+def _print_folders(counts: dict[Source, Size]) -> None:
+    folders: dict[str, list[Size]] = {}
     for source, size in counts.items():
-        rooms.setdefault(source.room, []).append(size)
-    hand_written = {s: n for s, n in counts.items() if s.room != "generated"}
+        folders.setdefault(source.folder, []).append(size)
+    hand_written = {s: n for s, n in counts.items() if s.folder != "generated"}
     groups = {
-        "all of the package": [n for s, n in counts.items() if s.room.startswith(PACKAGE)],
-        "all of the tests": [n for s, n in counts.items() if s.room.startswith("tests")],
+        "all of the package": [n for s, n in counts.items() if s.folder.startswith(PACKAGE)],
+        "all of the tests": [n for s, n in counts.items() if s.folder.startswith("tests")],
         "hand-written": list(hand_written.values()),
     }
-    print(f"{'room':34}{'files':>7}{'lines':>9}{'of code':>9}{'median':>8}{'KB':>8}")
-    listed = sorted(rooms, key=lambda room: (not room.startswith(PACKAGE), room))
-    for name, sizes in [*((room, rooms[room]) for room in listed), *groups.items()]:
+    print(f"{'folder':34}{'files':>7}{'lines':>9}{'of code':>9}{'median':>8}{'KB':>8}")
+    listed = sorted(folders, key=lambda folder: (not folder.startswith(PACKAGE), folder))
+    for name, sizes in [*((folder, folders[folder]) for folder in listed), *groups.items()]:
         lines, code, size = (sum(column) for column in zip(*sizes, strict=True))
         median = statistics.median(size.lines for size in sizes)
         print(f"{name:34}{len(sizes):7}{lines:9}{code:9}{median:8.0f}{size / 1000:8.0f}")
@@ -137,22 +137,22 @@ def _room(path: str, text: str) -> str:
 
 
 def _print_arrows(package: Path) -> None:
-    """Print which rooms import which."""
+    """Print which folders import which."""
     arrows: dict[str, set[str]] = {}
     for module, imported in python_imports_of(package, "cobotwire").items():
-        room = f"{module}.".split(".")[1]
-        arrows.setdefault(room, set()).update(f"{name}.".split(".")[1] for name in imported)
-    arrows = {room: found - {room, ""} for room, found in arrows.items() if room}
-    print(f"imports between rooms: {sum(map(len, arrows.values()))}")
-    for room, found in sorted(arrows.items(), key=lambda arrow: len(arrow[1])):
-        print(f"    {room} -> {' '.join(sorted(found)) or '(none)'}")
+        folder = f"{module}.".split(".")[1]
+        arrows.setdefault(folder, set()).update(f"{name}.".split(".")[1] for name in imported)
+    arrows = {folder: found - {folder, ""} for folder, found in arrows.items() if folder}
+    print(f"imports between folders: {sum(map(len, arrows.values()))}")
+    for folder, found in sorted(arrows.items(), key=lambda arrow: len(arrow[1])):
+        print(f"    {folder} -> {' '.join(sorted(found)) or '(none)'}")
 
 
 def _print_longest(counts: dict[Source, Size]) -> None:
     sizes = {
         source.path: size.lines
         for source, size in counts.items()
-        if source.room != "generated" and Path(source.path).suffix in (".py", ".rs")
+        if source.folder != "generated" and Path(source.path).suffix in (".py", ".rs")
     }
     print("longest files of code:")
     for path in sorted(sizes, key=lambda path: -sizes[path])[:LONGEST]:

@@ -1,4 +1,4 @@
-"""Check the structure of ARCHITECTURE.md: the rooms, the permitted imports, and no cycles."""
+"""Check the structure of ARCHITECTURE.md: the subpackages, the permitted imports, and no cycles."""
 
 from __future__ import annotations
 
@@ -23,8 +23,8 @@ from module_graph import (
 PACKAGE = vectors.ROOT / "python" / "cobotwire"
 LEROBOT = vectors.ROOT / "adapters/lerobot/src/lerobot_robot_cobotwire"
 
-# The rooms of the package. Each may import only the rooms above it.
-ROOMS = (
+# The subpackages of cobotwire. Each may import only those above it.
+SUBPACKAGES = (
     "protocol",
     "codec",
     "diagnose",
@@ -71,17 +71,17 @@ ONE_IMPORTER = {
 @pytest.mark.parametrize("path", sorted(PACKAGE.rglob("*.py")), ids=lambda path: str(path)[-60:])
 def test_module_imports_only_rooms_above_its_own(path: Path) -> None:
     place = path.relative_to(PACKAGE)
-    room = place.parts[0].removesuffix(".py")
-    if room == "__init__":
+    subpackage = place.parts[0].removesuffix(".py")
+    if subpackage == "__init__":
         return
-    allowed = {*ROOMS[: ROOMS.index(room) + 1]}
-    if room in ("codec", "transport", "cli"):
+    allowed = {*SUBPACKAGES[: SUBPACKAGES.index(subpackage) + 1]}
+    if subpackage in ("codec", "transport", "cli"):
         allowed.add("_native")
     module = "cobotwire." + ".".join(place.with_suffix("").parts)
     for name in (*python_imports(path, module), *modules_in_texts(path, "cobotwire")):
         package, _, rest = name.partition(".")
         part = rest.partition(".")[0]
-        if package == "cobotwire" and part in {*ROOMS, "_native"}:
+        if package == "cobotwire" and part in {*SUBPACKAGES, "_native"}:
             assert part in allowed, f"{place} imports {name}"
         if package in ONE_IMPORTER:
             assert any(place.as_posix().startswith(p) for p in ONE_IMPORTER[package]), name
@@ -90,7 +90,7 @@ def test_module_imports_only_rooms_above_its_own(path: Path) -> None:
 def test_package_holds_the_rooms_and_nothing_else() -> None:
     found = {entry.stem for entry in PACKAGE.iterdir() if entry.suffix == ".py" or entry.is_dir()}
     # The spec is a link: the wheel contains it.
-    assert found - {"__init__", "__pycache__", "spec"} == set(ROOMS)
+    assert found - {"__init__", "__pycache__", "spec"} == set(SUBPACKAGES)
 
 
 @pytest.mark.parametrize(
@@ -178,15 +178,15 @@ def test_native_module_does_not_use_the_exchange() -> None:
     # The Python session alone owns an exchange. A native call that reads or sets its attributes
     # would be a second owner.
     stub = (PACKAGE / "_native.pyi").read_text("utf-8")
-    assert set(re.findall(r"^from cobotwire\.(\w+)", stub, re.MULTILINE)) <= set(ROOMS[:3])
+    assert set(re.findall(r"^from cobotwire\.(\w+)", stub, re.MULTILINE)) <= set(SUBPACKAGES[:3])
     exchanging, others = (
         {
             name
-            for room in rooms
-            for path in (PACKAGE / room).rglob("*.py")
+            for subpackage in subpackages
+            for path in (PACKAGE / subpackage).rglob("*.py")
             for name in re.findall(r"\b(?:self\.|def )((?!__)\w+)", path.read_text("utf-8"))
         }
-        for rooms in (("transport", "session", "client"), ROOMS[:3])
+        for subpackages in (("transport", "session", "client"), SUBPACKAGES[:3])
     )
     named = re.compile(r"(?:intern!\(\w+, |attr\(|call_method[01]?\()\"(\w+)\"")
     for path in (vectors.ROOT / "rust" / "py" / "src").rglob("*.rs"):

@@ -5,7 +5,7 @@ const [MAGIC, LINK_TYPE, NANOSECONDS] = [0x1a2b3c4d, 159, 9];
 const FLAGS = { unknown: 0, received: 1, sent: 2 };
 const text = (value) => new TextEncoder().encode(value);
 
-// So many entries take a few milliseconds. In between, the worker does what must not wait, such as a stop.
+// Writing this many entries takes a few milliseconds; after each batch the worker does what must not wait.
 const AT_ONCE = 500;
 
 function turn() {

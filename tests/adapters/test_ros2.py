@@ -270,7 +270,7 @@ def test_any_bytes_are_a_message_or_damaged() -> None:
 
 def test_another_process_finds_the_arm_on_this_computer_until_ctrl_c(server: PtyServer) -> None:
     domain = next(DOMAINS)
-    # It is configured as ROS 2 does it for ROS_AUTOMATIC_DISCOVERY_RANGE=LOCALHOST.
+    # The domain is configured as ROS 2 does for ROS_AUTOMATIC_DISCOVERY_RANGE=LOCALHOST.
     local = Domain(domain, LOCALHOST)
     reader = Participant(domain).reader("rt/joint_states", ros.JOINT_STATE)
     words = ["ros2", server.url, "--domain", domain, "--allow-motion"]

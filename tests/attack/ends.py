@@ -139,7 +139,7 @@ class TcpEnd:
         self._client, self.descriptor = None, -1
 
     def fill(self, room: int, receive: Callable[[bytes], None]) -> int:
-        # Its small buffers are full soon.
+        # A stalled connection needs no filling: its small buffers are full soon.
         return 0
 
     def close(self) -> None:

@@ -41,7 +41,7 @@ def run_fresh(setting: Setting, settle: Callable[[], None]) -> str:
     try:
         written, errors = process.communicate(timeout=longest)
     except subprocess.TimeoutExpired:
-        # It then prints where each thread is.
+        # After this signal the process prints where each thread is.
         process.send_signal(signal.SIGABRT)
         return f"the process hung for {longest:.1f} s\n{process.communicate()[1].decode()}"
     if process.returncode:

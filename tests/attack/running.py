@@ -50,7 +50,7 @@ def attack(chosen: Plan, change: Callable[[Any], Any] | None = None) -> Tally:
         else:
             run_threads(setting, partial(_happen, line, setting), settle)
     if failed:
-        # Its calls are not known; at least one of them was lost.
+        # The calls of the run are not known; at least one of them was lost.
         counts = Counter(calls=1, lost=1)
         return Tally(chosen.profile.name, counts, failures=[f"{chosen}\n{failed}"])
     stalls = [meter.late, ptys.late, line.stalls, setting.stops, *machine.stops.values()]

@@ -56,7 +56,7 @@ def test_list_is_accepted_with_commas_brackets_or_spaces(words: str) -> None:
     assert parse(send_angles, shlex.split(words)) == expected
 
 
-def test_list_with_a_wrong_count_is_explained_by_the_line_to_type() -> None:
+def test_error_of_a_list_with_a_wrong_count_shows_how_to_write_the_call() -> None:
     send_coords = TABLES["mycobot280"].command("send_coords")
     with pytest.raises(UsageError, match="written as: send_coords 0,0,0,0,0,0 SPEED MODE"):
         parse(send_coords, ["1", "2", "3", "4", "5"])

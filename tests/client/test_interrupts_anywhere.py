@@ -20,7 +20,7 @@ from cobotwire.simulator import PtyServer, SimulatedArm
 from recording_transport import RecordingTransport
 from stalls import StallMeter
 
-ROOMS = ("client", "session", "transport", "codec/reference")
+FOLDERS = ("client", "session", "transport", "codec/reference")
 STOP = "FE FE 02 29 FA"
 TIMEOUT = 0.4
 # The interrupt may lose a reply that was just read. Then the request is sent again, and the next
@@ -49,7 +49,7 @@ class InterruptAt:
         return self._left <= 0
 
     def __call__(self, frame: FrameType, event: str, argument: Any) -> Any:
-        if not any(f"cobotwire/{room}/" in frame.f_code.co_filename for room in ROOMS):
+        if not any(f"cobotwire/{folder}/" in frame.f_code.co_filename for folder in FOLDERS):
             return None
         # Python reports an exception of __del__, and goes on: it reaches no caller.
         if frame.f_code.co_name == "__del__":

@@ -168,8 +168,8 @@ def test_query_of_a_wait_depends_on_when_the_end_is_due() -> None:
     assert next_step(100.0, False) == (Query, angles)
     assert next_step(100.0, (0.0,) * 6) == (Listen, 100.05)
     assert next_step(100.05) == (Query, angles)
-    # It is at 10 degrees, and will be there in 0.15 s. Early in a wait the queries are not far
-    # apart.
+    # The arm is at 10 degrees, and will reach its target in 0.15 s. Early in a wait the queries
+    # are not far apart.
     assert next_step(100.05, (10.0, 0, 0, 0, 0, 0)) == (Listen, pytest.approx(100.1))
     assert next_step(100.1) == (Query, angles)
     assert next_step(100.1, (20.0, 0, 0, 0, 0, 0)) == (Listen, pytest.approx(100.2))

@@ -41,7 +41,7 @@ BACKTRACE = (0x400D15F1, 0x400D0B59, 0x40088B9D)
 A_CAUSE: dict[str, Any] = {"core": 1, "cause": "LoadProhibited"}
 ERROR = b"cmd_len error\r\n"
 REQUEST = bytes.fromhex("FE FE 02 20 FA")
-# Its checksum is FE.
+# A servo packet with the checksum FE.
 LIKE_A_HEADER = noise.servo_packet(bytes.fromhex("01 04 00 00 fc"))
 OLD_PANIC = b"Guru Meditation Error of type StoreProhibited occurred on core  0. Exception was\r\n"
 SIX_STATUSES = b"".join(noise.servo_packet(bytes([id, 17, 0]) + bytes(15)) for id in range(1, 7))

@@ -200,7 +200,7 @@ def test_second_program_over_tcp_is_disconnected_and_the_first_one_is_served() -
             assert received(tap.arm, len(STOP)) == STOP
 
 
-def test_read_only_tap_holds_motions_back_and_never_completes_one_of_another_program() -> None:
+def test_read_only_tap_passes_no_motion_and_drops_half_a_request_of_the_last_program() -> None:
     codec = codecs.load(TABLE)
     with closing(Tap(PtyEnd(), Guard(codec))) as tap:
         with opened(tap.url) as program:
@@ -286,7 +286,9 @@ def test_copies_arrive_whole_or_are_counted(parts: list[bytes], read_size: int) 
 
 @given(st.data())
 @settings(max_examples=40)
-def test_any_bytes_in_a_followed_recording_are_refused_or_end_it(drawn: st.DataObject) -> None:
+def test_followed_recording_with_random_bytes_is_refused_or_ends_without_traffic(
+    drawn: st.DataObject,
+) -> None:
     recorded = io.BytesIO()
     writer = CaptureWriter(recorded)
     packet = Packet(0, "received", QUERY, interface=writer.interface(Interface("arm", "mycobot")))

@@ -70,5 +70,5 @@ ALL_ROBOTS = {**LAYER_ROBOTS, **CLOSED_LOOP}
 SOCKETS = [name for name in ALL_ROBOTS if name.endswith(("Socket", "Client"))]
 # Classes of robots that also have a serial class. One of them is compared, as an example of all.
 TCP_TWINS = {name for name in SOCKETS if name not in ROBOTS} - {"MyCobot280Socket"}
-# It cannot be compared: each call of the maker's class fails.
+# This class cannot be compared: each call of the maker's class fails.
 PALLETIZER = _another("MyPalletizer", "MyPalletizer260")

@@ -24,7 +24,7 @@ import cobotwire, pkgutil, importlib
 names = [m.name for m in pkgutil.walk_packages(cobotwire.__path__, "cobotwire.")]
 others = "cobotwire.transport.serial.port", "cobotwire.transport.serial.linux"
 names = [n for n in names if n not in others and not n.endswith("__main__")]
-# It loads a library of this system.
+# The adapter for ROS 2 loads a library of this system.
 names = [n for n in names if not n.startswith("cobotwire.adapters.ros2.")]
 names = [n for n in names if not n.startswith("cobotwire.editions.") or "mycobot280." in n + "."]
 for name in names:

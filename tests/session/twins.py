@@ -169,7 +169,7 @@ class Recorder:
             given["pending"] = pending.request, wait, pending.policy, pending.ends_by
             twin.ticket(pending)
         elif name == "give_up":
-            # It has ended without an outcome, unless the outcome was seen before.
+            # The request has ended without an outcome, unless the outcome was seen before.
             twin.open.discard(twin.ticket(given["pending"]))
         sent = [self._plain(twin, value) for value in given.values()]
         result = self._plain(twin, result)

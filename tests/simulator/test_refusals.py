@@ -80,7 +80,7 @@ def test_refused_motion_is_acknowledged_and_query_says_why(serve: Any) -> None:
     arm = SimulatedArm(EDITION.TABLE, powered=True)
     with serve(arm) as server, EDITION.CLIENT(server.url) as client:
         client.add_traffic_listener(lambda traffic: seen.append(traffic.data))
-        # It is acknowledged, as a real arm acknowledges what it rejects.
+        # The motion is acknowledged, as a real arm acknowledges what it rejects.
         client.send_coords([100, 0, 200, 0, 0, 0], 50, ack_within=5.0)
         assert b"simulated arm" not in b"".join(seen), "the maker's library would not find the ack"
         assert arm.notes[-1].text.startswith(f"rejected: {REASON}")

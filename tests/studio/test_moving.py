@@ -265,7 +265,7 @@ def test_page_says_why_a_real_arm_is_not_moved(page: Page) -> None:
         page.until(f"{why}.includes('Switch on')")
         page.click("#motion")
         page.until("document.getElementById('move-why').hidden")
-        # It has no power yet: a target is refused, and the page says why.
+        # The arm has no power yet: a target is refused, and the page says why.
         _drag(page, SLIDER.format(1), 40)
         page.until(f"{STATUS}.includes('no power')")
         page.click("#power")

@@ -28,7 +28,7 @@ def asynchronous(
     """
     generated: Callable[..., Any] = method
 
-    # It has the arguments and the docstring of the blocking method.
+    # The asyncio method gets the arguments and the docstring of the blocking one.
     @wraps(method)
     async def call(*arguments: Any, **named: Any) -> Any:
         return await generated(*arguments, **named)

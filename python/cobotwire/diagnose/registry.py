@@ -27,7 +27,7 @@ CLASSES: tuple[type[Finding], ...] = (
     Unrecognised,
 )
 
-# They are called in this order; the first that finds something, or needs more bytes, decides.
+# They are called in this order. The first one that finds something, or needs more bytes, decides.
 # ``garbage.classify`` handles the bytes in which none of them finds anything.
 RECOGNISERS: tuple[type[Recogniser], ...] = (Frames, DamagedFrames, ServoBus, NulRuns, Firmware)
 

@@ -79,8 +79,8 @@ def _quintic(
     step: float, value: float, rise: float, v: float, w: float, a: float, b: float
 ) -> list[float]:
     """Return the polynomial with a value, speeds v and w, and second derivatives a and b."""
-    # The distance, speed and second derivative that the terms of power 3, 4 and 5 must add by the
-    # end.
+    # What the terms of power 3, 4 and 5 must add at the end of the step: to the value, to the
+    # speed and to the second derivative.
     way = (rise - v - a * step / 2) * step
     speed = (w - v - a * step) * step
     bend = (b - a) * step * step

@@ -106,7 +106,7 @@ def excesses(motion: Along | InTime, bounds: Bounds) -> list[Excess]:
     samples = max(LEAST_SAMPLES, math.ceil(motion.seconds / SAMPLE_SECONDS))
     step = motion.seconds / samples
     rows = [motion.at(sample * step)[0] for sample in range(samples + 1)]
-    # It rests before and after.
+    # The joints rest before and after the motion.
     rows = [rows[0]] * 3 + rows + [rows[-1]] * 3
     found = []
     for order, (bound, most) in enumerate(zip(Bounds._fields, bounds), 1):

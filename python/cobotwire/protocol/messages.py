@@ -88,7 +88,7 @@ class Message:
         cls._rows = tuple([name for name in names if annotations[name].startswith("Sequence")])
         cls.fieldless = not names and not wire
         if not names:
-            # It takes no arguments either, so a faster constructor is enough: clients make a
+            # The class takes no arguments, so a faster constructor is enough: clients make a
             # request for each call.
             type.__setattr__(cls, "__init__", object.__init__)
         if wire or radians or text or variants or (names and names[-1] in cls.__dict__):

@@ -114,7 +114,7 @@ def reject_radians(error: UsageError, field: Field, given: Any) -> UsageError:
     }
     at = elements.get(error.argument)
     if at is None:
-        # It is about the row as a whole, or about its length.
+        # The error is about the row as a whole, or about its length.
         whole = error.argument == field.name
         return UsageError(field.name, given, error.allowed) if whole else error
     number = field.cases[0].numbers[at]

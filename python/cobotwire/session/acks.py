@@ -197,7 +197,7 @@ class Acks:
         self._commands: dict[int, _CommandAcks] = {}
         self.waiting: list[PendingAck] = []
         # Whether this firmware was seen to acknowledge a motion at its start.
-        # It does if another message reports the end.
+        # This is known from the start if another message reports the end of a motion.
         self._motions_at_once = codec.table.find_role("motion ended") is not None
 
     @property

@@ -391,7 +391,7 @@ class Exchange:
         late = self._outstanding.find(frame, now)
         if late is not None:
             if late.request.command.requires_reply:
-                # It stays outstanding: this may be a copy, with the reply itself still to come.
+                # The reply stays outstanding: this may be a copy, with the reply still to come.
                 return LateReply(late.request.command, frame)
             self._outstanding.settle(late)
         if is_copy:

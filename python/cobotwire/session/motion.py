@@ -22,7 +22,8 @@ from cobotwire.session.request import EncodedRequest
 # A moving arm replies to 10 to 20 queries a second. A wait sends at most 12 queries in any second:
 # these, and two repeats of a query whose reply is lost.
 MOST_QUERIES = 10
-# The interval of queries near the end, times the number of queries that this second still allows.
+# Near the end, the interval between two queries is this, divided by the number of queries that
+# MOST_QUERIES still allows in the last second.
 SPACING_SECONDS = 0.1
 # The position is read a second time after this time; each later interval is twice the one before.
 FIRST_SECONDS = 0.05
@@ -55,7 +56,7 @@ class Query(NamedTuple):
 
 
 class Listen(NamedTuple):
-    """Wait until then, or until the device sends what can mean the end of a motion.
+    """Wait until the time ``until``, or until the device sends a sign of the end of a motion.
 
     The result is the event of the end, or True for the acknowledgement of a motion: some firmware
     acknowledges a motion when it ends.
@@ -256,7 +257,7 @@ class _Wait:
                 self._look_at = max(self._due, self._look_at)
                 return
         if not near:
-            # It may be there.
+            # The arm may be at the target.
             self._look_at = self._now
             return
         is_moving = None if before is None or place is None else place != before[1]
@@ -281,7 +282,7 @@ class _Wait:
         return (yield from self._listen(min(until, max(now, self._ends))))
 
     def _listen(self, until: float) -> Generator[Step, Outcome, bool]:
-        """Listen until then; return whether the device sent what can mean the end of a motion.
+        """Listen until a time; return whether the device sent a sign of the end of a motion.
 
         Raises:
             RequestRefused: the device reports that the motion has failed.

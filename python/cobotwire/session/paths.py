@@ -71,7 +71,7 @@ class FollowReport(NamedTuple):
 
 
 class Pause(NamedTuple):
-    """Do nothing until then."""
+    """Do nothing until the time ``until``."""
 
     until: float
 

@@ -150,8 +150,8 @@ class ArmConnection:
             if command.safety == "query":
                 self._arm.note(command, f"no reply: {why}")
                 return refusal(why)
-            # It is acknowledged, as everything that the arm rejects; a text before that would keep
-            # the maker's library from reading the acknowledgement.
+            # The request is acknowledged, as everything that the arm rejects. A text before the
+            # acknowledgement would keep the maker's library from reading it.
             self._arm.note(command, f"rejected: {why}")
             return self._encode_reply(command, given, None, address)
         return self._encode_reply(command, given, reply, address)

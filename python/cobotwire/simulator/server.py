@@ -88,7 +88,7 @@ class Server:
     def _ready(self, descriptor: int, events: int) -> None:
         """Handle the descriptor of a client that is ready."""
         client = self._clients.get(descriptor)
-        # It may have been dropped since select() returned.
+        # The client may have been dropped since select() returned.
         if client is not None and events & READ and not client.receive():
             self._drop(client)
 

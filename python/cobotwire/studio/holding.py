@@ -25,7 +25,7 @@ class Holding:
         self._held, self._silence = False, Silence(stage.silence)
 
     def hold(self, command: object, arguments: object) -> None:
-        """Send a motion; it is stopped when the page releases it or says nothing more."""
+        """Send a motion; it is stopped when the page releases it or falls silent."""
         if not self._held:
             self._held = True
             self._start(self._watch())

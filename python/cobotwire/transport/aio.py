@@ -220,8 +220,8 @@ class ThreadedTransport:
         while (next_write := self._write_queue.get()) is not None:
             data, done, known = next_write
             if error is not None and known < failures:
-                # It was queued before the loop knew that an earlier write was cut. The peer would
-                # take it for the rest of the cut request.
+                # This write was queued before the loop knew that an earlier one was cut. The peer
+                # would take its bytes for the rest of the cut request.
                 self._in_loop(done, LinkError(error.url, error.detail))
                 continue
             try:

@@ -45,7 +45,7 @@ def has_room(transport: object) -> bool:
         descriptor = None if fileno is None else fileno()
         return descriptor is None or is_ready(descriptor, 0, writing=True)
     except (OSError, ValueError):
-        # It is closed, or cannot be waited for; a write reports which.
+        # The transport is closed, or cannot be waited for; a write reports which.
         return True
 
 

@@ -120,7 +120,7 @@ impl Encoder {
             .collect()
     }
 
-    /// Return why a request has no answer; `None`: the transport knows.
+    /// Return the error of a request that failed; `None`: the transport has the error.
     pub fn failure(&self, request: &Encoded, failure: &Failure) -> Option<Error> {
         let message = self.edition.failure(request, failure)?;
         Some(match failure {

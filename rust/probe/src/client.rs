@@ -86,7 +86,7 @@ impl Probe {
                 Some(stream) => File::from(OwnedFd::from(stream)),
                 None => File::options().read(true).write(true).open(&self.url)?,
             };
-            // Its directions are ready or not by themselves, as those of pipes.
+            // Reading and writing are ready independently of each other, as with two pipes.
             rustix::io::ioctl_fionbio(&file, true)?;
             let reader = pipe::Receiver::from_file_unchecked(file.try_clone()?)?;
             let writer = Observed(pipe::Sender::from_file_unchecked(file)?);

@@ -25,7 +25,7 @@ pub(crate) struct Messages<'a> {
     most: usize,
 }
 
-/// A list of which the number of elements varies.
+/// A list with a number of elements that varies.
 #[derive(Clone, Copy)]
 struct Varying<'a> {
     name: &'a str,

@@ -45,11 +45,11 @@ def test_threads_export_the_same_rows_and_counts(
     assert counts(report) == counts(single.report)
     assert rows(tmp_path / "out") == rows(single.folder)
     assert sum(done) == single.inputs.size
-    # The test compares more than clean rows.
+    # The inputs also hold noise and rejected frames.
     assert single.report.inputs == 5
     assert len(single.report.noise) > 2
     assert single.report.rejected > 50
-    # Nothing else is left.
+    # The folder holds no other file.
     written = sorted(str(path) for path in (tmp_path / "out").rglob("*") if path.is_file())
     assert sorted(file.path for file in report.files) == written
 

@@ -15,7 +15,7 @@ from cobotwire.protocol.limits import joint_limits, limited
 from cobotwire.protocol.refusals import refusals
 from cobotwire.protocol.table import Command, Table
 
-# Its position is its opening in percent.
+# The position of a gripper is its opening in percent.
 GRIPPER, OPENINGS = "gripper.pos", (0.0, 100.0)
 # For each use, whether a command has the effect that it needs.
 _USES: dict[str, Callable[[Effect | None], bool]] = {

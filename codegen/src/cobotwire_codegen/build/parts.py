@@ -187,7 +187,7 @@ def add_own(parts: Parts, reader: Reader, files: Files) -> None:
     if reader.node(spec.joints) is not None or parts.joints is None:
         joints, parts.joints = parts.joints, reader.get(spec.joints)
         if joints != parts.joints:
-            # An arm with another number of joints is another arm.
+            # With another number of joints, the base's facts about joints do not apply.
             for name in language.JOINT_KEYS:
                 parts.robot.pop(name, None)
     _add_robot(parts, reader)

@@ -89,7 +89,7 @@ class KeptState:
                 restore()
 
     def next_query(self, other_than: int) -> Request[Any] | None:
-        """Return the query that is compared next, of another id; None if there is none."""
+        """Return the next query to compare, if any, with an id other than ``other_than``."""
         for _ in self._spots:
             query = self._spots[self._turn].query
             if self._device.table.command(query.command).id != other_than:
@@ -188,7 +188,7 @@ class KeptState:
         if now == spot.value:
             return True
         if now is not None and spot.set is None:
-            # It is reported once; what comes later is compared with the new value.
+            # The change is reported once: later values are compared with the new one.
             spot.value = now
         return False
 

@@ -60,7 +60,7 @@ class Copies:
         try:
             os.write(self._descriptor, HEAD.pack(KINDS.index(kind), time, len(data)) + data)
         except OSError:
-            # It is full, or the reader is gone.
+            # The pipe is full, or its reader is gone.
             return False
         return True
 

@@ -12,7 +12,7 @@ from typing import NoReturn
 
 from cobotwire.protocol.errors import CaptureError
 
-# It has this long at the end to finish a recording.
+# How many seconds the watching process has at the end to finish a recording.
 END_SECONDS = 5.0
 
 # Called with the pipe of the copies, and with a function to call when watching begins.

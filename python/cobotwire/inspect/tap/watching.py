@@ -69,7 +69,7 @@ class Watching:
         now = time.monotonic()
         self._show(p for side in self._sides.values() for p in side.wake(self._time_ns(now)))
         if self._recording is not None:
-            # It writes an incomplete frame after a pause.
+            # Without new bytes the recording writes an incomplete frame after a pause.
             self._recording.record("sent", b"", now)
             if self._recording.failure and not self._told:
                 self._told = True

@@ -1530,9 +1530,9 @@ class Pro400(_Methods2, _Methods3, _Methods6, _Methods10, _Methods16, _Methods21
         timeout: float = 0.1, debug: bool = False, save_serial_log: bool = False, *,
         errors: OnFailure | None = None) -> None: ...
     def get_pos_switch(self) -> Any:
-        """Read whether motions are waited for."""
+        """Read whether the end of motions is reported."""
     def set_pos_switch(self, mode: int) -> Any:
-        """Set whether motions are waited for."""
+        """Set whether the end of motions is reported."""
 
 class Pro400Client(Pro400):
     """A myCobot Pro 400 behind a TCP server."""

@@ -150,7 +150,7 @@ impl<'a, C> Seat<'a, C> {
     fn ring(count: usize, turn: Turn<'a, C>) -> Vec<Self> {
         let (mut next, turns): (Vec<_>, Vec<_>) = (0..count).map(|_| channel()).unzip();
         if let Some(first) = next.first() {
-            // It fails only without its receiver, which is in `turns`.
+            // Sending fails only without the receiver, which is in `turns`.
             let _ = first.send(turn);
         }
         next.rotate_left(1);
@@ -217,7 +217,7 @@ pub(crate) fn read<C: Share>(
         let mut ring = Seat::ring(1 + seats.len(), turn).into_iter();
         let first = ring.next();
         for (give, seat) in seats.into_iter().zip(ring) {
-            // It fails only if the thread has panicked; then the others end too.
+            // Sending fails only if the thread has panicked; then the others end too.
             let _ = give.send(seat);
         }
         if let Some(seat) = first {

@@ -210,7 +210,7 @@ impl Acks {
         };
         let copies = |ack: &&ExpectedAck| ack.request.frame == frame.bytes();
         let sent: Vec<&ExpectedAck> = acks.expected().filter(copies).collect();
-        // It must be clear which of the expected ones was copied.
+        // It must be clear which of the expected acknowledgements was copied.
         if let [ack] = sent.as_slice()
             && acks.doubts_of(protocol, ack).is_empty()
         {

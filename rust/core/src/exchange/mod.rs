@@ -47,7 +47,7 @@ use crate::decode::{DecodeError, Decoded};
 use crate::direction::{Direction, Listening};
 use crate::framer::Framer;
 
-/// For how long received bytes are read before a request is sent, if they do not end.
+/// How long bytes that come without a pause are read before a request is sent nevertheless.
 const DRAIN: Nanos = 50_000_000;
 
 /// Requests that take turns, one-way requests, and the frames that come back.
@@ -229,7 +229,7 @@ impl Exchange {
         let ended = self.acks.wake(&self.protocol, now, self.echo.proven);
         self.finished.extend(ended);
         self.end_overdue_queued(now);
-        // A copy of it does not count as its reply: that one still had time to come.
+        // A copy of the request does not count as its reply, which still had time to come.
         let over = self.waiting().is_some_and(|waiting| waiting.ends_by <= now);
         let expired = over.then(|| self.expire(now, Some(WaitedFor::Reply)));
         expired.flatten().into_iter().collect()
@@ -241,7 +241,7 @@ impl Exchange {
     }
 
     /// Return the bytes of the request to be sent now, for the first time or again. `drained`:
-    /// whether everything that has come by now was received, so that it is not taken for its reply.
+    /// whether all bytes that have come by now were received, so that none counts as its reply.
     pub fn outgoing(&mut self, now: Nanos, drained: bool) -> Vec<u8> {
         if self.waiting().is_some() {
             return self.next_attempt(now).unwrap_or_default();
@@ -368,7 +368,7 @@ impl Exchange {
         !held
     }
 
-    /// Return when the request is to be sent again; not while its copy may be its reply.
+    /// Return when the request is to be sent again: never while a received copy may be its reply.
     fn repeat_at(&self, waiting: &Pending) -> Nanos {
         if waiting.candidate.is_some() && !self.echo.proven {
             return NEVER;
@@ -468,7 +468,7 @@ impl Exchange {
     ) -> Event {
         if let Some((index, command)) = self.outstanding.find(&self.protocol, &frame, now) {
             if self.protocol.is(command, Facts::requires_reply) {
-                // It stays outstanding: this may be a copy, with the reply itself still to come.
+                // The reply stays outstanding: this may be a copy, with the reply still to come.
                 return self.note(Event::Late { command, frame });
             }
             self.outstanding.0.remove(index);

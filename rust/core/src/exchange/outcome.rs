@@ -98,7 +98,7 @@ impl Failure {
         let is = |value: &[Value], raw: i64| same(value, &[Value::Integer(raw)]);
         let (field, value) = if facts.accepted.is_empty() {
             let (field, _) = statuses.find(|(_, (named, value))| !named.echo && is(value, 0))?;
-            // It is reported as the integer, whatever the scale of the field is.
+            // The status is reported as an integer, whatever the scale of the field is.
             (field, Value::Integer(0))
         } else {
             let (last, (_, value)) = statuses.last()?;

@@ -76,7 +76,7 @@ class Pymycobot:
 
     def __init__(self, table: Table) -> None:
         with warnings.catch_warnings():
-            # Its import uses functions that newer Pythons deprecate.
+            # pymycobot uses functions that newer Pythons deprecate.
             warnings.simplefilter("ignore")
             from pymycobot import MyCobot280
 
@@ -86,7 +86,7 @@ class Pymycobot:
     def ask(self, question: Json) -> Json:
         """Return the answer to one question."""
         does = question["do"], question.get("direction")
-        # It prints while it decodes some replies, but standard output is only for answers.
+        # pymycobot prints while it decodes some replies, but standard output is only for answers.
         with contextlib.redirect_stdout(sys.stderr):
             if does == ("hello", None):
                 return self._hello()

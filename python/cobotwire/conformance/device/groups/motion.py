@@ -124,7 +124,7 @@ def _replay(
 
 
 def resume(probe: Probe) -> None:
-    """Resume motion: after a stop, some firmware ignores motion requests until then."""
+    """Resume motion: after a stop, some firmware ignores motion requests until it is resumed."""
     going_on = first(probe.device.table, does(Does, what="resume"))
     if going_on is not None:
         probe.device.request(going_on.request_type())

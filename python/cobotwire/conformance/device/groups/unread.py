@@ -34,7 +34,7 @@ def _send_unread(probe: Probe) -> None:
     powered = probe.device.command("powered")
     on = setter_of(probe.device.table, powered, 1) if power and powered else None
     if on is not None:
-        # It may have left the arm with power, but with joints that are not held.
+        # The command may have left the arm with power, but with joints that are not held.
         probe.device.request(on.request_type())
     stop = probe.device.command("stop")
     if probe.command.safety == "motion" and stop is not None:

@@ -117,9 +117,7 @@ class MotionCommands(Client):
         return self._call(messages.motion.GetQuickMoveInfo())
 
     def set_pos_switch(self, mode: PosSwitch | int, *, ack_within: float | None = None) -> None:
-        """Set whether motions are waited for.
-
-        Sets whether the arm reports the end of each motion.
+        """Set whether the end of motions is reported.
 
         Args:
             mode: Whether a motion is waited for (one of ASYNCHRONOUS (0), SYNCHRONOUS (1)).
@@ -129,9 +127,7 @@ class MotionCommands(Client):
         return self._send(messages.motion.SetPosSwitch(mode), ack_within)
 
     def get_pos_switch(self) -> PosSwitch:
-        """Read whether motions are waited for.
-
-        Reads whether the arm reports the end of each motion.
+        """Read whether the end of motions is reported.
 
         Returns: Whether a motion is waited for (one of ASYNCHRONOUS (0), SYNCHRONOUS (1)).
         Safety: query. Command id 0x0C.

@@ -65,7 +65,7 @@ class GetQuickMoveInfoReply(
 
 
 class SetPosSwitch(Request[None], command="set_pos_switch"):
-    """Set whether motions are waited for."""
+    """Set whether the end of motions is reported."""
 
     mode: PosSwitch | int
 
@@ -77,7 +77,7 @@ class SetPosSwitchReply(Reply[None], to=SetPosSwitch, wire=(255, "status")):
 
 
 class GetPosSwitch(Request[PosSwitch], command="get_pos_switch"):
-    """Read whether motions are waited for."""
+    """Read whether the end of motions is reported."""
 
 
 class GetPosSwitchReply(Reply[PosSwitch], to=GetPosSwitch):
