@@ -60,7 +60,7 @@ def test_cut_keeps_exactly_the_packets_in_the_range(whole: bytes, data: st.DataO
 
 @settings(max_examples=20)
 @given(OWN, st.data())
-def test_parts_of_a_recording_merge_into_its_packets(
+def test_merged_parts_of_a_recording_have_its_packets(
     made: list[Packet], data: st.DataObject
 ) -> None:
     at = data.draw(st.sampled_from([packet.time_ns for packet in made] or [0]))

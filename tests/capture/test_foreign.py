@@ -159,7 +159,7 @@ def test_python_literals_give_their_bytes(parts: list[tuple[bytes, type]], gap: 
     assert b"".join(opened(text, "python").blocks) == b"".join(data for data, _ in parts)
 
 
-def test_list_over_several_lines_is_one() -> None:
+def test_python_list_over_several_lines_is_read_as_one_list() -> None:
     found = opened(b"bytes([0xFE, 254,\n  2, 32,\n  250])\nb'\\xfe' b'\\x00\\t'\n")
     assert b"".join(found.blocks) == ASKED + b"\xfe\0\t"
     long = "[\n" + "254,\n" * 50_000 + "]\n"

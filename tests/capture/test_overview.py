@@ -61,7 +61,7 @@ def test_sections_are_counted_also_if_a_packet_looks_like_one(tmp_path: Path) ->
         assert (found.sections, found.missing) == (sections, "")
 
 
-def test_damage_is_part_of_the_overview(tmp_path: Path) -> None:
+def test_overview_reports_damage(tmp_path: Path) -> None:
     whole = written(polled(3))
     path = tmp_path / "arm.pcapng"
     for content, error, missing in (

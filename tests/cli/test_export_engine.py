@@ -20,7 +20,9 @@ def capture(tmp_path: Path) -> str:
     return str(path)
 
 
-def test_threads_write_parts_and_report_the_same(capture: str, tmp_path: Path) -> None:
+def test_threads_write_numbered_files_and_report_the_same_counts(
+    capture: str, tmp_path: Path
+) -> None:
     one = cobotwire("export", capture, "-o", str(tmp_path / "one"), "--json")
     many = cobotwire(
         "export", capture, "-o", str(tmp_path / "many"), "--json", "--engine", "threads"

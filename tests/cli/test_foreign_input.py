@@ -23,7 +23,7 @@ def test_socat_dump_is_decoded_with_times_and_directions() -> None:
     assert run(str(FILES / "socat-x.txt"), "--read-as", "socat") == (0, out, "")
 
 
-def test_annotations_without_times_get_none() -> None:
+def test_annotations_without_times_are_shown_without_times() -> None:
     code, out, _ = run(str(FILES / "pulseview.txt"))
     assert (code, out[:20]) == (0, " " * 11 + ">        ")
     first = json.loads(run(str(FILES / "pulseview.txt"), "--json")[1].splitlines()[0])

@@ -55,7 +55,7 @@ def test_any_text_is_a_workspace_or_a_usage_error(text: str) -> None:
 
 
 @pytest.mark.parametrize("name", ["mcp", "ros2"])
-def test_motions_of_a_whole_robot_have_to_be_asked_for(name: str) -> None:
+def test_motions_of_a_whole_robot_need_a_chosen_address(name: str) -> None:
     pytest.importorskip({"mcp": "mcp", "ros2": "cyclonedds"}[name])
     ended = run(app, "cobotwire", "--edition", "mybuddy", name, "/dev/null", "--allow-motion")
     assert ended.returncode == 2

@@ -189,7 +189,7 @@ def test_powered_arm_moves_without_power_on(port: list[str], powered: bool) -> N
     ("option", "expected"),
     [([], "FE FE 03 16 01 FA FE FE 03 12 00 FA"), (["--no-acks"], "FE FE 03 12 00 FA")],
 )
-def test_arm_without_acks_replies_to_queries_alone(option: list[str], expected: str) -> None:
+def test_arm_without_acks_replies_only_to_queries(option: list[str], expected: str) -> None:
     with started("sim", "--quiet", *option) as sim:
         transport = open_transport(printed(sim).strip(), 115200)
         transport.write(bytes.fromhex("FE FE 03 16 01 FA FE FE 02 12 FA"))

@@ -151,7 +151,7 @@ def test_note_of_another_boot_expects_no_reply(
 
 
 @pytest.mark.parametrize("passed", [0.0, 5.0, 20.0])
-def test_system_without_boot_ids_goes_by_the_clock_that_has_advanced_further(
+def test_note_without_a_boot_id_expires_by_the_clock_that_has_advanced_further(
     memory: PortMemory, folder: Path, monkeypatch: pytest.MonkeyPatch, passed: float
 ) -> None:
     monkeypatch.setattr(port_notes, "BOOT_ID", "/nope")
@@ -210,7 +210,7 @@ VALUES = {
     | st.fixed_dictionaries({}, optional=VALUES)
 )
 @settings(suppress_health_check=[HealthCheck.function_scoped_fixture])
-def test_whatever_a_note_holds_a_port_is_opened_and_holds_no_request_for_longer_than_a_grace(
+def test_port_with_any_note_is_opened_and_no_request_is_held_longer_than_the_grace(
     memory: PortMemory,
     folder: Path,
     caplog: pytest.LogCaptureFixture,

@@ -107,7 +107,7 @@ def test_wrong_calls_are_type_errors(call: Callable[[Any], Any]) -> None:
         call(_frames(2)[0])
 
 
-def test_decode_takes_none_as_not_given() -> None:
+def test_decode_treats_none_as_an_absent_argument() -> None:
     frame = _frames(2)[0]
     assert frame.decode(None, of=None) == frame.decode() == frame.message
     assert frame.decode(direction="reply", of="get_angles") == frame.message

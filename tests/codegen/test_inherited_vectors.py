@@ -75,7 +75,9 @@ def test_unchanged_delta_inherits_every_vector_as_it_is(file: Path) -> None:
     assert {"send-angle-request-nearest-word", "set-encoders-request-corners"} <= derived
 
 
-def test_other_frame_derives_every_frame_again_and_keeps_the_former_one(file: Path) -> None:
+def test_delta_with_another_frame_format_derives_every_vector_and_states_its_origin(
+    file: Path,
+) -> None:
     edition = built(file, CRC_FRAME)
     check(edition)
     before = built(file)

@@ -39,7 +39,9 @@ def test_command_with_other_output_than_the_page_does_not_match(tmp_path: Path) 
     assert [each.matches for each in run(page, tmp_path, "")] == [False, True]
 
 
-def test_output_of_a_slow_line_matches_the_page_of_a_fast_one(tmp_path: Path) -> None:
+def test_finding_of_a_slow_machine_does_not_count_as_a_difference_from_the_page(
+    tmp_path: Path,
+) -> None:
     slow = "- slow: a round trip takes 16.0 ms\n    if this is a USB adapter, its timer\n"
     (tmp_path / "printed.txt").write_text(f"! no-power: the arm\n    advice\n{slow}")
     page = tmp_path / "page.md"

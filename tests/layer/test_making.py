@@ -29,7 +29,7 @@ def test_class_is_the_same_by_each_name_and_in_a_pickle(name: str) -> None:
     assert pickle.loads(pickle.dumps(kind)) is kind
 
 
-def test_classes_that_threads_make_at_the_same_time_are_one(
+def test_threads_that_make_a_class_at_the_same_time_get_the_same_class(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.setattr(making, "_made", {})

@@ -100,7 +100,7 @@ def test_constructor_is_rewritten(before: str, after: str) -> None:
         ("other = MyCobot280(port, timeout=1)", "3:9: timeout was the time of one read"),
     ],
 )
-def test_what_a_person_must_decide_is_listed(line: str, says: str) -> None:
+def test_places_that_a_person_must_decide_are_listed(line: str, says: str) -> None:
     found = decided(line)
     assert any(each.startswith(says) for each in found), found
 

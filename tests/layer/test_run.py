@@ -46,7 +46,7 @@ def served() -> Iterator[tuple[Served, str]]:
         yield found, server.url
 
 
-def test_program_runs_as_it_is(served: tuple[Served, str]) -> None:
+def test_program_runs_unchanged(served: tuple[Served, str]) -> None:
     arm, port = served
     ended = run_program("run", TYPICAL, port)
     assert (ended.returncode, ended.stderr) == (0, "")
@@ -60,7 +60,7 @@ def test_program_runs_as_it_is(served: tuple[Served, str]) -> None:
     assert arm.received.count("stop") == 1
 
 
-def test_python_runs_it_as_a_module(served: tuple[Served, str]) -> None:
+def test_module_runs_a_program_like_the_verb(served: tuple[Served, str]) -> None:
     _, port = served
     command = [sys.executable, "-m", "cobotwire.pymycobot", str(TYPICAL), port]
     ended = subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)

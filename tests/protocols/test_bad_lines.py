@@ -56,7 +56,9 @@ def test_faulty_line_gives_the_right_value_or_an_error(
             assert value == expected or isinstance(value, Exception), word
 
 
-def test_reply_without_an_id_cannot_have_a_wrong_one(package: Callable[[str], Any]) -> None:
+def test_fault_wrong_id_does_not_change_replies_without_an_id(
+    package: Callable[[str], Any],
+) -> None:
     feetech = package("feetech")
     right = talk(feetech, "feetech")
     assert talk(feetech, "feetech", WrongId()) == right

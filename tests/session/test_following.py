@@ -49,7 +49,7 @@ def stays_within(rows: Rows, bounds: Bounds, step: float) -> None:
 
 @settings(max_examples=15)
 @given(triple, st.lists(triple, min_size=1, max_size=4), bounds)
-def test_path_begins_and_ends_where_it_must_and_stays_within_the_bounds(
+def test_path_leads_from_the_start_to_the_last_target_within_the_bounds(
     start: tuple[float, ...], targets: list[tuple[float, ...]], bounds: Bounds
 ) -> None:
     path = Path(start, [(target, None) for target in targets], evenly, bounds, RATE)
@@ -155,7 +155,7 @@ def test_each_setpoint_is_sent_in_its_tick_and_in_order_or_counts_as_dropped(
     assert (report.sent, report.sent + report.dropped) == (len(setpoints), path.ticks)
 
 
-def test_rate_is_what_the_slower_of_line_and_arm_can_take() -> None:
+def test_rate_is_limited_by_the_slower_of_line_and_arm() -> None:
     # The M5's get_angles takes 12 to 15 ms at 115,200 baud, the 320's 30 ms.
     for reply, rate in ((0.001, RATE), (0.015, RATE), (0.03, BUSY_SHARE / 0.03)):
         job = follow([[30, 0, 0, 0, 0, 0]])

@@ -16,7 +16,7 @@ PANIC = b"Guru Meditation Error: Core 1 panic'ed (LoadProhibited). Exception was
 REBOOT = b"Rebooting...\r\n" + bytes(277)
 
 
-def test_adjacent_noise_is_one_line_and_little_memory(codec: Codec) -> None:
+def test_adjacent_noise_takes_one_line_and_little_memory(codec: Codec) -> None:
     received = ReceivedMeanwhile()
     tracemalloc.start()
     for index in range(10_000):

@@ -53,7 +53,7 @@ commands = st.sampled_from(["go", "queue", "brake", "pause", "resume", "forget",
 
 
 @given(st.lists(st.tuples(st.floats(0.001, 1.5), commands, points, rates), max_size=12))
-def test_axes_with_a_lag_follow_the_path_of_axes_without_after_the_lag(
+def test_axes_with_a_lag_follow_the_same_path_later(
     orders: list[tuple[float, str, tuple[float, ...], float]],
 ) -> None:
     lag, now, times = 0.125, 1.0, []

@@ -107,7 +107,7 @@ def test_escape_during_a_drag_stops_and_sends_no_target(opened: Page) -> None:
     assert _sent(opened, "send_angle") == 0
 
 
-def test_arm_follows_a_drag_if_the_user_says_so(opened: Page) -> None:
+def test_arm_follows_a_drag_if_the_box_follow_is_checked(opened: Page) -> None:
     opened.click("#follow")
     x, y = _drag(opened, SLIDER.format(1), 40, drop=False)
     opened.until(f"{ANGLES}[0] > 20")
@@ -228,7 +228,7 @@ def test_queries_are_grouped_until_something_else_happens(opened: Page) -> None:
 
 
 @pytest.mark.parametrize(("width", "height"), [(1440, 900), (1280, 800)])
-def test_all_is_on_one_screen(opened: Page, width: int, height: int) -> None:
+def test_all_parts_of_the_page_are_on_one_screen(opened: Page, width: int, height: int) -> None:
     opened.show(width, height)
     for panel in ("curves", "line", "send", "faults"):
         opened.show_tab(panel)

@@ -56,7 +56,7 @@ def opened(page: Page, studio: Studio) -> Page:
     return page
 
 
-def test_page_drives_the_arm_and_says_what_a_client_says(opened: Page) -> None:
+def test_page_drives_the_arm_and_shows_the_values_that_a_client_reads(opened: Page) -> None:
     url = str(opened.get("document.getElementById('source').title"))
     opened.control()
     assert opened.send("power_on") == "sent"
@@ -155,7 +155,7 @@ def test_line_is_filtered_searched_paused_and_explained(opened: Page) -> None:
     opened.until(f"{ROWS}.length > 2")
 
 
-def test_page_is_used_with_the_keyboard_alone(opened: Page) -> None:
+def test_page_can_be_used_with_only_the_keyboard(opened: Page) -> None:
     opened.show_tab("line")
     opened.choose("queries", "each")
     opened.until(f"{ROWS}.length > 5")

@@ -65,7 +65,9 @@ def test_every_message_of_the_recording_is_played_once(
     assert all(abs(a - b) < 0.1 for a, b in zip(_joints(feed), TARGET))
 
 
-def test_seek_shows_what_came_until_then(feed: Feed, captured: list[CapturedMessage]) -> None:
+def test_seek_shows_the_entries_before_the_chosen_time(
+    feed: Feed, captured: list[CapturedMessage]
+) -> None:
     start = captured[0].time_ns
     for seconds in (3.0, 0.5, 5.5):
         feed.wish("seek", value=seconds)
@@ -77,7 +79,7 @@ def test_seek_shows_what_came_until_then(feed: Feed, captured: list[CapturedMess
         assert _joints(feed) == [round(angle, 3) for angle in replies[-1].angles]
 
 
-def test_pause_stays_where_it_is_and_a_wrong_speed_is_refused(feed: Feed) -> None:
+def test_paused_recording_keeps_its_time_and_a_wrong_speed_is_refused(feed: Feed) -> None:
     feed.wish("seek", value=1.0)
     feed.wish("play", value=0.05)
     feed.until(lambda: feed.states["player"]["playing"])

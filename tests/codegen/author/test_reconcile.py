@@ -88,7 +88,7 @@ def test_guess_recognizes_kinds_of_bytes() -> None:
     assert found == list(zip((0, 1, 2, 4, 5, 6, 7), kinds))
 
 
-def test_guess_from_one_frame_is_a_constant() -> None:
+def test_field_with_one_observed_frame_is_proposed_as_a_constant() -> None:
     assert {item.kind for item in guess([b"\x01\x02"])} == {"constant"}
     assert guess([b""]) == []
 

@@ -64,7 +64,7 @@ def _program(source: str, timeout: float = 5.0) -> Program:
         (ASKED + "sys.stdout.write('x' * 2000000); sys.stdout.flush(); time.sleep(2)", "a line of"),
     ],
 )
-def test_command_without_an_answer_fails_and_is_asked_again_until_it_died_five_times(
+def test_implementation_without_answers_fails_and_is_restarted_at_most_five_times(
     decoding: list[Question], source: str, message: str
 ) -> None:
     with _program(source) as program:

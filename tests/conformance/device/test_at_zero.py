@@ -38,7 +38,7 @@ def test_only_joints_at_zero_are_named() -> None:
 
 
 @pytest.mark.parametrize("defect", ["tenths-of-degrees", "two-joints-swapped", "joints-in-reverse"])
-def test_run_with_motion_finds_what_does_not_show_at_zero(defect: str) -> None:
+def test_run_with_motion_finds_mistakes_that_do_not_show_at_zero(defect: str) -> None:
     report = prepared_at([0] * 6, defect, "motion", "power").run()
     assert report.untested == ""
     assert report.failures
