@@ -265,7 +265,7 @@ clean: ## remove the environment and all build products
 	. $(BIN)/activate && maturin develop --release --quiet --extras sim
 	touch $@
 
-# Compile early what the recipe of .venv/.native installs, so that it need not compile.
+# Compile early, so that the recipe of .venv/.native only installs.
 .venv/.compiled: .venv/.base $(RUST_SOURCES)
 	. $(BIN)/activate && maturin build --release --quiet --out target/wheels
 	touch $@

@@ -177,7 +177,7 @@ def _cases(
 
 
 def _ends(runs: Mapping[str, list[Row]], limit: float, first: str) -> str:
-    """Return how the runs ended; if not alike, after ``first`` the others with their labels."""
+    """Return how the runs ended: if they differ, after ``first``, then the others with labels."""
     alike: dict[str, tuple[list[str], list[Row]]] = {}
     for label, rows in runs.items():
         for row in rows:

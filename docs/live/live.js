@@ -161,7 +161,7 @@ export class Live extends Session {
     try {
       results = Object.values(await arm.call(name, given));
     } finally {
-      // The stop may have overtaken it.
+      // The stop may have overtaken the request.
       if (!query && this.stops !== stops) await this.sendStop();
     }
     const error = this.facts.ready.filter(({ role }) => role === "error");

@@ -1,5 +1,5 @@
-// Hold the session in a worker, so that the arm is stopped even if the page hangs. The page sends wishes, which need no
-// answer, and requests; it gets batches of news.
+// Hold the session in a worker, so that the arm is stopped even if the page hangs. The page sends requests, and messages
+// that need no reply; it gets batches of entries, samples and states.
 
 import { edition, machine } from "./cobotwire/dist/machine.js";
 import { Live } from "./live.js";
@@ -31,7 +31,7 @@ function begin(opened, hello) {
   session = opened;
 }
 
-// What the page requests and wishes; the session has the other methods.
+// The requests and messages of the page; the session has the other methods.
 const requests = {
   // Connect to the port at an index; `infos` describes all ports, so that a change of their list is noticed.
   async connect({ name, speed, at, infos }) {

@@ -58,7 +58,7 @@ def test_motion_that_the_arm_does_not_obey_is_not_sent_unless_forced(
     assert (forced.returncode, forced.stderr.startswith("sent; acknowledged")) == (0, True)
 
 
-def test_doctor_reports_why_an_arm_does_not_move_instead_of_healthy() -> None:
+def test_doctor_reports_why_an_arm_does_not_obey_a_motion() -> None:
     arm = SimulatedArm(mycobot280.TABLE, powered=True)
     for spoil in (_cut, _pause, _fail):
         spoil(arm)

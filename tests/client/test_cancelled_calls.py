@@ -26,7 +26,7 @@ def test_cancelled_call_leaves_the_client_usable() -> None:
         asyncio.run(_cancelled(peer.url))
 
 
-def test_cancelled_opening_is_a_cancellation() -> None:
+def test_cancelled_opening_raises_cancelled_error() -> None:
     async def run() -> None:
         opening = asyncio.create_task(AsyncMyCobot(RecordingTransport()).open())
         await asyncio.sleep(0)

@@ -115,7 +115,7 @@ def confirmed(edition: Edition, sources: Sources = NO_SOURCES) -> Confirmed:
     }
     observed = {fact.fact for each in edition.observed for fact in each.facts}
     shown = observed - {f.fact for each in edition.observed for f in each.facts if not f.confirmed}
-    # A request of another length would have no effect.
+    # A command that is present confirms its request's length: another length would have no effect.
     present = [fact for fact in shown if fact.endswith("/command/present")]
     shown |= {fact.replace("command/present", "request/length") for fact in present}
     found = {}

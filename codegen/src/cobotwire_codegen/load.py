@@ -1,4 +1,4 @@
-"""Parses YAML to nodes that know their place. It and ``c_parser`` alone import the YAML library."""
+"""Parses YAML to nodes that know their place. Only it and ``c_parser`` import the YAML library."""
 
 from __future__ import annotations
 

@@ -94,8 +94,8 @@ class ArmState:
         self.minimum = [-HALF_TURN] * self.joints
         self.maximum = [HALF_TURN] * self.joints
 
-    # The declared state that motion and kinematics use. If the edition does not declare it, it has
-    # the value without an effect.
+    # The declared state that motion and kinematics use. A state that the edition does not declare
+    # has the value without an effect.
     @property
     def queues(self) -> bool:
         """Whether a new target waits for the end of the present motion."""
@@ -122,7 +122,7 @@ class ArmState:
         return self._pose("world") if self.kept.get("reference_frame", 0) else None
 
     def _pose(self, name: str) -> tuple[float, ...]:
-        """Return a pose that is kept; an edition may use the name for something else."""
+        """Return the pose that is kept under a name; zeros if it is no pose in this edition."""
         value = self.kept.get(name)
         return value if isinstance(value, tuple) and len(value) == len(NO_POSE) else NO_POSE
 

@@ -89,7 +89,7 @@ impl AsyncClient {
 
     /// Close the stream. Nothing more is sent to the arm; other calls end with a `LinkError`.
     pub async fn close(&self) {
-        // Its stream was not flushed in time; nothing else can be done about that.
+        // If the stream was not flushed in time, nothing else can be done about that.
         let _ = self.connection().close();
         self.shared.arrived.0.notify_waiters();
     }
@@ -101,7 +101,7 @@ impl AsyncClient {
     async fn perform(&self, prepared: &Prepared) -> Outcome {
         let called = Instant::now();
         if prepared.awaits_reply {
-            // The runtime notices only then that earlier bytes have come.
+            // Only after a yield does the runtime notice that earlier bytes have come.
             tokio::task::yield_now().await;
         }
         let settings = &self.handle.settings;
@@ -145,7 +145,7 @@ struct Call<'a> {
 impl Drop for Call<'_> {
     fn drop(&mut self) {
         self.client.connection().session.give_up(self.id);
-        // What it has read or written for others must go on.
+        // Another future must go on with reading and writing for all.
         self.client.shared.arrived.0.notify_waiters();
     }
 }

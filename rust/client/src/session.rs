@@ -215,8 +215,8 @@ impl Session {
         self.dispatch(events);
     }
 
-    /// Return the bytes that are to be written now; none, if it is nothing's turn. `drained`: nothing
-    /// that has come is unread.
+    /// Return the bytes that are to be written now; none if no request may be sent. `drained`: all
+    /// bytes that have come were read.
     pub fn outgoing(&mut self, now: Nanos, drained: bool) -> &[u8] {
         if self.writing.is_none() && self.fault.is_none() {
             self.writing = self.next_write(now, drained);
@@ -282,7 +282,7 @@ impl Session {
         self.end_write(why, now);
     }
 
-    /// End a write: whole, or else for a reason; without one, its time is over.
+    /// End a write. If it is cut, `why` is the reason; empty: its time is over.
     fn end_write(&mut self, why: &str, now: Nanos) {
         let Some(writing) = self.writing.take() else {
             return;

@@ -1,4 +1,4 @@
-//! What no talk with the twin in Python shows, since that takes each outcome at once.
+//! What the comparison with the exchange in Python cannot show, since it takes each outcome at once.
 
 use std::sync::Arc;
 

@@ -4,8 +4,8 @@ use cobotwire_core::{Direction, Event, Framer, Listening, decode};
 use cobotwire_table::Edition;
 use serde_json::{Value, json};
 
-/// Return the file of a document in which random values are replaced, by ones of the same type or
-/// not. `roll` returns a number below the one given.
+/// Return the file of a document in which random values are replaced by values of the same or of
+/// another type. `roll` returns a number below the given one.
 pub fn changed(document: &Value, roll: &mut impl FnMut(usize) -> usize) -> Vec<u8> {
     let others = [
         json!(null),

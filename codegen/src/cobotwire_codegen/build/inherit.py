@@ -67,7 +67,7 @@ def carried(
     if built == vector.frame:
         return own
     origin = vector.derived or Derivation(base.name, vector.frame, vector.values)
-    # Whether printed bytes are a legal frame is known of the base only.
+    # Only the base's document states whether its printed bytes are a legal frame.
     return replace(own, frame=built, values=values, derived=origin, rejected=None)
 
 

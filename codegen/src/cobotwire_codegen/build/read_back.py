@@ -74,7 +74,7 @@ def _read_back(
 def _short(
     pairs: tuple[tuple[str, str | int], ...], command: Command, query: Command
 ) -> tuple[tuple[str, str | int], ...]:
-    """Return the pairs; none if they are what a read-back without pairs compares: equal names."""
+    """Return the pairs; none if they pair exactly the equal names, which is the default."""
     shared = reported(query).keys() & given(command).keys()
     same = {name for name, source in pairs if name == source}
     return () if len(same) == len(pairs) and same == shared else pairs

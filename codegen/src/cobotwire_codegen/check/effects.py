@@ -71,7 +71,7 @@ def _wrong(effect: Effect, command: Command, states: Mapping[str, State]) -> Ite
 
 
 def _may_be_absent(name: str, command: Command) -> bool:
-    """Return whether a variant of the request lacks an argument; a text has all of its own."""
+    """Return whether a variant of the request lacks an argument, unless it is one of the text."""
     return name not in command.text_arguments and any(
         all(field.name != name for field in variant) for variant in command.requests
     )
@@ -107,7 +107,7 @@ def _wrong_sizes(
     rows = [options[key] for key in ("from", "near") if key in options]
     single = [*effect.at, *(options[key] for key in _SINGLE if key in options)]
     single += [effect.what] if effect.verb == "selector" else []
-    # All joints have a row of targets, or the same one.
+    # The target of all joints may be a row, or one number for all.
     if "to" in options and effect.what != "joints":
         (rows if effect.what == "end" and "about" not in options else single).append(options["to"])
     for name in (*rows, *single):

@@ -17,7 +17,7 @@ from cobotwire_codegen.model.frame import Direction
 
 # Each id and data length of the edition, by direction.
 Known = dict[Direction, set[tuple[int, int]]]
-# Vectors of one message; more of them show little that is new.
+# The most vectors of one message that are taken: more show little that is new.
 _MOST_VECTORS = 3
 _MOST_SHOWN = 2
 _HEAD = (

@@ -100,7 +100,7 @@ class Command:
     harmless; ``agrees_with`` lists queries that report the same values while the arm rests.
     The device sends the reply of an ``event`` without a request. ``accepted`` lists the raw values
     of the last field of a reply that report success.
-    ``firmware`` is what it needs; its notes say so too.
+    ``firmware`` has the versions that the command needs; ``notes`` state them too.
     ``arguments`` is the order of the method's arguments, if it is not that of the wire.
     """
 

@@ -135,7 +135,7 @@ def _list(effect: Effect) -> str:
 
 
 def _others(edition: Edition, command: Command, effect: Effect) -> Iterator[str]:
-    """Yield which query reports what the command sets, or which commands set what it reports."""
+    """Yield sentences: which query reports the effect, or which commands change what it reads."""
     if command.read_by is not None:
         yield f"`{command.read_by.query}` reports the result."
     elif effect.verb in ("stores", "sets"):

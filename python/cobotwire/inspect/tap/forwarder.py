@@ -68,7 +68,7 @@ class Forwarder:
         gc.freeze()
         while self._turn():
             pass
-        # No request is cut here.
+        # What was read is written, so that the end cuts no request.
         if self._to_arm:
             with suppress(LinkError):
                 self._arm.write(bytes(self._to_arm))

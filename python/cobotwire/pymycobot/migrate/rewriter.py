@@ -96,7 +96,7 @@ class Rewriter(cst.CSTTransformer):
         return self._of_arm(original_node, updated_node, arms[0], method)
 
     def _ask_class(self, call: cst.Call, arm: cst.BaseExpression) -> None:
-        """Have the class of an unknown arm decided: of a parameter once, for all its calls."""
+        """List an arm of unknown class as undecided; a parameter once for all its calls."""
         for found in self.names.keys.assigned(arm) if isinstance(arm, cst.Name) else ():
             function = self.names.keys.function_of(found)
             if isinstance(found, cst.Param) and function and not found.annotation:
@@ -189,7 +189,7 @@ class Rewriter(cst.CSTTransformer):
             self.decide(original, f"{kind.native} needs the port")
             return updated
         opened = socket_arguments if kind.opens == "socket" else serial_arguments
-        # The name was changed where the library gave it; one that the program gives stays.
+        # The class's name was replaced if it came from the library; a name of the program's stays.
         return updated.with_changes(args=opened(place, speed))
 
     def sleep(

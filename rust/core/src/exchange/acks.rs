@@ -32,7 +32,7 @@ struct ExpectedAck {
     until: Nanos,
     /// Where in the received stream it can begin at the earliest.
     offset: u64,
-    /// Until when each other acknowledgement may come that looks like this one; soonest first.
+    /// Other acknowledgements that look like this one: until when each may come, soonest first.
     doubts: Vec<Nanos>,
     /// Whether it may still come, if each one belongs to the oldest request.
     expected: bool,
@@ -48,7 +48,8 @@ impl ExpectedAck {
         self.doubts.sort_unstable();
     }
 
-    /// Count an acknowledgement that looks like this; the first may belong to other requests.
+    /// Count an acknowledgement that looks like this one. The first of them may belong to other
+    /// requests.
     fn count(&mut self, frame: &SeenFrame, began_at: Nanos) {
         self.doubts.retain(|until| *until > began_at);
         if self.doubts.is_empty() {
@@ -123,7 +124,7 @@ impl CommandAcks {
         self.known.retain(|ack| ack.expected || ack.uncertain);
     }
 
-    /// Return until when all that is expected besides an acknowledgement may look like it.
+    /// Return until when each other expected acknowledgement that looks like this one may come.
     fn doubts_of(&self, protocol: &Protocol, ack: &ExpectedAck) -> Vec<Nanos> {
         let alike = |other: &&ExpectedAck| {
             !Arc::ptr_eq(&other.request, &ack.request)

@@ -108,8 +108,8 @@ impl Exchange {
         ticket
     }
 
-    /// Return the bytes of a one-way request, to be written now. The ticket is there if `ack_within`
-    /// says for how long its acknowledgement is waited for, and the protocol has one.
+    /// Return the bytes of a one-way request, to be written now; and a ticket for the wait for its
+    /// acknowledgement, if `ack_within` is given and the request has an acknowledgement.
     pub fn send_one_way(
         &mut self,
         request: Request,
