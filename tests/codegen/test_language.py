@@ -14,7 +14,7 @@ from cobotwire_codegen import language
 from cobotwire_codegen.build import build_edition
 from cobotwire_codegen.errors import Problem, SpecError
 from cobotwire_codegen.language.edition import FILES
-from cobotwire_codegen.language.limits import COMMAND_LIMITS, LIMITS, Limit
+from cobotwire_codegen.language.limits import COMMAND_LIMITS, LIMITS, NO_COMMAND, Limit
 from cobotwire_codegen.language.records import Choice, Key, Record
 from cobotwire_codegen.language.reference import language_page
 from cobotwire_codegen.language.schema import editor_schema, records
@@ -130,6 +130,12 @@ def test_command_that_the_language_cannot_state_is_refused_by_name(limit: Limit)
         Reader(parse(f"{key}: x", "a.yaml"), language.Command, "the command", problems)
         assert [p.message for p in problems if p.code == "cannot-say"] == [limit.message]
     assert f"### {limit.heading}\n" in language_page()
+
+
+def test_command_without_an_id_is_refused_by_name() -> None:
+    problems: list[Problem] = []
+    Reader(parse("title: x", "a.yaml"), language.Command, "the command x", problems)
+    assert f"the command x lacks the key id; {NO_COMMAND.message}" in {p.message for p in problems}
 
 
 def _refusals(frame: dict[str, Any]) -> list[str]:

@@ -161,7 +161,17 @@ def test_explain_suggests_the_nearest_word_for_an_unknown_one(word: str, near: s
     assert f"did you mean {near}?" in result.stderr
 
 
+def test_explain_prints_what_a_key_of_the_language_means(tmp_path: Path) -> None:
+    lines = samples.run(tmp_path, "explain", "shares_id").stdout.splitlines()
+    assert lines == ["shares_id of command: Commands that have the same id with other data."]
+    assert "scale of quantity: " in samples.run(tmp_path, "explain", "scale").stdout
+    near = samples.run(tmp_path, "explain", "share_id").stderr
+    assert "did you mean shares_id?" in near
+
+
 def test_outside_of_a_clone_the_file_has_to_be_named(tmp_path: Path) -> None:
     unknown = samples.run(tmp_path, "explain", "bad-efect")
-    assert "bad-efect is not a problem code; did you mean bad-effect?" in unknown.stderr
+    assert (
+        "bad-efect is neither a problem code nor a key; did you mean bad-effect?" in unknown.stderr
+    )
     assert "name your own file" in samples.run(tmp_path, "vectors").stderr

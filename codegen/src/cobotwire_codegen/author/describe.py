@@ -8,6 +8,9 @@ from textwrap import fill, indent
 
 from cobotwire_codegen import lower
 from cobotwire_codegen.author.codes import Explanation
+from cobotwire_codegen.language import schema
+from cobotwire_codegen.language.edition import FILES
+from cobotwire_codegen.language.records import Choice
 from cobotwire_codegen.model import Command, Edition, Evidence, Field, Quantity, Variant, Vector
 from cobotwire_codegen.model.frame import Direction
 from cobotwire_codegen.render import markdown, words
@@ -27,6 +30,21 @@ def describe_code(explanation: Explanation) -> str:
     text = "\n".join(fill(part, _WIDTH, subsequent_indent="  ") for part in parts)
     wrong, right = indent(explanation.wrong, "  "), indent(explanation.right, "  ")
     return f"{text}\n\nWrong:\n{wrong}\n\nRight:\n{right}"
+
+
+def describe_keys() -> dict[str, str]:
+    """Return what each key of the language means, a paragraph for each meaning."""
+    found: dict[str, dict[str, list[str]]] = {}
+    for record in (each for each in schema.records(FILES.values()) if not isinstance(each, Choice)):
+        for name, key in record.keys().items():
+            found.setdefault(name, {}).setdefault(key.doc, []).append(record.heading().lower())
+    return {
+        name: "\n".join(
+            fill(f"{name} of {', '.join(records)}: {doc}", _WIDTH, subsequent_indent="  ")
+            for doc, records in docs.items()
+        )
+        for name, docs in found.items()
+    }
 
 
 def describe_command(edition: Edition, command: Command) -> str:

@@ -1,4 +1,4 @@
-"""``cobotwire-gen explain``: explain a problem code or a command."""
+"""``cobotwire-gen explain``: explain a problem code, a key of the language, or a command."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from pathlib import Path
 import click
 
 from cobotwire_codegen.author.codes import CODES
-from cobotwire_codegen.author.describe import describe_code, describe_command
+from cobotwire_codegen.author.describe import describe_code, describe_command, describe_keys
 from cobotwire_codegen.build import build_edition
 from cobotwire_codegen.cli.shared import DEFAULT_EDITION, edition_path, report_problems
 from cobotwire_codegen.errors import nearest
@@ -23,26 +23,28 @@ from cobotwire_codegen.errors import nearest
     help="The edition whose commands can be explained.",
 )
 def explain(word: str | None, file: str) -> None:
-    """Explain WORD: a problem code, or a command of the edition. Without WORD, list the codes."""
+    """Explain WORD: a problem code, a key of the spec's language, or a command of the edition.
+
+    Without WORD, list the codes.
+    """
     if word is None:
         for code, explanation in sorted(CODES.items()):
             click.echo(f"{code:<20} {explanation.means}")
         return
-    if word in CODES:
-        click.echo(describe_code(CODES[word]))
+    keys = describe_keys()
+    if word in CODES or word in keys:
+        click.echo(describe_code(CODES[word]) if word in CODES else keys[word])
         return
     if file == DEFAULT_EDITION and not Path(file).is_file():
-        hint = f"{_hint(word, [*CODES])}; for a command, name its file: --edition FILE"
-        raise click.UsageError(f"{word} is not a problem code{hint}")
+        hint = f"{_hint(word, [*CODES, *keys])}; for a command, name its file: --edition FILE"
+        raise click.UsageError(f"{word} is neither a problem code nor a key{hint}")
     with report_problems():
         # The edition is not checked, so that a command can be explained while it is being changed.
         edition = build_edition(edition_path(file), Path.cwd())
     commands = {command.name: command for command in edition.commands}
     if word not in commands:
-        hint = _hint(word, [*CODES, *commands])
-        raise click.UsageError(
-            f"{word} is neither a problem code nor a command of {edition.name}{hint}"
-        )
+        hint = _hint(word, [*CODES, *keys, *commands])
+        raise click.UsageError(f"{word} is no problem code, key or command of {edition.name}{hint}")
     click.echo(describe_command(edition, commands[word]))
 
 

@@ -127,7 +127,7 @@ TWO_ACKS = Limit(
     "the end of a motion with `role: motion ended`: then waited motions end with it. If it has the "
     "same id, one variant of both is the acknowledgement, and the second is reported as a frame "
     "that nobody waits for.",
-    "state the first as the reply with `ack: true`, the second as an event",
+    "state the first as the `reply` of the command, which has `ack: true`, the second as an event",
     ("acks", "ack_stages", "second_ack", "final_ack", "completion", "completed_by"),
 )
 REPLY_AND_PUSH = Limit(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from cobotwire_codegen.language import facts
 from cobotwire_codegen.language.effects import ANY_EFFECT_PART
-from cobotwire_codegen.language.limits import COMMAND_LIMITS, messages_by_key
+from cobotwire_codegen.language.limits import COMMAND_LIMITS, NO_COMMAND, messages_by_key
 from cobotwire_codegen.language.names import CASE, CLASS, LOWER, METHOD
 from cobotwire_codegen.language.number_shapes import Numbers, Range, Real, Whole, WholeOrMember
 from cobotwire_codegen.language.records import (
@@ -261,7 +261,7 @@ class Command(Record):
         ("event", "request_text"),
         ("event", "ack"),
     )
-    LIMITS = messages_by_key(COMMAND_LIMITS)
+    LIMITS = messages_by_key((*COMMAND_LIMITS, NO_COMMAND._replace(keys=("id",))))
     EXAMPLE = """\
 id: 0x21
 title: Send one joint to an angle
