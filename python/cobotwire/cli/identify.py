@@ -30,12 +30,12 @@ def identify(port: str, baudrate: int | None, timeout: float, as_json: bool) -> 
 
     A few harmless queries are sent: nothing moves, and nothing is set.
 
-    Exit codes: 0 the edition is known; 1 an arm replied, but its edition is not known; 3 the port
-    failed; 4 no reply.
+    Exit codes: 0 the edition is known; 1 an arm replied, but its edition is not known, or what it
+    reports contradicts the edition; 3 the port failed; 4 no reply.
     """
     found = identify_arm(port, baudrate=baudrate, timeout=timeout)
     click.echo(json.dumps(_as_json(found), indent=1) if as_json else fold("\n".join(_lines(found))))
-    if not found.edition:
+    if not found.edition or found.doubts:
         sys.exit(1 if found.replied else NO_REPLY)
 
 
