@@ -20,7 +20,7 @@ from cobotwire.capture import read
 from cobotwire.conformance.survey import ASPECTS, read_survey, survey_file
 from cobotwire.protocol.errors import UsageError
 from cobotwire.session.device import DeviceEvent, RequestReceived
-from cobotwire.simulator import PtyServer, SimulatedArm
+from cobotwire.simulator import PtyServer, SimulatedArm, TcpServer
 from in_process import cobotwire
 from wrong_arms import POSE, WRONG_ARMS
 
@@ -55,6 +55,21 @@ def test_file_holds_facts_with_frames_and_recording_but_nothing_personal(tmp_pat
         assert len(name) < 6 or name not in text
     again = cobotwire("survey", "--simulated", "-o", path)
     assert (again.returncode, "exists already" in again.stderr) == (2, True)
+
+
+def test_survey_at_a_network_port_is_of_a_real_arm_only_if_the_owner_states_it(
+    tmp_path: Path,
+) -> None:
+    path, stated = tmp_path / "survey.zip", tmp_path / "stated.zip"
+    with TcpServer(SimulatedArm(TABLE).connect) as server:
+        done = cobotwire("survey", server.url, "-o", path)
+        assert "state it with --real-arm" in done.stderr
+        # What was not stated before the facts were recorded cannot be stated of them afterwards.
+        done = cobotwire("survey", server.url, "--real-arm", "--continue", "-o", path)
+        assert "not seen; of a simulated arm" in done.stdout
+        done = cobotwire("survey", server.url, "--real-arm", "-o", stated)
+        assert "--real-arm" not in done.stderr
+    assert [read_survey(each)[0]["simulated"] for each in (path, stated)] == [True, False]
 
 
 def test_motion_needs_an_answer_before_a_byte_is_sent(tmp_path: Path) -> None:

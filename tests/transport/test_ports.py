@@ -4,14 +4,16 @@ from __future__ import annotations
 
 import glob
 import os
+from pathlib import Path
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from serial.tools import list_ports
 
+from cobotwire.transport.serial import ports as listing
 from cobotwire.transport.serial.chips import CHIPS, Chip
-from cobotwire.transport.serial.ports import ports, recognise
+from cobotwire.transport.serial.ports import Port, leads_to_device, ports, recognise
 
 
 @pytest.mark.parametrize("chip", CHIPS)
@@ -66,3 +68,20 @@ def test_likely_ports_are_listed_first_even_if_pyserial_does_not_list_them(
 
 def test_ports_of_this_machine_include_those_of_pyserial() -> None:
     assert {info.device for info in list_ports.comports()} <= {port.device for port in ports()}
+
+
+def test_only_usb_and_built_in_ports_show_that_a_device_is_there(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    device, link = tmp_path / "ttyX0", tmp_path / "arm"
+    link.symlink_to(device)
+    listed = Port(str(device), False, "", True)
+    for port, real in (
+        (listed, False),
+        (listed._replace(usb="1234:5678"), True),
+        (listed._replace(likely=True), True),
+        (listed._replace(device="/dev/ttyUSB0", usb="1234:5678"), False),
+    ):
+        monkeypatch.setattr(listing, "ports", lambda port=port: [port])
+        assert leads_to_device(str(device)) == leads_to_device(str(link)) == real
+        assert not leads_to_device("socket://127.0.0.1:9000")

@@ -32,12 +32,18 @@ from cobotwire.conformance.survey.file import RECORDING, content_of, continued
 from cobotwire.inspect.seal import load_signer
 from cobotwire.protocol.errors import LinkError, UsageError
 from cobotwire.protocol.table import Table
+from cobotwire.transport.serial.ports import leads_to_device
 from cobotwire.transport.tapped import tapped
 
 WORKSPACE = (
     "The arm will make a few small slow motions, up to 5 degrees from where each joint is; a fact "
     "that is wrong may make one larger. Any key stops it. Is the workspace clear, the emergency "
     "stop within reach, and the gripper empty?"
+)
+
+NOT_SHOWN = (
+    "a program may be at this port, so the survey counts as one of a simulated arm and is no "
+    "evidence; if it is a real arm, stop with Ctrl-C and state it with --real-arm"
 )
 
 VERDICTS = ("confirmed", "contradicted", "not seen")
@@ -52,6 +58,7 @@ VERDICTS = ("confirmed", "contradicted", "not seen")
 @click.option("--yes-workspace-is-clear", is_flag=True, help="Do not ask before the motions.")
 @click.option("--continue", "resume", is_flag=True, help="Continue the interrupted survey of -o.")
 @click.option("--simulated", is_flag=True, help="Survey a simulated arm instead of URL.")
+@click.option("--real-arm", is_flag=True, help="State that URL is a real arm, not a simulated one.")
 @click.option(
     "--sign", type=click.Path(), metavar="KEY", help="Sign the file with this key (Ed25519)."
 )
@@ -68,6 +75,7 @@ def survey(
     yes_workspace_is_clear: bool,
     resume: bool,
     simulated: bool,
+    real_arm: bool,
     sign: str | None,
     as_json: bool,
     baudrate: int | None,
@@ -79,6 +87,9 @@ def survey(
     also changes settings that a power cycle resets, and restores them. --allow-motion also moves
     the arm, after a question; any key stops it.
 
+    A USB port shows that the arm is a real one. Of another port, such as socket://HOST:PORT,
+    --real-arm states it; without it, the survey counts as one of a simulated arm.
+
     The file holds the recording and each fact with its bytes. It names no port, host or user;
     passwords are not requested, and serial numbers are replaced by their hash. If the survey is
     interrupted, the same command with --continue goes on.
@@ -89,6 +100,9 @@ def survey(
     table = editions.load(edition).TABLE
     subject = Subject(port, None, None, simulated, baudrate)
     subject.validate()
+    if port is not None and not (real_arm or leads_to_device(port)):
+        simulated = True
+        click.echo(fold(NOT_SHOWN, err=True), err=True)
     signer = None if sign is None else load_signer(sign)
     earlier = read_survey(output) if resume else None
     if earlier is not None and earlier[0].get("edition") != table.edition:
@@ -194,7 +208,8 @@ def _lines(found: Survey, content: dict[str, Any]) -> Iterator[str]:
     if found.obstacle:
         yield f"{'!' if found.other else '-'} {found.obstacle}"
     verdicts = Counter(fact["verdict"] for fact in content["facts"])
-    yield "facts: " + ", ".join(f"{verdicts[v]} {v}" for v in VERDICTS)
+    simulated = "; of a simulated arm" if content["simulated"] else ""
+    yield "facts: " + ", ".join(f"{verdicts[v]} {v}" for v in VERDICTS) + simulated
     hashed = ", ".join(found.hashed)
     yield "the file names no port, host or user; " + (
         f"hashed are the replies to {hashed}" if hashed else "no serial number was reported"

@@ -54,6 +54,7 @@ def survey(*facts: Any, **changed: Any) -> dict[str, Any]:
         "edition": "bus",
         "edition_digest": "",
         "robot": "My lamp",
+        "simulated": False,
         "firmware": {"get_version": "1.3"},
         "date": "2026-11-25T10:00:00Z",
         "facts": list(facts),
@@ -171,6 +172,7 @@ def test_fact_without_a_matching_frame_is_refused(wrong: Any, why: str) -> None:
     ("data", "why"),
     [
         (packed(survey(simulated=True)), "not of a real arm"),
+        (packed({k: v for k, v in survey().items() if k != "simulated"}), "not of a real arm"),
         (packed(survey(robot="a\x1b[2J")), "cannot be printed"),
         (packed(survey(robot="a" * 81)), "0 to 80 characters"),
         (packed(survey(edition="../../etc")), "is not a name"),
@@ -186,6 +188,8 @@ def test_fact_without_a_matching_frame_is_refused(wrong: Any, why: str) -> None:
         (packed(survey(), more={"recording.pcapng": b"\n\r\r\n"}), "not pcapng"),
         (b"PK", "not a whole zip"),
         (report([], subject="simulated arm in memory"), "about a program"),
+        (report([], subject="socket://10.0.0.7:9000"), "a program at"),
+        (report([], subject="/dev/pts/3"), "a program at"),
         (report([], version=1), "not a survey"),
     ],
 )

@@ -50,6 +50,10 @@ _FACT = re.compile(
     rf"({'|'.join(ASPECTS)})",
     re.ASCII,
 )
+# The names of USB ports and of built-in ports. At others, a simulated arm can be.
+_DEVICE = re.compile(
+    r"/dev/(tty(USB|ACM|AMA|THS)\d+|cu\.[\w#-]+|serial/by-(id|path)/[^/]+)|COM\d+", re.ASCII | re.I
+)
 # The robot of a report, or of an owner who does not name it.
 _UNNAMED = "an arm"
 _SEAL = ("digest", "signature")
@@ -221,8 +225,11 @@ def _bytes(value: Any) -> bytes:
 def _survey(data: dict[str, Any], digest: str) -> Submitted:
     head = (data.get("format"), data.get("version"))
     _require(head == ("cobotwire-survey", 1), "the file is not a survey of version 1")
-    # Files of the first surveys do not say it.
-    _require(data.get("simulated", False) is False, "the survey is not of a real arm")
+    _require(
+        data.get("simulated") is False,
+        "the survey is not of a real arm, as far as it shows; `cobotwire survey --real-arm` states "
+        "it where the port does not show it",
+    )
     edition = _edition(data)
     versions = _of(data.get("firmware"), dict, "firmware")
     _require(len(versions) <= 8, "firmware has more than 8 entries")
@@ -269,6 +276,11 @@ def _report(data: dict[str, Any], digest: str) -> Submitted:
     options = _of(data.get("options"), dict, "options")
     simulated = "simulated" in subject or "command" in options
     _require(not simulated, "the report is about a program, which proves nothing about a robot")
+    _require(
+        bool(_DEVICE.fullmatch(subject)),
+        f"there may be a program at {subject}, so the report proves nothing about a robot; send "
+        "the file of `cobotwire survey --real-arm` instead",
+    )
     facts: dict[str, Reported] = {}
     for each in _of(data.get("results"), list, "results"):
         for reported in _of_case(_of(each, dict, "a result")):

@@ -69,7 +69,9 @@ def continued(
     merged = [decided.pop(fact["fact"], fact) for fact in content["facts"]] + [*decided.values()]
     hashed = list(dict.fromkeys([*old.get("hashed", ()), *content["hashed"]]))
     level = max(old.get("level", 1), content["level"])
-    return {**content, "facts": merged, "hashed": hashed, "level": level}, recorded + recording
+    simulated = old.get("simulated") is not False or content["simulated"]
+    changed = {"facts": merged, "hashed": hashed, "level": level, "simulated": simulated}
+    return content | changed, recorded + recording
 
 
 def survey_file(

@@ -58,6 +58,15 @@ def ports() -> list[Port]:
     return sorted(found.values(), key=lambda port: (not port.likely, port.device))
 
 
+def leads_to_device(url: str) -> bool:
+    """Return whether a URL names a USB port, or a built-in port to which arms are wired.
+
+    A program, such as a simulated arm, can be at any other port: a pseudo-terminal or a network.
+    """
+    names = (url, os.path.realpath(url))
+    return any(port.device in names and bool(port.usb or port.likely) for port in ports())
+
+
 def this_computer(device: str = "") -> Computer:
     """Return facts about this computer, from which the remedies for a port follow."""
     devices = [port.device for port in ports()]
