@@ -5,14 +5,17 @@ from __future__ import annotations
 import json
 import math
 import random
+from pathlib import Path
 
 import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
 import vectors
+from cobotwire.capture.packet import Interface, Packet
+from cobotwire.capture.writer import CaptureWriter
 from cobotwire_codegen.author.guess import guess
-from cobotwire_codegen.author.reconcile import capture_bytes, draft_lines, reconcile
+from cobotwire_codegen.author.reconcile import News, captured, draft_lines, reconcile
 from cobotwire_codegen.author.scan import known_variants, scan
 from cobotwire_codegen.build import build_edition
 from codegen.author import samples
@@ -22,6 +25,10 @@ KNOWN = known_variants(EDITION, "both")
 FRAMES = [vector.frame for vector in EDITION.vectors if vector.frame is not None]
 
 
+def _reconciled(line: bytes, direction: str = "both") -> tuple[int, list[News]]:
+    return reconcile(EDITION, captured(line, direction))
+
+
 def _frame(id: int, data: bytes) -> bytes:
     return bytes([0xFE, 0xFE, len(data) + 2, id, *data, 0xFA])
 
@@ -29,7 +36,7 @@ def _frame(id: int, data: bytes) -> bytes:
 def test_scan_finds_every_frame_of_the_vectors() -> None:
     line = b"".join(FRAMES)
     assert [seen.frame for seen in scan(EDITION, line, KNOWN)] == FRAMES
-    assert reconcile(EDITION, line, "both") == (len(FRAMES), [])
+    assert _reconciled(line) == (len(FRAMES), [])
 
 
 # After its header, this unknown frame reads as a known frame of a format without a header.
@@ -38,7 +45,7 @@ def test_scan_finds_every_frame_of_the_vectors() -> None:
 def test_reconcile_finds_an_unknown_id_between_known_frames(data: bytes, count: int) -> None:
     unknown = _frame(0xEE, data)
     line = b"".join([FRAMES[3] + unknown] * count)
-    found = reconcile(EDITION, line, "both")[1]
+    found = _reconciled(line)[1]
     inside = any(seen.offset for seen in scan(EDITION, unknown, KNOWN))
     assert inside or [(n.id, n.data_bytes, len(n.frames)) for n in found] == [
         (0xEE, len(data), count)
@@ -61,15 +68,15 @@ def test_scan_skips_noise_and_truncated_frames() -> None:
 
 
 def test_reconcile_reports_a_known_id_with_an_unknown_length() -> None:
-    [news] = reconcile(EDITION, _frame(0x20, b"\x01"), "both")[1]
+    [news] = _reconciled(_frame(0x20, b"\x01"))[1]
     assert news.why == "get_angles has no such length"
 
 
 def test_reconcile_knows_only_messages_of_the_given_direction() -> None:
     reply = next(v.frame for v in EDITION.vectors if v.command == "get_angles" and v.values)
     assert reply is not None
-    assert reconcile(EDITION, reply, "reply")[1] == []
-    assert len(reconcile(EDITION, reply, "request")[1]) == 1
+    assert _reconciled(reply, "reply")[1] == []
+    assert len(_reconciled(reply, "request")[1]) == 1
 
 
 def _payloads() -> list[bytes]:
@@ -111,8 +118,8 @@ def test_drafts_have_the_types_that_values_fit_and_the_effects_that_pairs_show()
         # Angles, a message that repeats the first angle, and a setting that is read back.
         line += _frame(0x20, word * 6) + _frame(0xEE, word + bytes([i % 2, 20 + 3 * i]))
         line += _frame(0xEA, bytes([7 * i])) + _frame(0xEB, b"") + _frame(0xEB, bytes([7 * i]))
-    _, found = reconcile(EDITION, line, "both")
-    shown = ["\n".join(draft_lines(EDITION, news, "both")) for news in found]
+    _, found = _reconciled(line)
+    shown = ["\n".join(draft_lines(EDITION, news)) for news in found]
     stored, _, reported, measured = shown
     assert "equals get_angles.angles[0]: -55.06..89.96 degree, scale 1/100, signed" in measured
     assert "{name: flag_2, type: flag}" in measured
@@ -137,8 +144,37 @@ def test_scan_finds_frames_with_address_and_sum() -> None:
 
 
 def test_capture_is_read_as_raw_bytes_or_hex_text() -> None:
-    assert capture_bytes(b"fe FE\n0x02, 0x10 fa") == bytes.fromhex("FE FE 02 10 FA")
-    assert capture_bytes(FRAMES[0]) == FRAMES[0]
+    [packet] = captured(b"fe FE\n0x02, 0x10 fa", "both")
+    assert packet.data == bytes.fromhex("FE FE 02 10 FA")
+    assert captured(FRAMES[0], "reply") == [(0, "reply", FRAMES[0])]
     with pytest.raises(ValueError, match="hex"):
-        capture_bytes(b"FE F")
+        captured(b"FE F", "both")
     assert samples.run(vectors.ROOT, "reconcile", "-", given="FE F").returncode == 2
+
+
+def test_directions_of_a_recording_tell_requests_from_replies(tmp_path: Path) -> None:
+    path = tmp_path / "arm.pcapng"
+    with path.open("wb") as file:
+        writer = CaptureWriter(file)
+        arms = [writer.interface(Interface(url)) for url in ("/dev/ttyUSB0", "/dev/ttyUSB1")]
+        for i in range(20):
+            value, torn = bytes([7 * i]), _frame(0xE8, bytes([i, 3]))
+            sent = _frame(0xEA, value) + _frame(0xEB, b"") + _frame(0x20, b"")
+            writer.packet(Packet(i, "sent", sent, "bytes", interface=arms[0]))
+            # Between the parts of a reply of this arm comes one of the other arm.
+            for arm, data in (
+                (arms[0], torn[:3]),
+                (arms[1], _frame(0xE9, b"\1")),
+                (arms[0], torn[3:] + _frame(0xEB, value)),
+            ):
+                writer.packet(Packet(i, "received", data, "bytes", interface=arm))
+        writer.finish()
+    result = samples.run(vectors.ROOT, "reconcile", str(path), "--json")
+    found = {(u["id"], u["direction"]): u for u in json.loads(result.stdout)["unknown"]}
+    replies = {(id, "reply") for id in (0xE8, 0xE9, 0xEB)}
+    assert found.keys() == replies | {(0xEA, "request"), (0xEB, "request")}
+    assert {unknown["count"] for unknown in found.values()} == {20}
+    assert found[0xE8, "reply"]["offsets"][0] == 16
+    assert "  reply:\n" in found[0xE8, "reply"]["draft"]
+    assert "  request:\n" in found[0xEA, "request"]["draft"]
+    assert "safety: query" in found[0xEB, "reply"]["draft"]

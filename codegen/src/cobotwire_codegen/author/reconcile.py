@@ -3,22 +3,27 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
-from dataclasses import dataclass
+from bisect import bisect
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from itertools import accumulate
 from typing import Any
 
 from cobotwire_codegen.author.guess import Guess, guess
+from cobotwire_codegen.author.pcapng import MAGIC, Packet, packets
 from cobotwire_codegen.author.scan import Seen, known_variants, scan
 from cobotwire_codegen.author.values import fitting, known_values, pairs
 from cobotwire_codegen.model import Edition
 
 _HEX = re.compile(rb"[0-9A-Fa-fxX\s,]*\Z")
 _EXAMPLES = 3
+# The id, number of data bytes and direction of messages that belong together.
+_Group = tuple[int, int, str]
 
 
 @dataclass(frozen=True, slots=True)
 class News:
-    """Messages of one id and length that the edition lacks."""
+    """Messages of one id, length and direction that the edition lacks."""
 
     why: str
     frames: tuple[Seen, ...]
@@ -35,6 +40,11 @@ class News:
         return self.frames[0].id
 
     @property
+    def direction(self) -> str:
+        """Their direction; ``both`` if the capture does not show it."""
+        return self.frames[0].direction
+
+    @property
     def data_bytes(self) -> int:
         """The number of data bytes of the messages."""
         return len(self.frames[0].data)
@@ -46,34 +56,44 @@ class News:
         return [frame.hex(" ").upper() for frame in list(differing)[:_EXAMPLES]]
 
 
-def capture_bytes(given: bytes) -> bytes:
-    """Return the bytes of a capture that is raw or hex text.
+def captured(given: bytes, direction: str) -> list[Packet]:
+    """Return the packets of a capture; raw bytes and hex text are one packet.
+
+    ``direction`` is what the capture holds if it does not state it.
 
     Raises:
-        ValueError: the hex text has half a byte.
+        ValueError: the hex text has half a byte, or the pcapng file is damaged.
     """
-    if not _HEX.match(given):
-        return given
-    return bytes.fromhex(re.sub("0[xX]|,", " ", given.decode("ascii")))
+    if given.startswith(MAGIC):
+        found = packets(given)
+        return [p._replace(direction=direction) if p.direction == "both" else p for p in found]
+    if _HEX.match(given):
+        try:
+            given = bytes.fromhex(re.sub("0[xX]|,", " ", given.decode("ascii")))
+        except ValueError as error:
+            message = f"the capture is hex text, but not pairs of digits: {error}"
+            raise ValueError(message) from None
+    return [Packet(0, direction, given)]
 
 
-def reconcile(edition: Edition, line: bytes, direction: str) -> tuple[int, list[News]]:
+def reconcile(edition: Edition, capture: Sequence[Packet]) -> tuple[int, list[News]]:
     """Return the number of frames in a capture, and the messages that the edition lacks."""
-    known = known_variants(edition, direction)
+    known = {packet.direction: known_variants(edition, packet.direction) for packet in capture}
     ids = {command.id: command.name for command in edition.commands}
-    groups: dict[tuple[int, int], list[Seen]] = {}
-    frames = list(scan(edition, line, known))
+    groups: dict[_Group, list[Seen]] = {}
+    frames = sorted(_frames(edition, capture, known), key=lambda seen: seen.offset)
     for seen in frames:
-        if (seen.id, len(seen.data)) not in known:
-            groups.setdefault((seen.id, len(seen.data)), []).append(seen)
+        if (seen.id, len(seen.data)) not in known[seen.direction]:
+            groups.setdefault(_group(seen), []).append(seen)
     values = known_values(edition, frames) if groups else {}
-    effects: dict[tuple[int, int], tuple[str, int]] = {}
-    for stored, reported, size in pairs([*groups.values()]):
-        effects.setdefault((stored, size), ("stores", reported))
-        effects.setdefault((reported, size), ("reports", stored))
+    effects: dict[_Group, tuple[str, int]] = {}
+    for stored, reported in pairs([*groups.values()]):
+        effects.setdefault(_group(stored), ("stores", reported.id))
+        effects.setdefault(_group(reported), ("reports", stored.id))
     found = []
     for key, seen_frames in sorted(groups.items()):
-        why = f"{ids[key[0]]} has no such length" if key[0] in ids else "the id is unknown"
+        way = "" if key[2] == "both" else f"{key[2]} of "
+        why = f"{ids[key[0]]} has no {way}such length" if key[0] in ids else "the id is unknown"
         guesses = guess([seen.data for seen in seen_frames])
         types = tuple(fitting(edition, item, seen_frames, values) for item in guesses)
         effect, other = effects.get(key, ("", 0))
@@ -82,7 +102,29 @@ def reconcile(edition: Edition, line: bytes, direction: str) -> tuple[int, list[
     return len(frames), found
 
 
-def draft_lines(edition: Edition, news: News, direction: str) -> Iterator[str]:
+def _group(seen: Seen) -> _Group:
+    return seen.id, len(seen.data), seen.direction
+
+
+def _frames(
+    edition: Edition, capture: Sequence[Packet], known: dict[str, set[tuple[int, int]]]
+) -> Iterator[Seen]:
+    """Yield the frames of each direction of each port; offsets count the bytes of all packets."""
+    streams: dict[tuple[int, str], list[tuple[int, bytes]]] = {}
+    at = 0
+    for packet in capture:
+        streams.setdefault(packet[:2], []).append((at, packet.data))
+        at += len(packet.data)
+    for (_, direction), pieces in streams.items():
+        starts = [0, *accumulate(len(data) for _, data in pieces)]
+        line = b"".join(data for _, data in pieces)
+        for seen in scan(edition, line, known[direction]):
+            index = bisect(starts, seen.offset) - 1
+            offset = pieces[index][0] + seen.offset - starts[index]
+            yield replace(seen, offset=offset, direction=direction)
+
+
+def draft_lines(edition: Edition, news: News) -> Iterator[str]:
     """Return a draft of the entry in the commands file."""
     yield f"# GUESSED from {len(news.frames)} frame(s); {news.why}."
     yield from (f"# Seen: {example}" for example in news.examples)
@@ -97,8 +139,8 @@ def draft_lines(edition: Edition, news: News, direction: str) -> Iterator[str]:
     if news.effect:
         yield from _effect(news)
     if news.guesses:
-        reply = direction == "reply" or news.effect == "reports"
-        unsure = direction == "both" and not news.effect
+        reply = news.direction == "reply" or news.effect == "reports"
+        unsure = news.direction == "both" and not news.effect
         note = "  # or reply: the capture does not show which" if unsure else ""
         yield f"  {'reply' if reply else 'request'}:{note}"
     yield from (line for pair in zip(news.guesses, news.types) for line in _fields(edition, *pair))
@@ -131,6 +173,7 @@ def plain(news: News, draft: list[str]) -> dict[str, Any]:
     return {
         "id": news.id,
         "data_bytes": news.data_bytes,
+        "direction": news.direction,
         "why": news.why,
         "count": len(news.frames),
         "offsets": [seen.offset for seen in news.frames[:_EXAMPLES]],

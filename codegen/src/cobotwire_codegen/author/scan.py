@@ -18,12 +18,16 @@ from cobotwire_codegen.wire import check_of
 
 @dataclass(frozen=True, slots=True)
 class Seen:
-    """A frame in the capture; ``offset`` counts bytes of the capture."""
+    """A frame in the capture; ``offset`` counts bytes of the capture.
+
+    ``direction`` is ``both`` if it is not known.
+    """
 
     offset: int
     id: int
     data: bytes
     frame: bytes
+    direction: str = "both"
 
 
 def known_variants(edition: Edition, direction: str) -> set[tuple[int, int]]:

@@ -28,7 +28,7 @@ def known_values(edition: Edition, frames: Sequence[Seen]) -> Known:
     commands = {each.id: each for each in reversed(edition.commands) if each.awaits_reply}
     found: Known = {}
     for seen in frames:
-        if seen.id not in commands or not seen.data:
+        if seen.id not in commands or not seen.data or seen.direction == "request":
             continue
         with suppress(ValueError):
             command = commands[seen.id]
@@ -110,11 +110,13 @@ def _width(type: Quantity | Enum | Flag) -> Fraction:
     return type.bounds[1] - type.bounds[0]
 
 
-def pairs(groups: Sequence[Sequence[Seen]]) -> Iterator[tuple[int, int, int]]:
-    """Yield the ids and the size of two messages; the second one repeats the first."""
+def pairs(groups: Sequence[Sequence[Seen]]) -> Iterator[tuple[Seen, Seen]]:
+    """Yield a frame of each of two messages; the second one repeats what the first one sets."""
     for stored in groups:
         for reported in groups:
             if stored[0].id == reported[0].id or len(stored[0].data) != len(reported[0].data):
+                continue
+            if stored[0].direction == "reply" or reported[0].direction == "request":
                 continue
             at = [seen.offset for seen in stored]
             before = [bisect(at, seen.offset) - 1 for seen in reported]
@@ -123,4 +125,4 @@ def pairs(groups: Sequence[Sequence[Seen]]) -> Iterator[tuple[int, int, int]]:
                 and len({stored[index].data for index in before}) >= _LEAST
                 and all(stored[i].data == seen.data for i, seen in zip(before, reported))
             ):
-                yield stored[0].id, reported[0].id, len(stored[0].data)
+                yield stored[0], reported[0]

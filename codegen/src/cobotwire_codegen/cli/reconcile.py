@@ -9,7 +9,7 @@ from typing import BinaryIO
 
 import click
 
-from cobotwire_codegen.author.reconcile import capture_bytes, draft_lines, plain
+from cobotwire_codegen.author.reconcile import captured, draft_lines, plain
 from cobotwire_codegen.author.reconcile import reconcile as reconciled
 from cobotwire_codegen.build import build_edition
 from cobotwire_codegen.cli.shared import DEFAULT_EDITION, edition_path, report_problems
@@ -23,32 +23,29 @@ from cobotwire_codegen.cli.shared import DEFAULT_EDITION, edition_path, report_p
     type=click.Choice(("request", "reply", "both")),
     default="both",
     show_default=True,
-    help="What was captured: the client's requests, the arm's replies, or both.",
+    help="What was captured, unless CAPTURE states it: requests, replies, or both.",
 )
 @click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 def reconcile(capture: BinaryIO, file: str, direction: str, as_json: bool) -> None:
     """Find the ids and lengths in CAPTURE that the edition lacks, with a draft entry for each.
 
-    CAPTURE contains raw bytes or hex text; - is standard input. The drafts are guesses from what
-    the bytes look like. The exit code is 1 if anything was unknown, else 0.
+    CAPTURE is a pcapng recording, raw bytes or hex text; - is standard input. The drafts are
+    guesses from what the bytes look like. The exit code is 1 if anything was unknown, else 0.
     """
     try:
-        line = capture_bytes(capture.read())
+        line = captured(capture.read(), direction)
     except ValueError as error:
-        raise click.UsageError(
-            f"the capture is hex text, but not pairs of digits: {error}"
-        ) from None
+        raise click.UsageError(str(error)) from None
     with report_problems():
         edition = build_edition(edition_path(file), Path.cwd())
-    count, found = reconciled(edition, line, direction)
-    drafts = [list(draft_lines(edition, news, direction)) for news in found]
+    count, found = reconciled(edition, line)
+    size = sum(len(packet.data) for packet in line)
+    drafts = [list(draft_lines(edition, news)) for news in found]
     if as_json:
         unknown = [plain(news, draft) for news, draft in zip(found, drafts)]
-        click.echo(json.dumps({"bytes": len(line), "frames": count, "unknown": unknown}, indent=1))
+        click.echo(json.dumps({"bytes": size, "frames": count, "unknown": unknown}, indent=1))
     else:
         for draft in drafts:
             click.echo("\n".join(draft) + "\n")
-        click.echo(
-            f"{len(line)} bytes, {count} frame(s), {len(found)} unknown variant(s)", err=True
-        )
+        click.echo(f"{size} bytes, {count} frame(s), {len(found)} unknown variant(s)", err=True)
     sys.exit(1 if found else 0)

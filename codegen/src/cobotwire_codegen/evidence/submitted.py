@@ -18,6 +18,7 @@ from hashlib import sha256
 from pathlib import Path
 from typing import Any
 
+from cobotwire_codegen.author.pcapng import packets
 from cobotwire_codegen.facts import ASPECTS
 from cobotwire_codegen.language.evidence import VERDICTS
 from cobotwire_codegen.language.names import LOWER, wrong_name
@@ -58,8 +59,6 @@ _DEVICE = re.compile(
 _UNNAMED = "an arm"
 _SEAL = ("digest", "signature")
 _CHANGED = "the file was changed after it was written: its digest is another one"
-# The type of a block that holds a packet, in pcapng.
-_PACKET = 6
 _DAY = re.compile(r"(20\d\d-(0[1-9]|1[0-2])-(0[1-9]|[12]\d|3[01]))(T[\d:.+\-Z]{0,30})?", re.ASCII)
 _HEX = re.compile(rf"([0-9A-Fa-f]{{2}} ?){{0,{MOST_BYTES}}}")
 
@@ -323,20 +322,11 @@ def _line(recording: bytes) -> bytes:
     """Return the bytes of the packets of a pcapng file, one after another.
 
     Raises:
-        NotEvidence: it is not a pcapng file, or ends inside a block.
+        NotEvidence: it is not a pcapng file, or is damaged.
     """
-    order = {b"\x4d\x3c\x2b\x1a": "<", b"\x1a\x2b\x3c\x4d": ">"}.get(recording[8:12])
-    _require(recording[:4] == b"\n\r\r\n" and order is not None, "the recording is not pcapng")
-    found, at, length = [], 0, len(recording)
-    while at < length:
-        _require(at + 8 <= length, "the recording ends inside a block")
-        kind, size = struct.unpack_from(f"{order}II", recording, at)
-        _require(size >= 12 and at + size <= length, "the recording ends inside a block")
-        if kind == _PACKET and size >= 32:
-            (held,) = struct.unpack_from(f"{order}I", recording, at + 20)
-            _require(held <= size - 32, "a packet of the recording is longer than its block")
-            found.append(recording[at + 28 : at + 28 + held])
-        at += size
-    line = b"".join(found)
+    try:
+        line = b"".join(packet.data for packet in packets(recording))
+    except ValueError as error:
+        raise NotEvidence(str(error)) from error
     _require(len(line) <= MOST_LINE, f"the recording has more than {MOST_LINE >> 20} MB of traffic")
     return line
