@@ -205,8 +205,13 @@ def commands(edition: Edition) -> Iterator[str]:
                 yield f"the library's class has no {command.name}"
 
 
-# An earlier version of the library describes it: "Atom 7.0 Delete this interface".
-GONE = {("mycobot280", "jog_stop"): Fraction(7)}
+# What other sources say. An earlier version of the library: "Atom 7.0 Delete this interface". The
+# pages on firmware in myArm_MC_docs: "v1.1-beta: add read current position and speed interfaces".
+ELSEWHERE = {
+    ("mycobot280", "jog_stop"): {"until": Fraction(7)},
+    ("myarm_c650", "get_servos_encoder_drag"): {"since": Fraction("1.1")},
+    ("myarm_m750", "get_servos_encoder_drag"): {"since": Fraction("1.1")},
+}
 
 
 def firmware(edition: Edition) -> Iterator[str]:
@@ -218,8 +223,7 @@ def firmware(edition: Edition) -> Iterator[str]:
         doc = getattr(library(robot.peer), command.name, None).__doc__ or ""
         newer = re.search(r"firmware version must be greater than (\d+\.\d+)", doc)
         wanted = {"since": Fraction(newer[1])} if newer else {}
-        if gone := GONE.get((edition.name, command.name)):
-            wanted["until"] = gone
+        wanted |= ELSEWHERE.get((edition.name, command.name), {})
         stated = {} if command.firmware is None else dict(command.firmware.versions)
         stated.pop("reply_since", None)  # only the changelog states it
         if stated != wanted:

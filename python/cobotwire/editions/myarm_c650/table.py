@@ -3,4 +3,4 @@
 
 from cobotwire.protocol.loading import load_table
 
-TABLE = load_table(__package__, checksum="9be6e5da")
+TABLE = load_table(__package__, checksum="562fdb24")
