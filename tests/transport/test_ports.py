@@ -75,13 +75,8 @@ def test_only_usb_and_built_in_ports_show_that_a_device_is_there(
 ) -> None:
     device, link = tmp_path / "ttyX0", tmp_path / "arm"
     link.symlink_to(device)
-    listed = Port(str(device), False, "", True)
-    for port, real in (
-        (listed, False),
-        (listed._replace(usb="1234:5678"), True),
-        (listed._replace(likely=True), True),
-        (listed._replace(device="/dev/ttyUSB0", usb="1234:5678"), False),
-    ):
+    for likely, usb, real in ((False, "", False), (False, "1234:5678", True), (True, "", True)):
+        port = Port(str(device), likely, "", True, usb=usb)
         monkeypatch.setattr(listing, "ports", lambda port=port: [port])
         assert leads_to_device(str(device)) == leads_to_device(str(link)) == real
         assert not leads_to_device("socket://127.0.0.1:9000")

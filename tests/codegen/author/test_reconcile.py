@@ -162,18 +162,16 @@ def test_directions_of_a_recording_tell_requests_from_replies(tmp_path: Path) ->
             sent = _frame(0xEA, value) + _frame(0xEB, b"") + _frame(0x20, b"")
             writer.packet(Packet(i, "sent", sent, "bytes", interface=arms[0]))
             # Between the parts of a reply of this arm comes one of the other arm.
-            for arm, data in (
-                (arms[0], torn[:3]),
-                (arms[1], _frame(0xE9, b"\1")),
-                (arms[0], torn[3:] + _frame(0xEB, value)),
-            ):
+            replies = torn[:3], _frame(0xE9, b"\1"), torn[3:] + _frame(0xEB, value)
+            for arm, data in zip((arms[0], arms[1], arms[0]), replies):
                 writer.packet(Packet(i, "received", data, "bytes", interface=arm))
         writer.finish()
     result = samples.run(vectors.ROOT, "reconcile", str(path), "--json")
     found = {(u["id"], u["direction"]): u for u in json.loads(result.stdout)["unknown"]}
-    replies = {(id, "reply") for id in (0xE8, 0xE9, 0xEB)}
-    assert found.keys() == replies | {(0xEA, "request"), (0xEB, "request")}
-    assert {unknown["count"] for unknown in found.values()} == {20}
+    assert [(*key, each["count"]) for key, each in found.items()] == [
+        *((0xE8, "reply", 20), (0xE9, "reply", 20), (0xEA, "request", 20)),
+        *((0xEB, "request", 20), (0xEB, "reply", 20)),
+    ]
     assert found[0xE8, "reply"]["offsets"][0] == 16
     assert "  reply:\n" in found[0xE8, "reply"]["draft"]
     assert "  request:\n" in found[0xEA, "request"]["draft"]

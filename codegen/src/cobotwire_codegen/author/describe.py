@@ -33,18 +33,14 @@ def describe_code(explanation: Explanation) -> str:
 
 
 def describe_keys() -> dict[str, str]:
-    """Return what each key of the language means, a paragraph for each meaning."""
-    found: dict[str, dict[str, list[str]]] = {}
-    for record in (each for each in schema.records(FILES.values()) if not isinstance(each, Choice)):
-        for name, key in record.keys().items():
-            found.setdefault(name, {}).setdefault(key.doc, []).append(record.heading().lower())
-    return {
-        name: "\n".join(
-            fill(f"{name} of {', '.join(records)}: {doc}", _WIDTH, subsequent_indent="  ")
-            for doc, records in docs.items()
-        )
-        for name, docs in found.items()
-    }
+    """Return what each key of the language means in each record that has it."""
+    found: dict[str, list[str]] = {}
+    for record in schema.records(FILES.values()):
+        if not isinstance(record, Choice):
+            for name, key in record.keys().items():
+                line = f"{name} of {record.heading().lower()}: {key.doc}"
+                found.setdefault(name, []).append(fill(line, _WIDTH, subsequent_indent="  "))
+    return {name: "\n".join(lines) for name, lines in found.items()}
 
 
 def describe_command(edition: Edition, command: Command) -> str:

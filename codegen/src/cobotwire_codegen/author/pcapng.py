@@ -1,7 +1,6 @@
-"""Reads the packets of a pcapng file: their bytes and directions.
+"""Reads the packets of a pcapng file (IETF draft-ietf-opsawg-pcapng): their bytes and directions.
 
-The format is IETF draft-ietf-opsawg-pcapng. The generator does not need the package cobotwire, so
-it does not use the reader of that package.
+The generator does not need the package cobotwire, so it does not use the reader of that package.
 """
 
 from __future__ import annotations
@@ -13,18 +12,15 @@ from typing import NamedTuple
 MAGIC = b"\n\r\r\n"
 _ORDERS = {b"\x4d\x3c\x2b\x1a": "<", b"\x1a\x2b\x3c\x4d": ">"}
 _INTERFACE, _PACKET = 1, 6  # types of blocks
-_FLAGS = 2  # the option with the direction
-# By the two lowest bits of the flags. What the recording program wrote is a request.
+_FLAGS = 2  # the option with the direction, in the two lowest bits
+# What the recording program wrote is a request.
 _DIRECTIONS = ("both", "reply", "request", "both")
 
 
 class Packet(NamedTuple):
-    """The bytes of a packet; the direction is ``both`` if the file does not state it.
+    """A packet of a port; ``direction`` is ``both`` if the file does not state it."""
 
-    ``interface`` differs between the ports of the file.
-    """
-
-    interface: int
+    port: int
     direction: str
     data: bytes
 
@@ -35,40 +31,31 @@ def packets(file: bytes) -> Iterator[Packet]:
     Raises:
         ValueError: it is not a pcapng file, or is damaged.
     """
-    at, order, first, seen = 0, "", 0, 0
+    at, order, first, ports = 0, "", 0, 0
     while at < len(file) or not order:
         if file.startswith(MAGIC, at):
-            # Each section has its own byte order, and counts its interfaces from 0.
-            order, first = _ORDERS.get(file[at + 8 : at + 12], ""), seen
+            # Each section has its own byte order, and counts its ports from 0.
+            order, first = _ORDERS.get(file[at + 8 : at + 12], ""), ports
         if not order:
             raise ValueError("the recording is not pcapng")
-        kind, size = _numbers(file, at, order, 2)
-        if size < 12 or at + size > len(file):
+        block = memoryview(file)[at:]
+        kind, size = struct.unpack_from(f"{order}II", block) if len(block) >= 12 else (0, 0)
+        if not 12 <= size <= len(block):
             raise ValueError("the recording ends inside a block")
-        seen += kind == _INTERFACE
+        ports += kind == _INTERFACE
         if kind == _PACKET and size >= 32:
-            interface, _, _, held = _numbers(file, at + 8, order, 4)
+            port, _, _, held = struct.unpack_from(f"{order}IIII", block, 8)
             if held > size - 32:
                 raise ValueError("a packet of the recording is longer than its block")
-            start = at + 28
-            options = file[start + held + -held % 4 : at + size - 4]
-            yield Packet(first + interface, _direction(options, order), file[start : start + held])
+            way = _direction(block[28 + held + -held % 4 : size - 4], order)
+            yield Packet(first + port, way, bytes(block[28 : 28 + held]))
         at += size
 
 
-def _direction(options: bytes, order: str) -> str:
-    """Return the direction that the options of a packet state."""
-    at = 0
-    while at + 8 <= len(options):
-        code, size = struct.unpack_from(f"{order}HH", options, at)
-        if code == _FLAGS and size == 4:
-            return _DIRECTIONS[_numbers(options, at + 4, order, 1)[0] & 3]
-        at += 4 + size + -size % 4
+def _direction(options: memoryview, order: str) -> str:
+    while len(options) >= 8:
+        code, size, value = struct.unpack_from(f"{order}HHI", options)
+        if code == _FLAGS:
+            return _DIRECTIONS[value & 3]
+        options = options[4 + size + -size % 4 :]
     return "both"
-
-
-def _numbers(data: bytes, at: int, order: str, count: int) -> tuple[int, ...]:
-    try:
-        return struct.unpack_from(f"{order}{count}I", data, at)
-    except struct.error:
-        raise ValueError("the recording ends inside a block") from None

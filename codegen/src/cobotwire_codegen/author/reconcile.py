@@ -17,8 +17,6 @@ from cobotwire_codegen.model import Edition
 
 _HEX = re.compile(rb"[0-9A-Fa-fxX\s,]*\Z")
 _EXAMPLES = 3
-# The id, number of data bytes and direction of messages that belong together.
-_Group = tuple[int, int, str]
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,11 +36,6 @@ class News:
     def id(self) -> int:
         """The command id."""
         return self.frames[0].id
-
-    @property
-    def direction(self) -> str:
-        """Their direction; ``both`` if the capture does not show it."""
-        return self.frames[0].direction
 
     @property
     def data_bytes(self) -> int:
@@ -68,11 +61,7 @@ def captured(given: bytes, direction: str) -> list[Packet]:
         found = packets(given)
         return [p._replace(direction=direction) if p.direction == "both" else p for p in found]
     if _HEX.match(given):
-        try:
-            given = bytes.fromhex(re.sub("0[xX]|,", " ", given.decode("ascii")))
-        except ValueError as error:
-            message = f"the capture is hex text, but not pairs of digits: {error}"
-            raise ValueError(message) from None
+        given = bytes.fromhex(re.sub("0[xX]|,", " ", given.decode("ascii")))
     return [Packet(0, direction, given)]
 
 
@@ -80,16 +69,16 @@ def reconcile(edition: Edition, capture: Sequence[Packet]) -> tuple[int, list[Ne
     """Return the number of frames in a capture, and the messages that the edition lacks."""
     known = {packet.direction: known_variants(edition, packet.direction) for packet in capture}
     ids = {command.id: command.name for command in edition.commands}
-    groups: dict[_Group, list[Seen]] = {}
+    groups: dict[tuple[int, int, str], list[Seen]] = {}
     frames = sorted(_frames(edition, capture, known), key=lambda seen: seen.offset)
     for seen in frames:
         if (seen.id, len(seen.data)) not in known[seen.direction]:
-            groups.setdefault(_group(seen), []).append(seen)
+            groups.setdefault(seen.kind, []).append(seen)
     values = known_values(edition, frames) if groups else {}
-    effects: dict[_Group, tuple[str, int]] = {}
+    effects: dict[tuple[int, int, str], tuple[str, int]] = {}
     for stored, reported in pairs([*groups.values()]):
-        effects.setdefault(_group(stored), ("stores", reported.id))
-        effects.setdefault(_group(reported), ("reports", stored.id))
+        effects.setdefault(stored.kind, ("stores", reported.id))
+        effects.setdefault(reported.kind, ("reports", stored.id))
     found = []
     for key, seen_frames in sorted(groups.items()):
         way = "" if key[2] == "both" else f"{key[2]} of "
@@ -97,13 +86,8 @@ def reconcile(edition: Edition, capture: Sequence[Packet]) -> tuple[int, list[Ne
         guesses = guess([seen.data for seen in seen_frames])
         types = tuple(fitting(edition, item, seen_frames, values) for item in guesses)
         effect, other = effects.get(key, ("", 0))
-        news = News(why, tuple(seen_frames), tuple(guesses), types, effect, other)
-        found.append(news)
+        found.append(News(why, tuple(seen_frames), tuple(guesses), types, effect, other))
     return len(frames), found
-
-
-def _group(seen: Seen) -> _Group:
-    return seen.id, len(seen.data), seen.direction
 
 
 def _frames(
@@ -117,8 +101,7 @@ def _frames(
         at += len(packet.data)
     for (_, direction), pieces in streams.items():
         starts = [0, *accumulate(len(data) for _, data in pieces)]
-        line = b"".join(data for _, data in pieces)
-        for seen in scan(edition, line, known[direction]):
+        for seen in scan(edition, b"".join(data for _, data in pieces), known[direction]):
             index = bisect(starts, seen.offset) - 1
             offset = pieces[index][0] + seen.offset - starts[index]
             yield replace(seen, offset=offset, direction=direction)
@@ -139,8 +122,8 @@ def draft_lines(edition: Edition, news: News) -> Iterator[str]:
     if news.effect:
         yield from _effect(news)
     if news.guesses:
-        reply = news.direction == "reply" or news.effect == "reports"
-        unsure = news.direction == "both" and not news.effect
+        reply = news.frames[0].direction == "reply" or news.effect == "reports"
+        unsure = news.frames[0].direction == "both" and not news.effect
         note = "  # or reply: the capture does not show which" if unsure else ""
         yield f"  {'reply' if reply else 'request'}:{note}"
     yield from (line for pair in zip(news.guesses, news.types) for line in _fields(edition, *pair))
@@ -173,7 +156,7 @@ def plain(news: News, draft: list[str]) -> dict[str, Any]:
     return {
         "id": news.id,
         "data_bytes": news.data_bytes,
-        "direction": news.direction,
+        "direction": news.frames[0].direction,
         "why": news.why,
         "count": len(news.frames),
         "offsets": [seen.offset for seen in news.frames[:_EXAMPLES]],

@@ -18,16 +18,18 @@ from cobotwire_codegen.wire import check_of
 
 @dataclass(frozen=True, slots=True)
 class Seen:
-    """A frame in the capture; ``offset`` counts bytes of the capture.
-
-    ``direction`` is ``both`` if it is not known.
-    """
+    """A frame in the capture; ``offset`` counts bytes; ``direction`` is ``both`` if unknown."""
 
     offset: int
     id: int
     data: bytes
     frame: bytes
     direction: str = "both"
+
+    @property
+    def kind(self) -> tuple[int, int, str]:
+        """What the frames of one variant have in common."""
+        return self.id, len(self.data), self.direction
 
 
 def known_variants(edition: Edition, direction: str) -> set[tuple[int, int]]:

@@ -35,7 +35,7 @@ def reconcile(capture: BinaryIO, file: str, direction: str, as_json: bool) -> No
     try:
         line = captured(capture.read(), direction)
     except ValueError as error:
-        raise click.UsageError(str(error)) from None
+        raise click.UsageError(f"the capture cannot be read: {error}") from None
     with report_problems():
         edition = build_edition(edition_path(file), Path.cwd())
     count, found = reconciled(edition, line)
