@@ -27,7 +27,7 @@ def wheels(tmp_path_factory: pytest.TempPathFactory) -> list[Path]:
 def fresh(tmp_path_factory: pytest.TempPathFactory, wheels: list[Path]) -> Path:
     """Install the two wheels into a fresh environment, and return the folder of its programs."""
     folder = tmp_path_factory.mktemp("fresh") / "venv"
-    # The pip of this environment installs into it: to install another one takes four seconds.
+    # The pip of this process installs into the fresh environment: a pip there takes four seconds.
     run(sys.executable, "-m", "venv", "--without-pip", folder)
     [native] = [wheel for wheel in wheels if wheel.name.startswith("cobotwire-")]
     others = [wheel for wheel in wheels if wheel != native]

@@ -77,7 +77,7 @@ def pretend(extras: Iterable[str] = ()) -> None:
         for name in names:
             if hasattr(module, name):
                 delattr(module, name)
-    # Windows has it, and this system does not.
+    # Windows has the module msvcrt, and this system does not.
     modules["msvcrt"] = types.ModuleType("msvcrt")
     modules["selectors"].DefaultSelector = selectors.SelectSelector
     modules["selectors"].SelectSelector._select = staticmethod(_select_sockets)

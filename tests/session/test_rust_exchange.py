@@ -30,7 +30,7 @@ STEPS = (
     *["wake"] * 5,
     *("give_up", "lose", "reopen"),
 )
-# How many events in a row `make test` explores on both; `make explore RUST=1` goes on from there.
+# How many events in a row `make test` explores on both; `make explore RUST=1` explores more.
 DEPTHS = {"unread": 3, "echoes": 3}
 
 

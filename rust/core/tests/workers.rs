@@ -87,7 +87,7 @@ fn short_streams_may_be_cut_at_every_place() {
             let stream = stream(&mut dice, &frames, 1_600, noise);
             // The first cut is at each place of several frames.
             check(&table, &[&stream], (400..440).map(|stride| (3, stride)));
-            // About the shortest that is cut at all: a guess examines 512 bytes after a cut.
+            // About the shortest stream that is cut at all: a guess examines 512 bytes after a cut.
             check(&table, &[&stream[..900]], [(3, 1), (3, 7)]);
         }
     }

@@ -21,7 +21,7 @@ EARLY = 0.1
 
 
 class ClosedLoopArm(Arm):
-    """The arm; ``ends_at`` is when the motion ends whose end it has not reported yet."""
+    """The arm; ``ends_at`` is when a motion ends that was not reported yet; None: there is none."""
 
     ends_at: float | None = None
 
@@ -55,7 +55,7 @@ class ClosedLoopArm(Arm):
     def flush(self) -> bytes:
         """Return what is due by now."""
         if self.ends_at is not None and self.clock() >= self.ends_at:
-            # Also if a defect keeps the event back: nothing is due any more.
+            # The motion has ended, even if a defect of end() holds back the event.
             self.ends_at = None
             self.end(ARRIVED)
         return super().flush()
@@ -126,7 +126,7 @@ def _refreshes(arm: Arm, right: Right, ticks: list[float], speed: int) -> None:
 
 
 def _ended(change: Callable[[Arm, Right, int], None]) -> Defect:
-    """Report the end of a motion in another way, which takes the status."""
+    """Return the defect that ``change`` reports the end of a motion; it takes the status."""
     return {"end": change}
 
 

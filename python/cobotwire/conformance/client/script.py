@@ -27,7 +27,7 @@ ONCE = TestCase("sent-once", "A change that is once in the script is sent once."
 ALL = TestCase("sent-all", "Everything in the script is sent.", SOURCE)
 NOTHING_ELSE = TestCase("sent-nothing-else", "Nothing is sent that is not in the script.", SOURCE)
 
-# One state machine, the class Script, checks them all.
+# One state machine, the class Script, checks all of these test cases.
 SCRIPT = Group(
     "script",
     (SCALE, SIGN, BYTE_ORDER, ORDER, ROUNDED, VALUE, ADDRESS, VARIANT, ONCE, ALL, NOTHING_ELSE),

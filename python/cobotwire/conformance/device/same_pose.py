@@ -15,7 +15,7 @@ from cobotwire.simulator.start import steps
 # The number of parts into which the path between two rows of angles is divided, and the most steps
 # that bring a part back to the pose.
 PARTS, STEPS = 32, 8
-# How much longer a part may be than an even one, and how long any may be, in degrees.
+# A part may be DETOUR times as long as in an even division, and any part FREE_PART degrees long.
 DETOUR, FREE_PART = 4.0, 1.0
 NO_LIMIT = (-math.inf, math.inf)
 

@@ -30,7 +30,7 @@ class Call:
         arguments: our arguments in their order: the library's parameter, and our default.
         result: how the library gives the result.
         gives: how to convert our result to the library's: ``same``, ``int``, ``list``,
-            ``ints``; ``nothing`` if only the library has one, ``parts`` if no word does it.
+            ``ints``; ``nothing`` if only the library has one, ``parts`` if no function does.
         keywords: our arguments that have no position.
         address: the library's parameter that selects the device; empty if there is none.
         by_hand: whether a helper of the layer has the method, not the generated class.
@@ -191,7 +191,7 @@ def library() -> dict[str, LibraryClass]:
 
 @lru_cache
 def counterparts() -> dict[str, str]:
-    """Return, by the name of each class of ours, the library's class that it is read as."""
+    """Return by class of ours the library's class whose rules apply to calls of ours."""
     return {kind.native: name for name, kind in library().items()} | {
         name: name for name, kind in library().items() if kind.native == name
     }

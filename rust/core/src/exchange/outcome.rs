@@ -41,7 +41,7 @@ pub struct Received {
     pub size: usize,
 }
 
-/// Why a request has no answer.
+/// Why a request failed.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Failure {
     /// No reply came in time.

@@ -79,7 +79,7 @@ def _check_reply(probe: Probe, response: Response, call: str) -> None:
 def _check_acknowledgement(probe: Probe, response: Response, call: str) -> None:
     device = probe.device
     if device.note_change(response) <= AWAITED:
-        # A second one may come a little later.
+        # A second acknowledgement may come a little later.
         device.requester.listen(response, device.timing.silence)
     at_most_one = len(response.replies) <= 1 and not response.unexpected
     done = all(
