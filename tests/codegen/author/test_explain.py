@@ -165,8 +165,7 @@ def test_explain_prints_what_a_key_of_the_language_means(tmp_path: Path) -> None
     lines = samples.run(tmp_path, "explain", "shares_id").stdout.splitlines()
     assert lines == ["shares_id of command: Commands that have the same id with other data."]
     assert "scale of quantity: " in samples.run(tmp_path, "explain", "scale").stdout
-    near = samples.run(tmp_path, "explain", "share_id").stderr
-    assert "did you mean shares_id?" in near
+    assert "did you mean shares_id?" in samples.run(tmp_path, "explain", "share_id").stderr
 
 
 def test_outside_of_a_clone_the_file_has_to_be_named(tmp_path: Path) -> None:
