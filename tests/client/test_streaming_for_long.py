@@ -1,4 +1,4 @@
-"""Stream for minutes of accelerated time."""
+"""Stream for minutes of stepped time, from a simulated arm that numbers its replies."""
 
 from __future__ import annotations
 
@@ -7,24 +7,53 @@ import sys
 import tracemalloc
 from itertools import islice
 
-from accelerated import LATE, LOST, Checker, accelerated
+from cobotwire import codec as codecs
+from cobotwire.editions.mycobot import TABLE, Angles, GetAngles, MyCobot
+from cobotwire.simulator import MemoryTransport, SimulatedArm, SteppedClock
+from cobotwire.simulator.behaviour import Behaviours
+from cobotwire.simulator.faults import Late, Lost, Scenario
 
 SAMPLES = 12_000
 # At the end, memory is traced, which takes most of the time; before, objects are counted.
 TRACED = 6_000
+# Every n-th reply is lost, 30 ms late, or later than its deadline of 500 ms.
+LOST, LATE = 5_000, 11_003
+FAULTS = (
+    Late(seconds=0.008),
+    Lost(every=LOST),
+    Late(seconds=0.03, every=7_001),
+    Late(seconds=0.7, every=LATE),
+)
 
 
 def test_long_stream_keeps_memory_flat_and_samples_in_order() -> None:
-    with accelerated(rate=100.0) as (arm, stream):
-        checker = Checker(arm)
-        begun = arm.now
+    requests = 0
+
+    def numbered(arm: object, now: float, request: GetAngles) -> Angles:
+        nonlocal requests
+        requests += 1
+        high, low = divmod(requests, 10_000)
+        return Angles(low / 100, high / 100, 0.0, 0.0, 0.0, 0.0)
+
+    behaviours = Behaviours()
+    behaviours.query(GetAngles, numbered)
+    clock = SteppedClock()
+    arm = SimulatedArm(TABLE, clock=clock, behaviours=behaviours)
+    peer = Scenario(name="long", faults=FAULTS).wrap(arm, codecs.load(TABLE), clock=clock)
+    transport = MemoryTransport(peer, clock)
+    with MyCobot(transport) as client, client.stream(GetAngles(), rate=100.0) as stream:
+        begun, last = clock(), (-1, -1, -1.0)
 
         def take(count: int) -> None:
+            nonlocal last
             for sample in islice(stream, count):
-                one = sample.readings[0]
-                checker.check(
-                    sample.number, sample.period, one.value, one.requested_at, one.replied_at
-                )
+                [one] = sample.readings
+                low, high, *_ = one.value
+                assert round(100 * low) + 10_000 * round(100 * high) == requests, "an older reply"
+                this = (sample.number, sample.period, one.replied_at)
+                assert all(new > old for new, old in zip(this, last)), (this, last)
+                assert last[2] <= one.requested_at < one.replied_at <= clock()
+                last = this
             gc.collect()
 
         take(SAMPLES // 10)
@@ -41,9 +70,9 @@ def test_long_stream_keeps_memory_flat_and_samples_in_order() -> None:
             tracemalloc.stop()
         assert late - early < 5_000, "bytes"
         report = stream.report
-        assert arm.now - begun > 120
+        assert clock() - begun > 120
         assert report.samples == SAMPLES
         # Lost and late replies are counted as unanswered, and every period is accounted for.
-        assert report.unanswered == arm.requests // LOST + arm.requests // LATE
+        assert report.unanswered == requests // LOST + requests // LATE
         assert report.unread == 0
-        assert abs(report.periods - (arm.now - begun) * 100) <= 1.5
+        assert abs(report.periods - (clock() - begun) * 100) <= 1.5
