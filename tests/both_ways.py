@@ -6,7 +6,6 @@ import asyncio
 import inspect
 import threading
 from collections.abc import Callable
-from types import TracebackType
 from typing import Any, Self
 
 from cobotwire.client import Client
@@ -51,13 +50,8 @@ class InLoop:
     def __enter__(self) -> Self:
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        traceback: TracebackType | None,
-    ) -> None:
-        self.run(self.client.__aexit__(kind, error, traceback))
+    def __exit__(self, *raised: Any) -> None:
+        self.run(self.client.__aexit__(*raised))
         self.end()
 
     def end(self) -> None:

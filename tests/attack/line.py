@@ -5,7 +5,6 @@ from __future__ import annotations
 import select
 import threading
 import time
-from types import TracebackType
 from typing import NamedTuple, Self
 
 from attack.arm import HostilePeer
@@ -70,12 +69,7 @@ class HostileLine:
         self._thread.start()
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        traceback: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *raised: object) -> None:
         self._over = True
         self._thread.join()
         self._end.close()

@@ -11,13 +11,14 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from both_ways import InLoop
-from cobotwire import ReplyTimeout, UsageError
+from cobotwire import MyBuddy, ReplyTimeout, UsageError
 from cobotwire import codec as codecs
 from cobotwire.diagnose.explain import format_message, frame_parts
+from cobotwire.editions import mybuddy
 from cobotwire.protocol.addresses import find_address
 from cobotwire.session import AckReceived, Exchange, LateReply, ReplyMatched, RetryPolicy
 from cobotwire.session.request import RequestEncoder
-from cobotwire.simulator import MemoryTransport, PtyServer, SimulatedArm
+from cobotwire.simulator import MemoryTransport, PtyServer, SimulatedArm, SteppedClock
 from conformance.device.testing import Altered, permissions, prepared
 from memory_peer import MemoryPeer
 from session.one_caller import submit
@@ -252,3 +253,16 @@ def test_explanations_name_the_address(duo: Any) -> None:
     assert ("address", "RIGHT") in [
         (part.name, part.meaning) for part in frame_parts(duo.TABLE, frame, message)
     ]
+
+
+def test_waist_has_one_joint() -> None:
+    clock = SteppedClock()
+    robot = SimulatedArm(mybuddy.TABLE, clock=clock, powered=True)
+    with MyBuddy(MemoryTransport(robot, clock)) as arm:
+        assert robot.state_at("waist").joints == 1
+        with pytest.raises(UsageError, match="rows of 6 values, and WAIST has 1 joint"):
+            arm.waist.get_angles()
+        arm.waist.send_angle(2, 30, 50)
+        with pytest.raises(ReplyTimeout):
+            arm.waist.get_angle(2)
+    assert "WAIST has no joint 2" in robot.notes[-1].text

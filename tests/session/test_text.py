@@ -1,4 +1,4 @@
-"""Encode and decode text outside any frame."""
+"""Text outside any frame: encoding, decoding, and replies that are not the awaited text."""
 
 from __future__ import annotations
 
@@ -6,10 +6,13 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from cobotwire.codec.interface import Codec
 from cobotwire.editions.mycobot import TABLE
 from cobotwire.protocol.errors import ProtocolError, UsageError
 from cobotwire.protocol.table import TextRequest
-from cobotwire.session.text import decode, encode
+from cobotwire.session import ReplyRejected, RequestExpired
+from cobotwire.session.text import TEXT_LIMIT, decode, encode
+from session.one_caller import OneCaller
 
 REPLY = TABLE.command("get_ssid_pwd").text
 assert REPLY is not None
@@ -67,3 +70,27 @@ def test_text_without_its_suffix_is_rejected(data: bytes) -> None:
     variant = TextRequest(("'", "'("), ("account", "password"), ")")
     with pytest.raises(ProtocolError, match=r"the text ends with '\)'"):
         decode(variant, data)
+
+
+@pytest.fixture
+def session(codec: Codec) -> OneCaller:
+    """Return a session in which the text must begin within 0.5 s."""
+    made = OneCaller(codec)
+    made.request("get_ssid_pwd", (), now=0.0, timeout=0.5)
+    return made
+
+
+def test_text_hidden_after_a_false_header_may_end_after_the_deadline(session: OneCaller) -> None:
+    assert REPLY is not None
+    session.receive(bytes.fromhex("FE FE 0E 20") + b"ssid: a", 0.1)
+    assert not any(isinstance(event, RequestExpired) for event in session.wake(0.5))
+    session.receive(b" password: b", 0.55)
+    [*_, ended] = session.wake(0.5 + REPLY.silence_ms / 1000)
+    assert isinstance(ended, RequestExpired)
+
+
+def test_text_that_is_too_long_is_rejected(session: OneCaller) -> None:
+    session.receive(b"ssid: a password: b" + b"x" * TEXT_LIMIT, 0.1)
+    [*_, ended] = session.wake(0.4)
+    assert isinstance(ended, ReplyRejected)
+    assert "longer than" in str(ended.error)

@@ -7,7 +7,6 @@ import select
 import socket
 import tty
 from contextlib import suppress
-from types import TracebackType
 from typing import Self
 
 from cobotwire.transport import OpenedTransport, open_transport
@@ -119,11 +118,6 @@ class Line:
     def __enter__(self) -> Self:
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        traceback: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *raised: object) -> None:
         self.transport.close()
         self.end.unplug()
