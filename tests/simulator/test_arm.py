@@ -61,58 +61,6 @@ def test_joints_move_over_time_and_stop_together(bench: Bench) -> None:
     assert bench.query("is_in_position", (60.2, -30.0, 0, 15.0, 0, 0), TargetKind.ANGLES) == 0
 
 
-def test_targets_are_queued_unless_the_newest_replaces_them(bench: Bench) -> None:
-    bench.send("send_angle", 1, 30.0, 20)
-    bench.send("send_angle", 1, 0.0, 20)
-    bench.clock.sleep(1.15)
-    assert bench.query("get_angles")[:1] == near(30.0)
-    bench.clock.sleep(1.15)
-    assert bench.query("get_angles")[0] == 0.0
-    bench.send("set_fresh_mode", 1)
-    bench.send("send_angle", 1, 30.0, 20)
-    bench.clock.sleep(0.15)
-    bench.send("send_angle", 1, -30.0, 20)
-    bench.clock.sleep(1.5)
-    assert bench.query("get_angles")[:1] == near(-30.0)
-
-
-def test_pause_keeps_the_targets_and_stop_forgets_them(bench: Bench) -> None:
-    bench.send("send_angle", 1, 30.0, 20)
-    bench.clock.sleep(0.5)
-    bench.send("pause")
-    assert bench.query("is_moving") == 1, "it takes 0.15 s to stand"
-    bench.clock.sleep(5.0)
-    assert (bench.query("is_paused"), bench.query("is_moving")) == (1, 0)
-    assert bench.query("get_angles")[:1] == near(15.0)
-    bench.send("resume")
-    bench.clock.sleep(0.3)
-    assert bench.query("get_angles")[:1] == near(15.0 + 0.225 * 30)
-    bench.send("stop")
-    bench.clock.sleep(5.0)
-    stopped = bench.query("get_angles")
-    assert stopped[:1] == near(15.0 + 0.3 * 30)
-    bench.send("resume")
-    bench.clock.sleep(5.0)
-    assert bench.query("get_angles") == stopped, "resume does not continue a stopped motion"
-    bench.send("stop")
-    bench.send("send_angle", 1, 0.0, 20)
-    assert bench.query("is_moving") == 1, "after a stop, the next motion is obeyed"
-    assert not bench.arm.notes
-
-
-def test_stop_ends_a_pause_and_the_next_motion_moves(bench: Bench) -> None:
-    bench.send("send_angle", 1, 160.0, 20)
-    bench.clock.sleep(0.5)
-    bench.send("pause")
-    bench.clock.sleep(1.0)
-    bench.send("stop")
-    stood = bench.query("get_angles")
-    assert bench.query("is_paused") == 0
-    bench.send("send_angle", 3, 40.0, 20)
-    bench.clock.sleep(5.0)
-    assert bench.query("get_angles") == near(*stood[:2], 40.0, *stood[3:])
-
-
 def test_target_sent_during_a_pause_starts_with_resume(bench: Bench) -> None:
     bench.send("pause")
     bench.send("send_angle", 1, 30.0, 20)
@@ -137,15 +85,6 @@ def test_arm_without_power_or_torque_does_not_move() -> None:
     bench.send("set_free_mode", True)
     bench.send("send_angle", 1, 30.0, 100)
     assert bench.query("is_moving") == 0
-
-
-def test_target_beyond_a_joint_limit_is_rejected(bench: Bench) -> None:
-    bench.send("set_joint_max", 2, 45.0)
-    bench.send("send_angle", 2, 45.01, 100)
-    assert bench.query("is_moving") == 0
-    bench.send("send_angle", 2, 45.0, 100)
-    assert bench.query("is_moving") == 1
-    assert bench.query("get_joint_max_angle", 2) == 45.0
 
 
 def test_new_limit_ends_a_motion_that_leads_beyond_it_before_the_last_target(bench: Bench) -> None:
@@ -189,29 +128,12 @@ def test_calibration_takes_the_present_position_as_zero(bench: Bench) -> None:
     assert bench.query("get_encoder", 4) == 2048
 
 
-def test_noise_and_malformed_requests_get_no_reply(bench: Bench) -> None:
-    assert bench.arm.receive(b"\xff\xff\x01\x04\x02\x38\x02\xbe") == b""
-    assert bench.arm.receive(bytes.fromhex("FE FE 03 3B 09 FA")) == b"", "there is no joint 9"
-    assert bench.arm.receive(bytes.fromhex("FE FE 03 20 01 FA")) == b""
-    assert bench.query("is_power_on") == 1
-
-
 def test_incomplete_request_is_given_up_when_the_line_is_idle(bench: Bench) -> None:
     assert bench.arm.receive(bytes.fromhex("FE FE 0F 22 00")) == b""
     assert bench.arm.pending == 5
     assert bench.arm.flush() == b""
     assert bench.arm.pending == 0
     assert bench.query("is_power_on") == 1
-
-
-def test_power_off_disconnects_the_atom_and_power_on_connects_it(
-    bench: Bench,
-) -> None:
-    assert bench.query("is_controller_connected") == 1
-    bench.send("power_off")
-    assert bench.query("is_controller_connected") == 0
-    bench.send("power_on")
-    assert bench.query("is_controller_connected") == 1
 
 
 def test_gripper_does_not_move_without_power(bench: Bench) -> None:

@@ -43,33 +43,6 @@ def shifted(coords: tuple[float, ...], *shift: float) -> tuple[float, ...]:
     return tuple(round(a + b, 2) for a, b in zip(coords, (*shift, 0, 0, 0, 0, 0, 0)))
 
 
-def test_coordinate_target_is_reached_and_read_back(bench: BentBench) -> None:
-    target = shifted(bench.query("get_coords"), -20, 30, -25, 5, -10, 15)
-    bench.send("send_coords", target, 60, 0)
-    bench.clock.sleep(10)
-    way, turn = bench.end.distance(Pose.of(target))
-    assert way < TICKS
-    assert turn < 0.4
-    assert bench.query("is_in_position", target, TargetKind.COORDS) == 1
-    assert bench.arm.notes == ()
-
-
-def test_unreachable_target_is_rejected_with_a_note(bench: BentBench) -> None:
-    before = bench.query("get_angles")
-    bench.send("send_coords", (281.4, 281.4, 412.6, 0, 0, 0), 60, 0)
-    bench.clock.sleep(10)
-    assert bench.query("get_angles") == before
-    [note] = bench.arm.notes
-    assert (note.command, note.time) == ("send_coords", 10.0)
-    assert "reach" in note.text
-    assert bench.query("get_error_information") == 32
-    bench.send("clear_error_information")
-    assert bench.query("get_error_information") == 0
-    bench.send("set_joint_max", 3, 10.0)
-    bench.send("send_angle", 3, 20.0, 50)
-    assert bench.query("get_error_information") == 3
-
-
 def test_linear_motion_is_straight(bench: BentBench) -> None:
     start = bench.query("get_coords")
     target = shifted(start, -60, 40, -50)
@@ -94,33 +67,6 @@ def test_angular_motion_is_not_straight(bench: BentBench) -> None:
         off.append(abs(here[1] - start[1] - 100 * (here[0] - start[0]) / -120))
         bench.clock.sleep(0.05)
     assert max(off) > 2
-
-
-@pytest.mark.parametrize("axis", range(1, 7))
-@pytest.mark.parametrize("direction", [BACKWARD, FORWARD])
-def test_jog_coord_continues_until_it_is_stopped(
-    bench: BentBench, axis: int, direction: int
-) -> None:
-    start = bench.query("get_coords")
-    bench.send("jog_coord", axis, direction, 20)
-    bench.clock.sleep(0.5)
-    bench.send("stop")
-    bench.clock.sleep(1.0)
-    change = [b - a for a, b in zip(start, bench.query("get_coords"))]
-    changed = change.pop(axis - 1)
-    assert (changed > 1) if direction == FORWARD else (changed < -1)
-    assert max(map(abs, change)) < 2 * TICKS
-    assert bench.query("is_moving") == 0
-
-
-def test_jog_ends_at_the_end_of_the_reach(bench: BentBench) -> None:
-    bench.send("jog_coord", 3, FORWARD, 50)
-    bench.clock.sleep(60)
-    assert bench.query("is_moving") == 0
-    high = bench.query("get_coords")[2]
-    bench.send("jog_coord", 3, FORWARD, 50)
-    bench.clock.sleep(60)
-    assert bench.query("get_coords")[2] == pytest.approx(high, abs=5)
 
 
 @pytest.mark.parametrize("axis", [1, 2, 3])

@@ -12,13 +12,11 @@ from typing import Any
 
 import pytest
 
-from cobotwire import codec as codecs
 from cobotwire.editions import load, names
-from cobotwire.inspect.monitor import Monitor
 from cobotwire.protocol.errors import ReplyTimeout
 from cobotwire.session import RequestReceived
 from cobotwire.session.device import DeviceEvent
-from cobotwire.simulator import MemoryTransport, PtyServer, SimulatedArm, SteppedClock, TcpServer
+from cobotwire.simulator import MemoryTransport, PtyServer, SimulatedArm, SteppedClock
 from cobotwire.studio.arm_line import ArmLine, PortOptions
 
 WITHOUT_GEOMETRY = [name for name in names() if load(name).TABLE.robot.geometry is None]
@@ -72,22 +70,6 @@ def test_error_of_unanswerable_query_says_why_in_every_edition(edition: str) -> 
         assert getattr(arm, package.TABLE.in_role("joints").name)() is not None
 
 
-@pytest.mark.parametrize(
-    "serve", [PtyServer, lambda arm: TcpServer(arm.connect)], ids=["pty", "tcp"]
-)
-def test_refused_motion_is_acknowledged_and_query_says_why(serve: Any) -> None:
-    seen: list[bytes] = []
-    arm = SimulatedArm(EDITION.TABLE, powered=True)
-    with serve(arm) as server, EDITION.CLIENT(server.url) as client:
-        client.add_traffic_listener(lambda traffic: seen.append(traffic.data))
-        # The motion is acknowledged, as a real arm acknowledges what it rejects.
-        client.send_coords([100, 0, 200, 0, 0, 0], 50, ack_within=5.0)
-        assert b"simulated arm" not in b"".join(seen), "the maker's library would not find the ack"
-        assert arm.notes[-1].text.startswith(f"rejected: {REASON}")
-        with pytest.raises(ReplyTimeout, match=REASON):
-            client.get_coords()
-
-
 def test_silence_without_a_reason_is_reported_as_before() -> None:
     with _in_memory(EDITION, silent=True) as arm:
         with pytest.raises(ReplyTimeout, match="received meanwhile: nothing") as error:
@@ -106,18 +88,6 @@ def test_stream_of_a_query_that_the_arm_refuses_ends_with_the_reason() -> None:
             next(iter(arm.stream(EDITION.messages.GetCoords(), rate=20)))
         with pytest.raises(ReplyTimeout, match=REASON):
             asyncio.run(sample(server.url))
-
-
-@pytest.mark.parametrize(("silent", "unanswered"), [(False, 3), (True, 9)])
-def test_monitor_repeats_a_query_only_if_the_arm_did_not_refuse(
-    silent: bool, unanswered: int
-) -> None:
-    with _in_memory(EDITION, silent=silent) as arm:
-        *_, last = Monitor(arm, codecs.load(EDITION.TABLE), 10).samples(3)
-    assert last.values["get_coords"] is None
-    assert last.values["get_angles"] is not None
-    assert last.unanswered == unanswered, "a query is sent three times"
-    assert (REASON in last.error) is not silent
 
 
 def test_studio_stops_polling_a_query_that_the_arm_refuses() -> None:

@@ -10,8 +10,6 @@ from cobotwire.simulator.arm import Note
 
 POWER_ON, RELEASE_THE_THIRD = "FE FE 02 10 FA", "FE FE 03 56 03 FA"
 ARE_ALL_ENABLED = "FE FE 02 51 FA"
-# Write 10 into register 21, and 1000 into register 24; the last byte of the second is the mode.
-WRITE_A_BYTE, WRITE_A_WORD = "FE FE 05 52 01 15 0A FA", "FE FE 07 52 01 18 03 E8 01 FA"
 
 
 def _reply(arm: SimulatedArm, *requests: str) -> str:
@@ -36,24 +34,6 @@ def test_is_all_servo_enable_is_one_byte_that_is_1_when_all_are_on(edition: str)
     assert _reply(arm, ARE_ALL_ENABLED) == "FE FE 03 51 00 FA"
     assert _reply(arm, POWER_ON, ARE_ALL_ENABLED) == "FE FE 03 51 01 FA"
     assert _reply(arm, RELEASE_THE_THIRD, ARE_ALL_ENABLED) == "FE FE 03 51 00 FA"
-
-
-@pytest.mark.parametrize(
-    ("request_words", "reply"),
-    [
-        ("FE FE 05 53 01 15 01 FA", "FE FE 04 53 00 0A FA"),
-        ("FE FE 05 53 01 18 01 FA", "FE FE 04 53 03 E8 FA"),
-        ("FE FE 05 53 02 18 01 FA", "FE FE 04 53 00 00 FA"),
-        ("FE FE 05 53 01 18 00 FA", "FE FE 03 53 E8 FA"),
-        ("FE FE 04 53 01 18 FA", "FE FE 03 53 E8 FA"),
-        ("FE FE 04 53 01 15 FA", "FE FE 03 53 0A FA"),
-    ],
-)
-def test_servo_register_has_two_bytes_with_mode_1_and_else_one(
-    request_words: str, reply: str
-) -> None:
-    arm = SimulatedArm(editions.load("mycobot280").TABLE, acks=False)
-    assert _reply(arm, WRITE_A_BYTE, WRITE_A_WORD, request_words) == reply
 
 
 @pytest.mark.parametrize(

@@ -1,17 +1,12 @@
-"""Test what the servos of the simulated arm report, and what a restart keeps."""
+"""Test the simulated 280: its servos, their records and limits, and what a restart keeps."""
 
 from __future__ import annotations
 
-import random
-
 import pytest
 
-from cobotwire import codec as codecs
 from cobotwire.editions.mycobot280 import TABLE
-from kinematic_samples import random_angles
 from simulator.bench import Bench
 
-REFERENCE = codecs.load(TABLE, "reference")
 STEPS_A_DEGREE = 4096 / 360
 
 
@@ -59,14 +54,6 @@ def test_gripper_encoder_is_read_back_as_set(bench: Bench) -> None:
     assert bench.query("get_gripper_value") == 70
 
 
-def test_angles_to_coords_of_get_angles_equals_get_coords(bench: Bench) -> None:
-    rng = random.Random(6)
-    for _ in range(50):
-        bench.arm.state.angles.place(random_angles(rng), bench.clock())
-        calculated = bench.query("angles_to_coords", bench.query("get_angles"))
-        assert calculated == bench.query("get_coords")
-
-
 def test_motion_of_a_paused_arm_waits_with_a_note(bench: Bench) -> None:
     bench.send("pause")
     for motion in (("send_angle", 1, 30.0, 50), ("jog_angle", 2, 1, 50), ("jog_coord", 3, 0, 50)):
@@ -77,12 +64,6 @@ def test_motion_of_a_paused_arm_waits_with_a_note(bench: Bench) -> None:
     bench.send("resume")
     bench.send("send_angle", 1, 30.0, 50)
     assert len(bench.arm.notes) == 3
-
-
-def test_motions_are_acknowledged_when_they_are_received(bench: Bench) -> None:
-    assert bench.send("send_angle", 1, 30.0, 1) == bytes.fromhex("FE FE 03 21 01 FA")
-    assert bench.query("is_moving") == 1
-    assert bench.query("check_async_or_sync") == 0, "so it works asynchronously"
 
 
 def test_restart_loses_settings_but_moves_no_joint(bench: Bench) -> None:
@@ -100,3 +81,43 @@ def test_restart_loses_settings_but_moves_no_joint(bench: Bench) -> None:
     assert (bench.query("is_power_on"), bench.query("get_fresh_mode")) == (0, 0)
     assert bench.query("get_joint_max_angle", 1) == 168.0, "the edition's limits come back"
     assert bench.query("get_reboot_count") == 2
+
+
+def test_limits_are_those_of_the_edition(bench: Bench) -> None:
+    assert bench.query("get_joint_max_angle", 1) == 168.0
+    assert bench.query("get_joint_min_angle", 2) == -140.0
+
+
+def test_servo_registers_are_backed_up_and_restored(bench: Bench) -> None:
+    bench.send("backup_servo_params", 254)
+    bench.send("set_servo_data", 1, 21, 99)
+    assert bench.query("get_servo_data", 1, 21) == 99
+    bench.send("restore_servo_params", 1)
+    assert bench.query("get_servo_data", 1, 21) == 10
+    bench.send("set_servo_data", 1, 30, 1000, 1)
+    assert bench.query("get_servo_data", 1, 30, 1) == 1000
+    assert bench.query("get_servo_data", 1, 30) == 1000 % 256
+
+
+def test_recorded_motion_is_read_point_by_point(bench: Bench) -> None:
+    assert bench.query("drag_start_record") == 1
+    assert bench.query("drag_end_record") == 2
+    assert bench.query("drag_get_record_len") == 2
+    assert bench.query("drag_get_record_data")[::2] == (2048,) * 6
+    bench.send("drag_get_record_data")
+    assert bench.query("drag_get_record_data") == (0,) * 12, "zeros after the last point"
+    assert bench.query("drag_clear_record_data") == 0
+
+
+def test_all_servos_are_held_at_once(bench: Bench) -> None:
+    bench.send("release_all_servos")
+    assert bench.query("is_all_servo_enable") in (0, (0, (0,) * 5))
+    bench.send("focus_all_servos", 0)
+    assert bench.query("is_servo_enable", 6) == 1
+
+
+def test_pose_beyond_the_wire_is_reported_as_the_nearest_value(bench: Bench) -> None:
+    bench.send("set_world_reference", (3276.7, 0, 0, 0, 0, 0))
+    bench.send("set_reference_frame", 1)
+    assert bench.query("get_coords")[0] == 3276.7
+    assert "nearest" in bench.arm.notes[-1].text
