@@ -168,16 +168,6 @@ def odd_values() -> st.SearchStrategy[Any]:
     return st.one_of(scalars, rows, rows.map(tuple), st.dictionaries(st.text(max_size=1), scalars))
 
 
-@st.composite
-def any_arguments(draw: st.DrawFn, table: Table = TABLE) -> tuple[str, Direction, tuple[Any, ...]]:
-    """Draw a message with any mixture of legal and illegal values."""
-    variant, values = draw(messages(table))
-    mixed = [draw(odd_values()) if draw(st.integers(0, 3)) == 0 else value for value in values]
-    if draw(st.integers(0, 9)) == 0:
-        mixed.append(draw(odd_values()))
-    return variant.command.name, variant.direction, tuple(mixed)
-
-
 @lru_cache
 def near_frames(table: Table = TABLE) -> st.SearchStrategy[bytes]:
     """Draw bytes that begin like a frame, and are a legal frame only by chance."""

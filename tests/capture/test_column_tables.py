@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import struct
 import tracemalloc
 from itertools import accumulate
 from pathlib import Path
@@ -15,13 +14,10 @@ import pytest
 
 from capture.lines import FRAMES, written
 from cobotwire import codec as codecs
-from cobotwire.capture import Packet, Piece
+from cobotwire.capture import Packet
 from cobotwire.capture import block_encoding as blocks
-from cobotwire.capture.columns import capture_reader, read_batches, read_columns
+from cobotwire.capture.columns import read_batches, read_columns
 from cobotwire.capture.damage import MOST_INTERFACES
-from cobotwire.capture.native_columns import NativeColumnsReader
-from cobotwire.capture.reference_columns import ReferenceCaptureReader
-from cobotwire.codec.interface import Codec
 from cobotwire.editions import load
 from cobotwire.inspect.captured import recorded_codecs
 from cobotwire.protocol.errors import CaptureError, UsageError
@@ -124,14 +120,6 @@ def test_batches_with_and_without_rows_fill_one_parquet_file(wide: bool, tmp_pat
     assert pq.read_table(path).sort_by("time").to_pylist() == whole.to_pylist()
 
 
-def test_message_that_did_not_occur_has_the_same_columns() -> None:
-    found = read_columns(written(poll(1)), NATIVE)
-    empty, full = found.rows("get_coords"), found.rows("get_angles")
-    assert len(empty) == 0
-    assert list(empty.to_numpy()) == ["time", "direction", "interface", "offset", "coords"]
-    assert pa.table(empty).schema.field("time") == pa.table(full).schema.field("time")
-
-
 def test_capture_without_packets_has_no_rows_to_choose() -> None:
     found = read_columns(written([]), NATIVE)
     assert list(found) == []
@@ -156,27 +144,6 @@ def test_each_interface_is_decoded_with_the_edition_that_it_names() -> None:
         found.rows("get_angles", "request")
 
 
-@pytest.mark.parametrize("reader", [NativeColumnsReader, ReferenceCaptureReader])
-def test_error_of_the_function_that_returns_codecs_is_raised(
-    reader: type[NativeColumnsReader] | type[ReferenceCaptureReader],
-) -> None:
-    def refuse(_: object) -> Codec:
-        raise LookupError("no such edition")
-
-    with pytest.raises(LookupError, match="no such edition"):
-        reader(refuse, "both", False, "x").add(written(poll(1)))
-
-
-def test_frame_in_pieces_has_the_time_of_its_first_byte() -> None:
-    # The frame begins inside a packet of another program, and its bytes came after the packet's.
-    data = b"\x00\x01" + REPLY
-    packet = Packet(START, "received", data, "bytes", "", (Piece(2, START), Piece(17, START + 77)))
-    found = read_columns(written([packet]), NATIVE)
-    assert found.rows("get_angles").time.tolist() == [START + 77]
-    (stream,) = found.streams
-    assert [list(column) for column in stream.noise] == [[START], [0], [2]]
-
-
 @pytest.mark.parametrize("piece", [1 << 16, 1 << 22])
 def test_large_capture_has_the_rows_and_times_of_its_bytes(piece: int) -> None:
     # Packets end anywhere, so frames begin within packets; several blocks of bulk reading.
@@ -196,15 +163,6 @@ def test_large_capture_has_the_rows_and_times_of_its_bytes(piece: int) -> None:
     batches = [batch.rows("get_angles") for batch in read_batches(data, NATIVE, piece=piece)]
     assert np.concatenate([np.asarray(rows.time) for rows in batches]).tolist() == expected.tolist()
     assert np.concatenate([np.asarray(rows.offset) for rows in batches]).tolist() == places.tolist()
-
-
-def test_frames_in_packets_of_one_byte_have_the_times_of_their_first_bytes() -> None:
-    stream = REPLY * 50
-    data = written(
-        Packet(START + n, "received", stream[n : n + 1], "bytes") for n in range(len(stream))
-    )
-    times = read_columns(data, NATIVE).rows("get_angles").time.tolist()
-    assert times == [START + 17 * n for n in range(50)]
 
 
 def test_long_noise_has_the_time_of_its_first_byte() -> None:
@@ -237,23 +195,3 @@ def test_capture_with_too_many_interfaces_is_rejected(name: codecs.CodecName) ->
     with pytest.raises(CaptureError, match="more than 1024 interfaces") as caught:
         read_columns(data, codecs.load(TABLE, name))
     assert caught.value.offset == len(data) - len(interface)
-
-
-@both_codecs
-def test_time_beyond_64_bits_is_rejected_after_the_packets_before_it(
-    name: codecs.CodecName,
-) -> None:
-    good = written(poll(2), finish=False)
-    bad = bytearray(blocks.packet(0, 0, REPLY, 1, ""))
-    bad[12:20] = struct.pack("<II", 1 << 31, 0)
-    found = read_columns(good + bad, codecs.load(TABLE, name), damaged="keep")
-    assert found.error is not None
-    assert found.error.offset == len(good)
-    assert len(found) == 4
-
-
-def test_reader_ignores_bytes_after_damage() -> None:
-    reader = capture_reader(NATIVE)
-    assert "is not a pcapng recording" in str(reader.feed(b"hello, world").error)
-    assert reader.feed(written(poll(1))).streams == []
-    assert len(reader.finish()) == 0

@@ -49,19 +49,6 @@ def test_compressed_capture_is_read_like_the_capture(compress: Compress, path: P
 
 
 @COMPRESS
-def test_capture_of_several_compressed_parts_is_read_to_its_end(
-    compress: Compress, path: Path
-) -> None:
-    path.write_bytes(compress(PLAIN[:1000]) + compress(b"") + compress(PLAIN[1000:]))
-    assert list(read(path)) == PACKETS
-
-
-def test_zeros_after_a_gzip_file_are_ignored(path: Path) -> None:
-    path.write_bytes(gzipped(PLAIN) + bytes(100_000))
-    assert list(read(path)) == PACKETS
-
-
-@COMPRESS
 def test_cut_compressed_capture_is_truncated(compress: Compress, path: Path) -> None:
     data = compress(PLAIN)
     path.write_bytes(data[: len(data) // 2])

@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from capture.lines import packets, reader, written
-from cobotwire.capture import CaptureReader, Packet, is_capture, read
+from cobotwire.capture import CaptureReader, Packet, read
 from cobotwire.capture.damage import LARGEST_BLOCK
 from cobotwire.protocol.errors import CaptureError, UsageError
 
@@ -99,11 +99,6 @@ def test_block_with_a_large_length_costs_neither_time_nor_memory() -> None:
     tracemalloc.stop()
 
 
-@pytest.mark.parametrize("data", [b"FE FE 02 20 FA\n", b"\n\r\r\n" + bytes(30), b"\x0a"])
-def test_other_files_are_not_detected_as_captures(data: bytes) -> None:
-    assert not is_capture(data)
-
-
 def test_reading_another_file_raises_capture_error() -> None:
     with pytest.raises(
         CaptureError, match=r"test.pcapng: the file is not a pcapng recording; .* \(at byte 0\)"
@@ -116,12 +111,6 @@ def test_missing_file_raises_usage_error() -> None:
         read("/no/such/file.pcapng")
     with pytest.raises(UsageError, match="null byte"):
         read("a\0b")
-
-
-def test_empty_file_is_an_unfinished_capture_without_packets() -> None:
-    capture = reader(b"")
-    assert list(capture) == []
-    assert not capture.finished
 
 
 class Drip(io.RawIOBase):

@@ -9,7 +9,6 @@ from typing import Any
 
 import duckdb
 import numpy as np
-import polars as pl
 import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
@@ -48,14 +47,6 @@ def buddy(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return path
 
 
-def by_device(rows: list[dict[str, Any]]) -> dict[str, list[float]]:
-    """Return the angle of joint 1 that each device reported, three times the same."""
-    found = defaultdict(list)
-    for row in rows:
-        found[row["address"]].append(round(row["j1"]))
-    return dict(found)
-
-
 @both_codecs
 def test_rows_of_a_recording_say_which_arm_stands_where(buddy: Path, name: Any) -> None:
     codec = codecs.load(TABLE, name)
@@ -92,22 +83,6 @@ def test_rows_of_two_robots_are_joined_with_their_devices(buddy: Path, name: Any
     received = next(each for each in streams if each.direction == "received")
     rows = received.captured(received.columns.rows("get_angles"))
     assert list(join([rows, rows]).address or ()) == [1, 2] * 6
-
-
-@pytest.mark.parametrize("format", ["parquet", "csv", "arrow"])
-def test_exported_rows_say_which_arm_stands_where(buddy: Path, tmp_path: Path, format: Any) -> None:
-    path = tmp_path / f"angles.{format}"
-    report = export(
-        path, buddy, format=format, wide=True, commands=("get_angles",), direction="reply"
-    )
-    assert report.rows == {"get_angles.reply": 6}
-    reader: Any = {"parquet": pl.read_parquet, "csv": pl.read_csv, "arrow": pl.read_ipc}[format]
-    frame = reader(path)
-    assert frame.columns == [
-        *("robot", "source", "offset", "address", "time"),
-        *(f"j{joint}" for joint in range(1, 7)),
-    ]
-    assert by_device(frame.to_dicts()) == {"LEFT": [10] * 3, "RIGHT": [1] * 3}
 
 
 def test_duckdb_groups_an_export_by_device(buddy: Path, tmp_path: Path) -> None:

@@ -85,30 +85,6 @@ def test_frames_and_noise_become_separate_packets(codec: Codec) -> None:
     assert packets[3].reason == "no-header"
 
 
-def test_unknown_frame_is_one_packet_of_noise_with_its_first_reason(codec: Codec) -> None:
-    unknown = bytes.fromhex("FE FE 03 10 01 FA")
-    (packet,) = recorded(codec, [Chunk(1.0, "received", unknown)])
-    assert (packet.kind, packet.reason, packet.data) == ("noise", "unknown-id", unknown)
-
-
-def test_frame_in_pieces_keeps_the_time_of_each_piece(codec: Codec) -> None:
-    packets = recorded(
-        codec, [Chunk(5.0, "received", ANGLES[:8]), Chunk(5.1, "received", ANGLES[8:])]
-    )
-    (packet,) = packets
-    assert packet.data == ANGLES
-    assert [piece.size for piece in packet.pieces] == [8, 9]
-    assert packet.pieces[0].time_ns == packet.time_ns
-    assert packet.pieces[1].time_ns == packet.time_ns + 100_000_000
-
-
-def test_incomplete_frame_is_written_after_a_pause(codec: Codec) -> None:
-    # The rest never arrives; the later request shows that time has passed.
-    packets = recorded(codec, [Chunk(5.0, "received", ANGLES[:8]), Chunk(9.0, "sent", QUERY)])
-    assert b"".join(p.data for p in packets if p.direction == "received") == ANGLES[:8]
-    assert packets[0].direction == "received"
-
-
 def test_traffic_of_a_client_is_recorded(server: PtyServer, tmp_path: Path) -> None:
     traffic: list[Chunk] = []
     path = tmp_path / "arm.pcapng"

@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from capture.lines import packets, reader, written
-from cobotwire.capture import CaptureWriter, Interface, Packet, Piece, is_capture
+from cobotwire.capture import CaptureWriter, Interface, Packet, is_capture
 from cobotwire.protocol.errors import CaptureError
 
 
@@ -26,13 +26,6 @@ def test_written_packets_are_read_back_unchanged(given_packets: list[Packet]) ->
     assert capture.truncated_at is None
 
 
-def test_packets_of_several_interfaces_stay_apart() -> None:
-    given_packets = [Packet(5, "sent", b"a", interface=1), Packet(6, "received", b"b", interface=0)]
-    capture = reader(written(given_packets, "/dev/ttyUSB0", "socket://arm:9000"))
-    assert list(capture) == given_packets
-    assert [line.url for line in capture.interfaces] == ["/dev/ttyUSB0", "socket://arm:9000"]
-
-
 @pytest.mark.parametrize("words", ["", "é" * 40_000, "\udc80 no text", "a; noise x"])
 def test_any_name_is_written_as_valid_text(words: str) -> None:
     file = io.BytesIO()
@@ -40,20 +33,6 @@ def test_any_name_is_written_as_valid_text(words: str) -> None:
     capture = reader(file.getvalue())
     assert list(capture) == []
     assert capture.application == words.encode("utf-8", "replace")[: 2 * 32767].decode()
-
-
-def test_concatenated_captures_are_one_capture() -> None:
-    first, second = Packet(1, "sent", b"one"), Packet(2, "received", b"two")
-    capture = reader(written([first]) + written([second]))
-    assert list(capture) == [first, second._replace(interface=1)]
-    assert len(capture.interfaces) == 2
-
-
-def test_capture_without_statistics_is_not_finished() -> None:
-    capture = reader(written([Packet(1, "sent", b"x")], finish=False))
-    assert len(list(capture)) == 1
-    assert not capture.finished
-    assert capture.truncated_at is None
 
 
 # Other programs write the other byte order, other resolutions, and no options.
@@ -108,19 +87,3 @@ def test_capture_of_another_link_type_is_rejected() -> None:
 def test_packets_without_time_and_direction_are_rejected(kind: int) -> None:
     with pytest.raises(CaptureError, match="neither a time nor a direction"):
         list(reader(foreign("<", kind=kind)))
-
-
-@pytest.mark.parametrize("comment", ["a note of mine", "in pieces: 1 bytes at +0 ns", "noisy"])
-def test_comment_of_another_program_changes_nothing(comment: str) -> None:
-    from cobotwire.capture.packet import with_comment
-
-    packet = Packet(1, "sent", b"abc")
-    assert with_comment(packet, comment) == packet
-
-
-def test_comment_describes_pieces_and_noise() -> None:
-    from cobotwire.capture.packet import comment_of
-
-    pieces = (Piece(1, 10), Piece(2, 110))
-    packet = Packet(10, "received", b"abc", "noise", "no-header", pieces)
-    assert comment_of(packet) == "noise no-header; in pieces: 1 bytes at +0 ns, 2 bytes at +100 ns"

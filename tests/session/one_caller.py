@@ -57,11 +57,6 @@ class OneCaller:
         """Whether the last request waits for its reply."""
         return self.pending is not None and not self.pending.done
 
-    @property
-    def wake_at(self) -> float | None:
-        """The time at which :meth:`wake` must be called unless bytes arrive earlier."""
-        return self.exchange.idle_seconds(0.0)
-
     def give_up(self) -> None:
         """Stop waiting, as Ctrl-C does."""
         if self.pending is not None:

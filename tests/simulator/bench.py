@@ -14,9 +14,9 @@ from cobotwire.simulator.clock import SteppedClock
 class Bench:
     """An arm of an edition, and its clock."""
 
-    def __init__(self, table: Table, *, acks: bool = True, powered: bool = True) -> None:
+    def __init__(self, table: Table, *, powered: bool = True) -> None:
         self.clock = SteppedClock()
-        self.arm = SimulatedArm(table, clock=self.clock, acks=acks)
+        self.arm = SimulatedArm(table, clock=self.clock)
         self._codec = codecs.load(table, "reference")
         if powered:
             self.send("power_on")

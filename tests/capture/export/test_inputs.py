@@ -214,15 +214,6 @@ def test_time_range_includes_its_start_and_excludes_its_end(tmp_path: Path) -> N
     assert (report.rows.total(), report.outside) == (3, 7)
 
 
-def test_commands_and_directions_that_are_not_chosen_are_counted(tmp_path: Path) -> None:
-    path = recording(
-        tmp_path / "arm.pcapng", [*polled(5), Packet(START + 10**9, "received", POWERED)]
-    )
-    report = export(tmp_path / "out", path, commands=("get_angles",), direction="reply")
-    assert report.rows == {"get_angles.reply": 5}
-    assert report.not_chosen == 6
-
-
 def test_time_range_needs_times(tmp_path: Path) -> None:
     (tmp_path / "arm.bin").write_bytes(request("get_angles"))
     with pytest.raises(UsageError, match="without times, which a time range needs"):

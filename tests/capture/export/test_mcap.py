@@ -72,16 +72,6 @@ def test_each_message_of_each_robot_is_a_channel(arm: list[Written]) -> None:
     assert arm[-1].content == {"powered": True}
 
 
-def test_messages_are_in_the_order_of_their_times(tmp_path: Path) -> None:
-    path = tmp_path / "arm.mcap"
-    export(path, recording(tmp_path / "arm.pcapng", polled(100)), format="mcap")
-    with path.open("rb") as file:
-        messages = make_reader(file).iter_messages(log_time_order=False)
-        times = [message.log_time for _, _, message in messages]
-    assert len(times) == 400
-    assert times == sorted(times)
-
-
 def test_joint_states_are_in_radians(arm: list[Written]) -> None:
     states = [each for each in arm if each.schema == "sensor_msgs/msg/JointState"]
     second = states[1].content
@@ -115,17 +105,6 @@ def test_pose_of_the_end_is_computed_from_the_joints(tmp_path: Path) -> None:
     assert [2 * (x * y - z * w), 1 - 2 * (x * x + z * z), 2 * (y * z + x * w)] == pytest.approx(
         expected.y
     )
-
-
-def test_arm_without_a_known_geometry_has_joint_states_only(tmp_path: Path) -> None:
-    from cobotwire import codec as codecs
-
-    codec = codecs.load(load("myarm300").TABLE)
-    packets = [Packet(START, "received", codec.encode("get_angles", "reply", [[0.0] * 7]))]
-    path = recording(tmp_path / "a.pcapng", packets, "myarm300")
-    export(tmp_path / "arm.mcap", path, format="mcap")
-    topics = [each.topic for each in written(tmp_path / "arm.mcap")]
-    assert sorted(topics) == ["/a/get_angles/reply", "/a/joint_states"]
 
 
 def test_values_that_json_lacks_are_hex_or_null(tmp_path: Path) -> None:
