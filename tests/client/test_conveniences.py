@@ -62,13 +62,6 @@ def test_gripper_opens_and_closes(edition: str) -> None:
         driven.arm.open_gripper(speed=101)
 
 
-def test_arguments_have_the_defaults_of_the_makers_library() -> None:
-    driven = Driven()
-    driven.arm.set_color(green=255)
-    assert driven.simulated.state.light == (0, 255, 0)
-    assert driven.arm.is_in_position([0.0] * 6)
-
-
 @pytest.mark.parametrize("codec", ["native", "reference"])
 def test_joints_have_names(codec: str) -> None:
     driven = Driven()
@@ -78,13 +71,7 @@ def test_joints_have_names(codec: str) -> None:
         arm.send_angle(Joint.J7, 0, 50)
 
 
-def test_arm_moves_to_a_target_with_the_mode_of_other_clients() -> None:
-    driven = Driven()
-    driven.arm.send_coords([150, -60, 250, 180, 0, -90], 80, 2)
-    assert driven.arm.is_moving()
-
-
-def test_baud_rate_is_the_second_argument() -> None:
+def test_speed_of_the_line_is_the_second_argument() -> None:
     for client in (MyCobot280, AsyncMyCobot280):
         second = list(inspect.signature(client).parameters.values())[1]
         assert (second.name, second.kind) == ("baudrate", second.POSITIONAL_OR_KEYWORD)

@@ -203,20 +203,6 @@ def test_partly_written_request_ends_by_the_deadline(open_arm: Opener) -> None:
     end.close()
 
 
-def test_query_that_is_repeated_into_a_full_line_ends_in_time(open_arm: Opener) -> None:
-    end = ends.PtyEnd()
-    retry = RetryPolicy(attempts=3, shortest_attempt=0.05)
-    with open_arm(end.url, timeout=0.3, retry=retry) as arm:
-        filling = threading.Timer(0.05, end.fill, (0, lambda data: None))
-        filling.start()
-        began = time.monotonic()
-        with pytest.raises(ReplyTimeout):
-            arm.get_encoder(1)
-        assert time.monotonic() - began < 0.3 + 2 * MORE
-        filling.join()
-    end.close()
-
-
 @pytest.mark.parametrize("who", [MyCobot280, lambda *a, **o: InLoop(AsyncMyCobot280, *a, **o)])
 def test_wait_for_an_acknowledgement_ends_by_the_deadline(who: Callable[..., Any]) -> None:
     with ScriptedPeer() as peer, who(peer.url, deadline=0.1) as arm:

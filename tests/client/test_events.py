@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import asyncio
-import gc
 import threading
 from collections.abc import Iterator
 from typing import Any
@@ -12,7 +11,6 @@ import pytest
 
 from cobotwire import MotionTimeout, ReplyTimeout, RequestRefused, UsageError
 from cobotwire import codec as codecs
-from cobotwire.client.events import EventQueue
 from cobotwire.inspect.doctor import harmless_queries
 from cobotwire.inspect.evidence import bare_queries
 from cobotwire.protocol.messages import Event
@@ -207,27 +205,6 @@ def test_refused_status_is_an_error_with_its_name(staged: Any) -> None:
         accepted.power_on(ack_within=0.05)
 
 
-def _queues() -> int:
-    """Return how many queues of events exist."""
-    gc.collect()
-    return sum(type(each) is EventQueue for each in gc.get_objects())
-
-
-def test_waited_motion_ends_with_its_event(staged: Any) -> None:
-    clock = SteppedClock()
-    simulated = SimulatedArm(staged.TABLE, clock=clock, powered=True)
-    traffic: list[Traffic] = []
-    arm = staged.Trial(MemoryTransport(simulated, clock), trace=traffic.append)
-    before = _queues()
-    arm.move_angles((60.0, 0.0, 0.0), 50)
-    assert _queues() == before, "the end of the wait removes its listener"
-    assert arm.get_angles() == (60.0, 0.0, 0.0)
-    queries = [one for one in traffic if one.direction == "sent" and one.data[3] == 0x20]
-    # The queries: one at the start, one a second, one after the event, and the test's own.
-    assert 3 <= len(queries) <= 5
-    assert EventReceived in [type(one.event) for one in traffic]
-
-
 def test_refused_motion_is_not_waited_for(staged: Any) -> None:
     peer = MemoryPeer(frame(staged, "send_angles", 255, 3))
     arm = staged.Trial(MemoryTransport(peer))
@@ -242,17 +219,6 @@ def test_motion_that_ends_with_a_bad_status_is_stopped(staged: Any) -> None:
     with pytest.raises(RequestRefused, match=r"REFUSED \(0\)"):
         arm.move_angles((60.0, 0.0, 0.0), 50)
     assert peer.received.endswith(codecs.load(staged.TABLE).encode("stop", "request", ()))
-
-
-def test_lost_event_is_made_up_for_by_queries(staged: Any) -> None:
-    there = frame(staged, "get_angles", (60.0, 0.0, 0.0))
-    away = frame(staged, "get_angles", (0.0, 0.0, 0.0))
-    clock = SteppedClock()
-    transport = MemoryTransport(
-        MemoryPeer(frame(staged, "send_angles", 255, 1), away, there), clock
-    )
-    staged.Trial(transport).move_angles((60.0, 0.0, 0.0), 50)
-    assert clock() < 3
 
 
 def test_arm_without_power_reports_no_end(staged: Any) -> None:

@@ -108,17 +108,6 @@ def test_lasting_writes_are_refused_within_a_speed_and_allowed_without() -> None
     assert without.written != b""
 
 
-def test_limits_of_another_type_are_rejected() -> None:
-    with pytest.raises(UsageError, match="limits is 5"):
-        MyCobot280(RecordingTransport(), limits=5)  # type: ignore[arg-type]
-
-
-def test_empty_limits_do_not_change_the_table() -> None:
-    assert limited(TABLE, Limits()) == TABLE
-    rows = Limits([None, *REST], [None, *REST])
-    assert limited(TABLE, rows).command("send_angles") == TABLE.command("send_angles")
-
-
 @given(
     st.sampled_from(NAMES),
     st.sampled_from([TABLE, DOCUMENT]),

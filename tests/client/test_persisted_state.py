@@ -24,10 +24,8 @@ from cobotwire.editions.mycobot280 import MyCobot280
 from cobotwire.session import Exchange
 from cobotwire.session.alignment import Part
 from cobotwire.session.outstanding import LateFrame, PersistedState
-from cobotwire.session.request import RequestEncoder
 from cobotwire.simulator.faults import Late
 from cobotwire.transport import open_transport
-from command_line import run_program
 from cut_motion import ANGLES, CODEC, MOTION, STOP, frames
 from faulty_arm import faulty_arm
 from scripted_peer import ScriptedPeer
@@ -54,16 +52,6 @@ def test_late_reply_to_a_closed_client_is_not_used_by_the_next_one(who: Callable
             arm.get_encoder(1)
         with who(url) as arm:
             assert arm.get_encoder(2) == 2
-
-
-def test_late_reply_to_one_program_is_not_printed_by_the_next_one(folder: Path) -> None:
-    # The reply comes after the next program has started.
-    with faulty_arm(Late(seconds=0.95, nth=ATTEMPTS)) as (url, _):
-        first = run_program("call", url, "get_encoder", "1")
-        assert "no reply" in first.stderr
-        assert len(list(folder.iterdir())) == 1, "the program leaves a note"
-        second = run_program("call", url, "get_encoder", "2")
-        assert second.stdout.strip() == "2", second
 
 
 def test_half_a_request_of_a_closed_client_is_ended_by_the_next_one(
@@ -100,12 +88,6 @@ def test_late_reply_is_expected_on_a_link_whose_device_has_another_name_by_now(
         with MyCobot(str(link), timeout=0.2) as arm, pytest.raises(ReplyTimeout):
             arm.get_encoder(2)
         assert time.monotonic() - started > 0.8
-
-
-def test_session_that_leaves_nothing_writes_no_file(folder: Path) -> None:
-    with ScriptedPeer([bytes.fromhex("FE FE 03 12 01 FA")]) as peer, MyCobot(peer.url) as arm:
-        assert arm.is_power_on()
-    assert not folder.exists()
 
 
 def _memory(peer: ScriptedPeer) -> PortMemory:
@@ -234,16 +216,6 @@ def test_port_with_any_note_is_opened_and_no_request_is_held_longer_than_the_gra
     exchange = Exchange(CODEC)
     exchange.restore(found)
     assert exchange.persist(0.0).parts == found.parts
-
-
-def test_note_of_a_session_that_lost_its_port_is_read(memory: PortMemory, folder: Path) -> None:
-    exchange = Exchange(CODEC)
-    exchange.send_one_way(RequestEncoder(CODEC).encode("send_angles", [ANGLES, 50]), 0.0)
-    exchange.fail(LinkError("/dev/arm", "it is gone"), 0.0)
-    left = exchange.persist(0.0)
-    memory.leave(left)
-    persisted_state._here.clear()
-    assert set(memory.recall().parts) == set(left.parts) != set()
 
 
 @pytest.mark.parametrize("kind", ["fifo", "link", "folder", "socket", "of another user"])

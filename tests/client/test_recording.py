@@ -12,9 +12,9 @@ from typing import Any
 import pytest
 
 from both_ways import Opener
-from cobotwire import CaptureError, LinkError, MyCobot280, UsageError, connect, connect_async
+from cobotwire import CaptureError, MyCobot280, UsageError, connect, connect_async
 from cobotwire.capture import CaptureReader, Recording, read
-from cobotwire.editions import mycobot, mycobot280
+from cobotwire.editions import mycobot280
 from cobotwire.simulator import MemoryTransport, PtyServer, SimulatedArm
 from scripted_peer import ScriptedPeer
 from transport.ends import PtyEnd
@@ -27,17 +27,6 @@ QUERY = bytes.fromhex("FE FE 02 12 FA")
 def recorded(path: Path) -> tuple[CaptureReader, list[tuple[str, bytes]]]:
     with read(path) as capture:
         return capture, [(packet.direction, packet.data) for packet in capture]
-
-
-def test_client_records_its_traffic_and_finishes_the_file(open_arm: Opener, tmp_path: Path) -> None:
-    path = tmp_path / "run.pcapng"
-    with ScriptedPeer([POWERED]) as peer:
-        with open_arm(peer.url, record=path) as arm:
-            assert arm.is_power_on()
-        capture, packets = recorded(path)
-        assert packets == [("sent", QUERY), ("received", POWERED)]
-        assert capture.finished
-        assert capture.interfaces == [(peer.url, "mycobot", mycobot.TABLE.baudrate)]
 
 
 def test_exception_in_the_block_finishes_the_file(open_arm: Opener, tmp_path: Path) -> None:
@@ -63,15 +52,6 @@ def test_existing_file_is_refused_as_by_the_command_line(open_arm: Opener, tmp_p
         # The port was closed: nobody else has it.
         open_arm(peer.url).__exit__(None, None, None)
     assert path.read_bytes() == b"mine"
-
-
-def test_port_that_cannot_be_opened_leaves_no_file(open_arm: Opener, tmp_path: Path) -> None:
-    path = tmp_path / "run.pcapng"
-    with pytest.raises(LinkError):
-        open_arm(str(tmp_path / "no port"), record=path)
-    with pytest.raises(UsageError, match="record is 3; allowed: the path of a file"):
-        open_arm(str(tmp_path / "no port"), record=3)
-    assert not path.exists()
 
 
 @pytest.mark.parametrize("failing", [False, True], ids=["normal end", "exception"])

@@ -164,26 +164,6 @@ def test_break_and_close_end_iteration_and_leave_the_arm_usable(
         assert type(arm.get_angles()) is Angles
 
 
-def test_other_threads_use_the_arm_while_it_streams(open_arm: Opener, server: PtyServer) -> None:
-    with open_arm(server.url) as arm:
-        over = threading.Event()
-        encoders = []
-
-        def others() -> None:
-            while not over.is_set():
-                encoders.append(arm.get_encoder(3))
-                arm.set_color(1, 2, 3)
-                time.sleep(0.005)
-
-        thread = threading.Thread(target=others)
-        thread.start()
-        samples = list(islice(arm.stream(GET_ANGLES, GET_COORDS, rate=100), 50))
-        over.set()
-        thread.join()
-        assert [sample.number for sample in samples] == list(range(50))
-        assert set(encoders) == {2048}
-
-
 def test_ctrl_c_leaves_arm_and_stream_usable() -> None:
     with ScriptedPeer([REPLY], [0.6, REPLY], *[[REPLY]] * 5) as peer, MyCobot(peer.url) as arm:
         stream = arm.stream(GET_ANGLES, rate=50)

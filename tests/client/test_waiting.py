@@ -124,12 +124,6 @@ def test_lost_replies_and_a_standstill_keep_the_limit_and_are_reported() -> None
     assert max(busiest, arm.most_queries()) <= MOST_QUERIES
 
 
-def test_switched_off_event_is_made_up_for_by_queries() -> None:
-    arm = Arm("mercury_a1")
-    arm.state.kept["reports_ends"] = False
-    assert max(arm.move(target, speed) for target, speed in targets(arm, 20)) < 1.1
-
-
 def test_late_acknowledgement_is_followed_by_a_query_at_once() -> None:
     arm = Arm("mycobot280", Late(seconds=3.03, commands=("send_angles",)))
     arm.client.move_angles([90.0, 0.0, 0.0, 0.0, 0.0, 0.0], 10)

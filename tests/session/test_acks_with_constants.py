@@ -80,20 +80,6 @@ def succeeds(pending: PendingAck) -> bool:
 REQUESTS = st.tuples(st.sampled_from(sorted(REGISTERS)), st.sampled_from(GRIPPERS))
 
 
-@given(sent=st.lists(REQUESTS, min_size=1, max_size=6, unique=True), data=st.data())
-def test_each_ack_belongs_to_the_request_with_its_constant_and_argument(
-    loaded: Codec, sent: list[Any], data: st.DataObject
-) -> None:
-    bus = Bus(loaded)
-    waiting = {key: bus.send(key, 0.01 * at) for at, key in enumerate(sent)}
-    order = data.draw(st.permutations(sent))
-    acknowledged = order[: data.draw(st.integers(0, len(order)))]
-    for key in acknowledged:
-        bus.acknowledge(key, 0.1)
-    bus.exchange.wake(1.0)
-    assert {key for key, pending in waiting.items() if succeeds(pending)} == {*acknowledged}
-
-
 @given(sent=st.lists(st.tuples(REQUESTS, st.booleans()), min_size=1, max_size=8))
 def test_request_never_succeeds_by_the_ack_of_another_one(loaded: Codec, sent: list[Any]) -> None:
     bus = Bus(loaded)

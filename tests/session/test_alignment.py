@@ -102,33 +102,7 @@ def test_cut_within_the_aligning_bytes_is_ended_too(table: str, data: st.DataObj
     assert frames in ([third], [second, third])
 
 
-def test_lost_transport_is_aligned_whatever_part_of_the_longest_request_got_through() -> None:
-    codec = codecs.load(mycobot280.TABLE)
-    longest, last, stop = (
-        codec.encode("send_angles", "request", [(1, 2, 3, 4, 5, 6), 50]),
-        codec.encode("get_angles", "request", []),
-        codec.encode("stop", "request", []),
-    )
-    alignment = Alignment(codec)
-    alignment.sent(last)
-    alignment.lose()
-    written = alignment.align + stop
-    for request in (longest, last):
-        for size in range(1, len(request)):
-            assert by_the_law(codec, request[:size] + written) == [stop]
-
-
-def test_whole_write_leaves_the_line_aligned() -> None:
-    codec = codecs.load(mycobot280.TABLE)
-    stop = codec.encode("stop", "request", [])
-    alignment = Alignment(codec)
-    _cut(alignment, stop, 3)
-    assert alignment.align
-    alignment.end()
-    assert alignment.align == b""
-
-
-def test_cut_request_that_contains_a_legal_frame_is_completed() -> None:
+def test_frame_around_a_whole_frame_is_completed_instead() -> None:
     codec = codecs.load(mycobot280.TABLE)
     # -2.58 degrees are FE FE, 5.31 are 02 13, and FA is the first byte of -14.64.
     angles = [(-2.58, 5.31, -14.64, 0, 0, 0), 50]

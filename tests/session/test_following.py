@@ -17,7 +17,7 @@ from cobotwire.editions.mycobot280 import TABLE
 from cobotwire.kinematics.jerk_limited import Bounds
 from cobotwire.session.following import BUSY_SHARE, STALL_SECONDS, Follow
 from cobotwire.session.motion import Outcome, Query
-from cobotwire.session.paths import Pause, Send, Source
+from cobotwire.session.paths import Pause, Send
 from cobotwire.session.request import EncodedRequest, RequestEncoder
 from cobotwire.session.setpoints import Live, Path, evenly
 
@@ -217,27 +217,3 @@ def test_bad_argument_is_named_before_anything_is_sent(
 ) -> None:
     with pytest.raises(UsageError, match=error.replace("[]", r"\[\]")):
         follow(path, **options)
-
-
-def test_path_that_leaves_the_limits_between_its_points_is_refused() -> None:
-    job = follow([[150, 0, 0, 0, 0, 0], [167, 0, 0, 0, 0, 0], [150, 90, 0, 0, 0, 0]])
-    with pytest.raises(UsageError, match=r"the path leaves the limits after .* s: angles.j1 is 16"):
-        drive(job)
-    assert not job.moving
-    assert job.restore is None
-
-
-def test_targets_that_come_faster_than_setpoints_are_superseded_and_counted() -> None:
-    class Fast(Source):
-        left = 30
-
-        def take(self) -> list[Sequence[float]]:
-            self.left -= 1
-            self.over = self.left == 0
-            return [(30.0 - self.left, 0, 0, 0, 0, part) for part in range(4)]
-
-    job = follow(Fast())
-    sent = drive(job)
-    assert job.report().superseded == 30 * 3
-    last = CODEC.decode("request", sent[-1][1].frame).fields["angles"]
-    assert last == pytest.approx((30, 0, 0, 0, 0, 3), abs=0.01)

@@ -219,13 +219,3 @@ def test_query_may_be_repeated_and_a_stop_may_overtake_it() -> None:
 
 def test_acknowledged_change_may_be_sent_again() -> None:
     assert not failed(checked([(PAUSE, JOG), (0.5, JOG)]))
-
-
-def test_echoes_distinguish_late_replies() -> None:
-    requests = [bytes.fromhex(f"FEFE034A{joint}FA") for joint in ("01", "02")]
-    sure = all(
-        any(f.echo for f in variant.fields)
-        for variant in TABLE.command("get_joint_min_angle").reply
-    )
-    report = checked([(PAUSE, requests[0]), (0.4, requests[1])], faults=("lost",))
-    assert ("late-reply-expected" in failed(report)) is not sure

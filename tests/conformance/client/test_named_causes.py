@@ -24,14 +24,7 @@ def only(report: Report, case: str) -> Result:
     return found
 
 
-def test_frame_in_pieces_is_one_occurrence_and_shown_whole() -> None:
-    pieces = [(1.2, bytes.fromhex("FEFE03")), (0.05, bytes.fromhex("2000")), (0.05, b"\xfa")]
-    found = only(checked(pieces), "frame-length")
-    assert "FE FE [LEN 03] [id 20] 00 FA" in found.reason
-    assert "of" not in found.reason.rpartition("FA")[2]
-
-
-def test_pause_inside_a_frame_is_reported_as_a_pause() -> None:
+def test_pause_inside_a_frame_is_named_as_one() -> None:
     first, rest = Noise(0, STEP[:6], "truncated"), Noise(6, STEP[6:], "no-header")
     [whole] = joined([Received(1.2, first), Received(1.25, rest)])
     assert isinstance(whole.event, Noise)

@@ -70,19 +70,6 @@ def failed(report: Report) -> set[str]:
     return {result.case for result in report.failures}
 
 
-@pytest.mark.parametrize("fault", OTHERS)
-def test_our_client_delivers_the_reply_after_another_message(bus: Any, fault: str) -> None:
-    clock = SteppedClock()
-    referee = Referee(bus.TABLE, scenario=faulty_replies(0.008, [fault], 1), clock=clock)
-    with bus.Trial(MemoryTransport(referee, clock), address=2, on_error="leave") as arm:
-        arm.set_number(7)
-        before = clock()
-        assert [arm.get_number(), arm.get_number()] == [7, 7]
-        assert clock() - before >= 2 * 0.028, "the fault delays each reply"
-        assert len(arm.get_name()) == 3
-    assert failed(referee.finish()) == set()
-
-
 def test_our_asyncio_client_delivers_the_replies_too(bus: Any) -> None:
     referee = Referee(bus.TABLE, scenario=faulty_replies(0.008, OTHERS, 1))
 

@@ -60,13 +60,6 @@ def test_command_declared_absent_that_replies_fails_the_statement() -> None:
     assert outcomes(report, "get_angles") == {"pass", "not run (not permitted)"}
 
 
-def test_command_declared_absent_that_is_silent_passes() -> None:
-    report = run(f"commands: {{{LACKING[0]}: absent, {LACKING[1]}: absent}}", device="mycobot")
-    assert report.failures == []
-    passed = [r.command for r in report.results if r.case == "declared-absent"]
-    assert sorted(passed) == sorted(LACKING)
-
-
 def test_silent_command_fails_unless_it_is_declared_optional() -> None:
     report = run(f"commands: {{{LACKING[0]}: optional}}", device="mycobot")
     assert {(r.case, r.command) for r in report.failures} == {("query-replied", LACKING[1])}
@@ -115,8 +108,3 @@ def test_declared_acknowledgements_are_compared_with_those_that_came(word: str, 
     [result] = [r for r in tester.report.results if r.case == "declared-acknowledgements"]
     right = (word == "all") is acks
     assert result.verdict is (Verdict.PASS if right else Verdict.FAIL), result.reason
-
-
-def test_without_a_statement_nothing_is_declared() -> None:
-    tester = prepared(TABLE)
-    assert not [step for step in tester.steps() if step.group.declared]
