@@ -4,26 +4,18 @@ from __future__ import annotations
 
 import importlib
 from collections.abc import Iterator
-from pathlib import Path
 from typing import Any
 
 import pytest
 
-from cobotwire import codec as codecs
-from cobotwire.capture import read
-from cobotwire.cli.app import app
-from cobotwire.inspect.captured import messages
-from cobotwire.inspect.monitor import Monitor
 from cobotwire.protocol.errors import UsageError
 from cobotwire.simulator import (
     MemoryTransport,
-    PtyServer,
     SimulatedArm,
     SteppedClock,
     TcpServer,
 )
 from cobotwire.simulator.behaviour import Behaviours
-from in_process import run
 from trial_specs import FOOTED, HEAD, package_of
 
 SPEC = f"""
@@ -112,32 +104,3 @@ def test_illegal_event_is_refused_where_it_is_emitted(timer: Any) -> None:
     arm = SimulatedArm(timer.TABLE)
     with pytest.raises(UsageError, match=r"seconds is 10; allowed: a whole number 0..9"):
         arm.emit(timer.TimerEnded(10, ""))
-
-
-def test_monitor_samples_while_events_come(timer: Any, behaviours: Behaviours) -> None:
-    with PtyServer(SimulatedArm(timer.TABLE, behaviours=behaviours)) as server:
-        with timer.Trial(server.url) as client:
-            client.arm_timer(0)
-            samples = list(Monitor(client, codecs.load(timer.TABLE), rate=100.0).samples(3))
-    last = samples[-1]
-    assert (last.noise, last.late, last.unanswered, last.error) == (0, 0, 0, "")
-
-
-def test_recording_holds_events_that_decode_prints(
-    timer: Any, behaviours: Behaviours, tmp_path: Path
-) -> None:
-    path = tmp_path / "timer.pcapng"
-    with PtyServer(SimulatedArm(timer.TABLE, behaviours=behaviours)) as server:
-        with timer.Trial(server.url, record=path) as client:
-            with client.events(timer.TimerEnded, timeout=5.0) as events:
-                client.arm_timer(0)
-                assert [next(iter(events)).word for _ in range(2)] == ["armed", "ended"]
-            client.get_angles()
-    found = [captured.message for captured in messages(read(path), timer.__name__)]
-    assert [each for each in found if isinstance(each, timer.TimerEnded)] == [
-        timer.TimerEnded(0, "armed"),
-        timer.TimerEnded(0, "ended"),
-    ]
-    shown = run(app, "cobotwire", "--edition", timer.__name__, "decode", str(path))
-    assert shown.returncode == 0
-    assert "event: -> timer_ended(seconds=0, word='armed')" in shown.stdout

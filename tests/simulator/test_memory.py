@@ -5,16 +5,15 @@ from __future__ import annotations
 import asyncio
 import threading
 import time
-from itertools import islice
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from cobotwire import LinkError, MotionTimeout, ReplyTimeout, UsageError
+from cobotwire import LinkError, UsageError
 from cobotwire.editions.mycobot280 import TABLE, AsyncMyCobot280, MyCobot280
 from cobotwire.simulator import MemoryTransport, RunningClock, SimulatedArm, SteppedClock
-from cobotwire.transport import OpenedTransport, TappedTransport
+from cobotwire.transport import TappedTransport
 
 QUERY = bytes.fromhex("FE FE 02 20 FA")
 
@@ -44,46 +43,6 @@ class Late:
 def _stepped() -> tuple[MyCobot280, SteppedClock]:
     clock = SteppedClock()
     return MyCobot280(MemoryTransport(SimulatedArm(TABLE, clock=clock), clock)), clock
-
-
-def test_memory_transport_has_the_interface_of_a_transport() -> None:
-    transport = MemoryTransport(SimulatedArm(TABLE))
-    assert isinstance(transport, OpenedTransport)
-    assert transport.fileno() is None
-
-
-def test_long_motion_takes_only_stepped_time() -> None:
-    arm, clock = _stepped()
-    arm.power_on()
-    started = time.monotonic()
-    arm.move_angles([100, 0, 0, 0, 0, 0], 5, timeout=60)
-    assert time.monotonic() - started < 2
-    assert clock() > 10
-    assert arm.get_angles().j1 == pytest.approx(100, abs=0.1)
-
-
-def test_motion_that_stops_short_takes_only_stepped_time() -> None:
-    arm, clock = _stepped()
-    with pytest.raises(MotionTimeout, match="stands still"):
-        arm.move_angles([100, 0, 0, 0, 0, 0], 5, timeout=60)
-    assert 1.0 <= clock() < 2.0
-
-
-def test_request_without_reply_times_out_by_the_clock() -> None:
-    clock = SteppedClock(100.0)
-    arm = MyCobot280(MemoryTransport(Late(clock, 1e9), clock), timeout=5.0)
-    with pytest.raises(ReplyTimeout) as caught:
-        arm.get_angles()
-    assert caught.value.waited == pytest.approx(5.0)
-    assert clock() == pytest.approx(105.0)
-
-
-def test_stream_uses_the_clock_of_its_transport() -> None:
-    arm, clock = _stepped()
-    began = clock()
-    samples = list(islice(arm.stream(TABLE.request_type("get_angles")(), rate=100), 6_001))
-    assert clock() - began == pytest.approx(60.0)
-    assert [sample.period for sample in samples] == list(range(6_001))
 
 
 def test_observed_traffic_has_times_of_the_clock() -> None:
@@ -136,14 +95,6 @@ def test_incomplete_request_is_given_up_across_several_short_waits() -> None:
         assert transport.read(0.02) == b""
         assert clock() < 1.0
     assert clock() == pytest.approx(0.2, abs=0.021)
-
-
-def test_read_without_timeout_does_not_step_the_clock() -> None:
-    clock = SteppedClock()
-    transport = MemoryTransport(Late(clock, 1.0), clock)
-    transport.write(b"x")
-    assert transport.read(0) == b""
-    assert clock() == 0.0
 
 
 def test_write_in_real_time_wakes_a_waiting_read() -> None:

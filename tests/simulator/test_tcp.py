@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import asyncio
 import socket
 import subprocess
 import sys
@@ -14,7 +13,7 @@ from contextlib import ExitStack
 import pytest
 
 from cobotwire import LinkError, UsageError
-from cobotwire.editions.mycobot280 import TABLE, AsyncMyCobot280, MyCobot280
+from cobotwire.editions.mycobot280 import TABLE, MyCobot280
 from cobotwire.simulator import SimulatedArm, TcpServer
 from cobotwire.simulator.client_connection import UNREAD_LIMIT
 from cobotwire.simulator.tcp import IDLE_SECONDS, MOST_CLIENTS, address
@@ -54,16 +53,6 @@ def test_tcp_server_listens_on_loopback_and_a_free_port_by_default(server: TcpSe
             assert arm.is_power_on() is False
 
 
-def test_several_clients_share_one_arm(server: TcpServer) -> None:
-    with MyCobot280(server.url) as one, MyCobot280(server.url) as two:
-        one.power_on(ack_within=2.0)
-        assert two.is_power_on() is True
-        one.move_angles([10, 0, 0, 0, 0, 0], 100)
-        assert two.get_angles().j1 == pytest.approx(10, abs=0.1)
-        assert server.clients == 2
-    assert _comes(lambda: server.clients == 0)
-
-
 def test_each_client_gets_the_replies_to_its_own_requests(server: TcpServer) -> None:
     right: list[int] = []
 
@@ -78,35 +67,6 @@ def test_each_client_gets_the_replies_to_its_own_requests(server: TcpServer) -> 
     for thread in threads:
         thread.join(30)
     assert right == [True] * 600
-
-
-def test_partial_frames_of_two_clients_do_not_mix(server: TcpServer) -> None:
-    with _connect(server) as one, _connect(server) as two:
-        one.sendall(QUERY[:3])
-        two.sendall(QUERY)
-        assert two.recv(100) == OFF
-        one.sendall(QUERY[3:])
-        assert one.recv(100) == OFF
-
-
-def test_asyncio_client_drives_the_arm_over_tcp(server: TcpServer) -> None:
-    async def drive() -> float:
-        async with AsyncMyCobot280(server.url) as arm:
-            await arm.power_on()
-            await arm.move_angles([5, 0, 0, 0, 0, 0], 100)
-            return (await arm.get_angles()).j1
-
-    assert asyncio.run(drive()) == pytest.approx(5, abs=0.1)
-
-
-def test_client_that_disconnects_within_a_frame_does_not_disturb_the_next_one(
-    server: TcpServer,
-) -> None:
-    with _connect(server) as client:
-        client.sendall(QUERY[:4])
-    with _connect(server) as client:
-        client.sendall(QUERY)
-        assert client.recv(100) == OFF
 
 
 def test_client_with_a_reset_connection_is_dropped(server: TcpServer) -> None:

@@ -229,13 +229,6 @@ def test_port_that_disappears_later_first_sends_the_due_bytes() -> None:
         peer.flush()
 
 
-def test_inserted_bytes_leave_the_pauses_where_they_are() -> None:
-    cut = Split(after_bytes=2, seconds=1)
-    front, inside = Inserted(data=b"abc"), Inserted(data=b"x", where="inside", after_bytes=8)
-    received = talk([cut, front, inside], [IS_POWERED]).received
-    assert received == [(0.0, b"abc" + OFF[:2]), (1.0, OFF[2:5] + b"x" + OFF[5:])]
-
-
 def test_faults_are_applied_in_their_order() -> None:
     leak, cut = ServoLeak(packets=("ping",)), Truncated(after_bytes=6)
     assert talk([leak, cut], [IS_POWERED]).data == PING

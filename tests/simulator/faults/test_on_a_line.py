@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import pytest
 
-from cobotwire import CobotwireError, LinkError, ReplyTimeout
+from cobotwire import CobotwireError, ReplyTimeout
 from cobotwire import codec as codecs
 from cobotwire.codec.interface import Codec
 from cobotwire.diagnose import Finding, summarize
@@ -129,16 +129,6 @@ def test_diagnosis_recognises_the_fault_of_a_scenario(name: str) -> None:
     assert played.done
 
 
-def test_panic_is_reported_as_a_reboot_and_loses_the_state() -> None:
-    with session(find("panic", TABLE)) as played:
-        played.arm.power_on()
-        assert played.arm.is_power_on() is True
-        played.send_requests(4)
-        assert played.arm.is_power_on() is False
-    summary = summarize(played.findings(codecs.load(TABLE)))
-    assert summary.startswith("the controller rebooted: panic LoadProhibited")
-
-
 def test_damaged_request_is_obeyed() -> None:
     # With this seed the changed bit moves the joint by a tick or more; a hundredth would not.
     with session(replace(find("damaged-requests", TABLE), seed=SEED_OF_A_HIGH_BIT)) as played:
@@ -160,17 +150,3 @@ def test_line_that_an_xoff_stops_continues_afterwards() -> None:
         time.sleep(1.2)
         assert played.arm.is_power_on() is True
     assert "the host is stopped for 1 s" in played.done[0].detail
-
-
-def test_unknown_query_freezes_the_firmware() -> None:
-    with session(find("frozen", TABLE)) as played:
-        assert played.send_requests(1) == 1
-        played.transport.write(bytes.fromhex("FE FE 02 19 FA"))
-        assert played.send_requests(1) == 0
-
-
-def test_unplugged_port_is_a_link_error() -> None:
-    with session(find("unplugged", TABLE)) as played:
-        assert played.send_requests(6) == 6
-        with pytest.raises(LinkError):
-            played.arm.get_angles()
