@@ -71,7 +71,7 @@ def test_joints_have_names(codec: str) -> None:
         arm.send_angle(Joint.J7, 0, 50)
 
 
-def test_speed_of_the_line_is_the_second_argument() -> None:
+def test_baud_rate_is_the_second_argument() -> None:
     for client in (MyCobot280, AsyncMyCobot280):
         second = list(inspect.signature(client).parameters.values())[1]
         assert (second.name, second.kind) == ("baudrate", second.POSITIONAL_OR_KEYWORD)

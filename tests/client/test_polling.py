@@ -89,7 +89,7 @@ def test_silence_after_a_cancelled_period_holds_the_next_call_for_the_grace_time
     assert run(peer, drive, timeout=2 * LONGEST, retry=retry) == (1.4, REQUEST * 2)
 
 
-def test_request_that_is_under_way_is_left_to_the_next_session() -> None:
+def test_outstanding_request_is_noted_for_the_next_session() -> None:
     peer = ScriptedPeer()
 
     async def drive(arm: AsyncMyCobot) -> Any:

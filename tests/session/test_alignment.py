@@ -102,7 +102,7 @@ def test_cut_within_the_aligning_bytes_is_ended_too(table: str, data: st.DataObj
     assert frames in ([third], [second, third])
 
 
-def test_frame_around_a_whole_frame_is_completed_instead() -> None:
+def test_cut_request_that_contains_a_legal_frame_is_completed() -> None:
     codec = codecs.load(mycobot280.TABLE)
     # -2.58 degrees are FE FE, 5.31 are 02 13, and FA is the first byte of -14.64.
     angles = [(-2.58, 5.31, -14.64, 0, 0, 0), 50]

@@ -1,4 +1,4 @@
-"""Text outside any frame: encoding, decoding, and replies that are not the awaited text."""
+"""Encode and decode text outside any frame; end a request for text that never comes."""
 
 from __future__ import annotations
 
@@ -80,7 +80,7 @@ def session(codec: Codec) -> OneCaller:
     return made
 
 
-def test_text_hidden_after_a_false_header_may_end_after_the_deadline(session: OneCaller) -> None:
+def test_text_hidden_after_a_false_header_extends_the_wait_by_a_silence(session: OneCaller) -> None:
     assert REPLY is not None
     session.receive(bytes.fromhex("FE FE 0E 20") + b"ssid: a", 0.1)
     assert not any(isinstance(event, RequestExpired) for event in session.wake(0.5))

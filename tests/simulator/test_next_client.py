@@ -1,4 +1,4 @@
-"""The rest of a request that a client began is no request of the next one: on a pty, over TCP."""
+"""A client cannot finish a request that an earlier client began: on a pty, and over TCP."""
 
 from __future__ import annotations
 

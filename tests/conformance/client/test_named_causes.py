@@ -24,7 +24,7 @@ def only(report: Report, case: str) -> Result:
     return found
 
 
-def test_pause_inside_a_frame_is_named_as_one() -> None:
+def test_pause_inside_a_frame_is_reported_as_a_pause() -> None:
     first, rest = Noise(0, STEP[:6], "truncated"), Noise(6, STEP[6:], "no-header")
     [whole] = joined([Received(1.2, first), Received(1.25, rest)])
     assert isinstance(whole.event, Noise)
