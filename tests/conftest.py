@@ -17,10 +17,11 @@ from cobotwire.client import persisted_state, port_notes
 from cobotwire.codec.interface import Codec
 from cobotwire.editions.mycobot import TABLE, MyCobot
 from cobotwire.simulator import PtyServer, SimulatedArm
-from probe import Probe
+from probe import Probe, needed
 
 # Hooks of pytest, for all tests.
 from pty_users import pytest_ignore_collect, pytest_itemcollected
+from session.twins import Recorder
 from stalled_reruns import pytest_runtest_protocol, pytest_terminal_summary
 
 __all__ = [
@@ -99,6 +100,18 @@ def probe() -> Iterator[Probe]:
     made = Probe()
     yield made
     made.close()
+
+
+@pytest.fixture
+def repeated_in_rust(request: pytest.FixtureRequest) -> Iterator[None]:
+    """Have the Rust core repeat what the exchanges of a test do, and compare."""
+    if needed.args[0]:
+        yield
+        return
+    probe: Probe = request.getfixturevalue("probe")
+    with Recorder() as recorder:
+        yield
+    recorder.check(probe.ask)
 
 
 @pytest.fixture

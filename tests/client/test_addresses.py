@@ -187,6 +187,7 @@ def test_address_that_would_hide_a_command_is_reported(tmp_path: Any) -> None:
 TARGETS = st.sampled_from([ALL, LEFT, RIGHT])
 
 
+@pytest.mark.usefixtures("repeated_in_rust")
 @settings(max_examples=60, deadline=None)
 @given(
     st.lists(st.tuples(TARGETS, st.lists(st.sampled_from([LEFT, RIGHT]), max_size=3)), max_size=5)

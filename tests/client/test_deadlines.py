@@ -121,6 +121,7 @@ def test_calls_end_by_the_deadline_and_errors_report_correctly_what_was_sent(
     assert any(call.attempts == 0 and call.waited_for for call in calls), "the line was contended"
 
 
+@pytest.mark.usefixtures("repeated_in_rust")
 def test_error_says_what_the_call_waited_for() -> None:
     exchange, encode = Exchange(CODEC), RequestEncoder(CODEC).encode
     first = submit(exchange, encode("get_encoder", (1,)), 0.0, ONCE, 0.2, 0.5)

@@ -13,9 +13,14 @@ from cobotwire import ProtocolError, ReplyTimeout
 from cobotwire import codec as codecs
 from cobotwire.codec.interface import Codec
 from cobotwire.editions.mycobot280 import TABLE
-from cobotwire.session import Exchange, PendingAck
+from cobotwire.session import AckReceived, Exchange, PendingAck, UnexpectedFrame
+from cobotwire.session.acks import MOTION_SECONDS
+from cobotwire.session.pending import GRACE_SECONDS
 from cobotwire.session.request import RequestEncoder
 
+pytestmark = pytest.mark.usefixtures("repeated_in_rust")
+SETTING = ("set_color", (1, 2, 3))
+MOTION = ("send_angle", (1, 10, 50))
 WITHIN = 0.5
 
 
@@ -43,6 +48,29 @@ def test_late_acknowledgement_of_a_motion_does_not_acknowledge_the_next(loaded: 
     second = sent(exchange, loaded, 20.0, ack, "send_angle", 1, 10, 50)
     with pytest.raises(ReplyTimeout, match="acknowledgement of send_angle, perhaps of an earlier"):
         second.result()
+
+
+@pytest.mark.parametrize(("named", "seconds"), [(SETTING, GRACE_SECONDS), (MOTION, MOTION_SECONDS)])
+def test_acknowledgement_counts_until_its_time_is_over(
+    loaded: Codec, named: tuple[str, Any], seconds: float
+) -> None:
+    request, ack = RequestEncoder(loaded).encode(*named), loaded.encode(named[0], "reply", (1,))
+    for at, kind in ((seconds - 0.05, AckReceived), (seconds, UnexpectedFrame)):
+        exchange = Exchange(loaded)
+        exchange.send_one_way(request, 0.0)
+        [event] = exchange.receive(ack, at)
+        assert type(event) is kind
+
+
+def test_expired_acknowledgement_counts_while_an_earlier_one_may_still_come(loaded: Codec) -> None:
+    exchange, ack = Exchange(loaded), loaded.encode(SETTING[0], "reply", (1,))
+    for now, within in ((0.0, 31.0), (0.0, None), (2.0, None)):
+        exchange.send_one_way(RequestEncoder(loaded).encode(*SETTING), now, within)
+    for _ in range(3):
+        # A chunk ends inside the frame, so nobody knows when its first byte came.
+        exchange.receive(ack[:3], 2.1)
+        [event] = exchange.receive(ack[3:], 2.2)
+        assert isinstance(event, AckReceived)
 
 
 def test_acknowledgement_of_0_is_an_error(loaded: Codec) -> None:

@@ -15,6 +15,7 @@ from cobotwire.codec.interface import Codec
 from cobotwire.session import Exchange, PendingAck
 from cobotwire.session.request import RequestEncoder
 
+pytestmark = pytest.mark.usefixtures("repeated_in_rust")
 REGISTERS = {"set_force": 10, "set_speed": 11, "set_torque": 12}
 COMMAND = """
 {name}:
@@ -33,6 +34,15 @@ COMMAND = """
     - {{name: register, type: small, const: {register}}}
     - {{name: done, type: flag}}
 """
+QUERY = """
+get_done:
+  id: 0xE9
+  shares_id: set_force
+  title: Read whether it is done
+  doc: Reads a flag.
+  safety: query
+  reply: [{name: done, type: flag}]
+"""
 WITHIN = 0.5
 GRIPPERS = (14, 15)
 
@@ -44,7 +54,7 @@ def loaded(tmp_path_factory: pytest.TempPathFactory, request: pytest.FixtureRequ
     for name, register in REGISTERS.items():
         sharing = "" if not commands else "shares_id: set_force"
         commands += COMMAND.format(name=name, register=register, sharing=sharing)
-    package = small_specs.package(folder, small_specs.build(folder, commands))
+    package = small_specs.package(folder, small_specs.build(folder, commands + QUERY))
     return codecs.load(package.TABLE, request.param)
 
 
@@ -91,3 +101,10 @@ def test_request_never_succeeds_by_the_ack_of_another_one(loaded: Codec, sent: l
     for pending, key, _ in waiting:
         alike = [comes for _, other, comes in waiting if other == key]
         assert not succeeds(pending) or all(alike)
+
+
+def test_requests_do_not_collect_outstanding_replies(loaded: Codec) -> None:
+    bus = Bus(loaded)
+    for number in range(100):
+        bus.send(("set_force", 14), 2.0 * number)
+    assert len(bus.exchange._outstanding.replies) == 1

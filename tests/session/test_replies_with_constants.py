@@ -64,7 +64,7 @@ def package(tmp_path_factory: pytest.TempPathFactory) -> Any:
 
 
 @pytest.fixture(params=["reference", "native"])
-def loaded(request: pytest.FixtureRequest, package: Any) -> Codec:
+def loaded(request: pytest.FixtureRequest, package: Any, repeated_in_rust: None) -> Codec:
     return codecs.load(load_table(package.__name__, None), request.param)
 
 
@@ -94,6 +94,15 @@ def test_illegal_value_after_the_own_constant_ends_the_request(loaded: Codec) ->
     session = OneCaller(loaded)
     session.request("get_force", (14, 10), now=0.0)
     assert kinds(session.receive(ILLEGAL_FORCE, 0.01)) == [ReplyRejected]
+
+
+def test_illegal_value_ends_no_request_while_another_reply_is_outstanding(loaded: Codec) -> None:
+    session = OneCaller(loaded)
+    session.request("get_force", (15, 10), now=0.0, timeout=0.1)
+    session.wake(0.1)
+    assert session.request("get_force", (14, 10), now=0.1)
+    assert kinds(session.receive(ILLEGAL_FORCE, 0.15)) == [UnexpectedFrame]
+    assert session.waiting
 
 
 def test_constant_that_no_command_of_the_id_has_ends_the_request(loaded: Codec) -> None:

@@ -16,6 +16,7 @@ from cobotwire.session import Exchange, RetryPolicy
 from cobotwire.session.request import RequestEncoder
 from session.one_caller import submit
 
+pytestmark = pytest.mark.usefixtures("repeated_in_rust")
 THREE = RetryPolicy()
 
 

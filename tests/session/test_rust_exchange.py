@@ -37,7 +37,7 @@ DEPTHS = {"unread": 3, "echoes": 3}
 def _talk(probe: Probe, document: Any, path: Path, dice: Random, times: int) -> None:
     """Play random talks of an edition to both."""
     codec = codecs.load(table_of(document), "native")
-    with Recorder(codec, str(path)) as recorder:
+    with Recorder(str(path)) as recorder:
         for _ in range(times):
             talk = Talk(codec, dice.getrandbits(32))
             for name in dice.choices(STEPS, k=40):

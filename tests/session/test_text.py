@@ -73,7 +73,7 @@ def test_text_without_its_suffix_is_rejected(data: bytes) -> None:
 
 
 @pytest.fixture
-def session(codec: Codec) -> OneCaller:
+def session(codec: Codec, repeated_in_rust: None) -> OneCaller:
     """Return a session in which the text must begin within 0.5 s."""
     made = OneCaller(codec)
     made.request("get_ssid_pwd", (), now=0.0, timeout=0.5)

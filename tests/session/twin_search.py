@@ -72,7 +72,7 @@ class TwinSearch(Search):
             noted.append((state, owners, world.now))
             return state
 
-        with Recorder(CODEC, self._path) as recorder, patch.object(explorer, "state_of", note):
+        with Recorder(self._path) as recorder, patch.object(explorer, "state_of", note):
             super()._explore(path)
         described = recorder.check(self._ask)
         for (state, owners, now), text in zip(noted, described, strict=True):

@@ -9,9 +9,11 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from contextlib import ExitStack
+from importlib import import_module
 from inspect import signature
 from itertools import repeat
 from math import inf, isfinite
+from pathlib import Path
 from types import TracebackType
 from typing import Any, NamedTuple, Self
 from unittest.mock import patch
@@ -19,7 +21,7 @@ from unittest.mock import patch
 from cobotwire.codec.interface import Codec, DecodedMessage, Frame, Noise
 from cobotwire.protocol.addresses import address_name
 from cobotwire.protocol.errors import LinkError, ProtocolError, ReplyTimeout, UsageError
-from cobotwire.protocol.table import Command
+from cobotwire.protocol.table import Command, Table
 from cobotwire.session import (
     EncodedRequest,
     Exchange,
@@ -60,9 +62,11 @@ def nanos(seconds: float) -> Near | None:
 class Twin:
     """One exchange of Python, with its requests in the order of their tickets."""
 
-    def __init__(self, number: int, exchange: Exchange) -> None:
+    def __init__(self, edition: str, number: int, exchange: Exchange) -> None:
+        self.edition = edition
         self.number = number
         self.exchange = exchange
+        self.codec = exchange._codec
         self.now = 0.0
         self.pending: list[Pending] = []
         self.open: set[int] = set()
@@ -87,9 +91,8 @@ class Step(NamedTuple):
 class Recorder:
     """Records the steps of every exchange that is made while it is entered."""
 
-    def __init__(self, codec: Codec, edition: str) -> None:
-        """Take the codec, and the path of its ``edition.json``."""
-        self._codec = codec
+    def __init__(self, edition: str = "") -> None:
+        """Take the path of the ``edition.json`` of all exchanges, or record known editions."""
         self._edition = edition
         self.steps: list[Step] = []
         self._twins: dict[int, Twin] = {}
@@ -112,6 +115,7 @@ class Recorder:
 
     def check(self, ask: Callable[[Any], Any]) -> list[str]:
         """Have Rust repeat all steps; compare what it does. Return the states that were noted."""
+        twins = [self.note_state(twin.exchange) for twin in self._twins.values()]
         steps, self.steps = self.steps, []
         states: list[str] = []
         for step, answer in zip(steps, ask([step.sent for step in steps]), strict=True):
@@ -119,6 +123,9 @@ class Recorder:
                 states.append(answer)
             else:
                 assert step.result == answer, (step, answer)
+        for twin, state in zip(reversed(twins), iter(states.pop, None)):
+            count = len(twin.exchange._outstanding.replies)
+            assert state.count("OutstandingReply {") == count, "replies that it still expects"
         return states
 
     def note_state(self, exchange: Exchange) -> Twin:
@@ -128,7 +135,7 @@ class Recorder:
         return twin
 
     def _send(self, twin: Twin, method: str, given: list[Any], result: Any) -> None:
-        sent = [method, self._edition, twin.number, nanos(twin.now), *given]
+        sent = [method, twin.edition, twin.number, nanos(twin.now), *given]
         self.steps.append(Step(sent, result))
 
     def _recording(self, name: str, original: Callable[..., Any]) -> Callable[..., Any]:
@@ -144,19 +151,25 @@ class Recorder:
             try:
                 result = original(subject, *arguments, **named)
                 if name == "__init__":
-                    twin = self._twins[id(subject.alignment)] = Twin(len(self._twins), subject)
-                    self.steps.append(Step(["new", self._edition, twin.number], None))
+                    self._note_new(subject)
                 elif name != "encode":
                     part = subject.alignment if isinstance(subject, Exchange) else subject
-                    self._note(self._twins[id(part)], name, dict(given), result)
+                    if twin := self._twins.get(id(part)):
+                        self._note(twin, name, dict(given), result)
             except UsageError as error:
-                self._note_refusal(subject._address, dict(given), error)
+                self._note_refusal(subject, dict(given), error)
                 raise
             finally:
                 self._inside = False
             return result
 
         return call
+
+    def _note_new(self, exchange: Exchange) -> None:
+        if path := self._edition or _path_of(exchange._codec.table):
+            twin = Twin(path, len(self._twins), exchange)
+            self._twins[id(exchange.alignment)] = twin
+            self.steps.append(Step(["new", path, twin.number], None))
 
     def _note(self, twin: Twin, name: str, given: dict[str, Any], result: Any) -> None:
         pending = given.get("pending")
@@ -175,18 +188,22 @@ class Recorder:
         result = self._plain(twin, result)
         self._send(twin, name, sent, [result, self._seen(twin)])
 
-    def _note_refusal(self, address: int | None, given: dict[str, Any], error: UsageError) -> None:
+    def _note_refusal(
+        self, encoder: RequestEncoder, given: dict[str, Any], error: UsageError
+    ) -> None:
         """Have Rust refuse a request in the same words."""
         name, values, texts, variant = given.values()
         request = {
             "command": name,
             "values": plain(values),
             "texts": [*(texts or {}).values()],
-            "address": address,
+            "address": encoder._address,
             "variant": variant,
         }
-        twin = [*self._twins.values()][-1]
-        self._send(twin, "prepare", [request], [str(error), self._seen(twin)])
+        for twin in self._twins.values():
+            if twin.codec.table is encoder._codec.table:
+                self._send(twin, "prepare", [request], [str(error), self._seen(twin)])
+                break
 
     def _seen(self, twin: Twin) -> list[Any]:
         exchange, now = twin.exchange, twin.now
@@ -197,10 +214,10 @@ class Recorder:
             self._plain(twin, exchange.idle_seconds(now)),
             exchange.alignment.align.hex(),
             None if last is None else twin.ticket(last),
-            [[ticket, self._outcome(twin.pending[ticket], now)] for ticket in ended],
+            [[ticket, self._outcome(twin, twin.pending[ticket])] for ticket in ended],
         ]
 
-    def _outcome(self, pending: Pending, now: float) -> list[Any]:
+    def _outcome(self, twin: Twin, pending: Pending) -> list[Any]:
         error = pending._error
         if error is None:
             if isinstance(pending, PendingRequest):
@@ -208,13 +225,13 @@ class Recorder:
                 times = [nanos(pending.requested_at), nanos(pending.replied_at)]
             else:
                 assert isinstance(pending, PendingAck)
-                times = [nanos(pending.ack.sent_at), nanos(now)]
+                times = [nanos(pending.ack.sent_at), nanos(twin.now)]
             return ["answer", _fields(pending._fields), times]
         if not isinstance(error, ReplyTimeout):
             return [type(error).__name__, str(error), None]
         if pending._received is not None and not error.received:  # the explorer saves this time
             request = pending.request
-            lines = _lines(pending._received, self._codec, request.frame, request.command)
+            lines = _lines(pending._received, twin.codec, request.frame, request.command)
             why = error.waited_for or None
             sent = error.attempts, error.request
             error = ReplyTimeout(error.command, error.waited, lines, *sent, why)
@@ -232,10 +249,10 @@ class Recorder:
             case Frame():
                 return [value.offset, value.data.hex()]
             case DecodedMessage():
-                to = "" if value.address is None else address_name(self._codec.table, value.address)
+                to = "" if value.address is None else address_name(twin.codec.table, value.address)
                 return f"{value.command.name}({_fields(value.fields)}){to and f' to {to}'}"
             case EncodedRequest():
-                return self._request(value)
+                return _request(twin.codec, value)
             case Pending():
                 return twin.ticket(value)
             case LinkError():
@@ -255,17 +272,26 @@ class Recorder:
                 return [type(value).__name__] * event + [self._plain(twin, each) for each in value]
         return value
 
-    def _request(self, request: EncodedRequest) -> dict[str, Any]:
-        command = request.command
-        message = self._codec.decode("request", request.frame, of=command.name)
-        form = command.request_text
-        return {
-            "command": command.name,
-            "values": plain(message.values),
-            "texts": [*text.decode(form, request.text).values()] if form else [],
-            "address": message.address,
-            "variant": command.request.index(message.variant),
-        }
+
+def _path_of(table: Table) -> str:
+    """Return the path of the ``edition.json`` of a table; empty if it has none."""
+    name = table.commands[0].package
+    if not name or table != (package := import_module(name)).TABLE:
+        return ""
+    return str(Path(str(package.__file__)).with_name("edition.json"))
+
+
+def _request(codec: Codec, request: EncodedRequest) -> dict[str, Any]:
+    command = request.command
+    message = codec.decode("request", request.frame, of=command.name)
+    form = command.request_text
+    return {
+        "command": command.name,
+        "values": plain(message.values),
+        "texts": [*text.decode(form, request.text).values()] if form else [],
+        "address": message.address,
+        "variant": command.request.index(message.variant),
+    }
 
 
 def _fields(fields: dict[str, Any]) -> str:
