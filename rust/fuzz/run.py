@@ -27,7 +27,6 @@ LARGEST = {
     "tables": 512,
     "linear": 256,
     "captures": 512,
-    "editions": 64,
     "exchange": 512,
 }
 # An input that takes longer is a hang: every correct run is much shorter.

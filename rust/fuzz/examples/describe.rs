@@ -20,7 +20,7 @@ fn main() {
     let data = fs::read(path).expect("a readable file");
     match &target[..] {
         "tables" => println!("{:#?}", random::table(&mut Bytes(&data))),
-        "editions" => println!("{data:?}"),
+        "exchange" => println!("{data:?}"),
         "decode" => frames(&Input::read(&data)),
         "columns" | "linear" => pattern(&Input::read(&data)),
         _ => stream(&Input::read(&data)),

@@ -1,82 +1,43 @@
-//! Damages the file of an edition, and uses what is read from it.
+//! Damages the file of an edition.
 
-use cobotwire_core::{Direction, Event, Framer, Listening, decode};
-use cobotwire_table::Edition;
-use serde_json::{Value, json};
+use serde_json::Value;
 
-/// Return the file of a document in which random values are replaced by values of the same or of
-/// another type. `roll` returns a number below the given one.
-pub fn changed(document: &Value, roll: &mut impl FnMut(usize) -> usize) -> Vec<u8> {
-    let others = [
-        json!(null),
-        json!(true),
-        json!(-1),
-        json!(0),
-        json!(1),
-        json!(2),
-        json!(8),
-        json!(255),
-        json!(16384),
-        json!(i64::MIN),
-        json!(i64::MAX),
-        json!(u64::MAX),
-        json!(1e300),
-        json!(0.5),
-        json!("1/0"),
-        json!("9223372036854775807/3"),
-        json!(""),
-        json!("text"),
-        json!("bits"),
-        json!("joint"),
-        json!([]),
-        json!([[]]),
-        json!([0, 1]),
-        json!({}),
-        json!("float"),
-    ];
+use crate::bytes::Bytes;
+
+/// The values that replace others; the long integers are the bounds of 64 bits.
+const OTHERS: &str = r#"[null, true, -1, 0, 1, 2, 8, 255, 16384, 1e300, 0.5, "1/0", "", [], {},
+    -9223372036854775808, 9223372036854775807, 18446744073709551615, "9223372036854775807/3",
+    "text", "bits", "joint", "float", [[]], [0, 1]]"#;
+
+/// Return the file of a document with a few of its commands, in which up to three random values are
+/// replaced by values of the same or of another type.
+pub fn changed(document: &Value, bytes: &mut Bytes<'_>) -> Vec<u8> {
     let mut changed = document.clone();
-    for _ in 0..=roll(3) {
-        *place(&mut changed, roll) = others[roll(others.len())].clone();
+    let commands = changed["commands"].as_array_mut().unwrap();
+    let first = bytes.pick(commands.len());
+    commands.rotate_left(first);
+    commands.truncate(8);
+    let others: Vec<Value> = serde_json::from_str(OTHERS).unwrap();
+    for _ in 0..bytes.pick(4) {
+        *place(&mut changed, bytes) = others[bytes.pick(others.len())].clone();
     }
     changed.to_string().into_bytes()
 }
 
 /// Return a random value inside a document.
-fn place<'a>(at: &'a mut Value, roll: &mut impl FnMut(usize) -> usize) -> &'a mut Value {
+fn place<'a>(at: &'a mut Value, bytes: &mut Bytes<'_>) -> &'a mut Value {
     let size = match at {
         Value::Array(items) => items.len(),
         Value::Object(members) => members.len(),
         _ => 0,
     };
-    if size == 0 || roll(9) == 0 {
+    if size == 0 || bytes.pick(9) == 0 {
         return at;
     }
-    let index = roll(size);
+    let index = bytes.pick(size);
     match at {
-        Value::Array(items) => place(&mut items[index], roll),
-        Value::Object(members) => place(members.values_mut().nth(index).unwrap(), roll),
+        Value::Array(items) => place(&mut items[index], bytes),
+        Value::Object(members) => place(members.values_mut().nth(index).unwrap(), bytes),
         other => other,
-    }
-}
-
-/// Read a file; if it is a table, cut and decode bytes with it.
-pub fn used(json: &[u8]) {
-    let edition = match Edition::read(json) {
-        Err(error) => return assert!(error.to_string().contains(' '), "{error}"),
-        Ok(edition) => edition,
-    };
-    let table = &edition.protocol.table;
-    let sizes =
-        (0..=255).flat_map(|id| [2, 3, 5].map(|size| [0xFE, 0xFE, size, id, 0xFA, 0xFA, 0xFA]));
-    let mut framer = Framer::new(table.rules(Listening::Both).clone());
-    let mut frames = Vec::new();
-    framer.feed(&sizes.flatten().collect::<Vec<u8>>(), |event| {
-        if let Event::Frame { frame, .. } = event {
-            frames.push(frame.bytes().to_vec());
-        }
-    });
-    for frame in frames {
-        let _ = decode(table, Direction::Request, &frame, None);
-        let _ = decode(table, Direction::Reply, &frame, None);
     }
 }

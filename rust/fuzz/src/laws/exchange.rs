@@ -1,40 +1,42 @@
-//! The exchange with any table, facts, bytes and times: each byte is in one event, each wait ends.
+//! A damaged file of an edition is refused with a message, or it gives an exchange in which each byte
+//! is in one event and each wait ends.
 
-use std::sync::Arc;
+use std::sync::{Arc, LazyLock};
 
-use cobotwire_core::exchange::{
-    Event, Exchange, Facts, Named, Nanos, Protocol, Request, RetryPolicy, Safety, TextForm, Ticket,
-};
-use cobotwire_core::{Command, Direction, Event as Received, Framer, Listening, Table, Variant};
+use cobotwire_core::exchange::{Event, Exchange, Nanos, Request, RetryPolicy, Ticket};
+use cobotwire_core::{Direction, Event as Received, Framer, Listening};
+use cobotwire_table::Edition;
+use serde_json::Value;
 
 use crate::bytes::Bytes;
-use crate::random;
+use crate::damage::changed;
 use crate::script;
 use crate::subjects::variants;
 
 /// The unit of random times: a 64th of a second.
 const UNIT: Nanos = 15_625_000;
 
-/// Check an exchange that is driven by fuzz bytes.
-pub fn every_byte_is_in_one_event_and_every_wait_ends(data: &[u8]) {
+/// The files that are damaged. The second one has addresses.
+static DOCUMENTS: LazyLock<[Value; 2]> = LazyLock::new(|| {
+    let files: [&[u8]; 2] = [
+        include_bytes!("../../../../python/cobotwire/editions/mycobot/edition.json"),
+        include_bytes!("../../../../python/cobotwire/editions/mybuddy/edition.json"),
+    ];
+    files.map(|file| serde_json::from_slice(file).expect("the generator writes JSON"))
+});
+
+/// Check a file with changes and an exchange that are driven by fuzz bytes.
+pub fn file_is_refused_or_every_byte_is_in_one_event_and_every_wait_ends(data: &[u8]) {
     let mut bytes = Bytes(data);
-    let (format, commands) = random::table(&mut bytes);
-    let facts = commands.iter().map(|command| facts(&mut bytes, command));
-    let facts = facts.collect();
-    let Ok(table) = Table::new(format, commands) else {
-        return;
+    let edition = match Edition::read(&changed(&DOCUMENTS[bytes.pick(2)], &mut bytes)) {
+        Err(error) => return assert!(error.to_string().contains(' '), "{error}"),
+        Ok(edition) => edition,
     };
-    let size = bytes.0.len() / 2;
-    let stream = script::play(&table, &variants(&table), Bytes(bytes.take(size)));
-    let protocol = Arc::new(Protocol {
-        table,
-        facts,
-        reports_ends: bytes.byte() & 1 == 1,
-        addresses: Vec::new(),
-        joints: 6,
-    });
+    let (protocol, size) = (Arc::new(edition.protocol), bytes.0.len() / 2);
+    let table = &protocol.table;
+    let stream = script::play(table, &variants(table), Bytes(bytes.take(size)));
     let mut requests = Vec::new();
-    let rules = protocol.table.rules(Listening::To(Direction::Request));
+    let rules = table.rules(Listening::To(Direction::Request));
     Framer::new(rules.clone()).feed(&stream, |event| {
         if let Received::Frame { frame, .. } = event {
             requests.extend(Request::from_frame(&protocol, frame.bytes()));
@@ -128,39 +130,5 @@ impl Run {
         let events = self.exchange.fail(self.now);
         self.cover(&events);
         assert_eq!(self.covered, received, "each byte is in one event");
-    }
-}
-
-/// Return what any command may be.
-fn facts(bytes: &mut Bytes<'_>, command: &Command) -> Facts {
-    const SAFETIES: [Safety; 3] = [Safety::Query, Safety::Setting, Safety::Motion];
-    let flags = bytes.byte();
-    let form = || TextForm {
-        prefixes: vec!["a".into(), "b".into()],
-        fields: vec!["one".into(), "two".into()],
-        suffix: "".into(),
-        silence: 4 * UNIT,
-    };
-    let named = |variants: &[Variant]| {
-        let fields = |variant: &Variant| {
-            let names = (0..variant.fields().len()).map(|index| Named {
-                name: index.to_string().into(),
-                echo: flags >> (index % 8) & 1 == 1,
-                status: true,
-            });
-            names.collect()
-        };
-        variants.iter().map(fields).collect()
-    };
-    Facts {
-        safety: SAFETIES[usize::from(flags) % SAFETIES.len()],
-        deadline: Nanos::from(flags) * UNIT,
-        ack: flags & 4 == 4,
-        event: flags & 24 == 24,
-        text: (flags & 0xE0 == 0xE0).then(form),
-        request_text: None,
-        request: named(&command.request),
-        reply: named(&command.reply),
-        accepted: Vec::from_iter((flags & 2 == 2).then_some(1)),
     }
 }

@@ -3,7 +3,6 @@
 pub mod captures;
 pub mod columns;
 pub mod decoding;
-pub mod editions;
 pub mod exchange;
 pub mod framing;
 pub mod linear;
