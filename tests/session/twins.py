@@ -7,6 +7,7 @@ Messages and errors are compared by their texts.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from contextlib import ExitStack
 from importlib import import_module
@@ -18,22 +19,26 @@ from types import TracebackType
 from typing import Any, NamedTuple, Self
 from unittest.mock import patch
 
-from cobotwire.codec.interface import Codec, DecodedMessage, Frame, Noise
+from cobotwire.codec.interface import Codec, Noise
 from cobotwire.protocol.addresses import address_name
-from cobotwire.protocol.errors import LinkError, ProtocolError, ReplyTimeout, UsageError
+from cobotwire.protocol.errors import LinkError, ReplyTimeout, UsageError
 from cobotwire.protocol.table import Command, Table
 from cobotwire.session import (
+    AckReceived,
     EncodedRequest,
+    EventReceived,
     Exchange,
     Pending,
     PendingAck,
     PendingRequest,
     ReplyMatched,
-    ReplyRejected,
+    RequestExpired,
+    SessionEvent,
     received,
     text,
 )
 from cobotwire.session.alignment import Alignment
+from cobotwire.session.events import as_traffic
 from cobotwire.session.request import RequestEncoder
 
 METHODS = (
@@ -228,7 +233,8 @@ class Recorder:
                 times = [nanos(pending.ack.sent_at), nanos(twin.now)]
             return ["answer", _fields(pending._fields), times]
         if not isinstance(error, ReplyTimeout):
-            return [type(error).__name__, str(error), None]
+            text = None if isinstance(error, LinkError) else str(error)
+            return [type(error).__name__, text, None]
         if pending._received is not None and not error.received:  # the explorer saves this time
             request = pending.request
             lines = _lines(pending._received, twin.codec, request.frame, request.command)
@@ -246,31 +252,41 @@ class Recorder:
                 return value.hex()
             case Command():
                 return value.name
-            case Frame():
-                return [value.offset, value.data.hex()]
-            case DecodedMessage():
-                to = "" if value.address is None else address_name(twin.codec.table, value.address)
-                return f"{value.command.name}({_fields(value.fields)}){to and f' to {to}'}"
             case EncodedRequest():
                 return _request(twin.codec, value)
             case Pending():
                 return twin.ticket(value)
             case LinkError():
-                return [value.url, value.detail]
-            case ProtocolError():
-                return str(value)
-            case Noise():
-                return ["Noise", value.offset, value.data.hex(), value.reason]
-            case ReplyRejected(frame=None):
-                return ["ReplyRejected", value.command.name, None, None]
-            case ReplyMatched():
-                texts = None if value.message else [*value.fields.values()]
-                parts = value.command, texts, value.message, value.frame
-                return ["ReplyMatched", *self._plain(twin, parts)]
+                return None
+            case _ if isinstance(value, SessionEvent):
+                return _event(twin, value)
             case tuple() | list():
-                event = type(value).__module__ == "cobotwire.session.events"
-                return [type(value).__name__] * event + [self._plain(twin, each) for each in value]
+                return [self._plain(twin, each) for each in value]
         return value
+
+
+def _event(twin: Twin, event: SessionEvent) -> list[Any]:
+    """Return the name of an event in Rust, its command, what it says, and its bytes."""
+    says: Any = None
+    match event:
+        case Noise():
+            says = event.reason
+        case RequestExpired():
+            says = [nanos(event.requested_at), event.attempts]
+        case ReplyMatched(message=None):
+            says = [*event.fields.values()]
+        case (
+            ReplyMatched(message=message)
+            | AckReceived(message=message)
+            | EventReceived(message=message)
+        ):
+            address = message.address
+            to = "" if address is None else f" to {address_name(twin.codec.table, address)}"
+            says = f"{message.command.name}({_fields(message.fields)}){to}"
+    command, traffic = getattr(event, "command", None), as_traffic(event, 0.0)
+    data = traffic.data.hex() if traffic else ""
+    name = re.sub("Reply|Received|Frame|Request", "", type(event).__name__)
+    return [name, command and command.name, says, data]
 
 
 def _path_of(table: Table) -> str:

@@ -5,12 +5,11 @@
 use std::sync::Arc;
 
 use cobotwire::Value;
+use cobotwire_core::Row;
 use cobotwire_core::exchange::{
-    Answer, Event, Exchange, Failure, Nanos, PersistedState, ReplyError, Request, RetryPolicy,
-    SeenFrame, Ticket,
+    Answer, Event, Exchange, Failure, Nanos, PersistedState, Request, RetryPolicy, Ticket,
 };
-use cobotwire_core::{Decoded, Direction, Row};
-use cobotwire_table::{Edition, link_error};
+use cobotwire_table::Edition;
 use serde_json::{Value as Json, json};
 
 use crate::values::{from_hex, hex, index, value_of};
@@ -20,8 +19,6 @@ pub struct Open {
     edition: Arc<Edition>,
     exchange: Exchange,
     requests: Vec<(Ticket, Request)>,
-    /// How the transport failed.
-    fault: String,
 }
 
 impl Open {
@@ -30,7 +27,6 @@ impl Open {
             exchange: Exchange::new(Arc::new(edition.protocol.clone())),
             edition,
             requests: Vec::new(),
-            fault: String::new(),
         }
     }
 
@@ -53,10 +49,7 @@ impl Open {
             "restore" => exchange.restore(left),
             "note_full" => exchange.note_full(given[0] == true),
             "end" => exchange.aligned(),
-            "fail_waiting" => {
-                self.fault = fault(&given[0]);
-                self.exchange.fail_waiting();
-            }
+            "fail_waiting" => exchange.fail_waiting(),
             _ => {
                 let result = self.call(method, now, given, left);
                 return json!([result, self.look(now)]);
@@ -106,10 +99,7 @@ impl Open {
                 return json!(exchange.cut(&bytes(0), &bytes(1), written));
             }
             "outgoing" => return json!(hex(&exchange.outgoing(now, given[0] == true))),
-            "fail" => {
-                self.fault = fault(&given[0]);
-                exchange.fail(now)
-            }
+            "fail" => exchange.fail(now),
             "advance" => exchange.advance(&bytes(0), now),
             "receive" => exchange.receive(&bytes(0), now),
             "wake" => exchange.wake(now),
@@ -158,67 +148,45 @@ impl Open {
         )
     }
 
+    /// Return the name of an event, its command, what it says, and its bytes.
     fn event(&self, event: &Event) -> Json {
-        let name = |command: &usize| &self.edition.commands[*command].name;
-        let message = |decoded: &Decoded| self.edition.message(decoded);
-        match event {
-            Event::Noise {
-                offset,
-                reason,
-                data,
-            } => json!(["Noise", offset, hex(data), reason.word()]),
+        let (command, says) = match event {
+            Event::Noise { reason, .. } => (None, json!(reason.word())),
             Event::Matched {
                 command,
-                decoded,
+                decoded: None,
                 texts,
-                frame: own,
-            } => {
-                let texts = decoded.is_none().then_some(texts);
-                let decoded = decoded.as_ref().map(message);
-                let own = own.as_ref().map(frame);
-                json!(["ReplyMatched", name(command), texts, decoded, own])
+                ..
+            } => (Some(command), json!(texts)),
+            Event::Matched {
+                command,
+                decoded: Some(own),
+                ..
             }
-            Event::Rejected {
+            | Event::Ack {
                 command,
-                error,
-                frame: own,
-            } => {
-                let text = match (error, own) {
-                    (ReplyError::Frame(error), Some(own)) => {
-                        let direction = Direction::Reply;
-                        Some(self.edition.decode_error(direction, *error, own.bytes()))
-                    }
-                    _ => None,
-                };
-                json!([
-                    "ReplyRejected",
-                    name(command),
-                    text,
-                    own.as_ref().map(frame)
-                ])
+                decoded: own,
+                ..
             }
-            Event::Late {
+            | Event::DeviceEvent {
                 command,
-                frame: own,
-            } => json!(["LateReply", name(command), frame(own)]),
-            Event::Ack {
-                command,
-                decoded,
-                frame: own,
-            } => json!(["AckReceived", name(command), message(decoded), frame(own)]),
-            Event::DeviceEvent {
-                command,
-                decoded,
-                frame: own,
-            } => json!(["EventReceived", name(command), message(decoded), frame(own)]),
-            Event::Unexpected { frame: own } => json!(["UnexpectedFrame", frame(own)]),
-            Event::Echo { frame: own } => json!(["EchoReceived", frame(own)]),
+                decoded: own,
+                ..
+            } => (Some(command), json!(self.edition.message(own))),
             Event::Expired {
                 command,
                 requested_at,
                 attempts,
-            } => json!(["RequestExpired", name(command), requested_at, attempts]),
-        }
+            } => (Some(command), json!([requested_at, attempts])),
+            Event::Late { command, .. } | Event::Rejected { command, .. } => {
+                (Some(command), Json::Null)
+            }
+            Event::Unexpected { .. } | Event::Echo { .. } => (None, Json::Null),
+        };
+        let (text, data) = (format!("{event:?}"), hex(event.data()));
+        let name = text.trim_start_matches("Device").split(' ').next();
+        let command = command.map(|index| &self.edition.commands[*index].name);
+        json!([name, command, says, data])
     }
 
     fn answered(&self, request: &Request, answer: &Answer) -> Json {
@@ -239,12 +207,8 @@ impl Open {
             Failure::Link => ("LinkError", None),
         };
         let text = self.edition.failure(request, failure);
-        json!([class, text.as_ref().unwrap_or(&self.fault), waited])
+        json!([class, text, waited])
     }
-}
-
-fn fault(json: &Json) -> String {
-    link_error(json[0].as_str().unwrap(), json[1].as_str().unwrap())
 }
 
 fn retry_policy(json: &Json) -> RetryPolicy {
@@ -265,8 +229,4 @@ fn persisted(state: &PersistedState) -> Json {
         .map(|part| json!([hex(&part.request), part.written]))
         .collect();
     json!([late, parts])
-}
-
-fn frame(frame: &SeenFrame) -> Json {
-    json!([frame.offset, hex(frame.bytes())])
 }
