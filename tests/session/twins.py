@@ -24,9 +24,7 @@ from cobotwire.protocol.addresses import address_name
 from cobotwire.protocol.errors import LinkError, ReplyTimeout, UsageError
 from cobotwire.protocol.table import Command, Table
 from cobotwire.session import (
-    AckReceived,
     EncodedRequest,
-    EventReceived,
     Exchange,
     Pending,
     PendingAck,
@@ -267,26 +265,21 @@ class Recorder:
 
 def _event(twin: Twin, event: SessionEvent) -> list[Any]:
     """Return the name of an event in Rust, its command, what it says, and its bytes."""
+    command, message = (getattr(event, name, None) for name in ("command", "message"))
     says: Any = None
-    match event:
-        case Noise():
-            says = event.reason
-        case RequestExpired():
-            says = [nanos(event.requested_at), event.attempts]
-        case ReplyMatched(message=None):
-            says = [*event.fields.values()]
-        case (
-            ReplyMatched(message=message)
-            | AckReceived(message=message)
-            | EventReceived(message=message)
-        ):
-            address = message.address
-            to = "" if address is None else f" to {address_name(twin.codec.table, address)}"
-            says = f"{message.command.name}({_fields(message.fields)}){to}"
-    command, traffic = getattr(event, "command", None), as_traffic(event, 0.0)
-    data = traffic.data.hex() if traffic else ""
+    if message is not None:
+        address = message.address
+        to = "" if address is None else f" to {address_name(twin.codec.table, address)}"
+        says = f"{message.command.name}({_fields(message.fields)}){to}"
+    elif isinstance(event, ReplyMatched):
+        says = [*event.fields.values()]
+    elif isinstance(event, Noise):
+        says = event.reason
+    elif isinstance(event, RequestExpired):
+        says = [nanos(event.requested_at), event.attempts]
+    traffic = as_traffic(event, 0.0)
     name = re.sub("Reply|Received|Frame|Request", "", type(event).__name__)
-    return [name, command and command.name, says, data]
+    return [name, command and command.name, says, traffic.data.hex() if traffic else ""]
 
 
 def _path_of(table: Table) -> str:
