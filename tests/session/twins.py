@@ -15,8 +15,7 @@ from inspect import signature
 from itertools import repeat
 from math import inf, isfinite
 from pathlib import Path
-from types import TracebackType
-from typing import Any, NamedTuple, Self
+from typing import Any, Self
 from unittest.mock import patch
 
 from cobotwire.codec.interface import Codec, Noise
@@ -84,48 +83,37 @@ class Twin:
         return ticket
 
 
-class Step(NamedTuple):
-    """A step for the probe, and its result in Python with what could be seen afterwards."""
-
-    sent: list[Any]
-    result: Any
-
-
-class Recorder:
+class Recorder(ExitStack):
     """Records the steps of every exchange that is made while it is entered."""
 
     def __init__(self, edition: str = "") -> None:
         """Take the path of the ``edition.json`` of all exchanges, or record known editions."""
+        super().__init__()
         self._edition = edition
-        self.steps: list[Step] = []
+        # Steps for the probe; results in Python with what could be seen afterwards.
+        self._steps: list[tuple[list[Any], Any]] = []
         self._twins: dict[int, Twin] = {}
-        self._patches = ExitStack()
         self._inside = False
 
     def __enter__(self) -> Self:
         wrapped = [(Exchange, name) for name in METHODS] + [(Alignment, "cut"), (Alignment, "end")]
         for owner, name in (*wrapped, (Exchange, "__init__"), (RequestEncoder, "encode")):
             call = self._recording(name, getattr(owner, name))
-            self._patches.enter_context(patch.object(owner, name, call))
+            self.enter_context(patch.object(owner, name, call))
         # The diagnosis of noise stays in Python.
-        self._patches.enter_context(patch.object(received, "_diagnoses", lambda *_: repeat("")))
+        self.enter_context(patch.object(received, "_diagnoses", lambda *_: repeat("")))
         return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: object, trace: TracebackType | None
-    ) -> None:
-        self._patches.close()
 
     def check(self, ask: Callable[[Any], Any]) -> list[str]:
         """Have Rust repeat all steps; compare what it does. Return the states that were noted."""
         twins = [self.note_state(twin.exchange) for twin in self._twins.values()]
-        steps, self.steps = self.steps, []
+        steps, self._steps = self._steps, []
         states: list[str] = []
-        for step, answer in zip(steps, ask([step.sent for step in steps]), strict=True):
-            if step.sent[0] == "state":
+        for (sent, result), answer in zip(steps, ask([sent for sent, _ in steps]), strict=True):
+            if sent[0] == "state":
                 states.append(answer)
             else:
-                assert step.result == answer, (step, answer)
+                assert result == answer, (sent, result, answer)
         for twin, state in zip(reversed(twins), iter(states.pop, None)):
             count = len(twin.exchange._outstanding.replies)
             assert state.count("OutstandingReply {") == count, "replies that it still expects"
@@ -139,7 +127,7 @@ class Recorder:
 
     def _send(self, twin: Twin, method: str, given: list[Any], result: Any) -> None:
         sent = [method, twin.edition, twin.number, nanos(twin.now), *given]
-        self.steps.append(Step(sent, result))
+        self._steps.append((sent, result))
 
     def _recording(self, name: str, original: Callable[..., Any]) -> Callable[..., Any]:
         parameters = signature(original)
@@ -172,7 +160,7 @@ class Recorder:
         if path := self._edition or _path_of(exchange._codec.table):
             twin = Twin(path, len(self._twins), exchange)
             self._twins[id(exchange.alignment)] = twin
-            self.steps.append(Step(["new", path, twin.number], None))
+            self._steps.append((["new", path, twin.number], None))
 
     def _note(self, twin: Twin, name: str, given: dict[str, Any], result: Any) -> None:
         pending = given.get("pending")
