@@ -184,13 +184,7 @@ class Recorder(ExitStack):
     ) -> None:
         """Have Rust refuse a request in the same words."""
         name, values, texts, variant = given.values()
-        request = {
-            "command": name,
-            "values": plain(values),
-            "texts": [*(texts or {}).values()],
-            "address": encoder._address,
-            "variant": variant,
-        }
+        request = [name, plain(values), [*(texts or {}).values()], encoder._address, variant]
         for twin in self._twins.values():
             if twin.codec.table is encoder._codec.table:
                 self._send(twin, "prepare", [request], [str(error), self._seen(twin)])
@@ -278,17 +272,12 @@ def _path_of(table: Table) -> str:
     return str(Path(str(package.__file__)).with_name("edition.json"))
 
 
-def _request(codec: Codec, request: EncodedRequest) -> dict[str, Any]:
-    command = request.command
+def _request(codec: Codec, request: EncodedRequest) -> list[Any]:
+    command, form = request.command, request.command.request_text
     message = codec.decode("request", request.frame, of=command.name)
-    form = command.request_text
-    return {
-        "command": command.name,
-        "values": plain(message.values),
-        "texts": [*text.decode(form, request.text).values()] if form else [],
-        "address": message.address,
-        "variant": command.request.index(message.variant),
-    }
+    texts = [*text.decode(form, request.text).values()] if form else []
+    variant = command.request.index(message.variant)
+    return [command.name, plain(message.values), texts, message.address, variant]
 
 
 def _fields(fields: dict[str, Any]) -> str:

@@ -132,16 +132,13 @@ impl Open {
         json!([exchange.idle(now), hex(exchange.align()), last, ended])
     }
 
-    /// Return the request of `{"command", "values", "texts", "address", "variant"}`, or the text of
-    /// its error.
+    /// Return the request of `[command, values, texts, address, variant]`, or the text of its error.
     fn request(&self, json: &Json) -> Result<Request, String> {
-        let (edition, number) = (&*self.edition, |key: &str| json[key].as_u64());
-        let command = index(edition, &json["command"]);
-        let values = value_of(&json["values"]);
-        let texts = json["texts"].as_array().unwrap().iter();
-        let texts: Vec<&str> = texts.filter_map(Json::as_str).collect();
-        let address = number("address").map(|address| address as u8);
-        let variant = number("variant").map(|variant| variant as usize);
+        let (edition, command) = (&*self.edition, index(&self.edition, &json[0]));
+        let (values, texts) = (value_of(&json[1]), json[2].as_array().unwrap());
+        let texts: Vec<&str> = texts.iter().filter_map(Json::as_str).collect();
+        let address = json[3].as_u64().map(|address| address as u8);
+        let variant = json[4].as_u64().map(|variant| variant as usize);
         let protocol = &edition.protocol;
         Request::encode::<Value>(protocol, command, &values, &texts, address, variant).map_err(
             |error| edition.request_error(command, &error, (values.count(), &texts, address)),
