@@ -41,24 +41,10 @@ impl Open {
         if method == "state" {
             return json!(format!("{:?}", self.exchange));
         }
-        let exchange = &mut self.exchange;
-        let ticket = || self.requests[given[0].as_u64().unwrap() as usize].0;
-        match method {
-            "give_up" => exchange.give_up(ticket()),
-            "written" => exchange.written(ticket(), now),
-            "restore" => exchange.restore(left),
-            "note_full" => exchange.note_full(given[0] == true),
-            "end" => exchange.aligned(),
-            "fail_waiting" => exchange.fail_waiting(),
-            _ => {
-                let result = self.call(method, now, given, left);
-                return json!([result, self.look(now)]);
-            }
-        }
-        json!([Json::Null, self.look(now)])
+        let result = self.call(method, now, given, left);
+        json!([result, self.look(now)])
     }
 
-    /// Call a method that returns something.
     fn call(
         &mut self,
         method: &str,
@@ -67,35 +53,41 @@ impl Open {
         left: &mut PersistedState,
     ) -> Json {
         let exchange = &mut self.exchange;
-        let bytes = |index: usize| from_hex(&given[index]);
+        let (number, bytes) = (
+            |at: usize| given[at].as_u64(),
+            |at: usize| from_hex(&given[at]),
+        );
+        let ticket = || self.requests[number(0).unwrap() as usize].0;
         let events = match method {
+            "give_up" => return json!(exchange.give_up(ticket())),
+            "written" => return json!(exchange.written(ticket(), now)),
+            "restore" => return json!(exchange.restore(left)),
+            "note_full" => return json!(exchange.note_full(given[0] == true)),
+            "end" => return json!(exchange.aligned()),
+            "fail_waiting" => return json!(exchange.fail_waiting()),
             "prepare" => return json!(self.request(&given[0]).err()),
             "enqueue" => {
                 let [request, wait, policy, ends_by] = [0, 1, 2, 3].map(|at| &given[0][at]);
                 let request = self.request(request).unwrap();
-                let (wait, policy) = (wait.as_u64(), retry_policy(policy));
-                let ends_by = ends_by.as_u64();
-                let ticket = self
-                    .exchange
-                    .enqueue(request.clone(), wait, policy, now, ends_by);
+                let (own, wait, policy) = (request.clone(), wait.as_u64(), retry_policy(policy));
+                let exchange = &mut self.exchange;
+                let ticket = exchange.enqueue(own, wait, policy, now, ends_by.as_u64());
                 self.requests.push((ticket, request));
                 return Json::Null;
             }
             "send_one_way" => {
-                let (request, number) = (self.request(&given[0]).unwrap(), self.requests.len());
-                let (within, ends_by) = (given[1].as_u64(), given[2].as_u64());
-                let (data, ticket) =
-                    self.exchange
-                        .send_one_way(request.clone(), now, within, ends_by);
+                let (request, count) = (self.request(&given[0]).unwrap(), self.requests.len());
+                let (own, within, ends_by) = (request.clone(), number(1), number(2));
+                let (data, ticket) = self.exchange.send_one_way(own, now, within, ends_by);
                 self.requests.extend(ticket.map(|ticket| (ticket, request)));
-                return json!([hex(&data), ticket.map(|_| number)]);
+                return json!([hex(&data), ticket.map(|_| count)]);
             }
             "persist" => {
                 *left = exchange.persist(now);
                 return persisted(left);
             }
             "cut" => {
-                let written = given[2].as_u64().map(|size| size as usize);
+                let written = number(2).map(|size| size as usize);
                 return json!(exchange.cut(&bytes(0), &bytes(1), written));
             }
             "outgoing" => return json!(hex(&exchange.outgoing(now, given[0] == true))),
