@@ -208,7 +208,7 @@ nightly: .venv/.tools .venv/.native ## run the long searches one after another, 
 
 every-edition: set-up ## test all editions where `make test` tests a sample
 	EVERY_EDITION=1 $(BIN)/python -m pytest tests/docs/test_site.py tests/docs/test_robot_pages.py \
-		$(shell grep -rlE 'sampled\(|EVERY_EDITION' tests --include='test_*.py')
+		$(shell grep -rlE 'sampled(_pairs)?\(|EVERY_EDITION' tests --include='test_*.py')
 
 urdf: .venv/.tools .venv/.native ## compare the poses of our URDF files with yourdfpy
 	$(BIN)/python -m pip install --quiet --no-compile --group urdf

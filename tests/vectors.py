@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Container, Iterator
+from collections.abc import Container, Iterator, Sequence
 from functools import lru_cache
+from itertools import product
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 from cobotwire_codegen import project
 from cobotwire_codegen.model import Edition, Octets, Vector
 from cobotwire_codegen.render.vectors_json import plain
 
 ROOT = Path(__file__).parent.parent
+A = TypeVar("A")
+B = TypeVar("B")
 
 
 @lru_cache(maxsize=1)
@@ -47,6 +50,14 @@ def sampled(sample: Container[str] = SAMPLE) -> list[str]:
     """
     every = sorted(path.stem for path in project.edition_files(ROOT))
     return every if "EVERY_EDITION" in os.environ else [name for name in every if name in sample]
+
+
+def sampled_pairs(first: Sequence[A], second: Sequence[B]) -> list[tuple[A, B]]:
+    """Return pairs in which each item of both occurs; ``make every-edition`` tests all pairs."""
+    if "EVERY_EDITION" in os.environ:
+        return list(product(first, second))
+    longest = range(max(len(first), len(second)))
+    return [(first[i % len(first)], second[i % len(second)]) for i in longest]
 
 
 def limits(name: str, vector: Vector) -> Iterator[tuple[dict[str, Any], bool]]:

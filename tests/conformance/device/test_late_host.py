@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import pytest
 
+import vectors
 from cobotwire.conformance import Cause, Report, Verdict
 from cobotwire.conformance.device import ALL_PERMISSIONS, DeviceConnection
 from cobotwire.protocol.table import Table
@@ -38,11 +39,13 @@ def run(way: str, every: int, seconds: float, table: Table = CLOSED_LOOP) -> Rep
     return OurTester(DeviceConnection(transport, clock), table, permissions=allowed).run()
 
 
-@pytest.mark.parametrize(
-    ("every", "seconds"), [(2, 0.02), (3, 0.06), (5, 0.3), (7, 0.8), (13, 3.0)]
-)
-@pytest.mark.parametrize("way", ["", "acknowledges-late", "fast"])
-def test_stalls_of_the_host_fail_no_device(way: str, every: int, seconds: float) -> None:
+STALLS = [(2, 0.02), (3, 0.06), (5, 0.3), (7, 0.8), (13, 3.0)]
+WAYS = ["", "acknowledges-late", "fast"]
+
+
+@pytest.mark.parametrize(("way", "stall"), vectors.sampled_pairs(WAYS, STALLS))
+def test_stalls_of_the_host_fail_no_device(way: str, stall: tuple[int, float]) -> None:
+    every, seconds = stall
     report = run(way, every, seconds)
     assert [f"{r.group}, {r.case} {r.command}: {r.reason}" for r in report.failures] == []
 
