@@ -3,8 +3,12 @@
 from __future__ import annotations
 
 import os
+import pickle
+import sys
 from collections.abc import Container, Iterator, Sequence
 from functools import lru_cache
+from hashlib import sha256
+from importlib import import_module
 from itertools import product
 from pathlib import Path
 from typing import Any, TypeVar
@@ -20,8 +24,36 @@ B = TypeVar("B")
 
 @lru_cache(maxsize=1)
 def editions() -> dict[str, Edition]:
-    """Return the checked models of all editions by name. To load them takes seconds."""
-    return {edition.name: edition for edition in project.editions(ROOT)}
+    """Return the checked models of all editions by name.
+
+    The first process keeps them for the others: to load them takes seconds in each.
+    """
+    folder = ROOT / "target" / "tests"
+    folder.mkdir(parents=True, exist_ok=True)
+    kept = folder / f"editions-{_inputs()}.pickle"
+    with (folder / "lock").open("w") as lock:
+        if os.name == "posix":
+            fcntl = import_module("fcntl")
+            fcntl.flock(lock, fcntl.LOCK_EX)
+        if not kept.exists():
+            for old in folder.glob("editions-*.pickle"):
+                old.unlink()
+            found = {edition.name: edition for edition in project.editions(ROOT)}
+            # Never half a file, even if the process is killed.
+            (new := folder / "new").write_bytes(pickle.dumps(found))
+            new.replace(kept)
+        loaded: dict[str, Edition] = pickle.loads(kept.read_bytes())
+        return loaded
+
+
+def _inputs() -> str:
+    """Return a number that changes with the spec, the generator and the version of Python."""
+    found = [sys.version]
+    for folder in ("spec", "codegen/src"):
+        for path in sorted((ROOT / folder).rglob("*")):
+            if path.is_file() and path.suffix != ".pyc":
+                found.append(f"{path} {path.stat().st_size} {path.stat().st_mtime_ns}")
+    return sha256("\n".join(found).encode()).hexdigest()[:16]
 
 
 def edition(name: str = "mycobot") -> Edition:

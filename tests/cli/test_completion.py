@@ -9,9 +9,11 @@ from pathlib import Path
 
 import click
 import pytest
+from click.testing import CliRunner
 
 from cli.test_same_words import verbs
 from cobotwire import editions
+from cobotwire.cli.app import app
 from cobotwire.cli.completion import SHELLS
 from cobotwire.simulator.faults import shipped
 from cobotwire.transport.serial import ports as serial_ports
@@ -35,8 +37,9 @@ def complete(shell: str, line: str) -> set[str]:
     given = {"COMP_WORDS": " ".join(words), "COMP_CWORD": str(len(words) - 1)}
     if shell == "fish":  # it gives the word instead of its index
         given["COMP_CWORD"] = words[-1]
-    result = run_program(_COBOTWIRE_COMPLETE=f"{shell}_complete", **given)
-    lines = result.stdout.splitlines()
+    # The scripts below run it as a program.
+    given |= {"_COBOTWIRE_COMPLETE": f"{shell}_complete"}
+    lines = CliRunner(env=given).invoke(app, prog_name="cobotwire").stdout.splitlines()
     if shell == "zsh":  # three lines for each word: its type, the word, a description
         return set(lines[1::3])
     return {line.partition(",")[2].partition("\t")[0] for line in lines}
