@@ -60,6 +60,9 @@ def pytest_configure(config: pytest.Config) -> None:
     signal.signal(signal.SIGINT, signal.default_int_handler)
     config.stash[TEMPORARY] = tempfile.TemporaryDirectory(prefix="cw-")
     os.environ["TMPDIR"] = config.stash[TEMPORARY].name
+    # The runs of pytest that tests start have no test of Hypothesis, and to import it takes longer
+    # than the rest of their start.
+    os.environ["PYTEST_ADDOPTS"] = "-p no:hypothesispytest"
 
 
 def pytest_collection_finish() -> None:

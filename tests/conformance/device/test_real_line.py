@@ -104,10 +104,7 @@ def _pytest(folder: Path, url: str, *words: str) -> subprocess.CompletedProcess[
     plugin = [] if INSTALLED else PLUGIN
     options = ["--conform-device", url, "--conform-edition", "mycobot280", *words]
     command = [sys.executable, "-m", "pytest", *plugin, *options, "."]
-    environment = {**os.environ, "PYTEST_ADDOPTS": ""}
-    return subprocess.run(
-        command, capture_output=True, text=True, check=False, cwd=folder, env=environment
-    )
+    return subprocess.run(command, capture_output=True, text=True, check=False, cwd=folder)
 
 
 # The first command runs the verb; the second makes a test of each test case and command.
