@@ -59,7 +59,7 @@ lint: .venv/.tools .venv/.native ## check formatting, types, stubs against the b
 # In these modes the dependencies are compiled anyway: release for the module, debug for the tests.
 	+cargo clippy --release --package cobotwire-native --lib --quiet -- -D warnings
 	+cargo clippy $(TESTED) --lib --bins --tests --quiet -- -D warnings
-	+if [ -d "$$(rustc --print target-libdir --target $(WASM))" ]; then $(CHECK_WASM) && $(CHECK_WASM) --no-default-features; \
+	+if [ -d "$$(rustc --print target-libdir --target $(WASM))" ]; then $(CHECK_WASM) && $(CHECK_WASM) --no-default-features --features exchange; \
 		else echo "skipped: the check of the core for $(WASM), which is not installed" >&2; fi
 
 # The Python tests wait a third of the time; the linters and the Rust tests use that processor

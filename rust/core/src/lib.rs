@@ -9,11 +9,13 @@
 //!
 //! Without the feature `std`, which is on by default, it needs only `alloc`. Then a
 //! [`Table`] stays in the thread that made it, and there is no bulk decoding, no reading of captures
-//! and no summary.
+//! and no summary. Without the feature `exchange`, also on by default, there is no
+//! [`exchange`].
 //! An edition's table takes 0.6 to 0.9 MB, and its construction 128 KiB of stack.
 
-// Some code is used only by modules that need `std`.
-#![cfg_attr(not(feature = "std"), no_std, allow(dead_code))]
+#![cfg_attr(not(feature = "std"), no_std)]
+// Some code is used only by modules of a feature.
+#![cfg_attr(not(all(feature = "std", feature = "exchange")), allow(dead_code))]
 
 #[macro_use]
 extern crate alloc;
@@ -27,6 +29,7 @@ mod crc;
 mod decode;
 mod direction;
 mod encode;
+#[cfg(feature = "exchange")]
 pub mod exchange;
 mod field;
 mod frame;
