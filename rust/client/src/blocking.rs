@@ -14,7 +14,7 @@ use crate::typed::{DeviceEvent, Request, Table};
 use crate::{Error, Options, Sample, Value, lock};
 
 /// The longest that a thread reads before it checks whether others have something to do.
-const SLICE: Duration = Duration::from_millis(2);
+const SLICE: Duration = Duration::from_millis(5);
 /// How long a thread leaves the port to others.
 const TURN: Duration = Duration::from_micros(500);
 
