@@ -2,7 +2,6 @@
 
 use std::future::poll_fn;
 use std::io::{self, Read, Write};
-use std::marker::PhantomData;
 use std::pin::Pin;
 use std::sync::{Arc, Mutex, MutexGuard};
 use std::task::{Context, Poll, Wake, Waker, ready};
@@ -14,11 +13,11 @@ use tokio::net::TcpStream;
 use tokio::sync::Notify;
 
 use crate::connection::Connection;
-use crate::encoder::{Handle, Outcome, Prepared};
+use crate::handle::{Handle, Outcome, Prepared};
 use crate::options::nanos;
 use crate::port::{CONNECT, not_opened, socket_of};
 use crate::session::{CallId, Session};
-use crate::streams::{Events, Polling, Polls, client_methods, next_event};
+use crate::streams::{Polling, Received, client_methods, next_event};
 use crate::typed::{DeviceEvent, Request, Table};
 use crate::{Error, Options, Port, Sample, Value, lock};
 
@@ -55,7 +54,12 @@ impl Wake for Arrived {
     }
 }
 
-client_methods!(AsyncClient [async] [.await]);
+/// What waits for an item of a stream.
+type Coming<T> = Pin<Box<dyn Future<Output = Option<T>> + Send>>;
+
+client_methods!(
+    AsyncClient Coming tokio::time::sleep, [async] [Box::pin] [async move] [.await]
+);
 
 impl AsyncClient {
     /// Connect to `socket://host:port`.
@@ -78,7 +82,7 @@ impl AsyncClient {
             stream,
             waker: arrived.clone().into(),
         });
-        let (handle, connection) = Connection::new(edition, port, &options, Duration::ZERO)?;
+        let (handle, connection) = Connection::new(edition, port, options, Duration::ZERO)?;
         let connection = Mutex::new(connection);
         let shared = Arc::new(Shared {
             connection,
@@ -104,25 +108,30 @@ impl AsyncClient {
             // Only after a yield does the runtime notice that earlier bytes have come.
             tokio::task::yield_now().await;
         }
-        let settings = &self.handle.settings;
-        let id = self.connection().submit(prepared, settings, called);
+        let id = self.connection().submit(prepared, &self.handle, called);
         let call = Call { client: self, id };
-        self.until(|session| session.take(call.id)).await
+        self.until(None, |session, _| session.take(call.id)).await
     }
 
-    /// Read and write for all until `done` returns something.
-    async fn until<T>(&self, mut done: impl FnMut(&mut Session) -> Option<T>) -> T {
+    /// Read and write for all until `done` returns something. It learns whether that time is over.
+    async fn until<T>(
+        &self,
+        longest: Option<Duration>,
+        mut done: impl FnMut(&mut Session, bool) -> Option<T>,
+    ) -> T {
+        let begun = Instant::now();
         loop {
             // This comes before the poll of the stream, so that no arrival is overlooked.
             let arrived = self.shared.arrived.0.notified();
+            let left = longest.map_or(LONGEST, |longest| longest.saturating_sub(begun.elapsed()));
             let idle = {
                 let mut connection = self.connection();
                 let came = connection.step(Duration::ZERO);
-                if let Some(found) = done(&mut connection.session) {
+                if let Some(found) = done(&mut connection.session, left.is_zero()) {
                     self.shared.arrived.0.notify_waiters();
                     return found;
                 }
-                (!came).then(|| connection.idle(LONGEST))
+                (!came).then(|| connection.idle(left))
             };
             match idle {
                 Some(idle) => drop(tokio::time::timeout(idle, arrived).await),
@@ -150,61 +159,21 @@ impl Drop for Call<'_> {
     }
 }
 
-impl<R: Request> Stream for Polls<R, AsyncClient> {
-    type Item = Result<Sample<R::Reply>, Error>;
+impl<T> Stream for Received<Coming<T>> {
+    type Item = T;
 
-    fn poll_next(self: Pin<&mut Self>, context: &mut Context<'_>) -> Poll<Option<Self::Item>> {
+    fn poll_next(self: Pin<&mut Self>, context: &mut Context<'_>) -> Poll<Option<T>> {
         let this = self.get_mut();
-        while !this.polling.ended {
-            let future = this.pending.get_or_insert_with(|| {
-                let (client, at) = (this.client.clone(), this.polling.tick());
-                let prepared = this.polling.prepared.clone();
-                Box::pin(async move {
-                    tokio::time::sleep_until(at.into()).await;
-                    client.perform(&prepared).await
-                })
-            });
-            let outcome = ready!(future.as_mut().poll(context));
-            this.pending = None;
-            let sample = this.polling.sample::<R>(&this.client.handle, outcome);
-            if sample.is_some() {
-                return Poll::Ready(sample);
-            }
-        }
-        Poll::Ready(None)
+        let future = this.pending.get_or_insert_with(&mut this.next);
+        let item = ready!(future.as_mut().poll(context));
+        this.pending = None;
+        Poll::Ready(item)
     }
 }
 
-impl<R: Request> Polls<R, AsyncClient> {
-    /// Wait for the next sample; the samples end with an error.
-    pub async fn next(&mut self) -> Option<Result<Sample<R::Reply>, Error>> {
-        poll_fn(|context| Pin::new(&mut *self).poll_next(context)).await
-    }
-}
-
-impl<E: DeviceEvent> Stream for Events<E, AsyncClient> {
-    type Item = Result<E, Error>;
-
-    fn poll_next(mut self: Pin<&mut Self>, context: &mut Context<'_>) -> Poll<Option<Self::Item>> {
-        let (client, queue, longest) = (self.client.clone(), self.queue.clone(), self.timeout);
-        let future = self.pending.get_or_insert_with(|| {
-            Box::pin(async move {
-                let event = client.until(|session| next_event(&queue, session));
-                match longest {
-                    Some(longest) => tokio::time::timeout(longest, event).await.ok(),
-                    None => Some(event.await),
-                }
-            })
-        });
-        let event = ready!(future.as_mut().poll(context));
-        self.pending = None;
-        Poll::Ready(event)
-    }
-}
-
-impl<E: DeviceEvent> Events<E, AsyncClient> {
-    /// Wait for the next event; return `None` if the time is over.
-    pub async fn next(&mut self) -> Option<Result<E, Error>> {
+impl<T> Received<Coming<T>> {
+    /// Wait for the next sample or event. Samples end with an error, events when their time is over.
+    pub async fn next(&mut self) -> Option<T> {
         poll_fn(|context| Pin::new(&mut *self).poll_next(context)).await
     }
 }

@@ -1,15 +1,15 @@
 //! The blocking client: threads that share a port take turns in reading and writing for all.
 
-use std::marker::PhantomData;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard};
 use std::time::{Duration, Instant};
 
 use crate::connection::{Connection, LONGEST_STOP};
-use crate::encoder::{Handle, Outcome, Prepared};
+use crate::handle::{Handle, Outcome, Prepared};
 use crate::options::nanos;
 use crate::port::{self, Port};
-use crate::streams::{Events, Polling, Polls, client_methods, next_event};
+use crate::session::Session;
+use crate::streams::{Polling, Received, client_methods, next_event};
 use crate::typed::{DeviceEvent, Request, Table};
 use crate::{Error, Options, Sample, Value, lock};
 
@@ -34,7 +34,7 @@ struct Shared {
     waiting: AtomicUsize,
 }
 
-client_methods!(Client [] []);
+client_methods!(Client Option std::thread::sleep, [] [] [] []);
 
 impl Client {
     /// Open a port: that of a serial line, or `socket://host:port`.
@@ -49,7 +49,7 @@ impl Client {
         port: impl Port + 'static,
         options: Options,
     ) -> Result<Self, Error> {
-        let opened = Connection::new(edition, Box::new(port), &options, LONGEST_STOP);
+        let opened = Connection::new(edition, Box::new(port), options, LONGEST_STOP);
         let (handle, connection) = opened?;
         let (connection, waiting) = (Mutex::new(connection), AtomicUsize::new(0));
         let shared = Arc::new(Shared {
@@ -76,12 +76,24 @@ impl Client {
     fn perform(&self, prepared: &Prepared) -> Outcome {
         // Another thread may have the connection.
         let (called, mut connection) = (Instant::now(), self.connection());
-        let id = connection.submit(prepared, &self.handle.settings, called);
+        let id = connection.submit(prepared, &self.handle, called);
+        drop(connection);
+        self.until(None, |session, _| session.take(id))
+    }
+
+    /// Read and write for all until `done` returns something. It learns whether that time is over.
+    fn until<T>(
+        &self,
+        longest: Option<Duration>,
+        mut done: impl FnMut(&mut Session, bool) -> Option<T>,
+    ) -> T {
+        let (begun, mut connection) = (Instant::now(), self.connection());
         loop {
-            connection.step(SLICE);
-            if let Some(outcome) = connection.session.take(id) {
-                return outcome;
+            let left = longest.map_or(SLICE, |longest| longest.saturating_sub(begun.elapsed()));
+            if let Some(found) = done(&mut connection.session, left.is_zero()) {
+                return found;
             }
+            connection.step(left.min(SLICE));
             connection = self.leave(connection);
         }
     }
@@ -94,40 +106,5 @@ impl Client {
         drop(connection);
         std::thread::sleep(TURN);
         self.connection()
-    }
-}
-
-impl<R: Request> Iterator for Polls<R> {
-    type Item = Result<Sample<R::Reply>, Error>;
-
-    fn next(&mut self) -> Option<Self::Item> {
-        while !self.polling.ended {
-            let at = self.polling.tick();
-            std::thread::sleep(at.saturating_duration_since(Instant::now()));
-            let outcome = self.client.perform(&self.polling.prepared);
-            let sample = self.polling.sample::<R>(&self.client.handle, outcome);
-            if sample.is_some() {
-                return sample;
-            }
-        }
-        None
-    }
-}
-
-impl<E: DeviceEvent> Iterator for Events<E> {
-    type Item = Result<E, Error>;
-
-    fn next(&mut self) -> Option<Self::Item> {
-        let (begun, mut connection) = (Instant::now(), self.client.connection());
-        loop {
-            let event = next_event(&self.queue, &connection.session);
-            let left = self.timeout.unwrap_or(Duration::MAX);
-            let left = left.saturating_sub(begun.elapsed());
-            if event.is_some() || left.is_zero() {
-                return event;
-            }
-            connection.step(left.min(SLICE));
-            connection = self.client.leave(connection);
-        }
     }
 }

@@ -5,10 +5,10 @@ use std::time::{Duration, Instant};
 
 use cobotwire_core::exchange::Nanos;
 
-use crate::encoder::{Handle, Prepared};
+use crate::handle::{Handle, Prepared};
 use crate::notes::Note;
 use crate::options::nanos;
-use crate::session::{CallId, Session, Settings};
+use crate::session::{CallId, Session};
 use crate::typed::Table;
 use crate::{Error, Options, Port};
 
@@ -27,7 +27,7 @@ pub(crate) struct Connection {
     /// How long a dropped client may wait until the line takes a stop.
     patience: Duration,
     buffer: Vec<u8>,
-    pub begun: Instant,
+    begun: Instant,
     note: Note,
 }
 
@@ -35,19 +35,18 @@ impl Connection {
     pub fn new(
         edition: Table,
         port: Box<dyn Port>,
-        options: &Options,
+        options: Options,
         patience: Duration,
     ) -> Result<(Handle, Self), Error> {
         let handle = Handle::new(edition, options)?;
-        let url = options.port_name.as_deref();
-        let (begun, (note, left)) = (Instant::now(), Note::of(url));
+        let (note, left) = Note::of(handle.options.port_name.as_deref());
         let connection = Self {
-            session: Session::new(&handle, url.unwrap_or("port"), options.on_drop, &left),
+            session: Session::new(&handle, &left),
             port: Some(port),
             limit: None,
             patience,
             buffer: vec![0; 4096],
-            begun,
+            begun: Instant::now(),
             note,
         };
         Ok((handle, connection))
@@ -57,10 +56,10 @@ impl Connection {
         nanos(self.begun.elapsed())
     }
 
-    pub fn submit(&mut self, prepared: &Prepared, settings: &Settings, called: Instant) -> CallId {
+    pub fn submit(&mut self, prepared: &Prepared, handle: &Handle, called: Instant) -> CallId {
         let called_at = nanos(called.saturating_duration_since(self.begun));
-        self.session
-            .submit(prepared, settings, called_at, self.now())
+        let now = self.now();
+        self.session.submit(prepared, handle, called_at, now)
     }
 
     /// Return for how long nothing is to be done unless bytes come.
@@ -78,7 +77,7 @@ impl Connection {
             Err(error) if !is_wait(error) => Some(format!("cannot be read: {error}")),
             _ => None,
         };
-        match lost.filter(|_| self.session.fault().is_none()) {
+        match lost.filter(|_| self.session.fault.is_none()) {
             Some(detail) => drop(self.session.lose(&detail, self.now())),
             None => {
                 let data = buffer.get(..*read.as_ref().unwrap_or(&0));
@@ -102,7 +101,7 @@ impl Connection {
             match port.and_then(|port| port.write_some(&bytes)) {
                 Ok(size) if size > 0 => self.session.wrote(size, self.now()),
                 Err(error) if !is_wait(&error) => {
-                    self.session.fail_write(&error.to_string(), self.now());
+                    self.session.end_write(&error.to_string(), self.now());
                 }
                 _ => return,
             }
@@ -112,7 +111,8 @@ impl Connection {
     /// Return the port, so that it waits for some time at most.
     fn port(&mut self, longest: Duration) -> std::io::Result<&mut dyn Port> {
         let port = self.port.as_mut().ok_or(ErrorKind::NotConnected)?;
-        if self.limit != Some(longest) {
+        // A port may wait when it gets its limit.
+        if self.limit != Some(longest) || !longest.is_zero() {
             port.wait_at_most(longest)?;
             self.limit = Some(longest);
         }

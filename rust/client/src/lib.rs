@@ -33,9 +33,9 @@ extern crate self as cobotwire;
 mod asynchronous;
 mod blocking;
 mod connection;
-#[doc(hidden)]
-mod encoder;
 mod error;
+#[doc(hidden)]
+mod handle;
 mod limits;
 mod notes;
 mod options;
@@ -62,14 +62,14 @@ pub use error::Error;
 pub use limits::{Limits, Range};
 pub use options::{OnDrop, Options};
 pub use port::Port;
-pub use streams::{Events, Polls};
+pub use streams::Received;
 pub use value::Value;
 
 /// A client without a port and a clock, for transports of other kinds.
 #[doc(hidden)]
 pub mod machine {
-    pub use crate::encoder::{Encoder, Handle, Named, Outcome, Prepared};
-    pub use crate::session::{CallId, Queue, Session, Settings};
+    pub use crate::handle::{Handle, Named, Outcome, Prepared};
+    pub use crate::session::{CallId, Queue, Session};
     pub use cobotwire_core::exchange::PersistedState;
 }
 

@@ -4,8 +4,8 @@ use std::fmt::Display;
 use std::sync::Arc;
 
 use cobotwire_core::exchange::Safety;
-use cobotwire_core::{Number, Table, Value};
-use cobotwire_table::{Command, Edition, Field, Shown, bad_argument, error_text};
+use cobotwire_core::{self as wire, Number, Table};
+use cobotwire_table::{Command, Edition, Field, Value, bad_argument, error_text};
 
 use crate::Error;
 use crate::typed;
@@ -48,7 +48,7 @@ impl Limits {
                         }
                     }
                 }
-                *variant = cobotwire_core::Variant::new(fields);
+                *variant = wire::Variant::new(fields);
             }
         }
         edition.protocol.table = Table::new(table.frame().clone(), commands)
@@ -59,7 +59,7 @@ impl Limits {
     fn check(&self, edition: &Edition) -> Result<(), Error> {
         if let Some(speed) = self.speed.filter(|speed| !(1.0..=100.0).contains(speed)) {
             let allowed = error_text("speed", &[]);
-            let text = bad_argument("limits.speed", &Shown::Real(speed), &allowed);
+            let text = bad_argument("limits.speed", &Value::Real(speed), &allowed);
             return Err(Error::usage(text));
         }
         let Some(workspace) = &self.workspace else {
@@ -107,7 +107,7 @@ impl Limits {
         let (lowest, highest) = (lowest.max(number.minimum), highest.min(number.maximum));
         if lowest > highest {
             let end = |raw| match number.physical(raw) {
-                Value::Real(real) => real,
+                wire::Value::Real(real) => real,
                 _ => raw as f64,
             };
             let (low, high) = (end(number.minimum), end(number.maximum));
@@ -144,7 +144,7 @@ impl Limits {
 }
 
 fn bad_range(axis: usize, (low, high): Range, allowed: &str) -> Error {
-    let given = Shown::Tuple(vec![Shown::Real(low), Shown::Real(high)]);
+    let given = Value::Row(vec![Value::Real(low), Value::Real(high)]);
     let argument = format!("limits.workspace[{axis}]");
     Error::usage(bad_argument(&argument, &given, allowed))
 }

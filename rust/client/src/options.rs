@@ -3,10 +3,9 @@
 use std::time::Duration;
 
 use cobotwire_core::exchange::{Nanos, RetryPolicy};
-use cobotwire_table::{Edition, Shown, bad_argument};
+use cobotwire_table::{Edition, bad_argument};
 
-use crate::session::Settings;
-use crate::{Error, Limits};
+use crate::{Error, Limits, Value};
 
 /// How a client sends requests, and what it does with the arm at its end.
 #[derive(Clone, Debug, Default)]
@@ -51,7 +50,7 @@ pub(crate) fn find_address(edition: &Edition, given: &str) -> Result<u8, Error> 
     let mut numbered = all.iter().copied();
     let numbered = numbered.find(|raw| number == Ok(i64::from(*raw)));
     let found = named.map(|known| known.value).or(numbered);
-    let shown = number.map_or_else(|_| Shown::Text(given.to_owned()), Shown::Integer);
+    let shown = number.map_or_else(|_| Value::Text(given.to_owned()), Value::Integer);
     found.ok_or_else(|| Error::usage(edition.no_address(&shown)))
 }
 
@@ -61,46 +60,25 @@ impl Options {
         let port_name = Some(port.to_owned());
         Self { port_name, ..self }
     }
-
-    /// Return what each request is sent with.
-    pub(crate) fn settings(&self, edition: &Edition) -> Result<Settings, Error> {
-        check_times(self)?;
-        let address = self.address.as_ref();
-        let address = address.map(|given| find_address(edition, given));
-        Ok(Settings {
-            address: address.transpose()?,
-            timeout: self.timeout.map(nanos),
-            deadline: self.deadline.map(nanos),
-            ack_within: None,
-            retry: self.retry,
-        })
-    }
 }
 
 /// Check what Python checks, with the same texts.
-fn check_times(options: &Options) -> Result<(), Error> {
+pub(crate) fn check_times(options: &Options) -> Result<(), Error> {
     let (retry, above) = (options.retry, "seconds above 0 and below 3600");
     let (least, time) = (Duration::from_nanos(1), Duration::from_nanos);
+    let (from, shortest) = ("seconds from 0 to below 3600", time(retry.shortest_attempt));
     for (argument, time, allowed) in [
         ("timeout", options.timeout.unwrap_or(least), above),
-        (
-            "retry.shortest_attempt",
-            time(retry.shortest_attempt),
-            above,
-        ),
-        (
-            "retry.grace",
-            time(retry.grace).max(least),
-            "seconds from 0 to below 3600",
-        ),
+        ("retry.shortest_attempt", shortest, above),
+        ("retry.grace", time(retry.grace).max(least), from),
     ] {
         if time.is_zero() || time.as_secs() >= 3600 {
-            let given = Shown::Real(time.as_secs_f64());
+            let given = Value::Real(time.as_secs_f64());
             return Err(Error::usage(bad_argument(argument, &given, allowed)));
         }
     }
     if !(1..=100).contains(&retry.attempts) {
-        let given = Shown::Integer(retry.attempts.into());
+        let given = Value::Integer(retry.attempts.into());
         let text = bad_argument("retry.attempts", &given, "a whole number 1..100");
         return Err(Error::usage(text));
     }

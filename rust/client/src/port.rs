@@ -1,6 +1,6 @@
 //! Ports: what a blocking client reads and writes.
 
-use std::io::{Read, Write};
+use std::io::{ErrorKind, Read, Write};
 use std::net::{TcpStream, ToSocketAddrs};
 use std::time::Duration;
 
@@ -13,8 +13,8 @@ pub(crate) const CONNECT: Duration = Duration::from_secs(5);
 /// When the time is over or the line is full, `read` and `write_some` return `ErrorKind::WouldBlock` or
 /// `ErrorKind::TimedOut`. A `read` of 0 bytes says that the peer has closed the stream.
 pub trait Port: Read + Write + Send {
-    /// Limit each `read` from now on; zero: it returns at once, and so does `write_some`, which is
-    /// called only then.
+    /// Limit the next `read`, or wait that long for bytes instead. Zero limits all that follow: they
+    /// return at once, and so does `write_some`, which is called only then.
     fn wait_at_most(&mut self, longest: Duration) -> std::io::Result<()>;
 
     /// Write some of the bytes at once, and return how many; by default, with `write`.
@@ -30,47 +30,20 @@ pub trait Port: Read + Write + Send {
 
 impl Port for TcpStream {
     fn wait_at_most(&mut self, longest: Duration) -> std::io::Result<()> {
-        self.set_nonblocking(longest.is_zero())?;
         if longest.is_zero() {
-            return Ok(());
+            return self.set_nonblocking(true);
         }
-        self.set_read_timeout(Some(longest))
-    }
-}
-
-/// A TCP stream that always returns at once, after a wait that is as exact as the system can. A
-/// client changes its limit with each request, and this takes no call of the system.
-#[cfg(unix)]
-struct Tcp(TcpStream, Duration);
-
-#[cfg(unix)]
-impl Read for Tcp {
-    fn read(&mut self, buffer: &mut [u8]) -> std::io::Result<usize> {
-        use rustix::event::{PollFd, PollFlags, Timespec, poll};
-        if !self.1.is_zero() {
-            let longest = Timespec::try_from(self.1).map_err(std::io::Error::other)?;
-            poll(&mut [PollFd::new(&self.0, PollFlags::IN)], Some(&longest))?;
+        #[cfg(unix)]
+        {
+            use rustix::event::{PollFd, PollFlags, Timespec, poll};
+            // This is as exact as the system can be, and takes one call of it.
+            let longest = Timespec::try_from(longest).map_err(std::io::Error::other)?;
+            let ready = poll(&mut [PollFd::new(self, PollFlags::IN)], Some(&longest))?;
+            (ready > 0).then_some(()).ok_or(ErrorKind::TimedOut.into())
         }
-        self.0.read(buffer)
-    }
-}
-
-#[cfg(unix)]
-impl Write for Tcp {
-    fn write(&mut self, data: &[u8]) -> std::io::Result<usize> {
-        self.0.write(data)
-    }
-
-    fn flush(&mut self) -> std::io::Result<()> {
-        Ok(())
-    }
-}
-
-#[cfg(unix)]
-impl Port for Tcp {
-    fn wait_at_most(&mut self, longest: Duration) -> std::io::Result<()> {
-        self.1 = longest;
-        Ok(())
+        #[cfg(not(unix))]
+        self.set_nonblocking(false)
+            .and_then(|()| self.set_read_timeout(Some(longest)))
     }
 }
 
@@ -98,7 +71,7 @@ impl Port for Box<dyn serialport::SerialPort> {
         }
         // With unsent bytes, the system would wait for the line when the port is closed.
         self.clear(serialport::ClearBuffer::Output)?;
-        Err(std::io::ErrorKind::TimedOut.into())
+        Err(ErrorKind::TimedOut.into())
     }
 }
 
@@ -144,10 +117,6 @@ pub(crate) fn open(url: &str, baudrate: u32) -> Result<Box<dyn Port>, Error> {
         match TcpStream::connect_timeout(&socket, CONNECT) {
             Ok(stream) => {
                 stream.set_nodelay(true).map_err(failed)?;
-                #[cfg(unix)]
-                stream.set_nonblocking(true).map_err(failed)?;
-                #[cfg(unix)]
-                let stream = Tcp(stream, Duration::ZERO);
                 return Ok(Box::new(stream));
             }
             Err(error) => last = error,

@@ -4,11 +4,10 @@
 use std::collections::{HashMap, VecDeque};
 use std::sync::{Arc, Mutex, Weak};
 
-use cobotwire_core::exchange::{
-    Event, Exchange, Failure, Nanos, PersistedState, RetryPolicy, Safety, Ticket,
-};
+use cobotwire_core::exchange::{Event, Exchange, Failure, Nanos, PersistedState, Safety, Ticket};
 
-use crate::encoder::{Encoder, Handle, Named, Outcome, Prepared};
+use crate::handle::{Handle, Named, Outcome, Prepared};
+use crate::options::nanos;
 use crate::{Error, OnDrop};
 
 /// The deadline of a write that has no other: a line that takes nothing for longer is stuck.
@@ -31,16 +30,6 @@ pub struct Queue {
 /// Identifies a request that was submitted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct CallId(u64);
-
-/// The options with which a handle sends each request.
-#[derive(Clone, Debug)]
-pub struct Settings {
-    pub address: Option<u8>,
-    pub timeout: Option<Nanos>,
-    pub deadline: Option<Nanos>,
-    pub ack_within: Option<Nanos>,
-    pub retry: RetryPolicy,
-}
 
 /// A submitted request.
 struct Call {
@@ -75,11 +64,10 @@ struct Writing {
 
 /// The requests and replies of one transport.
 pub struct Session {
-    encoder: Arc<Encoder>,
+    handle: Handle,
     exchange: Exchange,
-    url: String,
     /// What happened to the transport; `None`: it is open.
-    fault: Option<Error>,
+    pub fault: Option<Error>,
     calls: HashMap<CallId, Call>,
     submitted: u64,
     /// The one-way requests that wait until they can be written.
@@ -89,19 +77,16 @@ pub struct Session {
     queues: Vec<(usize, Weak<Mutex<Queue>>)>,
     /// The devices that were set in motion, and not stopped since.
     moved: Vec<Option<u8>>,
-    on_drop: OnDrop,
 }
 
 impl Session {
     /// Begin on a port with what an earlier session on it left.
-    pub fn new(handle: &Handle, url: &str, on_drop: OnDrop, left: &PersistedState) -> Self {
-        let encoder = handle.encoder.clone();
-        let mut exchange = Exchange::new(Arc::new(encoder.edition.protocol.clone()));
+    pub fn new(handle: &Handle, left: &PersistedState) -> Self {
+        let mut exchange = Exchange::new(Arc::new(handle.edition.protocol.clone()));
         exchange.restore(left);
         Self {
-            encoder,
+            handle: handle.clone(),
             exchange,
-            url: url.to_owned(),
             fault: None,
             calls: HashMap::new(),
             submitted: 0,
@@ -109,13 +94,7 @@ impl Session {
             writing: None,
             queues: Vec::new(),
             moved: Vec::new(),
-            on_drop,
         }
-    }
-
-    /// Return what happened to the transport; `None`: it is open.
-    pub fn fault(&self) -> Option<&Error> {
-        self.fault.as_ref()
     }
 
     /// Return for how long nothing is to be done unless bytes come.
@@ -139,18 +118,18 @@ impl Session {
     pub fn submit(
         &mut self,
         prepared: &Prepared,
-        settings: &Settings,
+        handle: &Handle,
         called_at: Nanos,
         now: Nanos,
     ) -> CallId {
         self.submitted += 1;
         let id = CallId(self.submitted);
-        let longest = settings.deadline.unwrap_or(Nanos::MAX);
+        let longest = handle.options.deadline.map_or(Nanos::MAX, nanos);
         let mut call = Call {
             prepared: prepared.clone(),
             called_at,
             ends_by: called_at.saturating_add(longest),
-            ack_within: settings.ack_within,
+            ack_within: handle.ack_within,
             ticket: None,
             written: 0,
             fault: None,
@@ -158,7 +137,7 @@ impl Session {
         };
         if self.fault.is_none() && prepared.awaits_reply {
             let (request, ends_by) = (prepared.request.clone(), Some(call.ends_by));
-            let (wait, retry) = (settings.timeout, settings.retry);
+            let (wait, retry) = (handle.options.timeout.map(nanos), handle.options.retry);
             call.ticket = Some(self.exchange.enqueue(request, wait, retry, now, ends_by));
         } else if self.fault.is_none() {
             self.one_ways.push_back(id);
@@ -175,8 +154,8 @@ impl Session {
         let outcome = match (call.ticket, fault) {
             (Some(ticket), fault) if !call.done => {
                 self.exchange.take(ticket)?.map(Some).map_err(|failure| {
-                    let error = self.encoder.failure(&call.prepared.request, &failure);
-                    let lost = || Error::link(&self.url, "is lost", None);
+                    let error = self.handle.failure(&call.prepared.request, &failure);
+                    let lost = || self.handle.link("is lost", None);
                     error.or(fault).unwrap_or_else(lost)
                 })
             }
@@ -206,7 +185,7 @@ impl Session {
         }
         for id in std::mem::take(&mut self.one_ways) {
             match self.calls.get_mut(&id) {
-                Some(call) if call.ends_by <= now => call.unsent(&self.encoder, now),
+                Some(call) if call.ends_by <= now => call.unsent(&self.handle, now),
                 _ => self.one_ways.push_back(id),
             }
         }
@@ -244,7 +223,7 @@ impl Session {
         };
         let (call, align) = (self.calls.get(&id)?, self.exchange.align());
         let command = call.prepared.request.command;
-        let command = self.encoder.edition.commands.get(command)?;
+        let command = self.handle.edition.commands.get(command)?;
         let (address, stops) = (call.prepared.address, command.role == "stop");
         // Only a stop that was written whole ends a motion for sure.
         if command.safety == Safety::Motion && !stops && !self.moved.contains(&address) {
@@ -277,13 +256,8 @@ impl Session {
         }
     }
 
-    /// Note that writing has failed.
-    pub fn fail_write(&mut self, why: &str, now: Nanos) {
-        self.end_write(why, now);
-    }
-
     /// End a write. If it is cut, `why` is the reason; empty: its time is over.
-    fn end_write(&mut self, why: &str, now: Nanos) {
+    pub fn end_write(&mut self, why: &str, now: Nanos) {
         let Some(writing) = self.writing.take() else {
             return;
         };
@@ -313,13 +287,13 @@ impl Session {
         if taken == all {
             call.done = call.ticket.is_none();
         } else if taken == 0 && call.ends_by <= now && why.is_empty() {
-            call.unsent(&self.encoder, now);
+            call.unsent(&self.handle, now);
         } else {
             let seconds = (now - writing.at) as f64 / 1e9;
             let few = format!("only {taken} of {all} bytes were taken in {seconds:.3} s");
             let why = if why.is_empty() { &few } else { why };
             let detail = format!("cannot be written: {why}");
-            call.fault = Some(Error::link(&self.url, &detail, None));
+            call.fault = Some(self.handle.link(&detail, None));
         }
         match (writing.ticket, call.ticket) {
             (Some(_), _) if taken < all => self.exchange.fail_waiting(),
@@ -336,7 +310,7 @@ impl Session {
             call.written = writing.taken.saturating_sub(writing.align);
         }
         self.one_ways.clear();
-        let fault = Error::link(&self.url, detail, Some(0));
+        let fault = self.handle.link(detail, Some(0));
         self.fault = Some(fault.clone());
         let events = self.exchange.fail(now);
         self.dispatch(events);
@@ -353,7 +327,7 @@ impl Session {
 
     /// Return what the next session on this port must know. What is being written counts as cut.
     pub fn persist(&mut self, now: Nanos) -> PersistedState {
-        self.fail_write("the client was closed", now);
+        self.end_write("the client was closed", now);
         self.exchange.persist(now)
     }
 
@@ -362,14 +336,16 @@ impl Session {
     pub fn stops(&mut self, now: Nanos) -> Vec<u8> {
         self.end_write("", now);
         let moved = std::mem::take(&mut self.moved);
-        let commands = &self.encoder.edition.commands;
+        let (mut handle, commands) = (self.handle.clone(), &self.handle.edition.commands);
+        let stops = handle.options.on_drop == OnDrop::Stop;
         let stop = commands.iter().find(|command| command.role == "stop");
-        let Some(stop) = stop.filter(|_| self.on_drop == OnDrop::Stop && !moved.is_empty()) else {
+        let Some(stop) = stop.filter(|_| stops && !moved.is_empty()) else {
             return Vec::new();
         };
         let mut bytes = self.exchange.align().to_vec();
         for address in moved {
-            if let Ok(prepared) = self.encoder.prepare(&stop.name, &[], address) {
+            handle.address = address;
+            if let Ok(prepared) = handle.prepare_named(&stop.name, &[]) {
                 bytes.extend(&prepared.request.frame);
             }
         }
@@ -391,7 +367,7 @@ impl Session {
                     queue.events.pop_front();
                     queue.lost += 1;
                 }
-                queue.events.push_back(self.encoder.named(&decoded));
+                queue.events.push_back(self.handle.edition.named(&decoded));
             }
         }
     }
@@ -399,9 +375,9 @@ impl Session {
 
 impl Call {
     /// End a request with the error that none of its bytes was written by its deadline.
-    fn unsent(&mut self, encoder: &Encoder, now: Nanos) {
+    fn unsent(&mut self, handle: &Handle, now: Nanos) {
         let failure = Failure::unsent(now.saturating_sub(self.called_at));
-        self.fault = encoder.failure(&self.prepared.request, &failure);
+        self.fault = handle.failure(&self.prepared.request, &failure);
         self.done |= self.ticket.is_none();
     }
 }

@@ -1,35 +1,54 @@
 //! Samples of queries and events of devices, as iterators and streams; and what both clients have.
 
-use std::marker::PhantomData;
-use std::pin::Pin;
-use std::sync::{Arc, Mutex};
+use std::sync::Mutex;
 use std::time::{Duration, Instant};
 
 use cobotwire_core::exchange::Safety;
-use cobotwire_table::{Shown, bad_argument};
+use cobotwire_table::bad_argument;
 
-use crate::encoder::{Handle, Outcome, Prepared, result};
+use crate::handle::{Handle, Outcome, Prepared, result};
 use crate::session::{Queue, Session};
 use crate::typed::{DeviceEvent, Request};
-use crate::{Client, Error, Sample, lock};
+use crate::{Error, Sample, Value, lock};
 
-/// What an asynchronous stream waits for.
-pub(crate) type Pending<T> = Option<Pin<Box<dyn Future<Output = T> + Send>>>;
-
-/// The samples of a query; see [`Client::poll`].
-pub struct Polls<R, C = Client> {
-    pub(crate) client: C,
-    pub(crate) polling: Polling,
-    #[cfg_attr(not(feature = "tokio"), allow(dead_code))]
-    pub(crate) pending: Pending<Outcome>,
-    pub(crate) reply: PhantomData<fn() -> R>,
+/// The samples of a query, or the events of a type: an iterator of [`Client::poll`] or
+/// [`Client::events`], a `Stream` of the asynchronous client. `N` is what waits for the next one.
+///
+/// [`Client::poll`]: crate::Client::poll
+/// [`Client::events`]: crate::Client::events
+pub struct Received<N> {
+    pub(crate) next: Box<dyn FnMut() -> N + Send>,
+    #[cfg(feature = "tokio")]
+    pub(crate) pending: Option<N>,
+    missed: Box<dyn Fn() -> u64 + Send>,
 }
 
-impl<R, C> Polls<R, C> {
-    /// Return how many periods have had no sample.
+impl<N> Received<N> {
+    pub(crate) fn new(
+        next: impl FnMut() -> N + Send + 'static,
+        missed: impl Fn() -> u64 + Send + 'static,
+    ) -> Self {
+        Self {
+            next: Box::new(next),
+            #[cfg(feature = "tokio")]
+            pending: None,
+            missed: Box::new(missed),
+        }
+    }
+
+    /// Return how many periods have had no sample, or how many events were dropped, always the
+    /// oldest, because too many waited.
     #[must_use]
     pub fn missed(&self) -> u64 {
-        self.polling.missed
+        (self.missed)()
+    }
+}
+
+impl<T> Iterator for Received<Option<T>> {
+    type Item = T;
+
+    fn next(&mut self) -> Option<T> {
+        (self.next)()
     }
 }
 
@@ -38,17 +57,13 @@ pub(crate) struct Polling {
     pub prepared: Prepared,
     period: Duration,
     next: Option<Instant>,
-    missed: u64,
+    pub missed: u64,
     pub ended: bool,
 }
 
 impl Polling {
     pub fn new(handle: &Handle, prepared: Prepared, rate: f64) -> Result<Self, Error> {
-        let command = handle
-            .encoder
-            .edition
-            .commands
-            .get(prepared.request.command);
+        let command = handle.edition.commands.get(prepared.request.command);
         let command = command.filter(|command| command.safety != Safety::Query);
         if let Some(command) = command {
             let why = "is not a query; a stream can send only queries";
@@ -56,7 +71,7 @@ impl Polling {
         }
         if !(0.0 < rate && rate <= 1000.0) {
             let allowed = "a number above 0 and up to 1000";
-            let text = bad_argument("rate", &Shown::Real(rate), allowed);
+            let text = bad_argument("rate", &Value::Real(rate), allowed);
             return Err(Error::usage(text));
         }
         Ok(Self {
@@ -90,32 +105,15 @@ impl Polling {
         }))
     }
 
-    /// Return when the next period begins; those that have passed are missed.
-    pub fn tick(&mut self) -> Instant {
+    /// Return for how long to wait for the next period; those that have passed are missed.
+    pub fn tick(&mut self) -> Duration {
         let now = Instant::now();
         let at = self.next.unwrap_or(now);
         let late = now.saturating_duration_since(at).as_nanos() / self.period.as_nanos().max(1);
         let late = u32::try_from(late).unwrap_or(u32::MAX);
         self.missed += u64::from(late);
         self.next = Some(at + self.period * late + self.period);
-        at + self.period * late
-    }
-}
-
-/// Events of one type; see [`Client::events`].
-pub struct Events<E, C = Client> {
-    pub(crate) client: C,
-    pub(crate) queue: Arc<Mutex<Queue>>,
-    pub(crate) timeout: Option<Duration>,
-    #[cfg_attr(not(feature = "tokio"), allow(dead_code))]
-    pub(crate) pending: Pending<Option<Result<E, Error>>>,
-}
-
-impl<E, C> Events<E, C> {
-    /// Return how many events were dropped because too many waited: always the oldest.
-    #[must_use]
-    pub fn lost(&self) -> u64 {
-        lock(&self.queue).lost
+        (at + self.period * late).saturating_duration_since(now)
     }
 }
 
@@ -126,13 +124,17 @@ pub(crate) fn next_event<E: DeviceEvent>(
 ) -> Option<Result<E, Error>> {
     let event = lock(queue).events.pop_front();
     let event = event.map(|fields| result(fields, (E::FIELDS, false), &[]));
-    event.or_else(|| session.fault().cloned().map(Err))
+    event.or_else(|| session.fault.clone().map(Err))
 }
 
 /// Makes the methods of a client with the fields `handle` and `shared`, and with private methods
-/// `perform` and `connection`.
+/// `perform`, `until` and `connection`. The rest is what asynchronous ones have besides: `$coming`
+/// is what waits for an item.
 macro_rules! client_methods {
-    ($client:ident [$($async:tt)*] [$($await:tt)*]) => {
+    (
+        $client:ident $coming:ident $sleep:path,
+        [$($async:tt)*] [$($pin:tt)*] [$($move:tt)*] [$($await:tt)*]
+    ) => {
         impl std::fmt::Debug for $client {
             fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
                 write!(f, "{}({})", stringify!($client), self.edition().name)
@@ -143,7 +145,7 @@ macro_rules! client_methods {
             /// Return the table of the edition, within the limits of this client.
             #[must_use]
             pub fn edition(&self) -> &Table {
-                &self.handle.encoder.edition
+                &self.handle.edition
             }
 
             /// Return this client for another address, by its name or number.
@@ -156,7 +158,7 @@ macro_rules! client_methods {
             #[must_use]
             pub fn acknowledged(&self, within: Duration) -> Self {
                 let mut other = self.clone();
-                other.handle.settings.ack_within = Some(nanos(within));
+                other.handle.ack_within = Some(nanos(within));
                 other
             }
 
@@ -175,19 +177,46 @@ macro_rules! client_methods {
             ) -> Result<Vec<(String, Value)>, Error> {
                 let prepared = self.handle.prepare_named(command, arguments)?;
                 let answer = self.perform(&prepared) $($await)* ?;
-                Ok(self.handle.encoder.fields(&prepared, answer))
+                Ok(self.handle.fields(&prepared, answer))
             }
 
             /// Sample a query `rate` times a second, above 0 and up to 1000.
             ///
             /// A request is sent only when the loop wants a sample, and not again within its period.
-            /// A period without a reply has no sample; [`Polls::missed`] counts such periods, and
+            /// A period without a reply has no sample; [`Received::missed`] counts such periods, and
             /// those for which the loop came too late.
-            pub fn poll<R: Request>(&self, request: R, rate: f64) -> Result<Polls<R, Self>, Error> {
+            pub fn poll<R: Request>(
+                &self,
+                request: R,
+                rate: f64,
+            ) -> Result<Received<$coming<Result<Sample<R::Reply>, Error>>>, Error> {
                 let mut client = self.clone();
-                client.handle.settings.retry.attempts = 1;
+                client.handle.options.retry.attempts = 1;
                 let polling = Polling::new(&self.handle, self.handle.prepare(request)?, rate)?;
-                Ok(Polls { client, polling, pending: None, reply: PhantomData })
+                let polling = Arc::new(Mutex::new(polling));
+                let counted = polling.clone();
+                let next = move || -> $coming<_> {
+                    let (client, polling) = (client.clone(), polling.clone());
+                    $($pin)* ($($move)* { client.sample::<R>(&polling) $($await)* })
+                };
+                Ok(Received::new(next, move || lock(&counted).missed))
+            }
+
+            $($async)* fn sample<R: Request>(
+                &self,
+                polling: &Mutex<Polling>,
+            ) -> Option<Result<Sample<R::Reply>, Error>> {
+                let prepared = lock(polling).prepared.clone();
+                while !lock(polling).ended {
+                    let wait = lock(polling).tick();
+                    $sleep(wait) $($await)* ;
+                    let outcome = self.perform(&prepared) $($await)* ;
+                    let sample = lock(polling).sample::<R>(&self.handle, outcome);
+                    if sample.is_some() {
+                        return sample;
+                    }
+                }
+                None
             }
 
             /// Receive the events of a type that come from now on, until none comes within
@@ -195,10 +224,19 @@ macro_rules! client_methods {
             pub fn events<E: DeviceEvent>(
                 &self,
                 timeout: Option<Duration>,
-            ) -> Result<Events<E, Self>, Error> {
-                let command = self.handle.encoder.command(E::COMMAND)?;
+            ) -> Result<Received<$coming<Result<E, Error>>>, Error> {
+                let (client, command) = (self.clone(), self.handle.command(E::COMMAND)?);
                 let queue = self.connection().session.subscribe(command);
-                Ok(Events { client: self.clone(), queue, timeout, pending: None })
+                let counted = queue.clone();
+                let next = move || -> $coming<_> {
+                    let (client, queue) = (client.clone(), queue.clone());
+                    let next = move |session: &mut Session, is_over: bool| {
+                        let event = next_event(&queue, session);
+                        event.map(Some).or(is_over.then_some(None))
+                    };
+                    $($pin)* ($($move)* { client.until(timeout, next) $($await)* })
+                };
+                Ok(Received::new(next, move || lock(&counted).lost))
             }
         }
     };

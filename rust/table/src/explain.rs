@@ -6,12 +6,12 @@ use alloc::string::{String, ToString};
 use alloc::vec::Vec;
 use core::ops::Range;
 
-use cobotwire_core::{Check, Decoded, Shape, Value};
+use cobotwire_core::{self as wire, Check, Decoded, Shape};
 
 use crate::rejection::{Part, UNITS};
-use crate::shown::general;
 use crate::texts::{entry, hex, text};
-use crate::{Edition, Shown};
+use crate::value::general;
+use crate::{Edition, Value};
 
 /// A run of bytes inside a frame, and what it means. Parts of a word share its bytes: the last one
 /// has them.
@@ -75,11 +75,11 @@ impl Edition {
             };
             if part.wire.shape != Shape::Numbers {
                 let meaning = match value {
-                    Shown::Bytes(bytes) if bytes.is_empty() => "no bytes".into(),
-                    Shown::Bytes(bytes) => hex(&bytes, " "),
+                    Value::Bytes(bytes) if bytes.is_empty() => "no bytes".into(),
+                    Value::Bytes(bytes) => hex(&bytes, " "),
                     text => text.to_string(),
                 };
-                push(at..at + part.numbers.len(), name, meaning, None);
+                push(at..at + part.numbers.len(), &name, meaning, None);
                 at += part.numbers.len();
                 continue;
             }
@@ -114,7 +114,7 @@ impl Part<'_> {
             return text!("label"; label, raw);
         }
         let value = match number.physical(raw) {
-            Value::Real(real) => general(real, 6),
+            wire::Value::Real(real) => general(real, 6),
             _ => raw.to_string(),
         };
         let space = if names.unit.is_empty() { "" } else { " " };

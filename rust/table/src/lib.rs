@@ -15,9 +15,9 @@ mod json;
 mod messages;
 mod named;
 mod rejection;
-mod shown;
 mod texts;
 mod types;
+mod value;
 
 use alloc::collections::BTreeSet;
 use alloc::format;
@@ -28,14 +28,13 @@ use core::fmt;
 use cobotwire_core::exchange::{Protocol, Safety};
 use cobotwire_core::{Direction, Table};
 use serde::Deserialize;
-use serde_json::Value;
 
 use crate::json::Record;
 use crate::messages::Messages;
 
 pub use crate::explain::Explained;
-pub use crate::shown::{Quote, Shown};
 pub use crate::texts::{bad_argument, error_text, link_error};
+pub use crate::value::Value;
 
 /// The version of the format.
 const VERSION: i64 = 3;
@@ -103,7 +102,7 @@ pub struct Field {
     /// Whether it is a constant, which the default is then.
     pub constant: bool,
     /// The value of an argument that is left out, in physical units.
-    pub default: Option<Shown>,
+    pub default: Option<Value>,
 }
 
 impl Field {
@@ -135,7 +134,7 @@ impl Edition {
         if json.len() > LARGEST {
             return BadEdition::because(format!("the file has more than {LARGEST} bytes"));
         }
-        let document: Result<Value, _> = serde_json::from_slice(json);
+        let document: Result<serde_json::Value, _> = serde_json::from_slice(json);
         let document = document.or_else(BadEdition::because);
         let root = Record(&document.within("the file is not JSON", "")?);
         let version: i64 = root.get("version")?;

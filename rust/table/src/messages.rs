@@ -13,7 +13,7 @@ use cobotwire_core::exchange::Named;
 use crate::frame::LONGEST;
 use crate::json::Record;
 use crate::types::{Kind, Numbers, Types, all_choices, bits, fitting, kind, words};
-use crate::{BadEdition, Field, Outcome, Shown, Within};
+use crate::{BadEdition, Field, Outcome, Value, Within};
 
 /// One variant of a message, as the table, texts and clients, and the exchange need it.
 type Variant = (wire::Variant, (Vec<Field>, Vec<Named>));
@@ -283,7 +283,7 @@ fn bounds(of: Record<'_>) -> Outcome<(usize, usize)> {
 }
 
 /// Return raw values of a field's first case in physical units.
-fn physical(raws: &[i64], field: &wire::Field) -> Outcome<Option<Shown>> {
+fn physical(raws: &[i64], field: &wire::Field) -> Outcome<Option<Value>> {
     let numbers = field.numbers(0);
     if numbers.len() != raws.len() {
         return BadEdition::because("it is not a raw value for each number");
@@ -293,7 +293,7 @@ fn physical(raws: &[i64], field: &wire::Field) -> Outcome<Option<Shown>> {
         fitting(number, [raw])?;
         values.push(number.physical(*raw));
     }
-    Ok(Shown::nested(&mut values.into_iter()))
+    Ok(Value::nested(&mut values.into_iter()))
 }
 
 /// Return about how many bytes a field takes besides its numbers.

@@ -3,28 +3,26 @@
 use alloc::string::String;
 use alloc::vec::Vec;
 
-use crate::shown::join;
 use crate::texts::text;
-use crate::{Edition, Field, Shown};
+use crate::value::join;
+use crate::{Edition, Field, Value};
 
 impl Edition {
     /// Return the values of the request's variant that takes exactly the given arguments, in the
     /// order of the wire, and the index of the variant. If several variants take them, the index is
-    /// `None`, and the values must decide. `filled` makes the value of a constant or a default. For
-    /// a field that counts elements, it gets `None` and returns a mark: the encoder counts them.
+    /// `None`, and the values must decide.
     ///
     /// # Errors
     /// No variant takes exactly these arguments; the text names a missing or an unknown one.
-    pub fn arrange<V: Clone>(
+    pub fn arrange(
         &self,
         command: usize,
-        given: &[(&str, V)],
-        filled: impl Fn(Option<Shown>) -> V,
-    ) -> Result<(Vec<V>, Option<usize>), String> {
+        given: &[(&str, Value)],
+    ) -> Result<(Vec<Value>, Option<usize>), String> {
         let Some(record) = self.commands.get(command) else {
             return Ok((Vec::new(), None));
         };
-        let rows = record.request.iter().map(|each| row(each, given, &filled));
+        let rows = record.request.iter().map(|each| row(each, given));
         let (fitting, misfits): (Vec<_>, Vec<_>) = rows.enumerate().partition(|row| row.1.is_ok());
         if let [(index, Ok(row)), others @ ..] = &*fitting {
             return Ok((row.clone(), others.is_empty().then_some(*index)));
@@ -42,21 +40,23 @@ impl Edition {
 }
 
 /// Return the values of a variant; or the kind of an error, and the argument at fault.
-fn row<'a, V: Clone>(
+fn row<'a>(
     fields: &'a [Field],
-    given: &[(&'a str, V)],
-    filled: &impl Fn(Option<Shown>) -> V,
-) -> Result<Vec<V>, (&'static str, &'a str)> {
-    let odd = |(name, _): &&(&str, V)| !fields.iter().any(|field| field.name == *name);
+    given: &[(&'a str, Value)],
+) -> Result<Vec<Value>, (&'static str, &'a str)> {
+    let odd = |(name, _): &&(&str, Value)| !fields.iter().any(|field| field.name == *name);
     if let Some((name, _)) = given.iter().find(odd) {
         return Err(("odd-argument", name));
     }
     let value = |field: &'a Field| {
-        let own = |(name, _): &&(&str, V)| !field.constant && field.name == *name;
-        match (&field.counts, given.iter().find(own), &field.default) {
-            (Some(_), ..) => Ok(filled(None)),
-            (_, Some((_, value)), _) => Ok(value.clone()),
-            (_, _, Some(default)) => Ok(filled(Some(default.clone()))),
+        let own = |(name, _): &&(&str, Value)| !field.constant && field.name == *name;
+        match (
+            &field.counts,
+            given.iter().find(own).map(|(_, value)| value),
+            &field.default,
+        ) {
+            (Some(_), ..) => Ok(Value::Counted),
+            (_, Some(value), _) | (_, _, Some(value)) => Ok(value.clone()),
             _ => Err(("missing-argument", &*field.name)),
         }
     };

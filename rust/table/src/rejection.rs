@@ -8,13 +8,13 @@ use core::iter::once;
 
 use cobotwire_core::{
     Algorithm, BadRaw, BadValue, Check, DecodeError, Direction, EncodeError, Encoding,
-    Field as Wire, Given, Number as WireNumber, Reason, Shape, Value, ValueFault, Variant,
+    Field as Wire, Number as WireNumber, Reason, Shape, Value as WireValue, ValueFault, Variant,
     VariantId,
 };
 
-use crate::shown::{general, join, printable, shortest};
 use crate::texts::{bad_argument, either, entry, hex, one_or, protocol_error, text};
-use crate::{Edition, Field, Number, Quote, Shown};
+use crate::value::{general, join, printable, shortest};
+use crate::{Edition, Field, Number, Value};
 
 // A link to a file of the Python package; a package of this crate contains the file.
 pub(crate) const UNITS: &str = include_str!("../units.json");
@@ -29,16 +29,16 @@ pub(crate) struct Part<'a> {
 
 impl Edition {
     /// Return the text of the error of values that were not encoded. `count` is their number.
-    pub fn encode_error<V: Given + Quote>(
+    pub fn encode_error(
         &self,
         (command, direction): (usize, Direction),
-        error: &EncodeError<V>,
+        error: &EncodeError<Value>,
         count: usize,
         address: Option<u8>,
     ) -> String {
         match error {
             EncodeError::Address => {
-                self.no_address(&Shown::Integer(address.unwrap_or_default().into()))
+                self.no_address(&Value::Integer(address.unwrap_or_default().into()))
             }
             EncodeError::VariantId => self.bad_variant(command, direction, count),
             EncodeError::Value(bad) => {
@@ -105,7 +105,7 @@ impl Edition {
         let number = part.numbers.get(at)?;
         let whole = part.wire.each == 0 && number.bits.is_none();
         let name = if whole { name } else { &part.element(at) };
-        let value = Shown::nested(&mut once(number.physical(bad.raw)))?;
+        let value = Value::nested(&mut once(number.physical(bad.raw)))?;
         let allowed = part.allowed(at);
         Some(text!("bad-value"; command, name, value, allowed))
     }
@@ -179,16 +179,16 @@ impl Edition {
 }
 
 impl Part<'_> {
-    fn bad_value<V: Quote>(&self, bad: &BadValue<V>) -> String {
+    fn bad_value(&self, bad: &BadValue<Value>) -> String {
         let (name, each, fault) = (&self.name.name, self.wire.each, bad.fault);
-        let value = bad.picked.map_or_else(|| bad.value.quote(), Shown::Integer);
+        let value = bad.picked.map_or_else(|| bad.value.clone(), Value::Integer);
         let size = if each > 0 { each } else { self.numbers.len() };
         let listed = self.name.sizes.is_some() || each > 0;
         let (is_bytes, encoding) = match self.wire.shape {
             Shape::Text(encoding, _) => (false, Some(encoding)),
             shape => (shape == Shape::Bytes, None),
         };
-        let count = Shown::Integer(value.count(encoding) as i64);
+        let count = Value::Integer(value.length(encoding) as i64);
         let length = format!("len({name})");
         let indexed = format!("{name}[{}]", bad.element.unwrap_or(0) / size.max(1));
         let (argument, value, allowed) = match (bad.element, fault) {
@@ -296,10 +296,10 @@ impl Part<'_> {
     }
 
     /// Return a status as a person reads it: `NO_POWER (3)`, or `3 (the arm has no power)`.
-    pub(crate) fn status(&self, value: Value) -> String {
-        let shown = Shown::nested(&mut once(value));
-        let Some(Shown::Integer(raw)) = shown else {
-            return shown.iter().map(Shown::to_string).collect();
+    pub(crate) fn status(&self, value: WireValue) -> String {
+        let shown = Value::nested(&mut once(value));
+        let Some(Value::Integer(raw)) = shown else {
+            return shown.iter().map(Value::to_string).collect();
         };
         let at = self.wire.choices.iter().position(|choice| *choice == raw);
         if let Some(label) = at.and_then(|at| self.name.labels.get(at)) {
@@ -336,11 +336,11 @@ fn bound(number: &WireNumber, raw: i64) -> String {
     let divide = i128::from(number.divide);
     match number.physical(raw) {
         // The nearest float to a decimal has more digits than anyone wrote; -0.0 is written as 0.
-        Value::Real(real) if number.float => {
+        WireValue::Real(real) if number.float => {
             general(real + 0.0, if number.width == 4 { 6 } else { 15 })
         }
-        Value::Real(real) if scaled.checked_rem(divide) != Some(0) => shortest(real),
-        Value::Real(_) => (scaled / divide).to_string(),
+        WireValue::Real(real) if scaled.checked_rem(divide) != Some(0) => shortest(real),
+        WireValue::Real(_) => (scaled / divide).to_string(),
         _ => raw.to_string(),
     }
 }

@@ -9,10 +9,10 @@ use cobotwire_core::exchange::{
     Event, Failure, Received, ReplyError, Request, RequestError, TextError, TextFault, TextForm,
     TextMistake, WaitedFor,
 };
-use cobotwire_core::{Decoded, Direction, EncodeError, Given, decode};
+use cobotwire_core::{Decoded, Direction, EncodeError, decode};
 
-use crate::shown::{is_printable, join, printable, quoted};
-use crate::{Edition, Field, Quote, Shown};
+use crate::value::{is_printable, join, printable, quoted};
+use crate::{Edition, Field, Value};
 
 // A link to a file of the Python package; a package of this crate contains the file.
 const TEMPLATES: &str = include_str!("../error_texts.json");
@@ -57,7 +57,7 @@ pub(crate) use text;
 
 /// Return the text of an error of a value of the caller.
 #[must_use]
-pub fn bad_argument(argument: &str, value: &Shown, allowed: &str) -> String {
+pub fn bad_argument(argument: &str, value: &Value, allowed: &str) -> String {
     let value = value.short();
     printable(&text!("value"; argument, value, allowed))
 }
@@ -84,10 +84,10 @@ pub(crate) fn one_or(count: usize, one: &'static str, other: &'static str) -> &'
 impl Edition {
     /// Return the text of the error of a request that was not encoded. `count`, `texts` and
     /// `address` are what the caller gave.
-    pub fn request_error<V: Given + Quote>(
+    pub fn request_error(
         &self,
         command: usize,
-        error: &RequestError<EncodeError<V>>,
+        error: &RequestError<EncodeError<Value>>,
         (count, texts, address): (usize, &[&str], Option<u8>),
     ) -> String {
         let (name, protocol) = (self.command_name(command), &self.protocol);
@@ -119,7 +119,7 @@ impl Edition {
 
     /// Return the text of the error that an edition has no such address.
     #[must_use]
-    pub fn no_address(&self, given: &Shown) -> String {
+    pub fn no_address(&self, given: &Value) -> String {
         let addresses = self.protocol.table.frame().addresses.iter();
         let allowed = addresses.map(|raw| text!("label"; label = self.address_name(*raw), raw));
         let allowed = join(allowed, ", ");
@@ -141,7 +141,7 @@ impl Edition {
     #[must_use]
     pub fn fields(&self, message: &Decoded) -> String {
         let shown = |(name, value)| match value {
-            Shown::Text(text) => format!("{name}={text}"),
+            Value::Text(text) => format!("{name}={text}"),
             value => format!("{name}={value}"),
         };
         join(self.named(message).into_iter().map(shown), ", ")
@@ -149,12 +149,12 @@ impl Edition {
 
     /// Return the fields of a message with their names.
     #[must_use]
-    pub fn named<'a>(&'a self, message: &Decoded) -> Vec<(&'a str, Shown)> {
+    pub fn named(&self, message: &Decoded) -> Vec<(String, Value)> {
         let id = message.variant;
         let command = self.commands.get(id.command);
         let fields = command.and_then(|command| command.variants(id.direction).get(id.variant));
         let mut values = message.values.iter().copied();
-        let named = |field: &'a Field| Some((&*field.name, Shown::nested(&mut values)?));
+        let named = |field: &Field| Some((field.name.clone(), Value::nested(&mut values)?));
         fields.into_iter().flatten().map_while(named).collect()
     }
 
@@ -273,7 +273,7 @@ fn received_text(form: &TextForm, error: TextError, data: &[u8]) -> String {
 
 /// Return the text of the error of texts that cannot be sent.
 fn unsent_text(form: &TextForm, fault: TextFault, given: &[&str]) -> String {
-    let text = |index: usize| Shown::Text((*given.get(index).unwrap_or(&"")).into());
+    let text = |index: usize| Value::Text((*given.get(index).unwrap_or(&"")).into());
     if let TextFault::NotPrintable(index) = fault {
         let name = form.fields.get(index).map_or("", |name| name);
         return bad_argument(name, &text(index), &text!("printable"));
@@ -281,7 +281,7 @@ fn unsent_text(form: &TextForm, fault: TextFault, given: &[&str]) -> String {
     let words = form.prefixes.iter().skip(1).chain([&form.suffix]);
     let words = words.filter(|word| !word.is_empty());
     let words = either(words.map(|word| quoted(word, is_printable)));
-    let given = Shown::Tuple((0..form.fields.len()).map(text).collect());
+    let given = Value::Row((0..form.fields.len()).map(text).collect());
     bad_argument(
         &form.fields.join(", "),
         &given,

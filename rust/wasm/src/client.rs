@@ -35,12 +35,11 @@ impl Client {
         given: &[Value],
         left: &PersistedState,
     ) -> Result<Self, Error> {
-        let options = options(given)?;
-        let handle = Handle::new(edition, &options)?;
+        let handle = Handle::new(edition, options(given, url)?)?;
         Ok(Self {
             url: url.to_owned(),
             ended: None,
-            session: Session::new(&handle, url, options.on_drop, left),
+            session: Session::new(&handle, left),
             handle,
             callers: Vec::new(),
             queues: Vec::new(),
@@ -51,7 +50,7 @@ impl Client {
     pub fn answer(&mut self, what: &str, given: &[Value]) -> Result<Value, Error> {
         match (what, given) {
             ("address", [Value::Text(address)]) => {
-                let address = self.handle.clone().at(address)?.settings.address;
+                let address = self.handle.clone().at(address)?.address;
                 Ok(Value::Integer(address.unwrap_or_default().into()))
             }
             ("prepare", given) => {
@@ -59,7 +58,7 @@ impl Client {
                 Ok(Value::Bytes([encoded.frame, encoded.text].concat()))
             }
             ("subscribe", [Value::Text(command)]) => {
-                let command = self.handle.encoder.command(command)?;
+                let command = self.handle.command(command)?;
                 self.queues.push(self.session.subscribe(command));
                 Ok(whole(self.queues.len() - 1))
             }
@@ -98,7 +97,7 @@ impl Client {
             }
             ("close", []) => {
                 let state = self.session.close(now);
-                self.ended = self.session.fault().map(|fault| (state, fault.clone()));
+                self.ended = self.session.fault.clone().map(|fault| (state, fault));
             }
             ("step" | "drained", []) => self.session.receive(&[], now),
             _ => return Err(wrong()),
@@ -125,9 +124,9 @@ impl Client {
         };
         let mut handle = self.handle.clone();
         if let Some(address) = number(address) {
-            handle.settings.address = u8::try_from(address).ok();
+            handle.address = u8::try_from(address).ok();
         }
-        handle.settings.ack_within = seconds("seconds", within)?.map(nanos);
+        handle.ack_within = seconds("seconds", within)?.map(nanos);
         let pairs = named.chunks_exact(2).filter_map(|pair| match pair {
             [Value::Text(name), value] => Some((&**name, value.clone())),
             _ => None,
@@ -144,7 +143,7 @@ impl Client {
             return Err(wrong());
         };
         if *sampled == Value::Flag(true) {
-            let commands = &handle.encoder.edition.commands;
+            let commands = &handle.edition.commands;
             let safety = commands
                 .get(prepared.request.command)
                 .map(|each| each.safety);
@@ -152,11 +151,11 @@ impl Client {
                 let message = format!("{command} is not a query; a stream can send only queries");
                 return Err(Error::UsageError { message });
             }
-            handle.settings.retry.attempts = 1;
+            handle.options.retry.attempts = 1;
         }
         self.calls += 1;
         self.callers.push(Caller {
-            call: self.session.submit(&prepared, &handle.settings, now, now),
+            call: self.session.submit(&prepared, &handle, now, now),
             number: self.calls,
             prepared,
         });
@@ -189,7 +188,7 @@ impl Client {
         let times = answer
             .as_ref()
             .map(|each| [each.requested_at, each.replied_at]);
-        let fields = self.handle.encoder.fields(&caller.prepared, answer);
+        let fields = self.handle.fields(&caller.prepared, answer);
         let mut row = vec![flat(fields)];
         row.extend(
             times
@@ -210,7 +209,7 @@ pub fn flat(fields: Named) -> Value {
     )
 }
 
-fn options(given: &[Value]) -> Result<Options, Error> {
+fn options(given: &[Value], url: &str) -> Result<Options, Error> {
     let [
         timeout,
         deadline,
@@ -254,6 +253,7 @@ fn options(given: &[Value]) -> Result<Options, Error> {
             Value::Flag(true) => OnDrop::Leave,
             _ => OnDrop::Stop,
         },
+        port_name: Some(url.to_owned()),
         ..Options::default()
     })
 }
@@ -262,7 +262,7 @@ fn options(given: &[Value]) -> Result<Options, Error> {
 fn seconds(argument: &str, value: &Value) -> Result<Option<Duration>, Error> {
     let time = real(value).map(|given| {
         Duration::try_from_secs_f64(given).map_err(|_| {
-            let shown = cobotwire_table::Shown::Real(given);
+            let shown = Value::Real(given);
             let allowed = "seconds above 0 and below 3600";
             let message = cobotwire_table::bad_argument(argument, &shown, allowed);
             Error::UsageError { message }

@@ -1,7 +1,7 @@
 //! The codec of an edition: frames of messages, messages of frames, frames of a stream.
 
 use cobotwire::Value;
-use cobotwire::machine::Encoder;
+use cobotwire::machine::Handle;
 use cobotwire_core::{
     Choice, DecodeError, Decoded, Direction, Event, Framer, Listening, Verdict, decode, encode,
 };
@@ -13,7 +13,7 @@ use crate::{number, whole};
 pub const FUNCTIONS: [&str; 3] = ["encode", "decode", "frames"];
 
 /// Answer a question; `None`: it is wrong.
-pub fn answer(encoder: &Encoder, what: &str, given: &[Value]) -> Option<Value> {
+pub fn answer(handle: &Handle, what: &str, given: &[Value]) -> Option<Value> {
     let [Value::Text(word), given @ ..] = given else {
         return None;
     };
@@ -23,7 +23,7 @@ pub fn answer(encoder: &Encoder, what: &str, given: &[Value]) -> Option<Value> {
         _ => Listening::Both,
     };
     let index = |name: &Value| match name {
-        Value::Text(name) => encoder.command(name).ok(),
+        Value::Text(name) => handle.command(name).ok(),
         _ => None,
     };
     match (what, given) {
@@ -32,12 +32,10 @@ pub fn answer(encoder: &Encoder, what: &str, given: &[Value]) -> Option<Value> {
                 return None;
             };
             let which = (index(command)?, number(variant));
-            encoded(encoder, direction, which, (names, values))
+            encoded(handle, direction, which, (names, values))
         }
-        ("decode", [Value::Bytes(frame), of]) => {
-            Some(decoded(encoder, listening, frame, index(of)))
-        }
-        ("frames", chunks) => Some(frames(encoder, listening, chunks)),
+        ("decode", [Value::Bytes(frame), of]) => Some(decoded(handle, listening, frame, index(of))),
+        ("frames", chunks) => Some(frames(handle, listening, chunks)),
         _ => None,
     }
 }
@@ -45,14 +43,14 @@ pub fn answer(encoder: &Encoder, what: &str, given: &[Value]) -> Option<Value> {
 /// Return the frame of the first variant, or of that one, that has these fields and allows their
 /// values.
 fn encoded(
-    encoder: &Encoder,
+    handle: &Handle,
     direction: Direction,
     (index, only): (usize, Option<usize>),
     (names, values): (&[Value], &[Value]),
 ) -> Option<Value> {
     let (table, record) = (
-        &encoder.edition.protocol.table,
-        encoder.edition.commands.get(index)?,
+        &handle.edition.protocol.table,
+        handle.edition.commands.get(index)?,
     );
     let variants = match direction {
         Direction::Request => &record.request,
@@ -85,8 +83,8 @@ fn encoded(
 
 /// Return the fields of a frame, its bytes explained, and the commands that it can be, the right one
 /// first, with their directions; or the reason, the offset and the text of what is wrong.
-fn decoded(encoder: &Encoder, listening: Listening, frame: &[u8], of: Option<usize>) -> Value {
-    let (edition, table) = (&encoder.edition, &encoder.edition.protocol.table);
+fn decoded(handle: &Handle, listening: Listening, frame: &[u8], of: Option<usize>) -> Value {
+    let (edition, table) = (&handle.edition, &handle.edition.protocol.table);
     let mut found: Vec<Decoded> = Vec::new();
     if let Verdict::Frame(start) = table.rules(listening).validate(frame) {
         for id in table.rules(listening).variants(start) {
@@ -98,7 +96,7 @@ fn decoded(encoder: &Encoder, listening: Listening, frame: &[u8], of: Option<usi
         }
     }
     let Some(first) = found.first() else {
-        return rejected(encoder, listening, frame, of);
+        return rejected(handle, listening, frame, of);
     };
     let part = |part: Explained| {
         let (name, meaning) = (Value::Text(part.name), Value::Text(part.meaning));
@@ -126,14 +124,14 @@ fn decoded(encoder: &Encoder, listening: Listening, frame: &[u8], of: Option<usi
         .map(part)
         .collect();
     let readings = found.iter().map(reading).collect();
-    let fields = flat(encoder.named(first));
+    let fields = flat(handle.edition.named(first));
     Value::Row(vec![fields, Value::Row(parts), Value::Row(readings)])
 }
 
 /// Return the reason, the offset and the text of what is wrong with a frame. A bad value in one
 /// direction explains more than a LEN that does not fit the other.
-fn rejected(encoder: &Encoder, listening: Listening, frame: &[u8], of: Option<usize>) -> Value {
-    let (edition, mut found) = (&encoder.edition, None);
+fn rejected(handle: &Handle, listening: Listening, frame: &[u8], of: Option<usize>) -> Value {
+    let (edition, mut found) = (&handle.edition, None);
     for direction in [Direction::Request, Direction::Reply] {
         if listening != Listening::Both && listening != Listening::To(direction) {
             continue;
@@ -159,8 +157,8 @@ fn rejected(encoder: &Encoder, listening: Listening, frame: &[u8], of: Option<us
 }
 
 /// Return the events that each chunk of a stream made certain; an absent chunk is a silence.
-fn frames(encoder: &Encoder, listening: Listening, chunks: &[Value]) -> Value {
-    let rules = encoder.edition.protocol.table.rules(listening);
+fn frames(handle: &Handle, listening: Listening, chunks: &[Value]) -> Value {
+    let rules = handle.edition.protocol.table.rules(listening);
     let mut framer = Framer::new(rules.clone());
     let mut made = |chunk: &Value| {
         let mut certain = Vec::new();

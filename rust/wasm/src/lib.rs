@@ -61,18 +61,18 @@ impl Machine {
                 let edition = cobotwire::read_table(json.as_bytes())?;
                 let baudrate = Value::Integer(edition.baudrate.into());
                 self.editions
-                    .push(Handle::new(edition, &Options::default())?);
+                    .push(Handle::new(edition, Options::default())?);
                 Ok(Value::Row(vec![whole(self.editions.len() - 1), baudrate]))
             }
             [Value::Text(what), index, Value::Text(url), given @ ..] if what == "open" => {
-                let edition = self.edition(index)?.encoder.edition.clone();
+                let edition = self.edition(index)?.edition.clone();
                 let left = self.left.remove(url).unwrap_or_default();
                 let client = Client::new(edition, url, given, &left)?;
                 self.clients.push(Ok(client));
                 Ok(whole(self.clients.len() - 1))
             }
             [Value::Text(what), index, given @ ..] if codec::FUNCTIONS.contains(&&**what) => {
-                codec::answer(&self.edition(index)?.encoder, what, given).ok_or_else(wrong)
+                codec::answer(self.edition(index)?, what, given).ok_or_else(wrong)
             }
             [Value::Text(what), index, given @ ..] => {
                 let slot = number(index).and_then(|index| self.clients.get_mut(index));

@@ -1,16 +1,13 @@
 //! Requests by the names of their commands and arguments, and replies by the names of their fields.
 
-use std::sync::Arc;
 use std::time::Duration;
 
-use cobotwire_core::Decoded;
-use cobotwire_core::exchange::{Answer, Failure, Replier, Request as Encoded};
+use cobotwire_core::exchange::{Answer, Failure, Nanos, Replier, Request as Encoded};
 use cobotwire_table::error_text;
 
-use crate::options::find_address;
-use crate::session::Settings;
+use crate::options::{check_times, find_address};
 use crate::typed::{Request, Table, Typed};
-use crate::{Error, Limits, Options, Value};
+use crate::{Error, Options, Value};
 
 /// The values of a message with their names.
 pub type Named = Vec<(String, Value)>;
@@ -26,14 +23,34 @@ pub struct Prepared {
     pub address: Option<u8>,
 }
 
-/// Encodes the requests of an edition, within limits.
-#[derive(Debug)]
-pub struct Encoder {
+/// A handle of a client: how it encodes requests, and with what it sends them.
+#[derive(Clone, Debug)]
+pub struct Handle {
+    /// The table, within the limits.
     pub edition: Table,
-    limits: Limits,
+    pub options: Options,
+    pub address: Option<u8>,
+    pub ack_within: Option<Nanos>,
 }
 
-impl Encoder {
+impl Handle {
+    pub fn new(edition: Table, mut options: Options) -> Result<Self, Error> {
+        check_times(&options)?;
+        let address = options.address.take();
+        let handle = Self {
+            edition: options.limits.applied(edition)?,
+            options,
+            address: None,
+            ack_within: None,
+        };
+        address.map_or(Ok(handle.clone()), |address| handle.at(&address))
+    }
+
+    pub fn at(mut self, address: &str) -> Result<Self, Error> {
+        self.address = Some(find_address(&self.edition, address)?);
+        Ok(self)
+    }
+
     /// Return the index of a command.
     pub fn command(&self, name: &str) -> Result<usize, Error> {
         let mut commands = self.edition.commands.iter();
@@ -42,16 +59,21 @@ impl Encoder {
         found.ok_or_else(|| Error::usage(unknown()))
     }
 
+    pub fn prepare<R: Request>(&self, request: R) -> Result<Prepared, Error> {
+        let mut arguments = request.arguments();
+        for (name, value) in &mut arguments {
+            if R::RADIANS.contains(name) {
+                *value = converted(std::mem::take(value), f64::to_degrees);
+            }
+        }
+        self.prepare_named(R::COMMAND, &arguments)
+    }
+
     /// Validate and encode a request.
-    pub fn prepare(
-        &self,
-        name: &str,
-        given: &[(&str, Value)],
-        address: Option<u8>,
-    ) -> Result<Prepared, Error> {
+    pub fn prepare_named(&self, name: &str, given: &[(&str, Value)]) -> Result<Prepared, Error> {
         let (edition, command) = (&self.edition, self.command(name)?);
         let record = edition.commands.get(command);
-        let refusal = record.and_then(|record| self.limits.refusal(edition, record));
+        let refusal = record.and_then(|record| self.options.limits.refusal(edition, record));
         refusal.map_or(Ok(()), |why| Err(Error::usage(why)))?;
         let facts = edition.protocol.facts.get(command);
         let form = facts.and_then(|facts| facts.request_text.as_ref());
@@ -69,8 +91,7 @@ impl Encoder {
                 _ => others.push((*argument, value.clone())),
             }
         }
-        let filled = |value: Option<_>| value.map_or(Value::Counted, Value::from);
-        let arranged = edition.arrange(command, &others, filled);
+        let arranged = edition.arrange(command, &others);
         let (row, variant) = arranged.map_err(Error::usage)?;
         let mut missing = text_fields.iter().zip(&texts);
         if let Some((field, _)) = missing.find(|(_, text)| text.is_none()) {
@@ -82,13 +103,17 @@ impl Encoder {
             return Err(Error::usage(text));
         }
         let texts: Vec<&str> = texts.into_iter().flatten().collect();
-        let (count, row) = (row.len(), Value::Row(row));
+        let (count, row, address) = (row.len(), Value::Row(row), self.address);
         let protocol = &edition.protocol;
         let encoded = Encoded::encode::<Value>(protocol, command, &row, &texts, address, variant);
         let request = encoded.map_err(|error| {
             let given = (count, &*texts, address);
             Error::usage(edition.request_error(command, &error, given))
         })?;
+        if self.ack_within.is_some() && request.replier == Replier::Nobody {
+            let text = error_text("unacknowledged", &[("command", &name)]);
+            return Err(Error::usage(text));
+        }
         let awaits_reply = facts.is_some_and(|each| each.requires_reply() || each.text.is_some());
         Ok(Prepared {
             request,
@@ -103,7 +128,7 @@ impl Encoder {
             return Vec::new();
         };
         if let Some(decoded) = &answer.decoded {
-            return self.named(decoded);
+            return self.edition.named(decoded);
         }
         let facts = self.edition.protocol.facts.get(prepared.request.command);
         let form = facts.and_then(|facts| facts.text.as_ref());
@@ -112,12 +137,19 @@ impl Encoder {
         names.map(|name| name.to_string()).zip(texts).collect()
     }
 
-    /// Return the fields of a message by name.
-    pub fn named(&self, decoded: &Decoded) -> Named {
-        let named = self.edition.named(decoded).into_iter();
-        named
-            .map(|(name, value)| (name.to_owned(), value.into()))
-            .collect()
+    pub fn result<R: Request>(
+        &self,
+        prepared: &Prepared,
+        answer: Option<Answer>,
+    ) -> Result<R::Reply, Error> {
+        let fields = self.fields(prepared, answer);
+        result(fields, (R::RESULTS, true), R::RADIANS)
+    }
+
+    /// Return the error that something happened to the port.
+    pub fn link(&self, detail: &str, written: Option<usize>) -> Error {
+        let url = self.options.port_name.as_deref();
+        Error::link(url.unwrap_or("port"), detail, written)
     }
 
     /// Return the error of a request that failed; `None`: the transport has the error.
@@ -156,7 +188,7 @@ pub(crate) fn result<T: Typed>(
         let value = found.map(|(_, value)| std::mem::take(value));
         let value = value.unwrap_or_default();
         match radians.contains(name) {
-            true => value.map(f64::to_radians),
+            true => converted(value, f64::to_radians),
             false => value,
         }
     };
@@ -168,51 +200,15 @@ pub(crate) fn result<T: Typed>(
     T::from_value(value).ok_or_else(mismatch)
 }
 
-/// A handle of a client: how it encodes requests, and with what it sends them.
-#[derive(Clone, Debug)]
-pub struct Handle {
-    pub encoder: Arc<Encoder>,
-    pub settings: Settings,
-}
-
-impl Handle {
-    pub fn new(edition: Table, options: &Options) -> Result<Self, Error> {
-        let (settings, limits) = (options.settings(&edition)?, options.limits.clone());
-        let edition = limits.applied(edition)?;
-        let encoder = Arc::new(Encoder { edition, limits });
-        Ok(Self { encoder, settings })
-    }
-
-    pub fn at(mut self, address: &str) -> Result<Self, Error> {
-        self.settings.address = Some(find_address(&self.encoder.edition, address)?);
-        Ok(self)
-    }
-
-    pub fn prepare<R: Request>(&self, request: R) -> Result<Prepared, Error> {
-        let mut arguments = request.arguments();
-        for (name, value) in &mut arguments {
-            if R::RADIANS.contains(name) {
-                *value = std::mem::take(value).map(f64::to_degrees);
-            }
+/// Return a value with each number changed, in rows too.
+fn converted(value: Value, change: fn(f64) -> f64) -> Value {
+    match value {
+        Value::Real(real) => Value::Real(change(real)),
+        Value::Integer(raw) => Value::Real(change(raw as f64)),
+        Value::Row(row) => {
+            let row = row.into_iter();
+            Value::Row(row.map(|each| converted(each, change)).collect())
         }
-        self.prepare_named(R::COMMAND, &arguments)
-    }
-
-    pub fn prepare_named(&self, name: &str, given: &[(&str, Value)]) -> Result<Prepared, Error> {
-        let prepared = self.encoder.prepare(name, given, self.settings.address)?;
-        if self.settings.ack_within.is_some() && prepared.request.replier == Replier::Nobody {
-            let text = error_text("unacknowledged", &[("command", &name)]);
-            return Err(Error::usage(text));
-        }
-        Ok(prepared)
-    }
-
-    pub fn result<R: Request>(
-        &self,
-        prepared: &Prepared,
-        answer: Option<Answer>,
-    ) -> Result<R::Reply, Error> {
-        let fields = self.encoder.fields(prepared, answer);
-        result(fields, (R::RESULTS, true), R::RADIANS)
+        other => other,
     }
 }

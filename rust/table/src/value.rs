@@ -1,47 +1,126 @@
-//! Values as Python writes them, for the texts of errors.
+//! The values of callers and of replies, as the encoder reads them and as Python writes them.
 
 use alloc::format;
 use alloc::string::{String, ToString};
 use alloc::vec::Vec;
-use core::fmt::{Display, Formatter, Result};
+use core::convert::Infallible;
+use core::fmt::{self, Display, Formatter};
 
-use cobotwire_core::{Encoding, Value};
+use cobotwire_core::{Encoding, Given, Row, Unread, Value as Flat, ValueFault};
 
 /// A longer value is cut.
 const MOST: usize = 80;
 
-/// A value as a text shows it.
-#[derive(Clone, Debug, PartialEq)]
+/// Below this number a real holds every integer.
+const EXACT: f64 = (1_u64 << 53) as f64;
+
+/// The value of an argument or of a field of a reply.
+#[derive(Clone, Debug, Default, PartialEq)]
 #[allow(missing_docs)] // the names are those of JSON and Rust
-pub enum Shown {
+pub enum Value {
     Flag(bool),
+    /// An integer, or a member of an enum.
     Integer(i64),
     Real(f64),
     Text(String),
     Bytes(Vec<u8>),
-    /// Values in parentheses.
-    Tuple(Vec<Shown>),
-    /// Anything else, as it is to be written.
-    Other(String),
+    /// A row of numbers, or a list.
+    Row(Vec<Value>),
+    /// The number of elements of a list, which the encoder counts.
+    Counted,
+    /// An argument that is left out, or a field that a reply does not have.
+    #[default]
+    Absent,
 }
 
-/// A value of a caller that an error can be about.
-pub trait Quote {
-    /// Return it as a text shows it.
-    fn quote(&self) -> Shown;
+type Read<T> = Result<T, Unread<Infallible>>;
+const WRONG_TYPE: Unread<Infallible> = Unread::Fault(ValueFault::Type);
+
+impl Given for Value {
+    type Error = Infallible;
+    type Row = Self;
+
+    fn integer(&self, flag: bool) -> Read<i64> {
+        match self {
+            Self::Integer(raw) => Ok(*raw),
+            Self::Flag(set) if flag => Ok(i64::from(*set)),
+            // An array of reals may have integers among them.
+            Self::Real(real) if real.fract() == 0.0 && real.abs() < EXACT => Ok(*real as i64),
+            _ => Err(WRONG_TYPE),
+        }
+    }
+
+    fn real(&self) -> Read<f64> {
+        match self {
+            Self::Integer(raw) => Ok(*raw as f64),
+            Self::Real(real) => Ok(*real),
+            _ => Err(WRONG_TYPE),
+        }
+    }
+
+    fn row(&self) -> Read<Self> {
+        let row = Some(self).filter(|value| matches!(value, Self::Row(_)));
+        row.cloned().ok_or(WRONG_TYPE)
+    }
+
+    fn counted(&self) -> bool {
+        *self == Self::Counted
+    }
+
+    fn bytes(&self) -> Read<Option<Vec<u8>>> {
+        Ok(match self {
+            Self::Bytes(bytes) => Some(bytes.clone()),
+            _ => None,
+        })
+    }
+
+    fn text(&self, encoding: Encoding) -> Read<Vec<u8>> {
+        let Self::Text(text) = self else {
+            return Err(WRONG_TYPE);
+        };
+        let encoded = match encoding {
+            Encoding::Latin1 => text.chars().map(|c| u8::try_from(c).ok()).collect(),
+            Encoding::Utf8 => Some(text.as_bytes().into()),
+            Encoding::Ascii => text.is_ascii().then(|| text.as_bytes().into()),
+        };
+        encoded.ok_or(Unread::Fault(ValueFault::Text))
+    }
 }
 
-impl Shown {
+impl Row for Value {
+    type Item = Self;
+
+    fn count(&self) -> usize {
+        self.elements().len()
+    }
+
+    fn at(&self, index: usize) -> Option<Self> {
+        self.elements().get(index).cloned()
+    }
+
+    fn into_value(self) -> Self {
+        self
+    }
+}
+
+impl Value {
+    fn elements(&self) -> &[Self] {
+        match self {
+            Self::Row(row) => row,
+            _ => &[],
+        }
+    }
+
     /// Return the next value of a decoded message; a row takes those that follow it.
-    pub(crate) fn nested(rest: &mut impl Iterator<Item = Value>) -> Option<Self> {
+    pub(crate) fn nested(rest: &mut impl Iterator<Item = Flat>) -> Option<Self> {
         Some(match rest.next()? {
-            Value::Integer(raw) => Self::Integer(raw),
-            Value::Real(real) => Self::Real(real),
-            Value::Row(size) | Value::Rows(size) => {
-                Self::Tuple((0..size).map_while(|_| Self::nested(rest)).collect())
+            Flat::Integer(raw) => Self::Integer(raw),
+            Flat::Real(real) => Self::Real(real),
+            Flat::Row(size) | Flat::Rows(size) => {
+                Self::Row((0..size).map_while(|_| Self::nested(rest)).collect())
             }
-            Value::Bytes(size) => Self::Bytes(bytes(rest, size)),
-            Value::Text(size, encoding) => {
+            Flat::Bytes(size) => Self::Bytes(bytes(rest, size)),
+            Flat::Text(size, encoding) => {
                 let bytes = bytes(rest, size);
                 Self::Text(match encoding {
                     Encoding::Latin1 => bytes.into_iter().map(char::from).collect(),
@@ -52,13 +131,12 @@ impl Shown {
     }
 
     /// Return its length: of a text, in bytes of an encoding.
-    pub(crate) fn count(&self, encoding: Option<Encoding>) -> usize {
+    pub(crate) fn length(&self, encoding: Option<Encoding>) -> usize {
         match self {
-            Self::Tuple(all) => all.len(),
             Self::Bytes(bytes) => bytes.len(),
             Self::Text(text) if encoding == Some(Encoding::Utf8) => text.len(),
             Self::Text(text) => text.chars().count(),
-            _ => 0,
+            _ => self.elements().len(),
         }
     }
 
@@ -72,8 +150,8 @@ impl Shown {
     }
 }
 
-impl Display for Shown {
-    fn fmt(&self, out: &mut Formatter<'_>) -> Result {
+impl Display for Value {
+    fn fmt(&self, out: &mut Formatter<'_>) -> fmt::Result {
         let joined = |all: &[Self]| join(all.iter().map(Self::to_string), ", ");
         match self {
             Self::Flag(flag) => out.write_str(if *flag { "True" } else { "False" }),
@@ -85,16 +163,16 @@ impl Display for Shown {
                 let shown = quoted(&text, |char| (' '..='~').contains(&char));
                 write!(out, "b{shown}")
             }
-            Self::Tuple(all) if all.len() == 1 => write!(out, "({},)", joined(all)),
-            Self::Tuple(all) => write!(out, "({})", joined(all)),
-            Self::Other(text) => out.write_str(text),
+            Self::Row(all) if all.len() == 1 => write!(out, "({},)", joined(all)),
+            Self::Row(all) => write!(out, "({})", joined(all)),
+            Self::Counted | Self::Absent => out.write_str("None"),
         }
     }
 }
 
-fn bytes(rest: &mut impl Iterator<Item = Value>, size: usize) -> Vec<u8> {
+fn bytes(rest: &mut impl Iterator<Item = Flat>, size: usize) -> Vec<u8> {
     let byte = |value| match value {
-        Value::Integer(raw) => u8::try_from(raw).ok(),
+        Flat::Integer(raw) => u8::try_from(raw).ok(),
         _ => None,
     };
     rest.take(size).filter_map(byte).collect()
