@@ -12,12 +12,12 @@ use tokio::io::{AsyncRead, AsyncWrite, ReadBuf};
 use tokio::net::TcpStream;
 use tokio::sync::Notify;
 
-use crate::connection::Connection;
-use crate::handle::{Handle, Outcome, Prepared};
+use crate::connection::{Connection, Shared};
+use crate::handle::{Handle, Outcome, Prepared, result};
 use crate::options::nanos;
 use crate::port::{CONNECT, not_opened, socket_of};
 use crate::session::{CallId, Session};
-use crate::streams::{Polling, Received, client_methods, next_event};
+use crate::streams::{Polling, Received, client_methods};
 use crate::typed::{DeviceEvent, Request, Table};
 use crate::{Error, Options, Port, Sample, Value, lock};
 
@@ -36,12 +36,7 @@ const LONGEST: Duration = Duration::from_secs(3600);
 #[derive(Clone)]
 pub struct AsyncClient {
     handle: Handle,
-    shared: Arc<Shared>,
-}
-
-struct Shared {
-    connection: Mutex<Connection>,
-    arrived: Arc<Arrived>,
+    shared: Arc<Shared<Arc<Arrived>>>,
 }
 
 /// Wakes every future that waits: the stream remembers only who has polled it last.
@@ -63,7 +58,7 @@ client_methods!(
 
 impl AsyncClient {
     /// Connect to `socket://host:port`.
-    pub async fn open(edition: Table, port: &str, options: Options) -> Result<Self, Error> {
+    pub async fn open(edition: Table, port: &str, mut options: Options) -> Result<Self, Error> {
         let Some(address) = socket_of(port) else {
             let text = format!("{port} is not socket://host:port; pass other streams to over()");
             return Err(Error::usage(text));
@@ -72,7 +67,8 @@ impl AsyncClient {
         let stream = connected.unwrap_or_else(|late| Err(late.into()));
         let ready = stream.and_then(|stream| stream.set_nodelay(true).map(|()| stream));
         let stream = ready.map_err(|error| not_opened(port, error))?;
-        Self::over(edition, stream, options.named(port))
+        options.port_name = Some(port.to_owned());
+        Self::over(edition, stream, options)
     }
 
     /// Drive an arm over an open stream of bytes. Its methods need a runtime of tokio with timers.
@@ -82,12 +78,8 @@ impl AsyncClient {
             stream,
             waker: arrived.clone().into(),
         });
-        let (handle, connection) = Connection::new(edition, port, options, Duration::ZERO)?;
-        let connection = Mutex::new(connection);
-        let shared = Arc::new(Shared {
-            connection,
-            arrived,
-        });
+        let turns = (Duration::ZERO, arrived);
+        let (handle, shared) = Connection::open(edition, port, options, turns)?;
         Ok(Self { handle, shared })
     }
 
@@ -95,7 +87,7 @@ impl AsyncClient {
     pub async fn close(&self) {
         // If the stream was not flushed in time, nothing else can be done about that.
         let _ = self.connection().close();
-        self.shared.arrived.0.notify_waiters();
+        self.shared.turns.0.notify_waiters();
     }
 
     fn connection(&self) -> MutexGuard<'_, Connection> {
@@ -122,13 +114,13 @@ impl AsyncClient {
         let begun = Instant::now();
         loop {
             // This comes before the poll of the stream, so that no arrival is overlooked.
-            let arrived = self.shared.arrived.0.notified();
+            let arrived = self.shared.turns.0.notified();
             let left = longest.map_or(LONGEST, |longest| longest.saturating_sub(begun.elapsed()));
             let idle = {
                 let mut connection = self.connection();
                 let came = connection.step(Duration::ZERO);
                 if let Some(found) = done(&mut connection.session, left.is_zero()) {
-                    self.shared.arrived.0.notify_waiters();
+                    self.shared.turns.0.notify_waiters();
                     return found;
                 }
                 (!came).then(|| connection.idle(left))
@@ -137,7 +129,7 @@ impl AsyncClient {
                 Some(idle) => drop(tokio::time::timeout(idle, arrived).await),
                 None => {
                     // The others must find out what was read for them.
-                    self.shared.arrived.0.notify_waiters();
+                    self.shared.turns.0.notify_waiters();
                     tokio::task::yield_now().await;
                 }
             }
@@ -155,7 +147,7 @@ impl Drop for Call<'_> {
     fn drop(&mut self) {
         self.client.connection().session.give_up(self.id);
         // Another future must go on with reading and writing for all.
-        self.client.shared.arrived.0.notify_waiters();
+        self.client.shared.turns.0.notify_waiters();
     }
 }
 
@@ -190,11 +182,10 @@ impl<S: ByteStream> Polled<S> {
         poll: impl FnOnce(Pin<&mut S>, &mut Context<'_>) -> Poll<io::Result<T>>,
     ) -> io::Result<T> {
         let mut context = Context::from_waker(&self.waker);
-        let polled = poll(Pin::new(&mut self.stream), &mut context);
-        let Poll::Ready(done) = polled else {
-            return Err(io::ErrorKind::WouldBlock.into());
-        };
-        done
+        match poll(Pin::new(&mut self.stream), &mut context) {
+            Poll::Ready(done) => done,
+            Poll::Pending => Err(io::ErrorKind::WouldBlock.into()),
+        }
     }
 }
 

@@ -4,12 +4,12 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard};
 use std::time::{Duration, Instant};
 
-use crate::connection::{Connection, LONGEST_STOP};
-use crate::handle::{Handle, Outcome, Prepared};
+use crate::connection::{Connection, LONGEST_STOP, Shared};
+use crate::handle::{Handle, Outcome, Prepared, result};
 use crate::options::nanos;
 use crate::port::{self, Port};
 use crate::session::Session;
-use crate::streams::{Polling, Received, client_methods, next_event};
+use crate::streams::{Polling, Received, client_methods};
 use crate::typed::{DeviceEvent, Request, Table};
 use crate::{Error, Options, Sample, Value, lock};
 
@@ -25,22 +25,18 @@ const TURN: Duration = Duration::from_micros(500);
 #[derive(Clone)]
 pub struct Client {
     handle: Handle,
-    shared: Arc<Shared>,
-}
-
-struct Shared {
-    connection: Mutex<Connection>,
-    /// How many threads want the connection.
-    waiting: AtomicUsize,
+    /// With the number of threads that want the connection.
+    shared: Arc<Shared<AtomicUsize>>,
 }
 
 client_methods!(Client Option std::thread::sleep, [] [] [] []);
 
 impl Client {
     /// Open a port: that of a serial line, or `socket://host:port`.
-    pub fn open(edition: Table, port: &str, options: Options) -> Result<Self, Error> {
+    pub fn open(edition: Table, port: &str, mut options: Options) -> Result<Self, Error> {
         let opened = port::open(port, options.baudrate.unwrap_or(edition.baudrate))?;
-        Self::over(edition, opened, options.named(port))
+        options.port_name = Some(port.to_owned());
+        Self::over(edition, opened, options)
     }
 
     /// Drive an arm over an open port.
@@ -49,13 +45,8 @@ impl Client {
         port: impl Port + 'static,
         options: Options,
     ) -> Result<Self, Error> {
-        let opened = Connection::new(edition, Box::new(port), options, LONGEST_STOP);
-        let (handle, connection) = opened?;
-        let (connection, waiting) = (Mutex::new(connection), AtomicUsize::new(0));
-        let shared = Arc::new(Shared {
-            connection,
-            waiting,
-        });
+        let turns = (LONGEST_STOP, AtomicUsize::new(0));
+        let (handle, shared) = Connection::open(edition, Box::new(port), options, turns)?;
         Ok(Self { handle, shared })
     }
 
@@ -67,9 +58,9 @@ impl Client {
 
     /// Return the connection as soon as no other thread has it.
     fn connection(&self) -> MutexGuard<'_, Connection> {
-        self.shared.waiting.fetch_add(1, Ordering::SeqCst);
+        self.shared.turns.fetch_add(1, Ordering::SeqCst);
         let connection = lock(&self.shared.connection);
-        self.shared.waiting.fetch_sub(1, Ordering::SeqCst);
+        self.shared.turns.fetch_sub(1, Ordering::SeqCst);
         connection
     }
 
@@ -100,7 +91,7 @@ impl Client {
 
     /// Leave the connection to other threads if they want it.
     fn leave<'a>(&'a self, connection: MutexGuard<'a, Connection>) -> MutexGuard<'a, Connection> {
-        if self.shared.waiting.load(Ordering::SeqCst) == 0 {
+        if self.shared.turns.load(Ordering::SeqCst) == 0 {
             return connection;
         }
         drop(connection);

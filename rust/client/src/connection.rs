@@ -1,6 +1,7 @@
 //! A port with its session: what both clients share.
 
 use std::io::ErrorKind;
+use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
 use cobotwire_core::exchange::Nanos;
@@ -17,39 +18,41 @@ pub(crate) const LONGEST_STOP: Duration = Duration::from_secs(1);
 /// How long a full line is left alone.
 const PAUSE: Duration = Duration::from_micros(500);
 
+/// A connection that handles share, and what they need to take turns with it.
+pub(crate) struct Shared<T> {
+    pub connection: Mutex<Connection>,
+    pub turns: T,
+}
+
 /// The port with its session; whoever holds it reads and writes for all.
 pub(crate) struct Connection {
     pub session: Session,
     /// `None`: it is closed.
     port: Option<Box<dyn Port>>,
-    /// The limit that the port has.
-    limit: Option<Duration>,
     /// How long a dropped client may wait until the line takes a stop.
     patience: Duration,
-    buffer: Vec<u8>,
     begun: Instant,
     note: Note,
 }
 
 impl Connection {
-    pub fn new(
+    /// Begin to drive an arm over a port; return the first handle.
+    pub fn open<T>(
         edition: Table,
         port: Box<dyn Port>,
         options: Options,
-        patience: Duration,
-    ) -> Result<(Handle, Self), Error> {
+        (patience, turns): (Duration, T),
+    ) -> Result<(Handle, Arc<Shared<T>>), Error> {
         let handle = Handle::new(edition, options)?;
         let (note, left) = Note::of(handle.options.port_name.as_deref());
-        let connection = Self {
+        let connection = Mutex::new(Self {
             session: Session::new(&handle, &left),
             port: Some(port),
-            limit: None,
             patience,
-            buffer: vec![0; 4096],
             begun: Instant::now(),
             note,
-        };
-        Ok((handle, connection))
+        });
+        Ok((handle, Arc::new(Shared { connection, turns })))
     }
 
     fn now(&self) -> Nanos {
@@ -70,7 +73,7 @@ impl Connection {
 
     /// Read once, let time pass, and write what is to be sent; return whether bytes came.
     pub fn step(&mut self, longest: Duration) -> bool {
-        let (idle, mut buffer) = (self.idle(longest), std::mem::take(&mut self.buffer));
+        let (idle, mut buffer) = (self.idle(longest), [0; 1024]);
         let read = self.port(idle).and_then(|port| port.read(&mut buffer));
         let lost = match &read {
             Ok(0) => Some("the peer has closed the connection".to_owned()),
@@ -85,7 +88,6 @@ impl Connection {
                 self.write(read.is_err());
             }
         }
-        self.buffer = buffer;
         read.is_ok()
     }
 
@@ -111,11 +113,7 @@ impl Connection {
     /// Return the port, so that it waits for some time at most.
     fn port(&mut self, longest: Duration) -> std::io::Result<&mut dyn Port> {
         let port = self.port.as_mut().ok_or(ErrorKind::NotConnected)?;
-        // A port may wait when it gets its limit.
-        if self.limit != Some(longest) || !longest.is_zero() {
-            port.wait_at_most(longest)?;
-            self.limit = Some(longest);
-        }
+        port.wait_at_most(longest)?;
         Ok(&mut **port)
     }
 

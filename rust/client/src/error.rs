@@ -49,14 +49,6 @@ impl Error {
         Self::LinkError { message, written }
     }
 
-    /// Return the error of a request, after this number of its bytes was written.
-    pub(crate) fn after_writing(mut self, bytes: usize) -> Self {
-        if let Self::LinkError { written, .. } = &mut self {
-            *written = Some(bytes);
-        }
-        self
-    }
-
     /// Return the name of its kind, for example `ReplyTimeout`.
     #[must_use]
     pub fn name(&self) -> &'static str {

@@ -5,7 +5,7 @@ use std::time::Duration;
 use cobotwire_core::exchange::{Answer, Failure, Nanos, Replier, Request as Encoded};
 use cobotwire_table::error_text;
 
-use crate::options::{check_times, find_address};
+use crate::options::check_times;
 use crate::typed::{Request, Table, Typed};
 use crate::{Error, Options, Value};
 
@@ -46,8 +46,17 @@ impl Handle {
         address.map_or(Ok(handle.clone()), |address| handle.at(&address))
     }
 
+    /// Return this handle for another address, by its name or number.
     pub fn at(mut self, address: &str) -> Result<Self, Error> {
-        self.address = Some(find_address(&self.edition, address)?);
+        let (edition, number) = (&self.edition, address.parse());
+        let given = number.map_or_else(|_| Value::Text(address.to_owned()), Value::Integer);
+        let is_own = |raw: &u8| {
+            let name = edition.address_name(*raw);
+            name.eq_ignore_ascii_case(address) || given == Value::Integer((*raw).into())
+        };
+        let mut all = edition.protocol.table.frame().addresses.iter().copied();
+        let unknown = || Error::usage(edition.no_address(&given));
+        self.address = Some(all.find(is_own).ok_or_else(unknown)?);
         Ok(self)
     }
 
@@ -61,11 +70,9 @@ impl Handle {
 
     pub fn prepare<R: Request>(&self, request: R) -> Result<Prepared, Error> {
         let mut arguments = request.arguments();
-        for (name, value) in &mut arguments {
-            if R::RADIANS.contains(name) {
-                *value = converted(std::mem::take(value), f64::to_degrees);
-            }
-        }
+        let all = arguments.iter_mut();
+        let radians = all.filter(|(name, _)| R::RADIANS.contains(name));
+        radians.for_each(|(_, value)| convert(value, f64::to_degrees));
         self.prepare_named(R::COMMAND, &arguments)
     }
 
@@ -124,26 +131,24 @@ impl Handle {
 
     /// Return the fields of a reply by name.
     pub fn fields(&self, prepared: &Prepared, answer: Option<Answer>) -> Named {
-        let Some(answer) = answer else {
-            return Vec::new();
-        };
-        if let Some(decoded) = &answer.decoded {
-            return self.edition.named(decoded);
+        let answer = answer.map(|answer| (answer.decoded, answer.texts));
+        let (decoded, texts) = answer.unwrap_or_default();
+        if let Some(decoded) = decoded {
+            return self.edition.named(&decoded);
         }
         let facts = self.edition.protocol.facts.get(prepared.request.command);
         let form = facts.and_then(|facts| facts.text.as_ref());
         let names = form.into_iter().flat_map(|form| &form.fields);
-        let texts = answer.texts.into_iter().map(Value::Text);
+        let texts = texts.into_iter().map(Value::Text);
         names.map(|name| name.to_string()).zip(texts).collect()
     }
 
     pub fn result<R: Request>(
         &self,
-        prepared: &Prepared,
+        of: &Prepared,
         answer: Option<Answer>,
     ) -> Result<R::Reply, Error> {
-        let fields = self.fields(prepared, answer);
-        result(fields, (R::RESULTS, true), R::RADIANS)
+        result(self.fields(of, answer), (R::RESULTS, true), R::RADIANS)
     }
 
     /// Return the error that something happened to the port.
@@ -185,12 +190,12 @@ pub(crate) fn result<T: Typed>(
 ) -> Result<T, Error> {
     let mut take = |name: &&str| {
         let found = fields.iter_mut().find(|(each, _)| each == name);
-        let value = found.map(|(_, value)| std::mem::take(value));
-        let value = value.unwrap_or_default();
-        match radians.contains(name) {
-            true => converted(value, f64::to_radians),
-            false => value,
+        let found = found.map(|(_, value)| std::mem::take(value));
+        let mut value = found.unwrap_or_default();
+        if radians.contains(name) {
+            convert(&mut value, f64::to_radians);
         }
+        value
     };
     let value = match names {
         [one] if single => take(one),
@@ -200,15 +205,12 @@ pub(crate) fn result<T: Typed>(
     T::from_value(value).ok_or_else(mismatch)
 }
 
-/// Return a value with each number changed, in rows too.
-fn converted(value: Value, change: fn(f64) -> f64) -> Value {
+/// Change each number of a value, in rows too.
+fn convert(value: &mut Value, change: fn(f64) -> f64) {
     match value {
-        Value::Real(real) => Value::Real(change(real)),
-        Value::Integer(raw) => Value::Real(change(raw as f64)),
-        Value::Row(row) => {
-            let row = row.into_iter();
-            Value::Row(row.map(|each| converted(each, change)).collect())
-        }
-        other => other,
+        Value::Real(real) => *real = change(*real),
+        Value::Integer(raw) => *value = Value::Real(change(*raw as f64)),
+        Value::Row(row) => row.iter_mut().for_each(|each| convert(each, change)),
+        _ => {}
     }
 }

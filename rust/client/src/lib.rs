@@ -44,7 +44,6 @@ mod port;
 mod session;
 mod streams;
 pub mod typed;
-mod value;
 
 #[rustfmt::skip]
 #[cfg(feature = "editions")]
@@ -63,7 +62,7 @@ pub use limits::{Limits, Range};
 pub use options::{OnDrop, Options};
 pub use port::Port;
 pub use streams::Received;
-pub use value::Value;
+pub use typed::Value;
 
 /// A client without a port and a clock, for transports of other kinds.
 #[doc(hidden)]

@@ -76,8 +76,7 @@ impl Limits {
         let cases = fields.into_iter().flatten().flat_map(|field| &field.cases);
         let names: Vec<&str> = cases.flatten().map(|number| &*number.name).collect();
         if !AXES.iter().all(|axis| names.contains(axis)) {
-            let names = names.join(", ");
-            let text = error_text("no-coordinates", &[("names", &names)]);
+            let text = error_text("no-coordinates", &[("names", &names.join(", "))]);
             return Err(Error::usage(text));
         }
         Ok(())
@@ -164,18 +163,13 @@ fn raw_range(number: &Number, (low, high): Range) -> (i64, i64) {
         return (raw(low), raw(high + 0.0));
     }
     let (multiply, divide) = (number.multiply as f64, number.divide as f64);
-    let raw = |end: f64| {
-        (end * divide / multiply)
-            .round_ties_even()
-            .clamp(-9e15, 9e15)
-    };
+    let nearest = |end: f64| (end * divide / multiply).round_ties_even();
+    let (lowest, highest) = (nearest(low), nearest(high));
     let physical = |raw: f64| raw * multiply / divide;
-    let (lowest, highest) = (raw(low), raw(high));
-    let (inside, below) = (physical(lowest) < low, physical(highest) > high);
-    (
-        lowest as i64 + i64::from(inside),
-        highest as i64 - i64::from(below),
-    )
+    let more = i64::from(physical(lowest) < low);
+    let less = i64::from(physical(highest) > high);
+    let raw = |nearest: f64| nearest.clamp(-9e15, 9e15) as i64;
+    (raw(lowest) + more, raw(highest) - less)
 }
 
 fn find(edition: &Edition, is: impl Fn(&Command) -> bool) -> Option<&Command> {

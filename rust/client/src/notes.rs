@@ -23,19 +23,16 @@ impl Note {
     /// Return the note of a port, and what was left there; its times are from now on.
     pub fn of(url: Option<&str>) -> (Self, PersistedState) {
         // The next pseudo-terminal of this name is another line.
-        let name = url.filter(|url| !url.starts_with("/dev/pts/"));
-        let name = name.map(str::to_owned);
-        let note = name
-            .as_ref()
-            .and_then(|name| crate::lock(&NOTES).remove(name));
-        let mut state = PersistedState::default();
-        if let Some((left, at)) = note {
-            state = left;
-            let passed = nanos(at.elapsed());
-            state.late.retain(|late| late.until > passed);
-            state.late.iter_mut().for_each(|late| late.until -= passed);
-        }
-        (Self(name, Instant::now()), state)
+        let (name, now) = (
+            url.filter(|url| !url.starts_with("/dev/pts/")),
+            Instant::now(),
+        );
+        let note = name.and_then(|name| crate::lock(&NOTES).remove(name));
+        let (mut state, at) = note.unwrap_or_else(|| (PersistedState::default(), now));
+        let passed = nanos(now.saturating_duration_since(at));
+        state.late.retain(|late| late.until > passed);
+        state.late.iter_mut().for_each(|late| late.until -= passed);
+        (Self(name.map(str::to_owned), now), state)
     }
 
     /// Leave a note once, unless the line is aligned and silent.

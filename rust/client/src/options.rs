@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use cobotwire_core::exchange::{Nanos, RetryPolicy};
-use cobotwire_table::{Edition, bad_argument};
+use cobotwire_table::bad_argument;
 
 use crate::{Error, Limits, Value};
 
@@ -41,53 +41,35 @@ pub enum OnDrop {
     Leave,
 }
 
-/// Return the byte of an address, given by its name or number.
-pub(crate) fn find_address(edition: &Edition, given: &str) -> Result<u8, Error> {
-    let mut known = edition.protocol.addresses.iter();
-    let named = known.find(|known| known.name.eq_ignore_ascii_case(given));
-    let number: Result<i64, _> = given.parse();
-    let all = &edition.protocol.table.frame().addresses;
-    let mut numbered = all.iter().copied();
-    let numbered = numbered.find(|raw| number == Ok(i64::from(*raw)));
-    let found = named.map(|known| known.value).or(numbered);
-    let shown = number.map_or_else(|_| Value::Text(given.to_owned()), Value::Integer);
-    found.ok_or_else(|| Error::usage(edition.no_address(&shown)))
-}
-
-impl Options {
-    /// Return the options of a client that opens this port itself.
-    pub(crate) fn named(self, port: &str) -> Self {
-        let port_name = Some(port.to_owned());
-        Self { port_name, ..self }
-    }
-}
-
 /// Check what Python checks, with the same texts.
 pub(crate) fn check_times(options: &Options) -> Result<(), Error> {
-    let (retry, above) = (options.retry, "seconds above 0 and below 3600");
-    let (least, time) = (Duration::from_nanos(1), Duration::from_nanos);
-    let (from, shortest) = ("seconds from 0 to below 3600", time(retry.shortest_attempt));
-    for (argument, time, allowed) in [
-        ("timeout", options.timeout.unwrap_or(least), above),
+    let (retry, least, time) = (options.retry, Duration::from_nanos(1), Duration::from_nanos);
+    let seconds = |time: Duration| {
+        let fits = !time.is_zero() && time.as_secs() < 3600;
+        (Value::Real(time.as_secs_f64()), fits)
+    };
+    let (above, from) = (
+        "seconds above 0 and below 3600",
+        "seconds from 0 to below 3600",
+    );
+    let timeout = seconds(options.timeout.unwrap_or(least));
+    let shortest = seconds(time(retry.shortest_attempt));
+    let grace = seconds(time(retry.grace).max(least));
+    let fits = (1..=100).contains(&retry.attempts);
+    let attempts = (Value::Integer(retry.attempts.into()), fits);
+    let all = [
+        ("timeout", timeout, above),
         ("retry.shortest_attempt", shortest, above),
-        ("retry.grace", time(retry.grace).max(least), from),
-    ] {
-        if time.is_zero() || time.as_secs() >= 3600 {
-            let given = Value::Real(time.as_secs_f64());
-            return Err(Error::usage(bad_argument(argument, &given, allowed)));
-        }
+        ("retry.grace", grace, from),
+        ("retry.attempts", attempts, "a whole number 1..100"),
+    ];
+    match all.into_iter().find(|(_, (_, fits), _)| !fits) {
+        None => Ok(()),
+        Some((name, (given, _), allowed)) => Err(Error::usage(bad_argument(name, &given, allowed))),
     }
-    if !(1..=100).contains(&retry.attempts) {
-        let given = Value::Integer(retry.attempts.into());
-        let text = bad_argument("retry.attempts", &given, "a whole number 1..100");
-        return Err(Error::usage(text));
-    }
-    Ok(())
 }
 
 pub(crate) fn nanos(time: Duration) -> Nanos {
     // Three hundred years are no limit.
-    Nanos::try_from(time.as_nanos())
-        .unwrap_or(Nanos::MAX / 2)
-        .min(Nanos::MAX / 2)
+    time.as_nanos().min(u128::from(Nanos::MAX / 2)) as Nanos
 }

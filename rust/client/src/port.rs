@@ -13,8 +13,8 @@ pub(crate) const CONNECT: Duration = Duration::from_secs(5);
 /// When the time is over or the line is full, `read` and `write_some` return `ErrorKind::WouldBlock` or
 /// `ErrorKind::TimedOut`. A `read` of 0 bytes says that the peer has closed the stream.
 pub trait Port: Read + Write + Send {
-    /// Limit the next `read`, or wait that long for bytes instead. Zero limits all that follow: they
-    /// return at once, and so does `write_some`, which is called only then.
+    /// Limit the next `read`, or wait that long for bytes instead; zero: it returns at once, and so
+    /// does `write_some`, which is called only then.
     fn wait_at_most(&mut self, longest: Duration) -> std::io::Result<()>;
 
     /// Write some of the bytes at once, and return how many; by default, with `write`.
@@ -111,16 +111,12 @@ pub(crate) fn open(url: &str, baudrate: u32) -> Result<Box<dyn Port>, Error> {
             "{url} is a serial port of {baudrate} baud, which needs the feature serial of cobotwire"
         )));
     };
-    let mut last = std::io::Error::other("the name has no address");
     let failed = |error| not_opened(url, error);
-    for socket in address.to_socket_addrs().map_err(failed)? {
-        match TcpStream::connect_timeout(&socket, CONNECT) {
-            Ok(stream) => {
-                stream.set_nodelay(true).map_err(failed)?;
-                return Ok(Box::new(stream));
-            }
-            Err(error) => last = error,
-        }
-    }
-    Err(failed(last))
+    let none = Err(std::io::Error::other("the name has no address"));
+    let sockets = address.to_socket_addrs().map_err(failed)?;
+    let stream = sockets.fold(none, |tried, socket| {
+        tried.or_else(|_| TcpStream::connect_timeout(&socket, CONNECT))
+    });
+    let ready = stream.and_then(|stream| stream.set_nodelay(true).map(|()| stream));
+    Ok(Box::new(ready.map_err(failed)?))
 }

@@ -149,8 +149,10 @@ impl Session {
     /// Return how a request has ended, once; `None`: it has not.
     pub fn take(&mut self, id: CallId) -> Option<Outcome> {
         let call = self.calls.get(&id)?;
-        let fault = call.fault.as_ref().or(self.fault.as_ref()).cloned();
-        let fault = fault.map(|fault| fault.after_writing(call.written));
+        let mut fault = call.fault.as_ref().or(self.fault.as_ref()).cloned();
+        if let Some(Error::LinkError { written, .. }) = &mut fault {
+            *written = Some(call.written);
+        }
         let outcome = match (call.ticket, fault) {
             (Some(ticket), fault) if !call.done => {
                 self.exchange.take(ticket)?.map(Some).map_err(|failure| {
@@ -183,12 +185,10 @@ impl Session {
         if writing.any(|writing| writing.until <= now) {
             self.end_write("", now);
         }
-        for id in std::mem::take(&mut self.one_ways) {
-            match self.calls.get_mut(&id) {
-                Some(call) if call.ends_by <= now => call.unsent(&self.handle, now),
-                _ => self.one_ways.push_back(id),
-            }
-        }
+        self.one_ways.retain(|id| {
+            let over = self.calls.get_mut(id).filter(|call| call.ends_by <= now);
+            over.map(|call| call.unsent(&self.handle, now)).is_none()
+        });
         self.exchange.note_full(self.writing.is_some());
         let events = self.exchange.advance(data, now);
         self.dispatch(events);

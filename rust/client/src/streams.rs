@@ -1,15 +1,12 @@
 //! Samples of queries and events of devices, as iterators and streams; and what both clients have.
 
-use std::sync::Mutex;
 use std::time::{Duration, Instant};
 
 use cobotwire_core::exchange::Safety;
 use cobotwire_table::bad_argument;
 
-use crate::handle::{Handle, Outcome, Prepared, result};
-use crate::session::{Queue, Session};
-use crate::typed::{DeviceEvent, Request};
-use crate::{Error, Sample, Value, lock};
+use crate::handle::{Handle, Prepared};
+use crate::{Error, Value};
 
 /// The samples of a query, or the events of a type: an iterator of [`Client::poll`] or
 /// [`Client::events`], a `Stream` of the asynchronous client. `N` is what waits for the next one.
@@ -18,24 +15,12 @@ use crate::{Error, Sample, Value, lock};
 /// [`Client::events`]: crate::Client::events
 pub struct Received<N> {
     pub(crate) next: Box<dyn FnMut() -> N + Send>,
-    #[cfg(feature = "tokio")]
+    #[cfg_attr(not(feature = "tokio"), allow(dead_code))]
     pub(crate) pending: Option<N>,
-    missed: Box<dyn Fn() -> u64 + Send>,
+    pub(crate) missed: Box<dyn Fn() -> u64 + Send>,
 }
 
 impl<N> Received<N> {
-    pub(crate) fn new(
-        next: impl FnMut() -> N + Send + 'static,
-        missed: impl Fn() -> u64 + Send + 'static,
-    ) -> Self {
-        Self {
-            next: Box::new(next),
-            #[cfg(feature = "tokio")]
-            pending: None,
-            missed: Box::new(missed),
-        }
-    }
-
     /// Return how many periods have had no sample, or how many events were dropped, always the
     /// oldest, because too many waited.
     #[must_use]
@@ -54,7 +39,7 @@ impl<T> Iterator for Received<Option<T>> {
 
 /// Says when a query is to be sampled, and counts the periods without a sample.
 pub(crate) struct Polling {
-    pub prepared: Prepared,
+    prepared: Prepared,
     period: Duration,
     next: Option<Instant>,
     pub missed: u64,
@@ -83,48 +68,18 @@ impl Polling {
         })
     }
 
-    /// Return the sample of a period, or the error that ends the stream; a period may have neither.
-    pub fn sample<R: Request>(
-        &mut self,
-        handle: &Handle,
-        outcome: Outcome,
-    ) -> Option<Result<Sample<R::Reply>, Error>> {
-        let answer = outcome.as_ref().ok().and_then(Option::as_ref);
-        let times = answer.map(|answer| (answer.requested_at, answer.replied_at));
-        let (requested_at, replied_at) = times.unwrap_or_default();
-        let value = outcome.and_then(|answer| handle.result::<R>(&self.prepared, answer));
-        self.ended = matches!(value, Err(Error::LinkError { .. }));
-        if value.is_err() && !self.ended {
-            self.missed += 1;
-            return None;
-        }
-        Some(value.map(|value| Sample {
-            value,
-            requested_at,
-            replied_at,
-        }))
-    }
-
-    /// Return for how long to wait for the next period; those that have passed are missed.
-    pub fn tick(&mut self) -> Duration {
+    /// Return the query, and for how long to wait for its next period; those that have passed are
+    /// missed. `None`: the samples have ended.
+    pub fn tick(&mut self) -> Option<(Prepared, Duration)> {
         let now = Instant::now();
         let at = self.next.unwrap_or(now);
         let late = now.saturating_duration_since(at).as_nanos() / self.period.as_nanos().max(1);
         let late = u32::try_from(late).unwrap_or(u32::MAX);
         self.missed += u64::from(late);
         self.next = Some(at + self.period * late + self.period);
-        (at + self.period * late).saturating_duration_since(now)
+        let wait = (at + self.period * late).saturating_duration_since(now);
+        (!self.ended).then(|| (self.prepared.clone(), wait))
     }
-}
-
-/// Return the next event that has come, or the error that ends them.
-pub(crate) fn next_event<E: DeviceEvent>(
-    queue: &Mutex<Queue>,
-    session: &Session,
-) -> Option<Result<E, Error>> {
-    let event = lock(queue).events.pop_front();
-    let event = event.map(|fields| result(fields, (E::FIELDS, false), &[]));
-    event.or_else(|| session.fault.clone().map(Err))
 }
 
 /// Makes the methods of a client with the fields `handle` and `shared`, and with private methods
@@ -194,29 +149,34 @@ macro_rules! client_methods {
                 client.handle.options.retry.attempts = 1;
                 let polling = Polling::new(&self.handle, self.handle.prepare(request)?, rate)?;
                 let polling = Arc::new(Mutex::new(polling));
-                let counted = polling.clone();
+                let missed = { let polling = polling.clone(); move || lock(&polling).missed };
                 let next = move || -> $coming<_> {
                     let (client, polling) = (client.clone(), polling.clone());
                     $($pin)* ($($move)* { client.sample::<R>(&polling) $($await)* })
                 };
-                Ok(Received::new(next, move || lock(&counted).missed))
+                Ok(Received { next: Box::new(next), pending: None, missed: Box::new(missed) })
             }
 
+            /// Return the next sample, or the error that ends the samples.
             $($async)* fn sample<R: Request>(
                 &self,
                 polling: &Mutex<Polling>,
             ) -> Option<Result<Sample<R::Reply>, Error>> {
-                let prepared = lock(polling).prepared.clone();
-                while !lock(polling).ended {
-                    let wait = lock(polling).tick();
+                loop {
+                    let (prepared, wait) = lock(polling).tick()?;
                     $sleep(wait) $($await)* ;
                     let outcome = self.perform(&prepared) $($await)* ;
-                    let sample = lock(polling).sample::<R>(&self.handle, outcome);
-                    if sample.is_some() {
-                        return sample;
+                    let mut times = outcome.iter().flatten();
+                    let times = times.next().map(|each| (each.requested_at, each.replied_at));
+                    let (requested_at, replied_at) = times.unwrap_or_default();
+                    let value = outcome.and_then(|answer| self.handle.result::<R>(&prepared, answer));
+                    let mut polling = lock(polling);
+                    polling.ended = matches!(value, Err(Error::LinkError { .. }));
+                    if value.is_ok() || polling.ended {
+                        return Some(value.map(|value| Sample { value, requested_at, replied_at }));
                     }
+                    polling.missed += 1;
                 }
-                None
             }
 
             /// Receive the events of a type that come from now on, until none comes within
@@ -227,16 +187,18 @@ macro_rules! client_methods {
             ) -> Result<Received<$coming<Result<E, Error>>>, Error> {
                 let (client, command) = (self.clone(), self.handle.command(E::COMMAND)?);
                 let queue = self.connection().session.subscribe(command);
-                let counted = queue.clone();
+                let missed = { let queue = queue.clone(); move || lock(&queue).lost };
                 let next = move || -> $coming<_> {
                     let (client, queue) = (client.clone(), queue.clone());
                     let next = move |session: &mut Session, is_over: bool| {
-                        let event = next_event(&queue, session);
+                        let event = lock(&queue).events.pop_front();
+                        let event = event.map(|fields| result(fields, (E::FIELDS, false), &[]));
+                        let event = event.or_else(|| session.fault.clone().map(Err));
                         event.map(Some).or(is_over.then_some(None))
                     };
                     $($pin)* ($($move)* { client.until(timeout, next) $($await)* })
                 };
-                Ok(Received::new(next, move || lock(&counted).lost))
+                Ok(Received { next: Box::new(next), pending: None, missed: Box::new(missed) })
             }
         }
     };

@@ -57,7 +57,7 @@ def render_rust(edition: Edition, templates: Path | None = None) -> Files:
         name=type_name(shown.class_name),
         commands=commands,
         requests=[each for each in commands if not each.command.event],
-        is_of_joints=_Shape().is_of_joints,
+        is_of_joints=_is_of_joints,
         array=_array,
         items=_items,
     )
@@ -106,68 +106,56 @@ def rustdoc(text: str, indent: int = 0) -> str:
     return "\n".join(f"{' ' * indent}/// {line}".rstrip() for line in safe)
 
 
-class _Shape:
-    """The types of values in Rust, as arguments and as results."""
+def _argument(parameter: Parameter) -> str:
+    """Return the type of an argument; it is optional if a call may leave it out."""
+    found = _one(map(_given, parameter.types))
+    left_out = parameter.may_be_none or parameter.default is not None
+    return f"Option<{found}>" if left_out else found
 
-    def argument(self, parameter: Parameter) -> str:
-        """Return the type of an argument; it is optional if a call may leave it out."""
-        found = _one(map(self._given, parameter.types))
-        left_out = parameter.may_be_none or parameter.default is not None
-        return f"Option<{found}>" if left_out else found
 
-    def result(self, parameter: Parameter) -> str:
-        """Return the type of a field of a reply."""
-        types = parameter.types
-        same = len(types) == 1 or not all(isinstance(type, Value) for type in types)
-        found = _one(map(self.reported if same else self._given, types))
-        return f"Option<{found}>" if parameter.optional else found
+def _result(parameter: Parameter) -> str:
+    """Return the type of a field of a reply."""
+    types = parameter.types
+    same = len(types) == 1 or not all(isinstance(type, Value) for type in types)
+    found = _one(map(_reported if same else _given, types))
+    return f"Option<{found}>" if parameter.optional else found
 
-    def _given(self, type: Type) -> str:
-        if isinstance(type, Value | Bits):
-            return _array(type)
-        if isinstance(type, Listed):
-            return f"Vec<{self._given(type.of)}>"
-        return self.reported(type)
 
-    def reported(self, type: Type) -> str:
-        """Return the type of a value in a reply."""
-        if isinstance(type, Value):
-            return _array(type) if self.is_of_joints(type) else type_name(type.class_name)
-        if isinstance(type, Enum | Bits):
-            return type_name(type.class_name)
-        if isinstance(type, Listed):
-            return f"Vec<{self.reported(type.of)}>"
-        return _scalar(type)
+def _given(type: Type) -> str:
+    if isinstance(type, Listed):
+        return f"Vec<{_given(type.of)}>"
+    return _array(type) if isinstance(type, Value | Bits) else _reported(type)
 
-    def is_of_joints(self, type: Type) -> bool:
-        """Return whether a row has a number for each joint, so that it needs no other names."""
-        parts = type.items if isinstance(type, Value) else ()
-        return [name for name, _ in parts] == [f"j{n}" for n in range(1, len(parts) + 1)]
+
+def _reported(type: Type) -> str:
+    """Return the type of a value in a reply."""
+    if isinstance(type, Listed):
+        return f"Vec<{_reported(type.of)}>"
+    if isinstance(type, Value) and _is_of_joints(type):
+        return _array(type)
+    if isinstance(type, Enum | Bits | Value):
+        return type_name(type.class_name)
+    if isinstance(type, Octets | Chars):
+        return "Vec<u8>" if isinstance(type, Octets) else "String"
+    if isinstance(type, Flag):
+        return "bool"
+    return "f64" if type.real else "i64"
+
+
+def _is_of_joints(type: Type) -> bool:
+    """Return whether a row has a number for each joint, so that it needs no other names."""
+    parts = type.items if isinstance(type, Value) else ()
+    return [name for name, _ in parts] == [f"j{n}" for n in range(1, len(parts) + 1)]
 
 
 def _items(type: Value | Bits) -> list[tuple[str, str, str]]:
     """Return name, type and description of each part of a row."""
-    return [
-        (
-            name,
-            type_name(item.class_name) if isinstance(item, Enum) else _scalar(item),
-            api.item_doc(item),
-        )
-        for name, item in type.items
-    ]
+    return [(name, _reported(item), api.item_doc(item)) for name, item in type.items]
 
 
 def _array(type: Value | Bits) -> str:
     real = any(isinstance(item, Quantity) and item.real for _, item in type.items)
     return f"[{'f64' if real else 'i64'}; {len(type.items)}]"
-
-
-def _scalar(type: Type) -> str:
-    if isinstance(type, Octets | Chars):
-        return "Vec<u8>" if isinstance(type, Octets) else "String"
-    if isinstance(type, Flag):
-        return "bool"
-    return "f64" if isinstance(type, Quantity) and type.real else "i64"
 
 
 def _one(found: Iterable[str]) -> str:
@@ -194,24 +182,20 @@ class _Shown:
         method = command.name if method in taken else method
         self.method = f"{method}_" if method in _METHODS else identifier(method)
         fields = {parameter.name: parameter for parameter in parameters(command)}
-        shape = _Shape()
         self.arguments = [
-            (each.name, shape.argument(fields[each.name]) if each.name in fields else "String")
+            (each.name, _argument(fields[each.name]) if each.name in fields else "String")
             for each in arguments(command)
         ]
-        every = [*fields.values(), *reply_parameters(command)]
-        self.radians = list(dict.fromkeys(each.name for each in every if each.radians))
-        found, text = results(command), command.text
+        found, text, reply = results(command), command.text, reply_parameters(command)
+        self.radians = list(
+            dict.fromkeys(each.name for each in (*fields.values(), *reply) if each.radians)
+        )
         self.own_result = text is not None or len(found) > 1
         self.result = f"{self.message}Result" if text is None else type_name(text.class_name)
-        self.results = [each.name for each in found]
-        self.items = [(each.name, shape.result(each), each.doc) for each in found]
+        shown = reply if command.event else found
+        self.items = [(each.name, _result(each), each.doc) for each in shown]
         if text is not None:
-            self.results = [name for name, _ in text.fields]
             self.items = [(name, "String", doc) for name, doc in text.fields]
-        elif command.event:
-            reported = reply_parameters(command)
-            self.items = [(each.name, shape.result(each), each.doc) for each in reported]
         parts = [f"{command.title}.", api.description(command)]
         parts.append("\n".join(f"* {line}" for line in api.argument_lines(command)))
         parts.append(f"Returns: {api.result_line(command)}" if command.awaits_reply else "")
@@ -219,4 +203,4 @@ class _Shown:
         self.doc = "\n\n".join(filter(None, parts))
         self.reply = self.result if self.own_result else "()"
         if found and not self.own_result:
-            self.reply = shape.result(found[0])
+            self.reply = self.items[0][1]
