@@ -15,7 +15,7 @@ use tokio::sync::Notify;
 use crate::connection::{Connection, Shared};
 use crate::handle::{Handle, Outcome, Prepared, result};
 use crate::options::nanos;
-use crate::port::{CONNECT, not_opened, socket_of};
+use crate::port::{CONNECT, SOCKET, not_opened};
 use crate::session::{CallId, Session};
 use crate::streams::{Polling, Received, client_methods};
 use crate::typed::{DeviceEvent, Request, Table};
@@ -59,7 +59,7 @@ client_methods!(
 impl AsyncClient {
     /// Connect to `socket://host:port`.
     pub async fn open(edition: Table, port: &str, mut options: Options) -> Result<Self, Error> {
-        let Some(address) = socket_of(port) else {
+        let Some(address) = port.strip_prefix(SOCKET) else {
             let text = format!("{port} is not socket://host:port; pass other streams to over()");
             return Err(Error::usage(text));
         };

@@ -110,11 +110,10 @@ impl Handle {
             return Err(Error::usage(text));
         }
         let texts: Vec<&str> = texts.into_iter().flatten().collect();
-        let (count, row, address) = (row.len(), Value::Row(row), self.address);
-        let protocol = &edition.protocol;
+        let (protocol, address) = (&edition.protocol, self.address);
         let encoded = Encoded::encode::<Value>(protocol, command, &row, &texts, address, variant);
         let request = encoded.map_err(|error| {
-            let given = (count, &*texts, address);
+            let given = (row.len(), &*texts, address);
             Error::usage(edition.request_error(command, &error, given))
         })?;
         if self.ack_within.is_some() && request.replier == Replier::Nobody {

@@ -48,10 +48,7 @@ pub(crate) fn check_times(options: &Options) -> Result<(), Error> {
         let fits = !time.is_zero() && time.as_secs() < 3600;
         (Value::Real(time.as_secs_f64()), fits)
     };
-    let (above, from) = (
-        "seconds above 0 and below 3600",
-        "seconds from 0 to below 3600",
-    );
+    let above = "seconds above 0 and below 3600";
     let timeout = seconds(options.timeout.unwrap_or(least));
     let shortest = seconds(time(retry.shortest_attempt));
     let grace = seconds(time(retry.grace).max(least));
@@ -60,7 +57,7 @@ pub(crate) fn check_times(options: &Options) -> Result<(), Error> {
     let all = [
         ("timeout", timeout, above),
         ("retry.shortest_attempt", shortest, above),
-        ("retry.grace", grace, from),
+        ("retry.grace", grace, "seconds from 0 to below 3600"),
         ("retry.attempts", attempts, "a whole number 1..100"),
     ];
     match all.into_iter().find(|(_, (_, fits), _)| !fits) {

@@ -6,6 +6,8 @@ use std::time::Duration;
 
 use crate::Error;
 
+/// What host and port of a TCP port follow.
+pub(crate) const SOCKET: &str = "socket://";
 pub(crate) const CONNECT: Duration = Duration::from_secs(5);
 
 /// A stream of bytes to a device. The time of a read can be limited.
@@ -89,18 +91,13 @@ impl<P: Port + ?Sized> Port for Box<P> {
     }
 }
 
-/// Return host and port of `socket://host:port`; `None`: it is another kind of port.
-pub(crate) fn socket_of(url: &str) -> Option<&str> {
-    url.strip_prefix("socket://")
-}
-
 pub(crate) fn not_opened(url: &str, error: impl std::fmt::Display) -> Error {
     Error::link(url, &format!("cannot be opened: {error}"), Some(0))
 }
 
 /// Open a serial port, or connect to `socket://host:port`.
 pub(crate) fn open(url: &str, baudrate: u32) -> Result<Box<dyn Port>, Error> {
-    let Some(address) = socket_of(url) else {
+    let Some(address) = url.strip_prefix(SOCKET) else {
         #[cfg(feature = "serial")]
         return match serialport::new(url, baudrate).open() {
             Ok(port) => Ok(Box::new(port)),

@@ -4,7 +4,9 @@
 use std::collections::{HashMap, VecDeque};
 use std::sync::{Arc, Mutex, Weak};
 
-use cobotwire_core::exchange::{Event, Exchange, Failure, Nanos, PersistedState, Safety, Ticket};
+use cobotwire_core::exchange::{
+    Event, Exchange, Failure, Nanos, PersistedState, Safety, Ticket, WaitedFor,
+};
 
 use crate::handle::{Handle, Named, Outcome, Prepared};
 use crate::options::nanos;
@@ -376,7 +378,12 @@ impl Session {
 impl Call {
     /// End a request with the error that none of its bytes was written by its deadline.
     fn unsent(&mut self, handle: &Handle, now: Nanos) {
-        let failure = Failure::unsent(now.saturating_sub(self.called_at));
+        let failure = Failure::Timeout {
+            waited: now.saturating_sub(self.called_at),
+            attempts: 0,
+            waited_for: Some(WaitedFor::Line),
+            received: Vec::new(),
+        };
         self.fault = handle.failure(&self.prepared.request, &failure);
         self.done |= self.ticket.is_none();
     }

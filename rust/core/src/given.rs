@@ -109,3 +109,19 @@ pub trait Row {
     /// Return the row itself as a value, for an error message.
     fn into_value(self) -> Self::Item;
 }
+
+impl<V: Clone + From<Vec<V>>> Row for Vec<V> {
+    type Item = V;
+
+    fn count(&self) -> usize {
+        self.len()
+    }
+
+    fn at(&self, index: usize) -> Option<V> {
+        self.get(index).cloned()
+    }
+
+    fn into_value(self) -> V {
+        self.into()
+    }
+}

@@ -12,7 +12,7 @@ use cobotwire_core::exchange::{
 use cobotwire_table::Edition;
 use serde_json::{Value as Json, json};
 
-use crate::values::{from_hex, hex, index, value_of};
+use crate::values::{from_hex, hex, index, row_of};
 
 /// An exchange, with its requests by the numbers of their tickets.
 pub struct Open {
@@ -127,13 +127,13 @@ impl Open {
     /// Return the request of `[command, values, texts, address, variant]`, or the text of its error.
     fn request(&self, json: &Json) -> Result<Request, String> {
         let (edition, command) = (&*self.edition, index(&self.edition, &json[0]));
-        let (values, texts) = (value_of(&json[1]), json[2].as_array().unwrap());
+        let (values, texts) = (row_of(&json[1]), json[2].as_array().unwrap());
         let texts: Vec<&str> = texts.iter().filter_map(Json::as_str).collect();
         let address = json[3].as_u64().map(|address| address as u8);
         let variant = json[4].as_u64().map(|variant| variant as usize);
         let protocol = &edition.protocol;
         Request::encode::<Value>(protocol, command, &values, &texts, address, variant).map_err(
-            |error| edition.request_error(command, &error, (values.count(), &texts, address)),
+            |error| edition.request_error(command, &error, (values.len(), &texts, address)),
         )
     }
 

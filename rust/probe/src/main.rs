@@ -15,12 +15,12 @@ use std::sync::Arc;
 
 use cobotwire::Value;
 use cobotwire_core::exchange::PersistedState;
-use cobotwire_core::{Choice, Direction, Row, decode, encode};
+use cobotwire_core::{Choice, Direction, decode, encode};
 use cobotwire_table::Edition;
 use serde_json::{Value as Json, json};
 
 use crate::exchange::Open;
-use crate::values::{from_hex, index, value_of};
+use crate::values::{from_hex, index, row_of};
 
 /// An edition, or why it was rejected.
 type Read = Result<Arc<Edition>, String>;
@@ -99,10 +99,10 @@ fn direction(word: &Json) -> Direction {
 /// Return the text of the error of a message that cannot be encoded.
 fn encode_error(edition: &Edition, step: &[Json]) -> Option<String> {
     let (direction, index) = (direction(&step[0]), index(edition, &step[1]));
-    let (table, values) = (&edition.protocol.table, value_of(&step[2]));
+    let (table, values) = (&edition.protocol.table, row_of(&step[2]));
     let (command, choice) = (&table.commands()[index], Choice::default());
     let error = encode::<Value>(table.frame(), command, direction, &values, choice).err()?;
-    Some(edition.encode_error((index, direction), &error, values.count(), None))
+    Some(edition.encode_error((index, direction), &error, values.len(), None))
 }
 
 /// Return the text of the error of bytes that cannot be decoded.

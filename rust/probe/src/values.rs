@@ -23,6 +23,12 @@ pub fn value_of(json: &Json) -> Value {
     }
 }
 
+/// Return the values of a message.
+pub fn row_of(json: &Json) -> Vec<Value> {
+    let row = json.as_array().into_iter().flatten();
+    row.map(value_of).collect()
+}
+
 /// Return a value of a reply.
 pub fn shown(value: &Value) -> Json {
     match value {

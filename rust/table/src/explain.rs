@@ -32,23 +32,20 @@ impl Edition {
         let (id, format) = (message.variant, self.protocol.table.frame());
         let layout = format.layout;
         let mut parts: Vec<Explained> = Vec::new();
-        // Address, LEN and CMD have the order of the edition.
-        let mut push = |bytes: Range<usize>, name: &str, meaning, raw| {
-            let before = |part: &Explained| part.bytes.start <= bytes.start;
-            let place = parts.iter().rposition(before).map_or(0, |at| at + 1);
-            let name = name.into();
-            parts.insert(
-                place,
-                Explained {
-                    bytes,
-                    name,
-                    meaning,
-                    raw,
-                },
-            );
+        let mut push = |bytes, name: &str, meaning, raw| {
+            parts.push(Explained {
+                bytes,
+                name: name.into(),
+                meaning,
+                raw,
+            });
         };
-        let start = "a frame starts here".into();
-        push(0..format.header.len(), "header", start, None);
+        push(
+            0..format.header.len(),
+            "header",
+            "a frame starts here".into(),
+            None,
+        );
         if let Some((at, address)) = layout.address_at.zip(message.address) {
             push(at..at + 1, "address", self.address_name(address), None);
         }
@@ -95,6 +92,8 @@ impl Edition {
             _ => "footer",
         };
         push(at..frame.len(), name, "the frame ends here".into(), None);
+        // Address, LEN and CMD have the order of the edition.
+        parts.sort_by_key(|part| part.bytes.start);
         parts
     }
 }
@@ -117,8 +116,7 @@ impl Part<'_> {
             wire::Value::Real(real) => general(real, 6),
             _ => raw.to_string(),
         };
-        let space = if names.unit.is_empty() { "" } else { " " };
         let unit = entry(UNITS, &names.unit).unwrap_or(&names.unit);
-        format!("{value}{space}{unit}")
+        format!("{value} {unit}").trim_end().into()
     }
 }

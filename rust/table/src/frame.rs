@@ -74,12 +74,10 @@ pub(crate) fn frame_format(
     let counted = record.or("counted", vec![Command, Data, CheckBytes, Footer])?;
     let reply_has_id = !record.any::<bool>("replies_without_id")?;
     let times = |parts: &[Place], part| parts.iter().filter(|each| **each == part).count();
-    let last = order
-        .last()
-        .filter(|last| **last == Command || reply_has_id);
-    let known = order
-        .iter()
-        .all(|part| matches!(part, Address | Length | Command));
+    let can_be_last = |last: &&Place| **last == Command || reply_has_id;
+    let last = order.last().filter(can_be_last);
+    let mut between = order.iter();
+    let known = between.all(|part| matches!(part, Address | Length | Command));
     if !known
         || (times(&order, Length), times(&order, Command)) != (1, 1)
         || !(size(&Address)..=1).contains(&times(&order, Address))

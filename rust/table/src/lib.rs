@@ -13,7 +13,6 @@ mod explain;
 mod frame;
 mod json;
 mod messages;
-mod named;
 mod rejection;
 mod texts;
 mod types;

@@ -171,11 +171,8 @@ impl<'a> Messages<'a> {
         let (mut field, mut text) = (wire::Field::default(), Field::default());
         let shape = kind(of)?;
         let in_list = shape == Kind::List;
-        let of = if in_list {
-            self.types.get(of, "of")?
-        } else {
-            of
-        };
+        let element = in_list.then(|| self.types.get(of, "of"));
+        let of = element.unwrap_or(Ok(of))?;
         let kind = kind(of)?;
         field.many = true;
         let numbers = match kind {

@@ -50,8 +50,7 @@ impl Edition {
                 let part = self.part(variant, bad.field, bad.case);
                 part.map_or(String::new(), |part| part.bad_value(bad))
             }
-            // The error of a conversion has a text of its own.
-            EncodeError::Foreign(_) => String::new(),
+            EncodeError::Foreign(never) => match *never {},
         }
     }
 

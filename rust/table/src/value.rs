@@ -6,7 +6,7 @@ use alloc::vec::Vec;
 use core::convert::Infallible;
 use core::fmt::{self, Display, Formatter};
 
-use cobotwire_core::{Encoding, Given, Row, Unread, Value as Flat, ValueFault};
+use cobotwire_core::{Encoding, Given, Unread, Value as Flat, ValueFault};
 
 /// A longer value is cut.
 const MOST: usize = 80;
@@ -38,7 +38,7 @@ const WRONG_TYPE: Unread<Infallible> = Unread::Fault(ValueFault::Type);
 
 impl Given for Value {
     type Error = Infallible;
-    type Row = Self;
+    type Row = Vec<Self>;
 
     fn integer(&self, flag: bool) -> Read<i64> {
         match self {
@@ -58,9 +58,11 @@ impl Given for Value {
         }
     }
 
-    fn row(&self) -> Read<Self> {
-        let row = Some(self).filter(|value| matches!(value, Self::Row(_)));
-        row.cloned().ok_or(WRONG_TYPE)
+    fn row(&self) -> Read<Vec<Self>> {
+        match self {
+            Self::Row(row) => Ok(row.clone()),
+            _ => Err(WRONG_TYPE),
+        }
     }
 
     fn counted(&self) -> bool {
@@ -75,42 +77,25 @@ impl Given for Value {
     }
 
     fn text(&self, encoding: Encoding) -> Read<Vec<u8>> {
-        let Self::Text(text) = self else {
-            return Err(WRONG_TYPE);
-        };
-        let encoded = match encoding {
-            Encoding::Latin1 => text.chars().map(|c| u8::try_from(c).ok()).collect(),
-            Encoding::Utf8 => Some(text.as_bytes().into()),
-            Encoding::Ascii => text.is_ascii().then(|| text.as_bytes().into()),
+        let encoded = match (self, encoding) {
+            (Self::Text(text), Encoding::Latin1) => {
+                text.chars().map(|c| c.try_into().ok()).collect()
+            }
+            (Self::Text(text), Encoding::Ascii) if !text.is_ascii() => None,
+            (Self::Text(text), _) => Some(text.as_bytes().into()),
+            _ => return Err(WRONG_TYPE),
         };
         encoded.ok_or(Unread::Fault(ValueFault::Text))
     }
 }
 
-impl Row for Value {
-    type Item = Self;
-
-    fn count(&self) -> usize {
-        self.elements().len()
-    }
-
-    fn at(&self, index: usize) -> Option<Self> {
-        self.elements().get(index).cloned()
-    }
-
-    fn into_value(self) -> Self {
-        self
+impl From<Vec<Self>> for Value {
+    fn from(row: Vec<Self>) -> Self {
+        Self::Row(row)
     }
 }
 
 impl Value {
-    fn elements(&self) -> &[Self] {
-        match self {
-            Self::Row(row) => row,
-            _ => &[],
-        }
-    }
-
     /// Return the next value of a decoded message; a row takes those that follow it.
     pub(crate) fn nested(rest: &mut impl Iterator<Item = Flat>) -> Option<Self> {
         Some(match rest.next()? {
@@ -136,7 +121,8 @@ impl Value {
             Self::Bytes(bytes) => bytes.len(),
             Self::Text(text) if encoding == Some(Encoding::Utf8) => text.len(),
             Self::Text(text) => text.chars().count(),
-            _ => self.elements().len(),
+            Self::Row(row) => row.len(),
+            _ => 0,
         }
     }
 

@@ -71,7 +71,7 @@ fn encoded(
         };
         let fits = only.is_none_or(|only| only == at);
         if let Some(row) = row.filter(|row| fits && row.len() == names.len()) {
-            let (command, row) = (table.commands().get(index)?, Value::Row(row));
+            let command = table.commands().get(index)?;
             let made = encode::<Value>(table.frame(), command, direction, &row, choice);
             if let Ok(frame) = made {
                 return Some(Value::Bytes(frame));

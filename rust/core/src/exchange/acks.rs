@@ -11,9 +11,10 @@ use alloc::collections::BTreeMap;
 use alloc::sync::Arc;
 use alloc::vec::Vec;
 
+use super::outcome::Got;
 use super::pending::{GRACE, Pending};
 use super::{
-    Answer, Facts, Failure, Nanos, Protocol, Replier, Request, SeenFrame, Ticket, WaitedFor,
+    Answer, Facts, Failure, Nanos, Protocol, Replier, Request, Safety, SeenFrame, Ticket, WaitedFor,
 };
 use crate::decode::Decoded;
 
@@ -154,7 +155,8 @@ impl CommandAcks {
         let at_once = now.saturating_sub(newest.sent_at) < GRACE;
         let single = self.began_at == newest.sent_at;
         let long = now.saturating_sub(self.began_at) > MOTION;
-        protocol.is(newest.request.command, Facts::moves) && at_once && (single || long)
+        let moves = |facts: &Facts| facts.safety == Safety::Motion;
+        protocol.is(newest.request.command, moves) && at_once && (single || long)
     }
 }
 
@@ -179,10 +181,9 @@ impl Acks {
         pending: Option<Pending>,
     ) -> Nanos {
         let at_once = self.motions_at_once || protocol.reports_ends;
-        let usual = match protocol.is(request.command, Facts::moves) && !at_once {
-            true => MOTION,
-            false => GRACE,
-        };
+        let moves = |facts: &Facts| facts.safety == Safety::Motion;
+        let slow = protocol.is(request.command, moves) && !at_once;
+        let usual = if slow { MOTION } else { GRACE };
         let within = pending.as_ref().map_or(0, |pending| pending.wait);
         let until = now.saturating_add(within.max(usual));
         let ack = ExpectedAck {
@@ -263,7 +264,7 @@ impl Acks {
         let own = |ack: &ExpectedAck, wait: &Pending| Arc::ptr_eq(&ack.request, &wait.request);
         let over = |wait: &mut Pending| acks.known.iter().any(|ack| ack.certain && own(ack, wait));
         let ended = self.waiting.extract_if(.., over).map(|wait| {
-            let answer = wait.answer(None, Vec::new(), now);
+            let answer = wait.answer(Got::default(), now);
             (wait.ticket, refused.clone().map_or(Ok(answer), Err))
         });
         Some((command, message, ended.collect()))
@@ -278,7 +279,7 @@ impl Acks {
             let copied = copied.is_some_and(|copied| Arc::ptr_eq(copied, &wait.request));
             let in_time = wait.deadline > now;
             let outcome = if copied && !echoes && !in_time {
-                Ok(wait.answer(None, Vec::new(), now))
+                Ok(wait.answer(Got::default(), now))
             } else {
                 Err(wait.expire(now, in_time.then_some(WaitedFor::Reply)))
             };

@@ -23,7 +23,6 @@ mod request;
 mod text;
 
 use alloc::collections::BTreeMap;
-use alloc::string::String;
 use alloc::sync::Arc;
 use alloc::vec::Vec;
 use core::fmt;
@@ -40,10 +39,11 @@ pub use self::text::{TextError, TextFault, TextMistake};
 use self::acks::Acks;
 use self::alignment::Alignment;
 use self::echo::{EchoDetector, since};
+use self::outcome::Got;
 use self::outstanding::OutstandingReplies;
 use self::pending::{NEVER, Pending};
 use self::text::TextCollector;
-use crate::decode::{DecodeError, Decoded};
+use crate::decode::DecodeError;
 use crate::direction::{Direction, Listening};
 use crate::framer::Framer;
 
@@ -180,10 +180,8 @@ impl Exchange {
         if let Some(waiting) = self.waiting() {
             outstanding.expect_late(waiting, 0);
         }
-        PersistedState {
-            late: outstanding.0,
-            parts: self.alignment.held.clone(),
-        }
+        let (late, parts) = (outstanding.0, self.alignment.held.clone());
+        PersistedState { late, parts }
     }
 
     /// Respect what an earlier session left on this port.
@@ -228,7 +226,17 @@ impl Exchange {
     pub fn end_overdue(&mut self, now: Nanos) -> Vec<Event> {
         let ended = self.acks.wake(&self.protocol, now, self.echo.proven);
         self.finished.extend(ended);
-        self.end_overdue_queued(now);
+        let over = |pending: &mut Pending| pending.ends_by <= now;
+        let ended: Vec<Pending> = self.queue.extract_if(.., over).collect();
+        for mut pending in ended {
+            let waited_for = match (self.free_at(&pending, now) > now, self.line_is_full) {
+                (true, _) => WaitedFor::Hold,
+                (false, true) => WaitedFor::Line,
+                (false, false) => WaitedFor::Turn,
+            };
+            let failure = pending.expire(now, Some(waited_for));
+            self.finished.insert(pending.ticket, Err(failure));
+        }
         // A copy of the request does not count as its reply, which still had time to come.
         let over = self.waiting().is_some_and(|waiting| waiting.ends_by <= now);
         let expired = over.then(|| self.expire(now, Some(WaitedFor::Reply)));
@@ -387,20 +395,6 @@ impl Exchange {
         Some(waiting.request.frame.clone())
     }
 
-    fn end_overdue_queued(&mut self, now: Nanos) {
-        let over = |pending: &mut Pending| pending.ends_by <= now;
-        let ended: Vec<Pending> = self.queue.extract_if(.., over).collect();
-        for mut pending in ended {
-            let waited_for = match (self.free_at(&pending, now) > now, self.line_is_full) {
-                (true, _) => WaitedFor::Hold,
-                (false, true) => WaitedFor::Line,
-                (false, false) => WaitedFor::Turn,
-            };
-            let failure = pending.expire(now, Some(waited_for));
-            self.finished.insert(pending.ticket, Err(failure));
-        }
-    }
-
     // What received bytes are, and how the request that waits ends by them or by silence.
 
     /// Return what the framer gives up, so that a frame hidden in it still counts.
@@ -449,7 +443,7 @@ impl Exchange {
         };
         let repeats = request.is_some_and(|own| own.repeated_by(&self.protocol, &reply));
         match (is_copy, repeats, waits) {
-            (false, true, _) => return self.end(reply, Some(frame), now),
+            (false, true, _) => return self.end((Some(reply), Vec::new()), Some(frame), now),
             (false, false, _) => return self.match_other(frame, now, began_at, is_copy),
             // A copy that can be the reply is kept; one that cannot proves that the line echoes.
             (true, true, Some(waiting)) => waiting.candidate = Some(reply),
@@ -514,24 +508,15 @@ impl Exchange {
         }
     }
 
-    /// End the request that waits with its reply. Further copies of the reply may come.
-    fn end(&mut self, reply: Decoded, frame: Option<SeenFrame>, now: Nanos) -> Event {
+    /// End the request that waits with its reply or text. Further copies of it may come.
+    fn end(&mut self, got: Got, frame: Option<SeenFrame>, now: Nanos) -> Event {
         let waiting = self.waiting();
         // Other devices may reply to a broadcast too.
         let anybody = waiting.is_some_and(|own| own.request.replier == Replier::Anybody);
-        self.answer(usize::from(!anybody), Some(reply), Vec::new(), frame, now)
-    }
-
-    fn answer(
-        &mut self,
-        received: usize,
-        decoded: Option<Decoded>,
-        texts: Vec<String>,
-        frame: Option<SeenFrame>,
-        now: Nanos,
-    ) -> Event {
-        let answer = |own: &mut Pending| Ok(own.answer(decoded.clone(), texts.clone(), now));
+        let received = usize::from(!anybody || got.0.is_none());
+        let answer = |own: &mut Pending| Ok(own.answer(got.clone(), now));
         let command = self.end_waiting(received, answer);
+        let (decoded, texts) = got;
         Event::Matched {
             command,
             decoded,
@@ -566,9 +551,9 @@ impl Exchange {
         let Some(waiting) = self.waiting().filter(|waiting| waiting.ends_at() <= now) else {
             return events;
         };
-        match waiting.candidate.clone() {
-            Some(reply) if !self.echo.proven => events.push(self.end(reply, None, now)),
-            _ => events.extend(self.expire(now, None)),
+        match waiting.candidate.clone().filter(|_| !self.echo.proven) {
+            None => events.extend(self.expire(now, None)),
+            reply => events.push(self.end((reply, Vec::new()), None, now)),
         }
         events
     }
@@ -580,7 +565,7 @@ impl Exchange {
             return None;
         }
         Some(match text.decode() {
-            Ok(texts) => self.answer(1, None, texts, None, now),
+            Ok(texts) => self.end((None, texts), None, now),
             Err((error, data)) => self.fail_reply(ReplyError::Text(error), data, None),
         })
     }

@@ -9,6 +9,9 @@ use crate::decode::Decoded;
 use crate::message::VariantId;
 use crate::number::Value;
 
+/// A reply, or the fields of one that was text.
+pub(super) type Got = (Option<Decoded>, Vec<String>);
+
 /// The result of a request that succeeded.
 #[derive(Clone, Debug, PartialEq)]
 #[allow(missing_docs)] // of times, whose names say what they are
@@ -77,17 +80,6 @@ pub enum Failure {
 }
 
 impl Failure {
-    /// Return the failure of a one-way request that its caller's deadline kept from being sent.
-    #[must_use]
-    pub fn unsent(waited: Nanos) -> Self {
-        Self::Timeout {
-            waited,
-            attempts: 0,
-            waited_for: Some(WaitedFor::Line),
-            received: Vec::new(),
-        }
-    }
-
     /// Return the failure that a reply reports by a status; `None`: it reports success.
     ///
     /// Without accepted values, each status that is 0 reports it; repeated arguments do not count.

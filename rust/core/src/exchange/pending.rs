@@ -1,9 +1,9 @@
 //! Requests in progress, and how often each is sent: the caller's choice.
 
-use alloc::string::String;
 use alloc::sync::Arc;
 use alloc::vec::Vec;
 
+use super::outcome::Got;
 use super::text::TextCollector;
 use super::{Answer, Event, Facts, Failure, Nanos, Received, Request, Safety, WaitedFor};
 use crate::decode::Decoded;
@@ -117,12 +117,7 @@ impl Pending {
     }
 
     /// Return what it has got.
-    pub(super) fn answer(
-        &self,
-        decoded: Option<Decoded>,
-        texts: Vec<String>,
-        replied_at: Nanos,
-    ) -> Answer {
+    pub(super) fn answer(&self, (decoded, texts): Got, replied_at: Nanos) -> Answer {
         let requested_at = self.requested_at;
         Answer {
             decoded,

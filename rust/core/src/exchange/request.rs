@@ -3,7 +3,7 @@
 use alloc::vec::Vec;
 
 use super::matching::{Arguments, fields};
-use super::{Addressee, Facts, Protocol, Replier, Safety, TextFault};
+use super::{Addressee, Facts, Protocol, Replier, TextFault};
 use crate::decode::{Decoded, decode};
 use crate::direction::Direction;
 use crate::encode::{Choice, encode};
@@ -115,11 +115,6 @@ impl Facts {
     #[must_use]
     pub fn requires_reply(&self) -> bool {
         (!self.reply.is_empty() && !self.ack && !self.event) || self.text.is_some()
-    }
-
-    /// Return whether it moves the arm.
-    pub(super) fn moves(&self) -> bool {
-        self.safety == Safety::Motion
     }
 
     /// Return whether a reply can repeat arguments of its request.
