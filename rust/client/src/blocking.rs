@@ -13,7 +13,8 @@ use crate::streams::{Polling, Received, client_methods};
 use crate::typed::{DeviceEvent, Request, Table};
 use crate::{Error, Options, Sample, Value, lock};
 
-/// The longest that a thread reads before it checks whether others have something to do.
+/// The longest that a thread reads before it checks whether others have something to do. A timer
+/// that is due before the next tick of the system, usually 4 ms, would cost a third of a call.
 const SLICE: Duration = Duration::from_millis(5);
 /// How long a thread leaves the port to others.
 const TURN: Duration = Duration::from_micros(500);
@@ -66,9 +67,8 @@ impl Client {
 
     fn perform(&self, prepared: &Prepared) -> Outcome {
         // Another thread may have the connection.
-        let (called, mut connection) = (Instant::now(), self.connection());
-        let id = connection.submit(prepared, &self.handle, called);
-        drop(connection);
+        let called = Instant::now();
+        let id = self.connection().submit(prepared, &self.handle, called);
         self.until(None, |session, _| session.take(id))
     }
 

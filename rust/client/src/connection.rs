@@ -29,6 +29,8 @@ pub(crate) struct Connection {
     pub session: Session,
     /// `None`: it is closed.
     port: Option<Box<dyn Port>>,
+    /// Whether the port waits at no read or write.
+    is_instant: bool,
     /// How long a dropped client may wait until the line takes a stop.
     patience: Duration,
     begun: Instant,
@@ -48,6 +50,7 @@ impl Connection {
         let connection = Mutex::new(Self {
             session: Session::new(&handle, &left),
             port: Some(port),
+            is_instant: false,
             patience,
             begun: Instant::now(),
             note,
@@ -80,31 +83,31 @@ impl Connection {
             Err(error) if !is_wait(error) => Some(format!("cannot be read: {error}")),
             _ => None,
         };
+        let now = self.now();
         match lost.filter(|_| self.session.fault.is_none()) {
-            Some(detail) => drop(self.session.lose(&detail, self.now())),
+            Some(detail) => drop(self.session.lose(&detail, now)),
             None => {
                 let data = buffer.get(..*read.as_ref().unwrap_or(&0));
-                self.session.receive(data.unwrap_or_default(), self.now());
-                self.write(read.is_err());
+                self.session.receive(data.unwrap_or_default(), now);
+                self.write(read.is_err(), now);
             }
         }
         read.is_ok()
     }
 
     /// Write until nothing is to be sent, or the line takes no more.
-    fn write(&mut self, drained: bool) {
+    fn write(&mut self, drained: bool, mut now: Nanos) {
         loop {
-            let now = self.now();
             let bytes = self.session.outgoing(now, drained).to_vec();
             if bytes.is_empty() {
                 return;
             }
             let port = self.port(Duration::ZERO);
-            match port.and_then(|port| port.write_some(&bytes)) {
-                Ok(size) if size > 0 => self.session.wrote(size, self.now()),
-                Err(error) if !is_wait(&error) => {
-                    self.session.end_write(&error.to_string(), self.now());
-                }
+            let written = port.and_then(|port| port.write_some(&bytes));
+            now = self.now();
+            match written {
+                Ok(size) if size > 0 => self.session.wrote(size, now),
+                Err(error) if !is_wait(&error) => self.session.end_write(&error.to_string(), now),
                 _ => return,
             }
         }
@@ -113,7 +116,10 @@ impl Connection {
     /// Return the port, so that it waits for some time at most.
     fn port(&mut self, longest: Duration) -> std::io::Result<&mut dyn Port> {
         let port = self.port.as_mut().ok_or(ErrorKind::NotConnected)?;
-        port.wait_at_most(longest)?;
+        if !(self.is_instant && longest.is_zero()) {
+            port.wait_at_most(longest)?;
+            self.is_instant = longest.is_zero();
+        }
         Ok(&mut **port)
     }
 

@@ -15,8 +15,8 @@ pub(crate) const CONNECT: Duration = Duration::from_secs(5);
 /// When the time is over or the line is full, `read` and `write_some` return `ErrorKind::WouldBlock` or
 /// `ErrorKind::TimedOut`. A `read` of 0 bytes says that the peer has closed the stream.
 pub trait Port: Read + Write + Send {
-    /// Limit the next `read`, or wait that long for bytes instead; zero: it returns at once, and so
-    /// does `write_some`, which is called only then.
+    /// Limit the next `read`, or wait that long for bytes instead. Zero holds until the next limit:
+    /// `read` returns at once, and so does `write_some`, which is called only then.
     fn wait_at_most(&mut self, longest: Duration) -> std::io::Result<()>;
 
     /// Write some of the bytes at once, and return how many; by default, with `write`.
