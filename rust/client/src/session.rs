@@ -30,8 +30,7 @@ pub struct Queue {
 }
 
 /// Identifies a request that was submitted.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct CallId(u64);
+pub type CallId = u64;
 
 /// A submitted request.
 struct Call {
@@ -125,7 +124,7 @@ impl Session {
         now: Nanos,
     ) -> CallId {
         self.submitted += 1;
-        let id = CallId(self.submitted);
+        let id = self.submitted;
         let longest = handle.options.deadline.map_or(Nanos::MAX, nanos);
         let mut call = Call {
             prepared: prepared.clone(),

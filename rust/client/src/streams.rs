@@ -8,11 +8,9 @@ use cobotwire_table::bad_argument;
 use crate::handle::{Handle, Prepared};
 use crate::{Error, Value};
 
-/// The samples of a query, or the events of a type: an iterator of [`Client::poll`] or
-/// [`Client::events`], a `Stream` of the asynchronous client. `N` is what waits for the next one.
-///
-/// [`Client::poll`]: crate::Client::poll
-/// [`Client::events`]: crate::Client::events
+/// The samples of a query, or the events of a type: an iterator of [`poll`](crate::Client::poll) or
+/// [`events`](crate::Client::events), and a `Stream` if the client is asynchronous. `N` is what
+/// waits for the next one.
 pub struct Received<N> {
     pub(crate) next: Box<dyn FnMut() -> N + Send>,
     #[cfg_attr(not(feature = "tokio"), allow(dead_code))]

@@ -16,6 +16,8 @@ use crate::{Edition, Field, Value};
 
 // A link to a file of the Python package; a package of this crate contains the file.
 const TEMPLATES: &str = include_str!("../error_texts.json");
+/// A longer value is cut.
+const MOST: usize = 80;
 /// This many bytes of what was received meanwhile are shown.
 const SHOWN: usize = 24;
 
@@ -58,7 +60,10 @@ pub(crate) use text;
 /// Return the text of an error of a value of the caller.
 #[must_use]
 pub fn bad_argument(argument: &str, value: &Value, allowed: &str) -> String {
-    let value = value.short();
+    let mut value = value.to_string();
+    if value.chars().nth(MOST).is_some() {
+        value = value.chars().take(MOST - 3).chain("...".chars()).collect();
+    }
     printable(&text!("value"; argument, value, allowed))
 }
 

@@ -8,9 +8,6 @@ use core::fmt::{self, Display, Formatter};
 
 use cobotwire_core::{Encoding, Given, Unread, Value as Flat, ValueFault};
 
-/// A longer value is cut.
-const MOST: usize = 80;
-
 /// Below this number a real holds every integer.
 const EXACT: f64 = (1_u64 << 53) as f64;
 
@@ -123,15 +120,6 @@ impl Value {
             Self::Text(text) => text.chars().count(),
             Self::Row(row) => row.len(),
             _ => 0,
-        }
-    }
-
-    /// Return it, cut if it is long.
-    pub(crate) fn short(&self) -> String {
-        let text = self.to_string();
-        match text.char_indices().nth(MOST) {
-            None => text,
-            Some(_) => text.chars().take(MOST - 3).chain("...".chars()).collect(),
         }
     }
 }
