@@ -5,7 +5,6 @@
 use std::sync::Arc;
 
 use cobotwire::Value;
-use cobotwire_core::Row;
 use cobotwire_core::exchange::{
     Answer, Event, Exchange, Failure, Nanos, PersistedState, Request, RetryPolicy, Ticket,
 };
