@@ -25,9 +25,9 @@ from cobotwire.editions.mycobot280 import AsyncMyCobot280, GetAngles, MyCobot280
 from cobotwire.session.sample import Sample
 from responder import responder, within
 
-# At 100 Hz, a busy thread takes about every second period.
+# At 100 Hz beside a busy thread, a stream would miss about every second period.
 QUIET_RATE, BUSY_RATE = 100.0, 50.0
-# How late 99 % of the samples have come, in seconds; and the share of periods without a sample.
+# The most that 99 % of the samples may be late, in seconds; the largest share of missed periods.
 QUIET_LIMIT, BUSY_LIMIT = 0.0015, 0.01
 ROUND_SECONDS = 2.0
 
@@ -82,7 +82,7 @@ def _show(name: str, rate: float, run: Punctuality, busy: bool) -> bool:
         met, limit = _percentile(run.late) <= QUIET_LIMIT, f"{QUIET_LIMIT * 1e3:g} ms at 99 %"
     print(
         f"{rate:.0f} Hz, {name + (', busy' if busy else ', alone'):17} "
-        f"sent {_both(run.off)} off, had {_both(run.late)} late (median, 99 %), "
+        f"sent {_both(run.off)} off, received {_both(run.late)} late (median, 99 %), "
         f"{run.missed} of {periods} missed   {within(met)} {limit}"
     )
     return met

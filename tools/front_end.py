@@ -1,10 +1,11 @@
-"""Fetch the JavaScript of others: the library that draws the page's curves, and a test's checker.
+"""Fetch third-party JavaScript: the plotting library of the studio, and a checker for its tests.
 
     python tools/front_end.py          fetch what is missing
     python tools/front_end.py --check  exit with 1 if something is missing or differs
 
-Both come from the npm registry, in pinned versions with their checksums. The text of other projects
-is not committed. Wheels ship the first, with its licence. Set NPM_CONFIG_REGISTRY to use a mirror.
+Both come from the npm registry, in pinned versions with their checksums. Third-party code is not
+committed. Wheels ship the plotting library, with its licence. Set NPM_CONFIG_REGISTRY to use a
+mirror.
 """
 
 from __future__ import annotations
@@ -46,7 +47,7 @@ class Package(NamedTuple):
 
     @property
     def shipped(self) -> bool:
-        """Whether it belongs to the package, and not only to its tests."""
+        """Whether wheels of cobotwire ship this package; if not, only tests use it."""
         return self.files[0][1].startswith(PAGE)
 
     @property

@@ -75,7 +75,7 @@ def test_late_reply_to_a_cancelled_period_is_not_taken_by_the_next_call() -> Non
     assert run(peer, drive, timeout=20, retry=retry) == (3.96, REQUEST * 2)
 
 
-def test_silence_after_a_cancelled_period_holds_the_next_call_for_the_grace_time_only() -> None:
+def test_silence_after_a_cancelled_period_delays_the_next_call_by_the_grace_time_only() -> None:
     peer = ScriptedPeer([], [ANGLES])
 
     async def drive(arm: AsyncMyCobot) -> Any:
@@ -103,7 +103,7 @@ def test_outstanding_request_is_noted_for_the_next_session() -> None:
     assert run(peer, drive, timeout=20, retry=LONG) == ([REQUEST], REQUEST)
 
 
-def test_silent_arm_costs_each_period_its_deadline_and_no_more() -> None:
+def test_request_that_a_silent_arm_ignores_ends_at_its_deadline() -> None:
     async def drive(arm: AsyncMyCobot) -> Any:
         stream = arm.stream(GetAngles(), rate=20)
         samples = [await anext(stream) for _ in range(3)]

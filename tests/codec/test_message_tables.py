@@ -99,7 +99,7 @@ def comparable(value: Any) -> Any:
 
 
 @pytest.mark.parametrize("edition", EDITIONS)
-def test_tables_of_every_edition_hold_the_decoded_messages_and_keep_their_columns_without_rows(
+def test_tables_of_every_edition_hold_the_decoded_messages_and_empty_tables_have_the_same_columns(
     edition: str,
 ) -> None:
     table = editions.load(edition).TABLE
@@ -132,7 +132,7 @@ def test_tables_of_every_edition_hold_the_decoded_messages_and_keep_their_column
 
 
 @pytest.mark.parametrize("edition", EDITIONS)
-def test_rows_of_every_variant_keep_their_columns_without_rows(edition: str) -> None:
+def test_empty_rows_of_every_variant_have_the_same_columns(edition: str) -> None:
     table = editions.load(edition).TABLE
     codec = codecs.load(table, "reference")
     empty = codec.decode_columns(b"")
@@ -193,7 +193,7 @@ def test_leading_columns_replace_the_offset(codec: Codec) -> None:
         rows.to_arrow(leading={"time": pa.array([7, 8])})
 
 
-def test_field_with_the_name_of_a_leading_column_says_what_it_belongs_to() -> None:
+def test_column_of_a_field_named_like_a_leading_column_is_prefixed_with_its_direction() -> None:
     codec = codecs.load(editions.load("pro450").TABLE)
     rows = codec.decode_columns(b"").rows("get_pro_gripper_offset")
     assert "offset" in rows.names

@@ -16,7 +16,7 @@ from simulator.bench import Bench
 
 REFERENCE = codecs.load(TABLE, "reference")
 BENT = (10.0, -30.0, -60.0, 20.0, 5.0, 30.0)
-# The error of the end from ticks of six joints, in millimetres and degrees.
+# How far the rounding of six joints to ticks may move the end, in millimetres.
 TICKS = 0.8
 LINEAR, FORWARD, BACKWARD = 1, 1, 0
 
@@ -146,7 +146,7 @@ def test_arm_without_stated_facts_moves_joints_and_rejects_coordinates() -> None
     query("power_on")
     query("send_angles", (10.0, 20.0, 30.0, 40.0, 50.0, 60.0), 100)
     clock.sleep(5)
-    assert query("get_angles") == (10.0, 20.0, 30.0, 40.0, 50.0, 60.0), "it stands on no ticks"
+    assert query("get_angles") == (10.0, 20.0, 30.0, 40.0, 50.0, 60.0), "no rounding to ticks"
     why = "the geometry of this arm is not known"
     for silent in (
         ("get_coords",),

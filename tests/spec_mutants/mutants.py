@@ -158,7 +158,7 @@ def _nearest(shape: Known, given: str, edition: Edition) -> list[str]:
 
 
 def _facts_of_type(type: Type) -> tuple[object, ...]:
-    """Return what is observable of a type. The order decides nothing."""
+    """Return what is observable of a type, in any fixed order."""
     members = tuple((member.name, member.value) for member in type.members)
     parts = [
         (label, part.wire.name, part.scale, part.unit, part.choices)
@@ -170,14 +170,14 @@ def _facts_of_type(type: Type) -> tuple[object, ...]:
 
 def _each_number(node: Node, shape: Shape[Any], at: str = "") -> Wrong:
     """Yield a list or mapping with one of its numbers a step lower or higher."""
-    step = Fraction(1, 10) if isinstance(shape, Range) and _broken(node) else Fraction(1)
+    step = Fraction(1, 10) if isinstance(shape, Range) and _has_fraction(node) else Fraction(1)
     for path, number in _numbers(node):
         for wrong in (number - step, number + step):
             value: Any = int(wrong) if wrong.denominator == 1 else wrong
             yield f"{number} -> {wrong} at {path}", changed(node, path, Scalar(node.place, value))
 
 
-def _broken(node: Node) -> bool:
+def _has_fraction(node: Node) -> bool:
     return any(number.denominator != 1 for _, number in _numbers(node))
 
 

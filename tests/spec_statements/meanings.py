@@ -1,6 +1,6 @@
-"""States safety, roles and queries by the names and words with which commands are described.
+"""Derive safety, role and read-back query of a command from its name and description.
 
-The maker chose the names; the patterns say what such names mean. An exception is a line of its own.
+The maker chose the names; the patterns state their meanings. Each exception has its own line.
 """
 
 from __future__ import annotations
@@ -89,7 +89,7 @@ ROLES = (
     ("version", r"get_system_version", r"Reads the version of the firmware"),
     ("gripper", r"set_gripper_state", r"Opens, closes|Opens or closes"),
 )
-# The maker's page prints it, the library lacks it: nothing should rely on it.
+# The maker's page lists this command and the library lacks it, so nothing may rely on it.
 WITHOUT_ROLE = {("myarm_c650", "is_power_on")}
 # A command, the query that reads it back, and the values that the query must report (None: fields
 # of the same names).
@@ -129,7 +129,7 @@ READ_BY: tuple[tuple[str, str, tuple[tuple[str, str | int], ...] | None], ...] =
     (r"(?:set|send)_(\w+)", r"get_\1", None),
     (r"set_(\w+)", r"is_\1", None),
 )
-# A Mercury's power is a number, and a joint there has a query of its own.
+# A Mercury reports its power as a number, and has a query for the state of one servo.
 _MERCURY = (
     (r"power_on(_only)?", "is_power_on", (("state", 1),)),
     (r"power_off", "is_power_on", (("state", 0),)),
@@ -137,7 +137,8 @@ _MERCURY = (
     (r"focus_servo", "is_servo_enable", (("enabled", 1),)),
 )
 READ_BY_OF = {"mercury_a1": _MERCURY}
-# These queries report a list, another number of switches, or what a selector chooses.
+# For these setters, the query of the matching name reports a list, another number of switches, or
+# what a selector chooses, so it does not read them back.
 NOT_READ = {
     "mercury_a1": r"set_(limit_switch|fusion_parameters|collision_threshold|torque_comp|drag_fifo"
     r"|model_direction|digital_output|(pro|hand)_gripper)",
@@ -161,7 +162,7 @@ def fits(command: Command, name: str, doc: str) -> bool:
 
 
 def safety(edition: Edition) -> Iterator[str]:
-    """Report commands with another safety class than their name and description tell."""
+    """Report commands with another safety class than their name and description imply."""
     for command in edition.commands:
         found = [word for word, name, doc in SAFETY if fits(command, name, doc)][:1]
         if found != [command.safety]:
@@ -169,7 +170,7 @@ def safety(edition: Edition) -> Iterator[str]:
 
 
 def roles(edition: Edition) -> Iterator[str]:
-    """Report commands with another role than their name and description tell."""
+    """Report commands with another role than their name and description imply."""
     for command in edition.commands:
         found = [word for word, name, doc in ROLES if fits(command, name, doc)]
         if (edition.name, command.name) in WITHOUT_ROLE:
@@ -198,9 +199,9 @@ def read_back(edition: Edition) -> Iterator[str]:
 
 
 def agreement(edition: Edition) -> Iterator[str]:
-    """Report queries that agree with others than their names tell."""
+    """Report queries that agree with other queries than their names imply."""
     known = {command.name for command in edition.commands}
-    # There, one servo may be that of the gripper, which the list does not contain.
+    # On the RDK X5, get_encoder also reads the gripper's servo, which get_encoders does not report.
     known -= {"get_encoders"} if edition.name == "mycobot280_rdkx5" else set()
     for command in edition.commands:
         wanted: tuple[str, ...] = ()
@@ -218,9 +219,9 @@ ABOUT = {"joint", "pin", "servo", "register", "address", "gripper", "gripper_id"
 
 
 def echoes(edition: Edition) -> Iterator[str]:
-    """Report fields that a reply repeats from its request, but not as an echo.
+    """Report fields that a reply repeats from its request, but that are not marked as an echo.
 
-    If an earlier layout lacks the field, it is not optional in the later one.
+    If the first variant of the reply lacks the field, later variants must mark it as required.
     """
     for command in edition.commands:
         given = {field.name for variant in command.requests for field in variant}
@@ -232,14 +233,15 @@ def echoes(edition: Edition) -> Iterator[str]:
 
 
 def longest(edition: Edition) -> Iterator[str]:
-    """Report another maximum than the document quotes (0-16), or than the longest message needs."""
+    """Report a maximum that is neither what the document quotes (0-16) nor what messages need."""
     sizes = [
         sum(field.type.size for field in variant)
         for command in edition.commands
         for variant in (*command.requests, *command.replies)
     ]
     quoted = [int(e.says[2:]) for e in edition.errata if re.fullmatch(r"0-\d+", e.says)]
-    # The frame is that of the Mercury A1. A servo's LEN counts two more and ends before FF.
+    # Editions based on the Mercury A1 share its frame. A servo's LEN is at most FF and counts two
+    # bytes besides the data.
     quoted += [56] * ("mercury_a1" in edition.bases) + [253] * (edition.name == "servo_bus")
     if edition.frame.maximum_data != max([*sizes, *quoted]):
         yield f"the frame carries {edition.frame.maximum_data} bytes; needed {max(sizes)}"

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from cobotwire.capture.recording import Recording
     from cobotwire.capture.writer import CaptureWriter
 else:
-    # Imported when they are first used: reading bytes takes none of them.
+    # Imported when they are first used: reading bytes needs none of them.
     from cobotwire.protocol.lazy import lazy_names
 
     __getattr__, __dir__ = lazy_names(

@@ -58,7 +58,7 @@ class Recording:
                 self._writer, codec, url=url, baudrate=baudrate, name=self._name
             )
         except OSError as error:
-            # On a full disk no empty file remains, which the next attempt would not overwrite.
+            # If the disk is full, remove the empty file: the next attempt would not overwrite it.
             with suppress(OSError):
                 self._file.close()
             with suppress(OSError):

@@ -21,7 +21,7 @@ from cobotwire.session.paths import FollowReport, PathLimits, Pause, Send, Sourc
 if TYPE_CHECKING:
     from cobotwire.session.following import Follow
 
-# Percent of the fastest, unless the caller says otherwise.
+# The default speed, in percent of the highest.
 USUAL_SPEED = 50
 # How long a live source may be silent, and how long the arm may take to the end of a path after its
 # last setpoint.
@@ -48,12 +48,13 @@ class AsyncFollowingClient(AsyncClient):
         restored afterwards). Their speed, acceleration and jerk are limited (extra ``motion``).
 
         Args:
-            path: a sequence of targets or of :class:`Waypoint`, which are passed on a smooth curve;
-                or a live source. A live source is an iterator, whose newest target counts, or a
-                function that returns the newest target, or None, until it raises StopIteration.
-            speed: percent of the fastest, which no joint exceeds.
-            rate: setpoints a second; default: 50. No more are sent than the line and the arm take,
-                as measured by the reply times of three queries.
+            path: a sequence of targets or of :class:`Waypoint`, or a live source. A sequence is
+                passed on a smooth curve. A live source is an iterator, of which only the newest
+                target counts, or a function that returns the newest target or None; it raises
+                StopIteration at the end.
+            speed: percent of the highest speed of the joints; no joint exceeds it.
+            rate: setpoints a second; default: 50. The rate is lowered if the line or the arm is
+                too slow for it, as the reply times of three queries show.
             coords: whether targets are coordinates of the flange in the frame of the base: it moves
                 on straight lines, with rounded corners.
             limits: how fast joints may move and speed up; default: what the edition states.

@@ -1,9 +1,8 @@
-"""Which of the waiting threads reads for all.
+"""Choose which of the waiting threads reads for all.
 
-One of them leads. When its own reply has come, another takes over. Which thread leads is only a
-number, and nothing relies on it: Ctrl-C may take the leader away before it can resign. A leader
-that makes no progress is replaced, and if it was only slow, the lock of the reader keeps the bytes
-in order.
+One of them leads. When its own reply has come, another takes over. Ctrl-C may end the leader's loop
+before it can resign, so a leader that makes no progress is replaced. If it was only slow, two
+threads read for a while; the lock of the reader keeps the bytes in order.
 """
 
 from __future__ import annotations
@@ -26,7 +25,7 @@ class Leading:
     """
 
     def __init__(self, state: threading.Lock) -> None:
-        """Store the lock that is held while requests end, so that followers miss no end."""
+        """Store the lock that is held while a request ends, so that its follower notices that."""
         self._state = state
         self.leader: int | None = None
         self.turns = 0

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from cobotwire.diagnose.summary import Summary as Summary
     from cobotwire.diagnose.summary import summarize as summarize
 else:
-    # Imported when they are first used: reading frames takes none of them.
+    # Imported when they are first used: reading frames needs none of them.
     from cobotwire.protocol.lazy import lazy_names
 
     __getattr__, __dir__ = lazy_names(

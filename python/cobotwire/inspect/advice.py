@@ -25,7 +25,10 @@ NO_REPLIES = (
     "rate is right (--baudrate 1000000 or 115200)"
 )
 LOST = "retries make up for it; fix the other problems listed here, then check cable and hub"
-NO_COORDS = "a simulated arm sends no coordinates then; from a real arm, the reply was lost"
+NO_COORDS = (
+    "without a geometry, a simulated arm sends no coordinates; if this arm is real, the reply was "
+    "lost"
+)
 LATE = "the arm is busy or the line is slow: use a longer timeout=, or send fewer requests"
 ILLEGAL = "the firmware may use another edition: cobotwire identify {url} finds out"
 VALUES = "do not move the arm with this edition; cobotwire survey {url} -o survey.zip shows more"

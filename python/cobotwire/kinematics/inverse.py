@@ -20,9 +20,9 @@ from cobotwire.kinematics.nearness import (
     EXACT_MILLIMETRES,
     MILLIMETRES,
     Limits,
-    by_way,
     misses,
-    way_between,
+    nearest_first,
+    turns_between,
     within,
 )
 from cobotwire.kinematics.pose import Pose
@@ -72,7 +72,7 @@ def nearest(
             near = within(one, present, limits, ROUNDING)
             if (
                 near is not None
-                and way_between(near, present)[0] <= largest_turn
+                and turns_between(near, present)[0] <= largest_turn
                 and not misses(geometry, near, target, EXACT_MILLIMETRES, EXACT_DEGREES)
             ):
                 return near
@@ -80,12 +80,12 @@ def nearest(
         return None
     found = list(solutions(geometry, target, present))
     effort.spend(len(found) // SOLUTIONS_A_STEP)
-    for one in by_way(found, present, limits, ROUNDING):
+    for one in nearest_first(found, present, limits, ROUNDING):
         if not misses(geometry, one, target, EXACT_MILLIMETRES, EXACT_DEGREES):
             return one
     almost = (
         one
-        for one in by_way(found, present, limits, NEAR_DEGREES)
+        for one in nearest_first(found, present, limits, NEAR_DEGREES)
         if not misses(geometry, one, target, NEAR_MILLIMETRES, NEAR_DEGREES)
     )
     for guess in islice(almost, GUESSES):

@@ -26,19 +26,19 @@ def misses(
     return way > millimetres or turn > degrees
 
 
-def way_between(angles: Sequence[float], present: Sequence[float]) -> tuple[float, float]:
+def turns_between(angles: Sequence[float], present: Sequence[float]) -> tuple[float, float]:
     """Return the largest turn of a joint, then the sum of all turns: the smaller, the nearer."""
-    ways = [abs(a - b) for a, b in zip(angles, present)]
-    return max(ways), sum(ways)
+    turns = [abs(a - b) for a, b in zip(angles, present)]
+    return max(turns), sum(turns)
 
 
-def by_way(
+def nearest_first(
     found: Sequence[Angles], present: Sequence[float], limits: Limits, slack: float
 ) -> list[Angles]:
     """Return the different angles that lie inside the limits, the nearest first."""
     inside = (within(one, present, limits, slack) for one in found)
     kept = dict.fromkeys(one for one in inside if one is not None)
-    return sorted(kept, key=lambda angles: way_between(angles, present))
+    return sorted(kept, key=lambda angles: turns_between(angles, present))
 
 
 def within(angles: Angles, present: Sequence[float], limits: Limits, slack: float) -> Angles | None:

@@ -14,7 +14,7 @@ from cobotwire.kinematics.nearness import (
     MILLIMETRES,
     Limits,
     misses,
-    way_between,
+    turns_between,
 )
 from cobotwire.kinematics.pose import Pose
 
@@ -60,7 +60,7 @@ def search(
                 break
         elif not misses(geometry, found, target, MILLIMETRES, DEGREES):
             rough.append(found)
-    return min(exact or rough, key=lambda one: way_between(one, present), default=None)
+    return min(exact or rough, key=lambda one: turns_between(one, present), default=None)
 
 
 def _turn(start: Sequence[float], present: Sequence[float]) -> float:

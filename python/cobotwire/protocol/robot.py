@@ -99,7 +99,7 @@ class Gripper(NamedTuple):
     """A gripper.
 
     Attributes:
-        speed: percent of its way a second, for each percent of speed.
+        speed: percent of its travel a second, for each percent of speed.
         closed: the reading of its encoder when it is closed.
         open: the reading of its encoder when it is open.
     """

@@ -16,7 +16,7 @@ class ClientConnection:
     """A peer and the bytes that it has sent. Its server does the waiting."""
 
     def __init__(self, peer: Peer, clock: Callable[[], float]) -> None:
-        """Connect to a peer; ``clock`` returns the seconds in which its ``wait`` counts."""
+        """Connect to a peer; ``clock`` returns the time on which the peer bases its ``wait``."""
         self._peer = peer
         self._clock = clock
         self._unread: deque[bytes] = deque()

@@ -69,7 +69,7 @@ def _file(address: str) -> Handler:
 
 
 def _answering(handler: Handler) -> Handler:
-    """Return a handler that turns errors of cobotwire into answers."""
+    """Return a handler that turns errors of cobotwire into HTTP responses."""
 
     async def answer(request: Request) -> Response:
         try:

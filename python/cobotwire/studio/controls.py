@@ -12,7 +12,7 @@ from cobotwire.protocol.table import Command, Table
 from cobotwire.simulator.moves import FORWARD
 from cobotwire.studio.forms import elements
 
-# The direction that is not forward.
+# The value of a direction that means backward, in every edition.
 BACKWARD = 0
 
 
@@ -36,10 +36,10 @@ class ControlCommand(NamedTuple):
 def controls(table: Table, refused: Container[str] = ()) -> dict[str, Any]:
     """Return what each control of the page sends, as JSON values; None: the edition has none.
 
-    ``joint`` and ``coordinate`` move one of them to a target, ``joints`` all (so does ``joint``
-    without an argument ``at``); ``jogJoint`` and
-    ``jogCoordinate`` move until stop. ``home`` is the pose with all joints at zero, if the limits
-    allow it. Commands that are ``refused`` serve no control.
+    ``joint`` moves one joint to a target, ``coordinate`` moves the end along or about one axis, and
+    ``joints`` moves all joints. If ``joint`` has no argument ``at``, it moves all joints too.
+    ``jogJoint`` and ``jogCoordinate`` move until stop. ``home`` is the pose with all joints at
+    zero, if the limits allow it. Commands that are ``refused`` serve no control.
     """
     found = dict.fromkeys(
         ("joint", "joints", "coordinate", "jogJoint", "jogCoordinate", "gripper", "light", "power")

@@ -24,7 +24,7 @@ from cobotwire.studio.viewers import Viewer
 MOST_ENTRIES = 1_000_000
 STEP_SECONDS = 0.05
 SLOWEST, FASTEST = 0.05, 1000.0
-# The seconds before the target of a jump that a page also gets.
+# After a jump, a page also gets this many entries before the target, and the samples of this many.
 PAST_ENTRIES, PAST_SAMPLED = 400, 4000
 
 

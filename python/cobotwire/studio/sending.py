@@ -1,6 +1,7 @@
-"""Decide who may send what: one page at a time.
+"""Decide which page may send which commands.
 
-Queries always, other commands with two permissions.
+One page at a time may send. It may always send queries. Other commands need two permissions: that
+of the command line and that of the switch in the page.
 """
 
 from __future__ import annotations

@@ -11,7 +11,8 @@ pub struct OwnedFrame(Bytes);
 /// The number of bytes stored in place: enough for nearly all messages, and so few that a Python
 /// object of a frame takes 72 bytes.
 const IN_PLACE: usize = 22;
-/// The number of bytes before those that lie in whole words of eight bytes in memory.
+/// The bytes in place start in the middle of a word of eight bytes in memory; this many come before
+/// the next word.
 const BEFORE_WORDS: usize = 6;
 
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -33,8 +34,8 @@ impl From<Frame<'_>> for OwnedFrame {
 
 /// Return the bytes, and zeros after them; `None` if they are too many.
 ///
-/// They are copied through registers, in pieces of the size in which they were written: if they
-/// were read in another size, the processor would wait until they are in the cache.
+/// They are copied word by word, since they were written word by word. If a read had another size
+/// than the write before it, the processor would wait until the write is in the cache.
 #[inline(always)]
 fn in_place(bytes: &[u8]) -> Option<[u8; IN_PLACE]> {
     let mut place = [0; IN_PLACE];

@@ -74,7 +74,7 @@ def _message(record: Record, codec: Codec) -> Iterator[str]:
 
 
 def _exact(value: Any) -> Any:
-    """Return a value that equals only the same one: with the sign of zero, and NaN as a text."""
+    """Return a value in which 0.0 and -0.0 differ, and NaN equals NaN: both become texts."""
     if isinstance(value, tuple):
         return tuple(map(_exact, value))
     return repr(value) if isinstance(value, float) and (value == 0 or value != value) else value

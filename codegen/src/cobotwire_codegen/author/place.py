@@ -8,9 +8,9 @@ from cobotwire_codegen.load import Mapping, Node, Scalar, Sequence, load
 
 
 def families(edition: Path) -> dict[str, Path]:
-    """Return the commands files by family; the only family of a one-file protocol has no name."""
+    """Return the file of each family of commands; a protocol in one file has only the key ""."""
     commands = _under(edition, "commands")
-    # A delta may have no commands of its own yet: they begin in its own file.
+    # A delta may have no commands of its own yet; the first one is added to its edition file.
     if commands is None or isinstance(commands, Mapping):
         return {"": edition}
     found = {}

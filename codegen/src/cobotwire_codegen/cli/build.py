@@ -91,7 +91,7 @@ def build(
     vectors: str | None,
     templates: str | None,
     check_only: bool,
-    variant: str,
+    format: str,
 ) -> None:
     """Generate a typed Python package from the edition FILE.
 
@@ -110,11 +110,11 @@ def build(
     }
     folders = {option: Path(folder) for option, folder in given.items() if folder}
     _check_folders(folders)
-    with report_problems(variant):
+    with report_problems(format):
         edition = checked_edition(path, Path.cwd())
     own = Path(templates) if templates else None
     check_names(own)
-    with report_problems(variant), report_template_errors(own):
+    with report_problems(format), report_template_errors(own):
         wanted = [
             Target(folder, RENDERERS[option](edition, own), alone=option not in SHARED)
             for option, folder in folders.items()

@@ -16,14 +16,14 @@ from cobotwire_codegen.project import spec_files
 @click.argument("files", nargs=-1)
 @root_option
 @format_option
-def check(files: tuple[str, ...], root: str, variant: str) -> None:
+def check(files: tuple[str, ...], root: str, format: str) -> None:
     """Check the edition FILES, or all of spec/, and report every problem at once.
 
     A problem is `file:line:column: code: message`. Codes are stable; `cobotwire-gen explain CODE`
     explains a code.
     """
     problems: list[Problem] = []
-    with report_problems(variant):
+    with report_problems(format):
         paths = [edition_path(file) for file in files] or spec_files(Path(root))
         for path in paths:
             try:
@@ -32,7 +32,7 @@ def check(files: tuple[str, ...], root: str, variant: str) -> None:
                 problems.extend(error.problems)
         if problems:
             raise SpecError(problems)
-    if variant == "json":
+    if format == "json":
         click.echo("[]")
-    elif variant == "text":
+    elif format == "text":
         click.echo(f"{len(paths)} edition(s), no problems")

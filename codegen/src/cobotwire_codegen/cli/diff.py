@@ -57,7 +57,6 @@ def _show_rules(ctx: click.Context, param: click.Parameter, wanted: bool) -> Non
 )
 @click.option(
     "--format",
-    "variant",
     type=click.Choice(("text", "json", "markdown")),
     default="text",
     show_default=True,
@@ -72,7 +71,7 @@ def _show_rules(ctx: click.Context, param: click.Parameter, wanted: bool) -> Non
     help="List every rule with its level, and exit.",
 )
 def diff(
-    old: str, new: str, waivers: str | None, fail_on: Level | Literal["none"], variant: str
+    old: str, new: str, waivers: str | None, fail_on: Level | Literal["none"], format: str
 ) -> None:
     """Report what changed from OLD to NEW, how severe it is, and the version bump that follows.
 
@@ -93,14 +92,14 @@ def diff(
     Exit codes: 0 no finding fails; 1 a finding has the level of --fail-on or a more severe one,
     and is not waived; 2 the command line, the spec or the waivers are wrong.
     """
-    with report_problems("json" if variant == "json" else "text"):
+    with report_problems("json" if format == "json" else "text"):
         accepted = read_waivers(Path(waivers)) if waivers else ()
         try:
             findings = _compare(read(old), read(new))
         except SourceError as error:
             raise click.UsageError(str(error)) from error
     outcome = apply_waivers(findings, accepted)
-    _print(outcome, old, new, variant)
+    _print(outcome, old, new, format)
     sys.exit(1 if fails(outcome.findings, None if fail_on == "none" else fail_on) else 0)
 
 
@@ -112,10 +111,10 @@ def _compare(old: Source, new: Source) -> tuple[Finding, ...]:
     return diff_all(*paired(old, new))
 
 
-def _print(outcome: Outcome, old: str, new: str, variant: str) -> None:
-    if variant == "json":
+def _print(outcome: Outcome, old: str, new: str, format: str) -> None:
+    if format == "json":
         click.echo(reports.as_json(outcome, old, new))
-    elif variant == "markdown":
+    elif format == "markdown":
         click.echo("\n".join(reports.markdown(outcome)))
     else:
         for kind, line in reports.text(outcome):

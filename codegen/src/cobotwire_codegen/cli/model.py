@@ -22,12 +22,12 @@ from cobotwire_codegen.publish import edition_json
     "--out", type=click.Path(dir_okay=False), help="Write to this file instead of printing."
 )
 @format_option
-def model(file: str, out: str | None, variant: str) -> None:
+def model(file: str, out: str | None, format: str) -> None:
     """Publish the checked model of the edition FILE as versioned JSON.
 
     References are resolved, defaults filled in and deltas applied.
     """
-    with report_problems(variant):
+    with report_problems(format):
         edition = checked_edition(edition_path(file), Path.cwd())
     text = edition_json(edition, complete=True)
     if out is None:

@@ -24,14 +24,14 @@ from cobotwire_codegen.render import environment
     "--out", type=click.Path(dir_okay=False), help="Write to this file instead of printing."
 )
 @format_option
-def render(template: str, file: str, out: str | None, variant: str) -> None:
+def render(template: str, file: str, out: str | None, format: str) -> None:
     """Fill the Jinja TEMPLATE from the edition FILE: a target of your own.
 
     The template can use the checked model as `edition`, and all names of the built-in templates. It
     may include templates in its folder. docs/targets.md shows an example.
     """
     path = Path(template)
-    with report_problems(variant):
+    with report_problems(format):
         edition = checked_edition(edition_path(file), Path.cwd())
     with report_template_errors(path.parent):
         text = environment(path.parent).get_template(path.name).render(edition=edition)

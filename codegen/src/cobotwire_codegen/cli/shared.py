@@ -26,7 +26,6 @@ root_option = click.option(
 )
 format_option = click.option(
     "--format",
-    "variant",
     type=click.Choice(FORMATS),
     default="text",
     show_default=True,
@@ -35,13 +34,13 @@ format_option = click.option(
 
 
 @contextmanager
-def report_problems(variant: str = "text") -> Iterator[None]:
+def report_problems(format: str = "text") -> Iterator[None]:
     """Print a spec's problems and exit with code 2."""
     try:
         yield
     except SpecError as error:
-        print_problems(error.problems, variant)
-        if variant == "text":
+        print_problems(error.problems, format)
+        if format == "text":
             click.echo(f"{len(error.problems)} problem(s) in the spec", err=True)
         sys.exit(2)
 
@@ -86,13 +85,13 @@ def report_write_errors() -> Iterator[None]:
         raise click.UsageError(f"cannot write {error.filename}: {error.strerror}") from error
 
 
-def print_problems(problems: Sequence[Problem], variant: str) -> None:
+def print_problems(problems: Sequence[Problem], format: str) -> None:
     """Print problems as lines, as JSON, or as GitHub annotations."""
-    if variant == "json":
+    if format == "json":
         click.echo(json.dumps([_plain(problem) for problem in problems], indent=1))
         return
     for problem in problems:
-        click.echo(_github(problem) if variant == "github" else str(problem), err=variant == "text")
+        click.echo(_github(problem) if format == "github" else str(problem), err=format == "text")
 
 
 def _plain(problem: Problem) -> dict[str, str | int]:

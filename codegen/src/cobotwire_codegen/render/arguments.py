@@ -51,9 +51,10 @@ def arguments(command: Command) -> tuple[Argument, ...]:
 
 @by_identity
 def overloads(command: Command) -> tuple[tuple[Argument, ...], ...]:
-    """Return the arguments of each variant; nothing if the head of the method states them.
+    """Return the arguments of each variant; empty if one signature covers all variants.
 
-    It does if each variant adds one argument to the next shorter one, and no type differs.
+    It does if each variant adds one argument to the next shorter variant, and an argument has the
+    same type in all of them.
     """
     found = parameters(command)
     names = sorted((set(named_fields((v,))) for v in command.requests), key=len)

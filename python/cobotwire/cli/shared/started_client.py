@@ -25,8 +25,8 @@ def started_client(command: str | None, port: str) -> Iterator[Callable[[], str 
     Yields a function that returns how the client ended: None while it runs, empty if it ended well.
 
     Raises:
-        UsageError: the command is not one.
-        LinkError: it cannot be started.
+        UsageError: ``command`` names no program, or lacks ``{port}``.
+        LinkError: the client cannot be started.
     """
     if command is None:
         yield lambda: None
@@ -39,7 +39,7 @@ def started_client(command: str | None, port: str) -> Iterator[Callable[[], str 
         message = f"--command needs a program, and {PORT_WORD} where it takes the port to open"
         raise UsageError("command", command, message=message)
     with tempfile.TemporaryFile() as diagnostics:
-        # Its output would mix with ours, whose first line is the port.
+        # The client's output would mix with ours, which begins with a line that names the port.
         process = programs.start(
             words, words[0], subprocess.DEVNULL, subprocess.DEVNULL, diagnostics
         )

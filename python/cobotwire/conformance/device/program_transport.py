@@ -15,7 +15,7 @@ from cobotwire.transport.descriptor import DescriptorTransport
 SLOWEST = 9600
 # How often a read checks whether the program still runs, in seconds.
 CHECKS = 0.05
-# How long a program that has closed its end may take to end, in seconds.
+# How long a program may still run after it closed its side of the transport, in seconds.
 CLOSING = 0.5
 
 
