@@ -4,8 +4,8 @@ Each import runs in its own process, and all candidates take turns. Only the imp
 the start of Python. The median counts. ``import cobotwire`` loads a name only on its first use, so
 a second row imports the client.
 
-What counts for a program is to import a client and to open it: that has one limit. Through the
-layer with the maker's names it may take 1.3 times as long.
+A program imports a client and opens it, so both together have one limit. The same through the layer
+with the maker's names may take 1.3 times as long.
 
 The size has a limit for each edition, since editions are added, and one for all else.
 """

@@ -9,7 +9,7 @@ from cobotwire.editions import load
 from cobotwire.kinematics import geometry_of
 from cobotwire.kinematics.forward import frames
 
-# The look at the arm: turned about the vertical axis, and from above.
+# The view of the arm: turned about the vertical axis, and seen from above.
 TURNED, RAISED = radians(30), radians(20)
 POSE = (0.0, -30.0, 60.0, -30.0, 0.0, 0.0)
 MARGIN = 12.0

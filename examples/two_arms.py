@@ -6,7 +6,7 @@ import sys
 from cobotwire import AsyncMyCobot280
 
 SPEED = 60  # percent
-# What the left arm does; the right one does it in the mirror.
+# The poses of the left arm; the right one mirrors them.
 POSES = [[40, -20, 30, 0, 0, 0], [-40, -20, 30, 0, 0, 0], [0, 0, 0, 0, 0, 0]]
 
 

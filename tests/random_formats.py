@@ -1,4 +1,4 @@
-"""Random frame formats, also as a spec states them, and an encoder that reads only that."""
+"""Draw random frame formats and their statements in a spec; encode from the statement alone."""
 
 from __future__ import annotations
 

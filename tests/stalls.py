@@ -17,9 +17,10 @@ class StallMeter:
 
     Attributes:
         longest: the longest delay of a wake-up, in seconds.
-        worst_second: the most that the delays of more than a period add up to within one second.
-        late: the time of each delayed wake-up and its delay, if that is above a period; only those
-            that are to be ``listed``, since the list takes memory of the process that is measured.
+        worst_second: the largest sum of delays within one second; shorter delays than a period are
+            not counted.
+        late: the time and the delay of each wake-up that was late by more than a period; empty
+            unless ``listed``, since the list takes memory of the process that is measured.
     """
 
     def __init__(self, period: float = PERIOD, *, listed: bool = False) -> None:

@@ -58,7 +58,7 @@ def test_asyncio_call_without_a_reply_names_the_firmware() -> None:
         ("get_angles", 1.0, ""),
     ],
 )
-def test_command_needs_only_firmware_that_the_arm_lacks(
+def test_error_names_the_firmware_only_if_the_version_of_the_arm_explains_it(
     command: str, version: float | None, needs: str
 ) -> None:
     firmware = ReportedFirmware()

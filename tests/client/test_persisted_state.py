@@ -74,7 +74,7 @@ def test_half_a_request_of_a_closed_client_is_ended_by_the_next_one(
     pty.unplug()
 
 
-def test_late_reply_is_expected_on_a_link_whose_device_has_another_name_by_now(
+def test_late_reply_is_expected_on_a_link_after_its_device_was_renamed(
     tmp_path: Path,
 ) -> None:
     link = tmp_path / "by-id"

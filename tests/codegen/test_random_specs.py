@@ -137,7 +137,7 @@ def test_arguments_choose_a_variant_and_other_combinations_send_nothing(
     generated = package(tmp_path, edition)
     codec = codecs.load(generated.TABLE)
     for command in edition.commands:
-        # A legal value of each argument, as the third encoder and as Python state it, by variant.
+        # A legal value of each argument, exact and as in Python, by variant.
         legal: dict[int, dict[str, tuple[object, Any]]] = {}
         for vector in edition.vectors:
             if (vector.command, vector.direction) == (command.name, "request"):

@@ -1,4 +1,4 @@
-"""States units and flags by the words of names and descriptions."""
+"""Derive units and flags of fields from their names and descriptions."""
 
 from __future__ import annotations
 

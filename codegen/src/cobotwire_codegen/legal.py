@@ -11,9 +11,9 @@ def odd_character(text: str) -> str:
     """Return the first character that a spec may not contain, in words; empty if there is none.
 
     Legal are the characters that can be seen, the space, and the line feed and the tab, which lay
-    out a text of several lines. So control characters (which a terminal executes), invisible and
-    bidirectional formats (which make a reviewer see another text) and lone surrogates (which have
-    no encoding) are not.
+    out a text of several lines. Illegal are control characters (a terminal executes them),
+    invisible and bidirectional formats (they make a reviewer see another text) and lone surrogates
+    (they have no encoding).
     """
     if text.isprintable():
         return ""

@@ -76,7 +76,7 @@ def plain(type: Type | None, name: str, value: object) -> Any:
 
 
 def _exact(value: Any, state: State) -> Any:
-    """Return a start with exact numbers, as everywhere in the document."""
+    """Return a start value with exact numbers, as everywhere in the document."""
     stated = state.start
     if isinstance(stated, tuple):
         return [exact_number(Fraction(part)) for part in stated]

@@ -12,15 +12,16 @@
   // The colours of parts of a frame; the others are data.
   const KINDS = { header: "header", address: "header", LEN: "length", CMD: "command", check: "footer", footer: "footer" };
 
-  // The number of events of a long input that are shown at first, and of bytes of each event; "more" shows as many
-  // again.
+  // At first, at most this many events and this many bytes of each event are shown. Each click on "more" shows as
+  // many again.
   const EVENTS = 200;
   const BYTES = 1024;
   // A longer input is not kept in the address, which browsers limit.
   const LONGEST_LINK = 16384;
 
-  // The worker: it parses, cuts and reads, and sends the events in portions. It runs beside the page, which
-  // answers meanwhile, however long the input is. Before it stands the source of `Decoder`.
+  // The worker: it parses, cuts and reads, and sends the events in portions. It runs in a thread of
+  // its own, so the page stays responsive however long the input is. The source of `Decoder` is put before this
+  // function.
   function work() {
     let bytes, events, decoder;
 

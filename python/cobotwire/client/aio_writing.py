@@ -35,8 +35,8 @@ class AsyncWriter:
     def is_free(self) -> bool:
         """Return whether a request may be written now.
 
-        If a deadline limits calls, it waits until nothing is queued in the transport: queued bytes
-        would be sent even after the deadline.
+        If a deadline limits calls, nothing may be queued in the transport: queued bytes would be
+        sent even after the deadline.
         """
         return not self._limited or self._transport.is_free()
 

@@ -71,13 +71,13 @@ class Client:
                 transport.
             baudrate: bits a second; default: that of the edition.
             timeout: seconds that the arm has to reply once a request is sent, all attempts
-                included; default: those of the command in the edition. Before it is sent, a call
-                waits for its turn, and until no late reply can be mistaken for its own.
+                included; default: those of the command in the edition. Before that, a call waits
+                for its turn, and until no late reply can be mistaken for its own reply.
             deadline: seconds that a call may take from its beginning, all of this included;
-                default: any time. Then it raises :class:`ReplyTimeout`, which says what the call
-                waited for, and whether it was sent; if it was not, it never will be. Waited motions
-                and loops have a ``timeout`` of their own; each of their requests has this deadline.
-                Opening the port is not limited.
+                default: any time. At its end the call raises :class:`ReplyTimeout`, which says what
+                the call waited for, and whether the request was sent; if not, it never will be.
+                Waited motions and loops have a ``timeout`` of their own; each of their requests has
+                this deadline. Opening the port is not limited.
             retry: how often queries are sent within their ``timeout``; default: up to three times.
             limits: where the arm may be sent, and how fast, narrower or wider than the edition
                 says.

@@ -17,7 +17,7 @@ from cobotwire.session import EncodedRequest, motion
 
 # How long a motion is waited for by default.
 MOTION_SECONDS = 30.0
-# Percent of the fastest, unless the caller says otherwise.
+# The default speeds, in percent of the highest.
 HOME_SPEED, GRIPPER_SPEED = 10, 50
 
 
@@ -40,7 +40,7 @@ class MovingClient(FollowingClient):
 
         Args:
             angles: the target, in degrees, base first.
-            speed: percent of the fastest.
+            speed: percent of the highest speed.
             wait: False returns when the request is sent.
             timeout: seconds to wait at most.
 
@@ -67,7 +67,7 @@ class MovingClient(FollowingClient):
 
         Args:
             coords: the target: x, y, z in millimetres, rx, ry, rz in degrees.
-            speed: percent of the fastest.
+            speed: percent of the highest speed.
             mode: the path, as the edition's ``send_coords`` takes it; some editions need none.
             wait: False returns when the request is sent.
             timeout: seconds to wait at most.
@@ -117,7 +117,7 @@ class MovingClient(FollowingClient):
         """Move all joints to 0 degrees, and wait until they are there.
 
         Args:
-            speed: percent of the fastest.
+            speed: percent of the highest speed.
             wait: False returns when the request is sent.
             timeout: seconds to wait at most.
 
@@ -132,7 +132,7 @@ class MovingClient(FollowingClient):
         """Open the gripper, and return when the request is sent. It drops what it holds.
 
         Args:
-            speed: percent of the fastest.
+            speed: percent of the highest speed.
 
         Raises:
             UsageError: the speed is not allowed, or the edition has no such command.
@@ -144,7 +144,7 @@ class MovingClient(FollowingClient):
         """Close the gripper, and return when the request is sent. It can pinch.
 
         Args:
-            speed: percent of the fastest.
+            speed: percent of the highest speed.
 
         Raises:
             UsageError: the speed is not allowed, or the edition has no such command.

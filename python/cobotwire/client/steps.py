@@ -162,7 +162,8 @@ class Steps:
     ) -> bytes | None:
         """Write a request returned by the exchange at ``now``; the caller holds the writer's lock.
 
-        The write ends in time for its caller, and by ``ends_by`` for the caller of this thread.
+        The write ends before the deadline of ``pending``, and before ``ends_by``, the deadline of
+        this thread's own call.
 
         Returns:
             As :meth:`Writer.write`; None if the request was not written.

@@ -11,7 +11,7 @@ from cobotwire.session.alignment import Alignment
 from cobotwire.transport.interface import PollableTransport, Transport
 from cobotwire.transport.waiting import has_room
 
-# How often a write is tried again that must end in time.
+# The pause before the next attempt at a write that has a deadline, in seconds.
 TRY_SECONDS = 0.001
 
 

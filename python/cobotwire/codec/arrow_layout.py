@@ -79,8 +79,8 @@ class Layout:
 def common_type(types: set[Any]) -> Any:
     """Return the type that holds the values of all of some types; None if there is none.
 
-    Fixed-size lists of several sizes become lists, enums with several lists of names texts, and
-    numbers of several types the larger type.
+    Fixed-size lists of several sizes become lists. Enums with several lists of names become texts.
+    Numbers of several types get the larger type.
     """
     if len(types) == 1:
         return next(iter(types))

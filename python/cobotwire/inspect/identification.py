@@ -145,7 +145,7 @@ def identify_on(
                 found.note(command, reply.replied)
                 if reply.text != "no reply":
                     return _identified(transport, found, evidence, timeout)
-            # A session with other frames forgets what it cannot read.
+            # The next session has another frame format, and drops outstanding replies of this one.
             left.append(memory.recall())
         return Identification(transport.url, "", (), "", tuple(evidence))
     finally:

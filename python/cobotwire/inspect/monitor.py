@@ -182,7 +182,7 @@ class FollowingMonitor:
         for _ in repeat(None) if count is None else repeat(None, count):
             due = max(due + self._interval, time.monotonic())
             time.sleep(max(0.0, due - time.monotonic()))
-            # Read first: what came before it is still shown.
+            # Read the problem before the traffic: what came before the problem is still shown.
             problem, self._error = self._followed.problem, ""
             for traffic in self._followed.take():
                 self._take(traffic)

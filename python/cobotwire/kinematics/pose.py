@@ -37,7 +37,7 @@ class Pose(NamedTuple):
         (xx, xy, xz), (_, yy, yz), (_, zy, zz), origin = self
         rx, ry, rz = math.atan2(yz, zz), math.atan2(-xz, math.hypot(xx, xy)), math.atan2(xy, xx)
         if math.hypot(xx, xy) < UPRIGHT:
-            # Both turns are about one axis, and the last digits would decide about each.
+            # Here rx and rz turn about the same axis; rounding would decide how they share it.
             rx, rz = math.atan2(-zy, yy), 0.0
         return (*origin, math.degrees(rx), math.degrees(ry), math.degrees(rz))
 

@@ -2,10 +2,11 @@
 
 An acknowledgement carries the command's id, perhaps a constant and arguments of the request. If
 several requests with equal ids and arguments were sent and some acknowledgements are lost, it is
-unknown which request each acknowledgement belongs to. So a request counts as acknowledged once more
-acknowledgements have come than the other requests can still have caused. It may seem unacknowledged
-although it was, never the reverse, if each acknowledgement comes once and in time. An
-acknowledgement that was lost causes doubt only until it is too late to come.
+unknown which request each acknowledgement belongs to. So a request counts as acknowledged only when
+the number of received acknowledgements exceeds the number that the other requests can still have
+caused. An acknowledged request may seem unacknowledged. The reverse cannot happen, if each
+acknowledgement comes once and in time. A lost acknowledgement causes doubt only until its time is
+over.
 """
 
 from __future__ import annotations

@@ -13,7 +13,7 @@ class ReplyMatched(NamedTuple):
     """The reply that was waited for.
 
     ``message`` is None where the reply was text outside any frame. ``frame`` is None where an
-    earlier event has reported the bytes: as noise, which text is, or as :class:`EchoReceived`.
+    earlier event has reported the bytes: text as noise, a copy as :class:`EchoReceived`.
     """
 
     command: Command

@@ -16,7 +16,7 @@ from cobotwire.kinematics.straight import angles_along, steps_between, straight_
 from cobotwire.simulator.replies import Unanswerable
 from cobotwire.simulator.state import ArmState
 
-# One turn in steps of three degrees; in steps of seven millimetres, beyond any reach.
+# This many steps of three degrees are a full turn; of seven millimetres, they exceed any reach.
 JOG_STEPS = 121
 
 # Reported numbers that differ by less are the same: it is far below the wire's steps.

@@ -2,7 +2,7 @@
 
 A forked child has copies of the parent's descriptors. If it reads them, it takes bytes from the
 parent; if it shuts a connection down or wakes a wait, the parent notices. In the child, therefore,
-everything that is open counts as closed; its copies go without a trace.
+everything that is open counts as closed; its copies are closed so that the parent does not notice.
 """
 
 from __future__ import annotations

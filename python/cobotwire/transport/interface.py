@@ -87,7 +87,7 @@ class OpenedTransport(PollableTransport, Protocol):
         Bytes underway in either direction are lost. The controller is not reset.
 
         Raises:
-            LinkError: it cannot be opened; it is closed now, and a further try may succeed.
+            LinkError: it cannot be opened; it is closed now, and a further attempt may succeed.
         """
         ...
 

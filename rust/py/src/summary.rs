@@ -85,7 +85,7 @@ impl NativeSummary {
         })
     }
 
-    /// Feed bytes; return what is not only counted, in the order of the stream.
+    /// Feed bytes; return the noise and lines to report, in the order of the stream.
     fn feed<'py>(
         &self,
         data: &Bound<'py, PyBytes>,

@@ -1,9 +1,9 @@
 //! Checks several positions together. Most bytes of noise do not start a header, or start one with
 //! a LEN that no frame has, so they need no separate check.
 
-/// The number of positions.
+/// The number of positions that are checked together.
 pub const WINDOW: usize = 32;
-/// The bytes that decide them.
+/// The number of bytes that this needs: a header and LEN at the last position, too.
 pub const SEEN: usize = WINDOW + 2;
 
 /// The pattern to search for: two bytes, and a third one within bounds.

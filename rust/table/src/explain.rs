@@ -13,8 +13,8 @@ use crate::texts::{entry, hex, text};
 use crate::value::general;
 use crate::{Edition, Value};
 
-/// A run of bytes inside a frame, and what it means. Parts of a word share its bytes: the last one
-/// has them.
+/// A run of bytes inside a frame, and what it means. If several parts are bits of one word, only the
+/// last of them lists the bytes.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[allow(missing_docs)] // of fields, whose names say what they are
 pub struct Explained {

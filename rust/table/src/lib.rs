@@ -42,7 +42,7 @@ const LARGEST: usize = 4 << 20;
 
 /// A protocol as data. Commands are in the order of the table.
 #[derive(Clone, Debug)]
-#[allow(missing_docs)] // as above
+#[allow(missing_docs)] // of fields, whose names say what they are
 pub struct Edition {
     pub name: String,
     pub baudrate: u32,
@@ -84,7 +84,7 @@ impl Command {
 
 /// What texts and clients need of a field.
 #[derive(Clone, Debug, Default)]
-#[allow(missing_docs)] // as above
+#[allow(missing_docs)] // of fields, whose names say what they are
 pub struct Field {
     pub name: String,
     /// The words of its choices, in their order; empty: they have none.
@@ -117,7 +117,7 @@ impl Field {
 /// empty does not exist.
 #[derive(Clone, Debug, Default, Deserialize)]
 #[serde(default)]
-#[allow(missing_docs)] // as above
+#[allow(missing_docs)] // of fields, whose names say what they are
 pub struct Number {
     pub name: String,
     pub unit: String,

@@ -235,7 +235,7 @@ LONG_INPUTS = {
 
 
 @pytest.mark.parametrize("pasted", LONG_INPUTS)
-def test_long_input_is_decoded_beside_the_page(tab: Tab, page: Path, pasted: str) -> None:
+def test_page_responds_while_a_long_input_is_decoded(tab: Tab, page: Path, pasted: str) -> None:
     short = LONG_INPUTS[pasted].replace("000)", "00)").replace("333_333", "33_333")
     _open(tab, page)
     small, large = (

@@ -74,7 +74,7 @@ def _counted(fields: Variant, readers: list[Reader]) -> Variant:
         elif field.type.varies:
             to_the_end += 1
         if to_the_end > 1:
-            message = f"a second field of {reader.what} goes to the end; give it a count"
+            message = f"a second field of {reader.what} extends to the end; give it a count"
             reader.problem("bad-count", message, place)
         earlier[field.name] = field
     return tuple(replace(field, counts=counts.get(field.name, "")) for field in fields)

@@ -31,7 +31,7 @@ class Rule:
 
 
 _WIRE = {
-    "address-replies-changed": "replies to it were of {old}, are of {new}: they are mismatched",
+    "address-replies-changed": "its replies came from {old}, come from {new}: they are mismatched",
     "addresses-changed": "addresses were {old}, are {new}: frames reach other devices, or none",
     "argument-added-required": "the request now carries {new}: callers must pass it",
     "argument-removed": "the request no longer carries {old}: callers cannot pass it",
@@ -117,7 +117,7 @@ _BEHAVIOUR = {
     "safety-changed": "was {old}, is {new}: retries and conformance runs treat it differently",
     "selector-added": "its type now depends on {new}; the effects are listed separately",
     "selector-removed": "its type depended on {old}; the effects are listed separately",
-    "shared-id-order-changed": "frames of this id had the first name of {old}; now that of {new}",
+    "shared-id-order-changed": "the first of these commands names a frame: was {old}, is {new}",
     "silence-changed": "the text ended after {old} ms of silence, ends after {new} ms",
 }
 _PEER = {

@@ -51,7 +51,7 @@ _FACT = re.compile(
     rf"({'|'.join(ASPECTS)})",
     re.ASCII,
 )
-# The names of USB ports and of built-in ports. At others, a simulated arm can be.
+# The names of USB ports and of built-in ports. At any other port, the arm can be simulated.
 _DEVICE = re.compile(
     r"/dev/(tty(USB|ACM|AMA|THS)\d+|cu\.[\w#-]+|serial/by-(id|path)/[^/]+)|COM\d+", re.ASCII | re.I
 )
@@ -226,8 +226,8 @@ def _survey(data: dict[str, Any], digest: str) -> Submitted:
     _require(head == ("cobotwire-survey", 1), "the file is not a survey of version 1")
     _require(
         data.get("simulated") is False,
-        "the survey is not of a real arm, as far as it shows; `cobotwire survey --real-arm` states "
-        "it where the port does not show it",
+        "nothing in the survey shows that the arm is real; if it is, and the port cannot show it, "
+        "run `cobotwire survey --real-arm`",
     )
     edition = _edition(data)
     versions = _of(data.get("firmware"), dict, "firmware")

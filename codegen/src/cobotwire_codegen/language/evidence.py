@@ -47,5 +47,5 @@ class EvidenceFile(Record):
     firmware = optional(Text(), "What the robot reports as its firmware.")
     date = required(Text(), "The day of the run, such as 2026-11-24.")
     digest = required(Text(), "The SHA-256 of the file that the run wrote.")
-    facts = required(Listed(ObservedFact), "The facts that showed.")
+    facts = required(Listed(ObservedFact), "The facts that the run observed.")
     vectors = optional(Listed(VECTOR), "Frames of the arm with the values that they carry.")

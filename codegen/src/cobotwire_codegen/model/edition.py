@@ -105,7 +105,7 @@ class Edition:
     """What real arms showed."""
 
     def no_command(self, name: str) -> str:
-        """Return the message that an unknown command has."""
+        """Return the error message for an unknown command."""
         hint = dict(self.gone).get(name) or nearest(name, (c.name for c in self.commands))
         return f"there is no command {name}{hint}"
 

@@ -42,7 +42,7 @@ class Motion:
 
 @dataclass(frozen=True, slots=True)
 class Encoders:
-    """How encoders count: ticks of a turn, readings, and the direction of each joint's."""
+    """How encoders count: ticks of a turn, readings, and the direction in which each one counts."""
 
     ticks: int
     zero: int

@@ -8,7 +8,7 @@ from cobotwire_codegen import lower
 from cobotwire_codegen.model import Command, Edition, Field, Frame, FrameNumber, Value
 from cobotwire_codegen.model.frame import Direction
 from cobotwire_codegen.render.diagram import FIXED, Row, label
-from cobotwire_codegen.render.markdown import wire_variant
+from cobotwire_codegen.render.markdown import wire_encoding
 from cobotwire_codegen.wire import size
 
 _SHOWN = 8
@@ -118,11 +118,11 @@ def _parts(field: Field) -> Iterator[tuple[str, int, str]]:
     types = [type for _, type in lower.cases(field)]
     first = types[0]
     if not isinstance(first, Value):
-        yield f"`{field.name}`", size(first), " or ".join(wire_variant(type) for type in types)
+        yield f"`{field.name}`", size(first), " or ".join(wire_encoding(type) for type in types)
         return
     for index, (part, item) in enumerate(first.items):
         kinds = dict.fromkeys(
-            wire_variant(type.items[index][1]) for type in types if isinstance(type, Value)
+            wire_encoding(type.items[index][1]) for type in types if isinstance(type, Value)
         )
         names = dict.fromkeys(type.items[index][0] for type in types if isinstance(type, Value))
         yield f"`{field.name}` {'/'.join(names) or part}", item.wire.width, " or ".join(kinds)

@@ -31,7 +31,7 @@ def import_line(module: str, names: list[str]) -> str:
 def escaped(text: str) -> str:
     """Return text escaped for a docstring, even right before the closing quotes."""
     text = text.replace("\\", "\\\\")
-    # Every quote before another one or before the end: no three remain in a row.
+    # Escape each quote that precedes another quote or the end, so that no three remain in a row.
     return re.sub(r'"(?="|\Z)', r'\\"', text)
 
 

@@ -31,12 +31,12 @@ def robot(edition: Edition) -> str:
     return re.sub("^(A|An|The) ", "", edition.title.partition(":")[0])
 
 
-def wire_variant(type: Type) -> str:
+def wire_encoding(type: Type) -> str:
     """Return how a type is encoded, in words."""
     if isinstance(type, Shaped):
         return span(type)
     if isinstance(type, Value):
-        return ", ".join(wire_variant(item) for _, item in type.items)
+        return ", ".join(wire_encoding(item) for _, item in type.items)
     if not isinstance(type, Quantity):
         return type.wire.name
     if type.choices:
@@ -96,7 +96,7 @@ def encoding(field: Field) -> str:
     found = []
     for _, type in lower.cases(field):
         items = [item for _, item in type.items] if isinstance(type, Value) else [type]
-        found += [wire_variant(item) for item in items]
+        found += [wire_encoding(item) for item in items]
     return "; ".join(dict.fromkeys(found))
 
 

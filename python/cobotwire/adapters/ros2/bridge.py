@@ -42,7 +42,7 @@ class Bridge:
         """Publish at most ``rate`` samples a second; name the port ``url``.
 
         A motion is stopped if its sender is gone for ``silence`` seconds; None: the arm takes no
-        motions. No joint is faster than ``speed`` percent of the fastest.
+        motions. No joint exceeds ``speed`` percent of its highest speed.
 
         Raises:
             UsageError: the rate is not allowed, or the edition lacks what is needed.

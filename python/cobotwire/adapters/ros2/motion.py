@@ -64,7 +64,7 @@ class Motion:
         silence: float,
         speed: int,
     ) -> None:
-        """Move no joint faster than ``speed`` percent of the fastest.
+        """Let no joint exceed ``speed`` percent of its highest speed.
 
         Raises:
             UsageError: the edition has no targets for its joints, or no stop.

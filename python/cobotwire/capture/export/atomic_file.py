@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 try:
     import fcntl
-except ImportError:  # Windows: what killed exports leave behind is not removed there.
+except ImportError:  # Windows, where the temporary files of killed exports are not removed
     fcntl = None  # type: ignore[assignment]
 
 # Readers of data sets ignore files with a leading dot.
@@ -79,7 +79,7 @@ class AtomicFile:
             raise output_error(self.path, error) from error
 
     def publish(self) -> None:
-        """Finish the file, and give it its final name; :func:`sync_folder` makes the name last.
+        """Finish the file, and give it its final name; :func:`sync_folder` makes the name durable.
 
         Raises:
             UsageError: the final name was taken in the meantime.
@@ -112,8 +112,8 @@ class AtomicFile:
 class WritableFile(io.BufferedIOBase):
     """A file that can only be written; only its owner closes it.
 
-    After :meth:`discard` it ignores writes: a writer of a format writes its end when it is closed,
-    even if its file has failed.
+    After :meth:`discard` it ignores writes. When a writer of Parquet, Arrow or another format is
+    closed, it writes the end of the format, even if an earlier write failed.
     """
 
     def __init__(self, stored: BinaryIO) -> None:

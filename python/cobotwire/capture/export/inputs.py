@@ -65,9 +65,9 @@ class Inputs:
     def find(cls, arguments: Sequence[str]) -> Inputs:
         """Return the files that arguments name.
 
-        A folder means all files in it and below it but hidden ones, a pattern those that match;
-        both are sorted by name. An argument with ``://`` is an fsspec URL, which may also name a
-        folder or be a pattern.
+        A folder means all files in it and below it, without hidden ones. A pattern means the files
+        that match. Both are sorted by name. An argument with ``://`` is an fsspec URL, which may
+        also name a folder or be a pattern.
 
         Raises:
             UsageError: an argument names nothing, or fsspec is missing.

@@ -72,13 +72,13 @@ class _Way:
         self.next = number
 
     def divide(self) -> None:
-        """Begin a new stream; the other direction joins it when it is divided, too."""
+        """Begin a new stream, or join the one that the division of the other direction began."""
         if self._part == self._connection.parts:
             self._connection.parts += 1
         self._part = self._connection.parts
 
     def ahead(self, number: int) -> int:
-        """Return how many bytes a number is after the next one; negative if it is before it."""
+        """Return how far a number is ahead of the next one, in bytes; negative if it is behind."""
         return (number - self.next + _HALF & _MASK) - _HALF
 
     def keep(self, segment: Segment) -> None:

@@ -161,7 +161,7 @@ def write_reports(report: Report, wanted: ReportOptions) -> None:
 def conclude(report: Report, wanted: ReportOptions, known: Sequence[Expectation] = ()) -> None:
     """Write the reports, print the failures and counts, and exit with the verdict's code.
 
-    ``known`` are the failures that are excused, if the run has not done so.
+    ``known`` are the expected failures; empty if the run has already excused them.
     """
     report.results = with_known(known, report.results)
     report.tester, report.serial = wanted.tester, hashed(wanted.serial)

@@ -168,7 +168,7 @@ class Program:
 
 
 def _is_deeper(value: Any, levels: int) -> bool:
-    """Return whether a value has more ``levels``, so that recursion over it stays bounded."""
+    """Return whether a value is nested deeper than ``levels``; recursion must stay bounded."""
     inner = [value] if isinstance(value, dict | list) else []
     for _ in range(levels):
         parts = [part.values() if isinstance(part, dict) else part for part in inner]

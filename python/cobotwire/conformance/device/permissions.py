@@ -27,7 +27,7 @@ class Permissions:
     """What a run may do in addition to sending queries.
 
     ``workspace`` holds the lowest and highest angle of each joint in degrees, ``max_speed`` is in
-    percent of the fastest. Without both nothing moves.
+    percent of the highest. Without both nothing moves.
     """
 
     classes: frozenset[str] = frozenset()

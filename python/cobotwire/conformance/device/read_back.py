@@ -75,7 +75,7 @@ class Setting:
     def samples(self, query: Request[Any], old: Reply[Any], speed: int = 1) -> list[Request[Any]]:
         """Return requests that reveal mistakes: ends, both signs, and a difference in each byte.
 
-        They set what ``query`` reads, where ``old`` was read.
+        They set what ``query`` reads; ``old`` is its present reply.
         """
         return [self._request(query, values, speed) for values in self._values(query, old)]
 

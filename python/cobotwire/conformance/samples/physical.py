@@ -18,8 +18,8 @@ Numbers = tuple[Number, Number]
 _TEXTS = (("cobot 1", "pass-word 2"), ("A", "B8"))
 # The ordinary values of bytes, texts and lists that are set one after the other.
 _TURNS = (0, 7)
-# Fractions of the distance from zero to an end. No two parts of a row have equal fractions, or one
-# the double of another.
+# Fractions of the distance from zero to an end. All differ, and none is the double of another, so
+# that each part of a row is recognised.
 _SHARES = tuple(Fraction(share, 100) for share in (61, 37, 23, 83, 47, 13))
 # Samples 0 and 1 lie in between, 2 and 3 are the ends, and this one is a step beyond zero.
 _BEYOND = 4

@@ -80,7 +80,7 @@ class Interpreter:
                 self.questions.append(f"{command.name}: {why}")
                 return self._note(command.name, part, "present", "not seen", why, frames)
             else:
-                # A query after that may have got its reply.
+                # The frames may include a later query and its reply: choose those of this command.
                 own = [f for f in frames if command.id in self._ids("request", f.sent)]
                 if not any(frame.received for frame in own):
                     self._silent[command.name] = own

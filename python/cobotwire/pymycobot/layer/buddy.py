@@ -41,7 +41,7 @@ class Limbs(CompatibleClient):
         return self._ask(int, device.is_robot_in_position, left, right, waist[0], mode)
 
     def get_base_coords(self, *args: Any) -> Any:
-        """Read the coordinates of both arms, or convert those of an arm, to the base's.
+        """Read the coordinates of both arms in the base's frame, or convert those of one arm to it.
 
         Without arguments it calls ``get_base_coords()``, with ``coords, arm`` it calls
         ``single_to_base_coords(coords, arm)``.

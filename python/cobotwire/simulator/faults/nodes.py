@@ -39,8 +39,8 @@ def parse(
     """Read one YAML document; messages call the file ``name``, and files of its kind ``what``.
 
     Raises:
-        ScenarioError: the text is not YAML, has a key twice, contains a tag, or exceeds a limit; or
-            another error, ``failed``, in its place.
+        ScenarioError: the text is not YAML, has a key twice, contains a tag, or exceeds a limit.
+            If ``failed`` is another class, that class is raised.
         UsageError: the YAML library is not installed.
     """
     try:
@@ -77,8 +77,8 @@ def parse(
     return root
 
 
-# The limits of a file, many times what the longest scenario needs. An alias counts as often as it
-# is used, since every use is read, and may contain itself.
+# The limits of a file, many times what the longest scenario needs. Each use of an alias counts:
+# every use is read, and an alias may contain itself.
 MOST_CHARACTERS = 1024 * 1024
 MOST_NODES = 100_000
 # A scenario is a mapping with a list of mappings of lists.

@@ -135,7 +135,7 @@ def _check_commands(
 def _entries(node: Node, what: str, problems: list[tuple[Place, str]]) -> dict[str, Node]:
     if isinstance(node.value, dict):
         return dict(node.value)
-    problems.append((node.place, f"{what} is {_shown(node)}; allowed: a mapping"))
+    problems.append((node.place, f"{what} must be a mapping (found: {_shown(node)})"))
     return {}
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-# These halve 300 degrees per second to less than the resolution of a double.
+# After this many halvings, 300 degrees per second are below the resolution of a double.
 BISECTIONS = 60
 
 

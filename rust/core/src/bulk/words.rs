@@ -41,8 +41,8 @@ impl Words {
         };
         let places = words.bias.iter_mut().zip(&mut words.scales);
         for (number, (bias, scale)) in numbers.iter().zip(places) {
-            // A sign rule beyond the width is limited to it: then no raw value is negative, or all
-            // are.
+            // The threshold of the sign rule is limited to the width. At the limits, no raw value is
+            // negative, or all are.
             *bias = i32::try_from(most - number.signed_at.clamp(-1, most)).ok()?;
             *scale = Scale::new(number);
         }

@@ -20,7 +20,7 @@ pub struct Texts {
     pub names: Names,
 }
 
-/// Noise whose text Python writes, because it has few different ones.
+/// Noise with few different descriptions. Python writes them, and they are cached.
 #[derive(Clone, Copy, Debug)]
 pub struct Described<'a> {
     /// Its class.
@@ -42,7 +42,7 @@ pub(super) struct Noise<'a> {
 
 /// The values that a description depends on; the others are 0.
 #[derive(PartialEq, Eq, Hash)]
-struct Look {
+struct DescriptionKey {
     kind: Kind,
     reason: Reason,
     id: Option<u16>,
@@ -57,7 +57,7 @@ pub(super) struct Writer {
     bus: Arc<ServoBus>,
     /// What the next status packets of the servo bus hold.
     pub(super) expected: Expected,
-    descriptions: Memo<Look>,
+    descriptions: Memo<DescriptionKey>,
 }
 
 impl Writer {
@@ -142,14 +142,16 @@ impl Writer {
                 }
             }
             _ => {
-                let text = self.descriptions.text(look(noise), || sink.describe(noise));
+                let text = self
+                    .descriptions
+                    .text(key_of(noise), || sink.describe(noise));
                 out.extend_from_slice(text.as_bytes());
             }
         }
     }
 }
 
-fn look(noise: &Described<'_>) -> Look {
+fn key_of(noise: &Described<'_>) -> DescriptionKey {
     let size = noise.data.len();
     let (id, size, fitting) = match noise.kind {
         Kind::Damaged | Kind::Unlisted => (noise.id, 0, 0),
@@ -158,7 +160,7 @@ fn look(noise: &Described<'_>) -> Look {
         Kind::Garbage => (None, size, fitting(noise.data)),
         _ => (None, 0, 0),
     };
-    Look {
+    DescriptionKey {
         kind: noise.kind,
         reason: noise.reason,
         id,

@@ -110,7 +110,8 @@ impl Report {
         known
     }
 
-    /// Return whether Python need not see any of the findings. If not, it will see all of them.
+    /// Return whether Python has described a finding of each of these classes. If not, it gets all of
+    /// the findings, and their classes count as described.
     fn are_known(&mut self, findings: &[Finding]) -> bool {
         let is_known = |finding: &Finding| self.known.get(finding.kind as usize) == Some(&true);
         let all = findings.iter().all(is_known);

@@ -25,7 +25,7 @@ from cobotwire.protocol.effects import Cases, Moves
 from cobotwire.protocol.messages import Request
 from cobotwire.protocol.table import Command, Table
 
-# Slow enough to be reported as moving, in percent of the fastest.
+# Slow enough to be reported as moving, in percent of the highest speed.
 SLOW = 20
 
 

@@ -20,7 +20,7 @@ from cobotwire.protocol.messages import Request
 DISTANCES = {"degree": 4.0, "millimetre": 8.0}
 # How far the other joints or axes may stray: joints rest on encoder ticks, and so move the end.
 STRAYS = {"degree": 0.6, "millimetre": 2.5}
-# Slow enough to be stopped near the start, in percent of the fastest.
+# Slow enough to be stopped near the start, in percent of the highest speed.
 SLOW = 20
 # A jog is stopped when it has moved something by this multiple of its value in STRAYS.
 SHOWS = 3.0

@@ -31,7 +31,7 @@ MOVING = TestCase(
 KEEPS = TestCase("limits-kept", "No joint moves beyond the limit that is set for it.")
 STOPS = TestCase("stops", "A stop ends the motion, and the arm stays at rest.", timed=True)
 
-# The tolerance between sent and read values, by unit: one tick, and the end's motion within it.
+# The tolerance between sent and read values, by unit: one tick, and how far it moves the end.
 NEAR = {"millimetre": 1.5, "tick": 1.0, "percent": 1.0}
 # After this time, in seconds, an arm on its way reports that it moves.
 UNDER_WAY = 0.1
@@ -98,7 +98,7 @@ def _replays(probe: Probe) -> None:
     for number, motion in enumerate(motions):
         for query in motion.queries:
             targets = _targets(mover, motion, query, first[query], second[query])
-            # Every variant shows in the first two; the first variant is sent with all of them.
+            # Two targets suffice to check a further variant; the first variant is sent with all.
             for target in targets if number == 0 else targets[:2]:
                 _replay(probe, mover, motion, query, target)
 

@@ -22,7 +22,7 @@ ENDS = TestCase(
     "The end of a motion is reported once, when the arm is at rest, with how the motion ended.",
 )
 
-# In percent of the fastest, so that the arm can be observed on its way.
+# In percent of the highest speed, so that the arm can be observed on its way.
 SLOW = 20
 # Seconds between two readings of the angles, and seconds without a change until the arm is at rest.
 PERIOD, RESTS = 0.01, 0.7

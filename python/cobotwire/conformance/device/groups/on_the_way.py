@@ -49,7 +49,7 @@ LONGEST, SOON = 20.0, 0.005
 QUEUED, NEWEST = "INTERPOLATION", "REFRESH"
 # How far apart the targets are, and how far the arm must go to show its direction, in degrees.
 WAY, SHOWN = 8.0, 1.0
-# The speed of the motion upwards, in percent of the fastest: slow enough for readings on the way.
+# The speed of the motion upwards, in percent of the highest: slow enough for readings on the way.
 UPWARDS = 20
 # The longest time between two readings, in seconds: too short for the arm to go up and down again.
 UNSEEN = 0.1
@@ -64,7 +64,7 @@ LEAST = 0.4
 APART = 3.0
 # The speed of a joint at rest may be this share of the fastest one on the way: sensors have noise.
 AT_REST = 0.1
-# The motion is slow, so that it lasts longer than the readings; in percent of the fastest.
+# The motion is slow, so that it lasts longer than the readings; in percent of the highest.
 SLOW = 5
 
 

@@ -15,8 +15,9 @@ class Corrupted(Damage):
     """Bits are flipped.
 
     Attributes:
-        bits: how many, each at another place.
-        byte: which byte has them all: counted from 0, or from the end if negative; None: any bytes.
+        bits: how many bits, each at another place.
+        byte: the index of the byte in which all bits are flipped, counted from 0, or from the end
+            if negative; None: the bits are in any bytes.
     """
 
     bits: int = ruled(integer(1, 64), 1)
