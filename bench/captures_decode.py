@@ -1,8 +1,9 @@
 """Measure ``cobotwire decode`` on large captures.
 
 Summaries are compared with the scan, which reuses its memory, so that it clears no pages. Lines are
-compared with decoding frame by frame, as for the reference codec; this decodes a small part of the
-file, and its time is scaled. Each round runs each program once; a ratio is the median of them.
+compared with decoding frame by frame, as for the reference codec. Frame by frame, only a small part
+of the file is decoded, and the time is scaled. Each round runs each program once; a ratio is the
+median of the ratios of all rounds.
 """
 
 from __future__ import annotations

@@ -69,7 +69,7 @@ ONE_IMPORTER = {
 
 
 @pytest.mark.parametrize("path", sorted(PACKAGE.rglob("*.py")), ids=lambda path: str(path)[-60:])
-def test_module_imports_only_rooms_above_its_own(path: Path) -> None:
+def test_module_imports_only_subpackages_above_its_own(path: Path) -> None:
     place = path.relative_to(PACKAGE)
     subpackage = place.parts[0].removesuffix(".py")
     if subpackage == "__init__":
@@ -87,7 +87,7 @@ def test_module_imports_only_rooms_above_its_own(path: Path) -> None:
             assert any(place.as_posix().startswith(p) for p in ONE_IMPORTER[package]), name
 
 
-def test_package_holds_the_rooms_and_nothing_else() -> None:
+def test_package_holds_the_subpackages_and_nothing_else() -> None:
     found = {entry.stem for entry in PACKAGE.iterdir() if entry.suffix == ".py" or entry.is_dir()}
     # The spec is a link: the wheel contains it.
     assert found - {"__init__", "__pycache__", "spec"} == set(SUBPACKAGES)
@@ -165,8 +165,8 @@ def test_unsafe_rust_code_is_only_in_the_files_for_it() -> None:
 
 
 def test_native_classes_are_never_borrowed_mutably() -> None:
-    # PyO3 raises RuntimeError if code that Python runs meanwhile uses the object, which is a call
-    # of another thread, say. A frozen class has no such borrows; its locks are held briefly.
+    # While a call borrows an object mutably, PyO3 raises RuntimeError for every other use of it,
+    # such as a call of another thread. A frozen class has no such borrows.
     for path in (vectors.ROOT / "rust" / "py" / "src").rglob("*.rs"):
         text = path.read_text("utf-8")
         for declared in re.findall(r"#\[pyclass\(.*", text):

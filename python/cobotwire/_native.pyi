@@ -154,7 +154,7 @@ class NativeFramer:
 
     @property
     def pending(self) -> int:
-        """The number of fed bytes that no event covers yet, less than the longest frame has."""
+        """The number of fed bytes that no event covers yet: fewer than the longest frame has."""
 
     @property
     def fed(self) -> int:
@@ -252,7 +252,7 @@ class NativeColumnReader:
 
     @property
     def pending(self) -> int:
-        """The number of fed bytes not accounted for yet, less than the longest frame has."""
+        """The number of fed bytes not accounted for yet: fewer than the longest frame has."""
 
 @final
 class NativeCaptureReader:

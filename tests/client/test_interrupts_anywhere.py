@@ -33,9 +33,9 @@ LATE = TIMEOUT + RETRY.grace + 0.1
 class InterruptAt:
     """A trace function that raises KeyboardInterrupt at the n-th line of our own code.
 
-    It leaves out the lines at which Python handles no signal, since nothing is called there: a
-    ``try``, and the line of a ``with`` statement that Python reports again before it leaves the
-    block. An exception there would skip ``__exit__``, which a signal cannot.
+    At two kinds of lines it does not raise, because nothing is called there, so Python handles no
+    signal: a ``try``, and the line of a ``with`` statement that Python reports again before it
+    leaves the block. An exception there would skip ``__exit__``, which a signal cannot.
     """
 
     def __init__(self, number: int) -> None:
@@ -143,8 +143,8 @@ class Lines:
     """The numbers of the lines to interrupt, until calls end before them.
 
     Which lines a call runs depends on the other threads, so one short call is not the end. With the
-    reference codec a call runs many lines, of which every fifth is interrupted. When it listens for
-    1 ms, the number of lines depends on the machine, so each of them is interrupted.
+    reference codec a call runs many lines, of which every fifth is interrupted. When a call listens
+    for 1 ms, the number of lines depends on the machine, so each of them is interrupted.
     """
 
     def __init__(self, codec: str, name: str = "a query") -> None:

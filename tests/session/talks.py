@@ -122,7 +122,7 @@ class Talk:
     def _turn(self) -> None:
         drained = self._dice.random() < 0.8
         if not drained:
-            # Unread bytes keep a request for 50 ms: not for 25 ticks, but for 26.
+            # Unread bytes hold a request back for 50 ms, so it waits for 25 ticks, but not for 26.
             self._write(self.exchange.outgoing(self.now, drained))
             self.now += self._dice.choice([0, 25, 26]) * TICK
         self._write(self.exchange.outgoing(self.now, drained))

@@ -1,4 +1,4 @@
-"""States what commands do by the names and words with which they are described.
+"""States what commands do, derived from their names and descriptions.
 
 An effect is written in a line, such as ``stores pins at pin``: the verb, what it is about, ``at``
 with the arguments that choose an index, and the other keys. This project chose the names of state.
@@ -178,7 +178,7 @@ def _says(word: str, text: str) -> bool:
 
 
 def effects(edition: Edition) -> Iterator[str]:
-    """Report commands with another effect than their name and description tell."""
+    """Report commands whose effect differs from what their name and description say."""
     for command in edition.commands:
         effect = command.effect
         if effect is not None and effect.verb in ("sets", "does", "computes", "zeroes"):
@@ -287,7 +287,7 @@ UNUSED = ("mybuddy", "set_encoders", "speeds")
 
 
 def arguments(edition: Edition) -> Iterator[str]:
-    """Report motions that use an argument otherwise than its name tells, or not at all."""
+    """Report motions that do not use an argument, or not as its name says."""
     for command in edition.commands:
         effect = command.effect
         cases = () if effect is None else (effect, *(inner for _, inner in effect.cases))

@@ -73,7 +73,7 @@ def names(edition: Edition) -> tuple[str, ...]:
 
 
 def field_units(edition: Edition) -> Iterator[str]:
-    """Report fields with other units than their name tells."""
+    """Report fields whose unit differs from what their name says."""
     for command in edition.commands:
         for field in command.fields:
             full = f"{command.name} {field.name}"

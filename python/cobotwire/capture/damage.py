@@ -20,7 +20,7 @@ _REASONS = {
     "no-interface": "damaged: the file does not describe interface {}",
     "no-time": "its packets have neither a time nor a direction",
     "many-interfaces": f"it describes more than {MOST_INTERFACES} interfaces",
-    "interface-lost": "the number of the interface is not certain after damage before it",
+    "interface-lost": "damage before it makes the number of its interface ambiguous",
     "time-range": "columns cannot hold the time of a packet outside of the years 1678 to 2261",
 }
 

@@ -29,7 +29,7 @@ def matrix(reports: tuple[str, ...], as_json: bool) -> None:
     """Show REPORTS, which were written with --json, side by side.
 
     A column is a report: of several arms, firmwares, clients or codecs. The first table counts the
-    verdicts of each test case, the second one lists what has been tested and differs.
+    verdicts of each test case, the second one lists the verdicts that differ.
 
     Exit codes: 0 all subjects conform; 1 one does not; 2 a file is not a report.
     """

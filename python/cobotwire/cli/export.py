@@ -140,7 +140,8 @@ def export(
     for standard input. Files that end in .gz or .zst are decompressed.
 
     By default, each message has a file in the folder OUT: get_angles.reply.parquet. An MCAP file
-    holds all messages, and what Foxglove draws: the states of the joints, and the pose of the end.
+    holds all messages, and what Foxglove draws: the states of the joints, and the pose of the end
+    of the arm.
 
     \b
       cobotwire export arm.pcapng -o out/

@@ -55,8 +55,8 @@ def ros2(
 ) -> None:
     """Publish the arm at URL on the topics of ROS 2, until Ctrl-C; ROS need not be installed.
 
-    /joint_states has the joints in radians, /tf the pose of the end in the frame base, and
-    /diagnostics the state of line and arm, once a second. Only queries are sent.
+    /joint_states has the joints in radians, and /tf has the pose of the end of the arm in the
+    frame `base`. /diagnostics has the state of line and arm, once a second. Only queries are sent.
 
     With --allow-motion the arm follows what comes on /joint_trajectory, within the limits; it is
     stopped when nobody publishes that topic for --silence seconds, and at the end.

@@ -19,8 +19,8 @@ from weakref import WeakValueDictionary
 
 from cobotwire.transport.alarm_clock import AlarmClock, new_alarm_clock
 
-# The least time between two rounds of calls: the first number times the waiting calls, but at most
-# the second. So a large fleet does not wake the loop for each arm.
+# The least time between two rounds of calls: SECONDS_FOR_EACH times the number of waiting calls,
+# but at most LONGEST_SECONDS. So a large fleet does not wake the loop for each arm.
 SECONDS_FOR_EACH, LONGEST_SECONDS = 2e-6, 1e-3
 
 

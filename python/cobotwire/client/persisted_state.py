@@ -1,4 +1,6 @@
-"""Remember what a session left on its port, for the next session there of any process of this user.
+"""Remember what a session left on its port, for the next session on that port.
+
+The next session may be in another process of the same user.
 
 A reply can arrive after its session has ended. The next session takes it for the reply to its own
 first request of the same command. If a session wrote only half of a request, the robot completes it

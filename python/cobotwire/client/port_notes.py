@@ -1,9 +1,9 @@
 """The files in which sessions leave notes on their ports, for other processes of this user.
 
-They lie in a folder that only this user can write. Each says until when late replies are expected,
-by ``time.monotonic()``, which all processes of a machine share and each boot begins anew. So it
-also says in which boot it was written. A file that is not a note (a damaged file, a pipe) is
-removed with a warning.
+They lie in a folder that only this user can write. Each says until when late replies are expected.
+That is a time of ``time.monotonic()``, a clock that all processes of a machine share and that
+starts anew at each boot. So the note also says in which boot it was written. A file that is not a
+note (a damaged file, a pipe) is removed with a warning.
 """
 
 from __future__ import annotations
@@ -27,8 +27,8 @@ LONGEST = 3600
 MOST_ENTRIES = 64
 MOST_BYTES = 65536
 BOOT_ID = "/proc/sys/kernel/random/boot_id"
-# Do not wait for a pipe, do not follow a link, and do not make a terminal that of the process. Some
-# systems lack some of these flags.
+# Do not wait for a pipe, do not follow a link, and do not let a terminal become the controlling
+# terminal of the process. Some systems lack some of these flags.
 READING = os.O_RDONLY | sum(
     getattr(os, name, 0)
     for name in ("O_NONBLOCK", "O_NOFOLLOW", "O_NOCTTY", "O_CLOEXEC", "O_BINARY")

@@ -17,9 +17,9 @@ ADDRESS = "address"
 
 
 def with_address(leading: Mapping[str, Any], table: Table, address: memoryview) -> dict[str, Any]:
-    """Return leading columns with one of the names of the devices that have these address bytes.
+    """Return leading columns, and one with the name of a device for each address byte.
 
-    It follows the column ``offset``, or all columns if there is none of that name.
+    The new column follows the column ``offset``, or all columns if there is none of that name.
 
     Raises:
         UsageError: a leading column is called ``address``.

@@ -49,7 +49,7 @@ class Framer(Protocol):
 
     @property
     def pending(self) -> int:
-        """The number of fed bytes that no event covers yet: less than the longest frame."""
+        """The number of fed bytes that no event covers yet: fewer than the longest frame has."""
         ...
 
     @property
@@ -83,7 +83,7 @@ class ColumnReader(Protocol):
 
     @property
     def pending(self) -> int:
-        """The number of fed bytes that are not accounted for yet: less than the longest frame."""
+        """The number of fed bytes not accounted for yet: fewer than the longest frame has."""
         ...
 
 

@@ -57,7 +57,7 @@ def request_values(command: Command, given: Mapping[str, Any]) -> tuple[Any, ...
 def variant_of(command: Command, given: Mapping[str, Any]) -> int | None:
     """Return the index of the variant of a request that the given arguments choose.
 
-    None: they have a size of their own, by which the codec chooses.
+    None: the variant has a field of varying size, so the codec chooses by the size of the value.
     """
     variant = _variant(command, given)
     if any(field.sizes for field in variant.fields):

@@ -35,8 +35,8 @@ class Limits(NamedTuple):
         coords: a range for each coordinate: x, y, z in millimetres, then rx, ry, rz in degrees.
         wider: whether ranges may exceed the edition's, up to what the wire can carry.
         speed: the highest speed in percent.
-        workspace: ranges for x, y and z in millimetres: where the end may be sent, also by angles
-            of joints. The path to a target is not checked.
+        workspace: ranges for x, y and z in millimetres: where the end of the arm may be sent, also
+            by angles of joints. The path to a target is not checked.
     """
 
     joints: Ranges | None = None

@@ -192,7 +192,11 @@ def _write(requested: Requested, given: Mapping[str, Any], at: Sequence[str]) ->
 
 
 def _keep(arm: ArmState, state: State, index: tuple[int, ...], value: Any) -> None:
-    """Keep a value for an index; without the last index, a row, or one value for every index."""
+    """Keep a value for an index.
+
+    If the last index is missing, the value is a row, with an element for each last index, or one
+    value that applies to all of them.
+    """
     if not state.each:
         arm.kept[state.name] = value
         return
@@ -204,7 +208,7 @@ def _keep(arm: ArmState, state: State, index: tuple[int, ...], value: Any) -> No
     elif state.kind != "value" and isinstance(value, tuple):
         kept.update({(*index, n): each for n, each in enumerate(value, 1)})
     else:
-        # A value for every last index is stored under the indices before it.
+        # One value for all last indices is stored under the indices before them.
         others = {key: each for key, each in kept.items() if key[: len(index)] != index}
         arm.kept[state.name] = others | {index: value}
 

@@ -47,7 +47,7 @@ class LoopReaders:
             self._few.add(descriptor)
 
     def remove(self, descriptor: int) -> None:
-        """Watch a descriptor no longer, which is still open."""
+        """Stop watching a descriptor, which must still be open."""
         if descriptor in self._few:
             self._few.remove(descriptor)
             self._loop.remove_reader(descriptor)

@@ -80,7 +80,7 @@ impl Variant {
     }
 
     /// Return whether no data bytes are legal in both variants. That is known if their sizes
-    /// differ, or if a number of each, at the same place, have no raw value in common, such as two
+    /// differ, or if two numbers at the same offset have no raw value in common, such as two
     /// constants.
     pub(crate) fn excludes(&self, other: &Self) -> bool {
         let there = other.places();

@@ -1,4 +1,5 @@
-//! What the comparison with the exchange in Python cannot show, since it takes each outcome at once.
+//! What the comparison with the exchange in Python cannot show, since the comparison takes each
+//! outcome at once.
 
 use std::sync::Arc;
 

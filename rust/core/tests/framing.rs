@@ -157,11 +157,11 @@ fn a_request_takes_precedence_over_a_reply_with_the_same_bytes() {
     );
 }
 
-/// Feed chunks one by one, and flush; return the events. With `short`, `feed_frame` may take chunks.
-fn one_by_one(framer: &mut Framer, chunks: &[&[u8]], short: bool) -> Vec<Owned> {
+/// Feed chunks one by one, and flush; return the events. With `fast`, `feed_frame` may take chunks.
+fn one_by_one(framer: &mut Framer, chunks: &[&[u8]], fast: bool) -> Vec<Owned> {
     let mut all = Vec::new();
     for chunk in chunks {
-        match short.then(|| framer.feed_frame(chunk)).flatten() {
+        match fast.then(|| framer.feed_frame(chunk)).flatten() {
             Some((offset, frame)) => all.push((offset, frame.bytes().to_vec(), None)),
             None => framer.feed(chunk, |event| all.push(owned(event))),
         }
@@ -171,7 +171,7 @@ fn one_by_one(framer: &mut Framer, chunks: &[&[u8]], short: bool) -> Vec<Owned> 
 }
 
 #[test]
-fn a_chunk_that_is_one_frame_has_the_same_events_and_counts_on_the_short_way() {
+fn a_chunk_that_is_one_frame_has_the_same_events_and_counts_on_the_fast_path() {
     const PIECES: [&[u8]; 7] = [
         &[0xFE, 0xFE, 0x02, 0x20, 0xFA],
         &[0xFE, 0xFE, 0x04, 0x21, 0x00, 0x01, 0xFA],
@@ -193,7 +193,7 @@ fn a_chunk_that_is_one_frame_has_the_same_events_and_counts_on_the_short_way() {
 }
 
 #[test]
-fn only_a_chunk_that_is_one_frame_takes_the_short_way() {
+fn only_a_chunk_that_is_one_frame_takes_the_fast_path() {
     let frame = [0xFE, 0xFE, 0x02, 0x20, 0xFA];
     let mut framer = framer(false);
     assert_eq!(framer.feed_frame(&frame[..4]), None);

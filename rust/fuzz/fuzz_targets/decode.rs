@@ -6,5 +6,5 @@ libfuzzer_sys::fuzz_target!(
     init: {
         subjects::all();
     },
-    |data: &[u8]| laws::decoding::frames_read_as_the_oracles(data)
+    |data: &[u8]| laws::decoding::frames_decode_as_in_the_oracle(data)
 );

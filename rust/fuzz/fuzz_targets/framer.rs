@@ -6,5 +6,5 @@ libfuzzer_sys::fuzz_target!(
     init: {
         subjects::all();
     },
-    |data: &[u8]| laws::framing::events_are_the_oracles(data)
+    |data: &[u8]| laws::framing::events_equal_those_of_the_oracle(data)
 );

@@ -17,7 +17,7 @@ pub fn check_main(py: Python<'_>) -> PyResult<()> {
 
 fn is_main(py: Python<'_>) -> PyResult<bool> {
     let module = py.import("_interpreters");
-    // Its name before CPython 3.13.
+    // The module's name before CPython 3.13.
     let module = module.or_else(|_| py.import("_xxsubinterpreters"));
     let Ok(interpreters) = module else {
         // This Python has no function that makes subinterpreters.

@@ -5,7 +5,8 @@ use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 use pyo3::types::{PyBool, PyByteArray, PyBytes, PyDict, PyFrozenSet, PySet, PyString, PyTuple};
 
-// One for the process: `interpreter` ensures that no other interpreter loads this module.
+// There is one instance for the process: `interpreter` ensures that no other interpreter loads
+// this module.
 static NAMES: PyOnceLock<Names> = PyOnceLock::new();
 
 pub struct Names {

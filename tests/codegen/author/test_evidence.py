@@ -171,8 +171,11 @@ def test_fact_without_a_matching_frame_is_refused(wrong: Any, why: str) -> None:
 @pytest.mark.parametrize(
     ("data", "why"),
     [
-        (packed(survey(simulated=True)), "not of a real arm"),
-        (packed({k: v for k, v in survey().items() if k != "simulated"}), "not of a real arm"),
+        (packed(survey(simulated=True)), "nothing in the survey shows that the arm is real"),
+        (
+            packed({k: v for k, v in survey().items() if k != "simulated"}),
+            "nothing in the survey shows that the arm is real",
+        ),
         (packed(survey(robot="a\x1b[2J")), "cannot be printed"),
         (packed(survey(robot="a" * 81)), "0 to 80 characters"),
         (packed(survey(edition="../../etc")), "is not a name"),

@@ -29,7 +29,7 @@ class CobotwireRobotConfig(ArmConfig, RobotConfig):
     max_speed: int = 50
     # The lowest and the highest angle of each joint in degrees; by default those of the edition.
     joint_limits: list[tuple[float, float] | None] | None = None
-    # Where the end may be sent: ranges for x, y and z in millimetres; by default anywhere.
+    # Where the end of the arm may be sent: ranges for x, y and z in millimetres; default: anywhere.
     workspace: list[tuple[float, float] | None] | None = None
     # Seconds without an action after which the arm is stopped.
     silence: float = 1.0

@@ -21,7 +21,7 @@ from cobotwire_codegen.model import State as KeptState
 from cobotwire_codegen.model.commands import named_fields
 from cobotwire_codegen.reader import Reader
 
-# For each verb, the key that holds its subject. The other keys, except these, are options.
+# The keys of an effect that are neither its verb, which holds the subject, nor an option.
 _BESIDE = ("at", "assumed")
 
 

@@ -38,7 +38,10 @@ def states_fit(edition: Edition) -> Iterator[Problem]:
 
 
 def wrong_value(name: str, state: State | None, value: object) -> str:
-    """Return why a state cannot have a value; empty if it can. A built-in state is None."""
+    """Return why a state cannot have a value; empty if it can.
+
+    ``state`` is None for a built-in state.
+    """
     if state is not None and state.type is not None:
         try:
             plain(state.type, name, value)

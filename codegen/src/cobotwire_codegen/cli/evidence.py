@@ -1,4 +1,4 @@
-"""``cobotwire-gen evidence``: add what real arms showed to the spec; list what is unconfirmed."""
+"""``cobotwire-gen evidence``: add to the spec what real arms showed; list what is unconfirmed."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ _edition_option = click.option(
 
 @click.group()
 def evidence() -> None:
-    """Add what a real arm showed to the spec, and list what no arm has confirmed."""
+    """Add to the spec what a real arm showed, and list what no arm has confirmed."""
 
 
 @evidence.command()
@@ -60,7 +60,7 @@ def add(file: str, edition_file: str | None, dry_run: bool, root: str) -> None:
     that it contradicts is disputed from then on; what it confirms raises the confidence.
 
     FILE may come from a stranger: sizes, names, values and frames are checked. A fact is taken only
-    if its frames are in the recording and, if confirmed, are frames of its command.
+    if its frames are in the recording. A confirmed fact must have frames of its command.
 
     Exit codes: 0 success; 2 FILE or the spec is wrong, and nothing was written.
     """

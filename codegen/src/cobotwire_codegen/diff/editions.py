@@ -76,14 +76,14 @@ def _edition(old: Edition, new: Edition) -> Iterator[Finding]:
 
 
 def _bases(old: Edition, new: Edition) -> tuple[str, str]:
-    """Return both bases; if they are equal, all bases of each edition, since these may differ."""
+    """Return the base of each edition; if they are equal, all bases of each, which may differ."""
     if old.base != new.base:
         return old.base, new.base
     return ", ".join(old.bases), ", ".join(new.bases)
 
 
 def _state_changes(old: Edition, new: Edition) -> Iterator[Finding]:
-    """Compare what two editions declare that their arms keep."""
+    """Compare the state of arms that two editions declare."""
     before, after = ({state.name: state for state in side.states} for side in (old, new))
     for name in dict.fromkeys((*before, *after)):
         shown = [

@@ -58,7 +58,7 @@ def _block_path(lines: list[str], line: int, before: str) -> list[str]:
     start = _START.match(before)
     assert start is not None, "the pattern matches any text"
     # A key contains the position if it stands left of this column. A list may stand exactly below
-    # its key, so a dash at this column allows the column itself.
+    # its key: if a dash stands at this column, a key at the same column contains the position, too.
     column, listed = start.end(), start["dash"] is not None
     column = start.start("dash") if listed else column
     for above in reversed(lines[:line]):

@@ -33,7 +33,7 @@ ROLES = {
     "moving": "Reports whether the arm is in motion.",
     "stop": "Stops the arm.",
     "joints": "Reports the angles of all joints.",
-    "coordinates": "Reports the pose of the end.",
+    "coordinates": "Reports the pose of the end of the arm.",
     "motion ended": "An event: a motion has ended; its last field is the status.",
     "powered": "Reports whether the motors have power.",
     "paused": "Reports whether the motion is paused.",

@@ -8,7 +8,7 @@ from typing import Generic, TypeVar
 
 T = TypeVar("T")
 Result = TypeVar("Result")
-# The limit of results: more than all editions have commands.
+# The most results that are kept: more than the number of commands of all editions.
 _MOST = 8192
 
 

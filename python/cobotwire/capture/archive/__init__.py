@@ -63,7 +63,7 @@ def scan(
         listening: what raw bytes hold; by default only messages of ``direction``.
         wide: whether a field of several numbers becomes several columns.
         begin_ns: the first time, in nanoseconds since 1970 (UTC); only for recordings.
-        end_ns: the time of the end.
+        end_ns: the first time that is no longer included.
         piece_bytes: the size of the pieces into which raw bytes are divided.
 
     Raises:

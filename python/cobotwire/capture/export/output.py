@@ -18,7 +18,7 @@ from cobotwire.protocol.errors import UsageError
 # Rows wait in memory until they make a block of this size, so that files are read fast.
 BLOCK_ROWS = 1 << 20
 BLOCK_BYTES = 64 << 20
-# All waiting rows together: then the largest block is written early.
+# The most bytes of rows that may wait in all files; above it, the largest block is written early.
 WAITING_BYTES = 128 << 20
 # The most files that are open at the same time; the least recently used one is completed first.
 OPEN_FILES = 256

@@ -34,8 +34,8 @@ def _socat(file: ForeignFile) -> Iterator[Chunk]:
     If ``from`` shows that a direction lacks bytes, or repeats some, the rest is a separate stream.
     A ``from`` of 0 begins another connection.
 
-    Version 1.7.4 prints microseconds in nine digits. Nine digits are taken for microseconds until
-    there are too many of them.
+    Version 1.7.4 prints microseconds in nine digits. Nine digits count as microseconds until a
+    value is a second or more; from then on, they count as nanoseconds.
     """
     head = Line(0, "")
     block, data, size = Chunk(b""), b"", 0

@@ -72,7 +72,7 @@ class _Way:
         self.next = number
 
     def divide(self) -> None:
-        """Begin a new stream, or join the one that the division of the other direction began."""
+        """Begin a new stream, unless the other direction has begun one: then join that one."""
         if self._part == self._connection.parts:
             self._connection.parts += 1
         self._part = self._connection.parts

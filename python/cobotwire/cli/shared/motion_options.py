@@ -66,7 +66,7 @@ def motion_options(silence: float) -> Callable[[Verb], Verb]:
             "--workspace",
             callback=_parse_workspace,
             metavar="X:X,Y:Y,Z:Z",
-            help="Where the end may be sent, in mm, such as -200:200,-200:200,50:400.",
+            help="Where the end of the arm may be sent, in mm, such as -200:200,-200:200,50:400.",
         ),
         click.option(
             "--silence",

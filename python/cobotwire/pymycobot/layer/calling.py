@@ -20,8 +20,8 @@ class Method:
         title: what it does, without a full stop.
         by: the method of ``CompatibleClient`` that makes the call, without its underscore.
         parameters: each parameter, its annotation, and its default if it has one.
-        arguments: each argument of ours; the parameter or the number that is passed, empty if the
-            library has none; and our default if it has one.
+        arguments: for each argument of our method: its name; the library's parameter or the number
+            that is passed for it, empty if there is none; and its default if it has one.
         calls: our method.
         address: the parameter that selects the device; empty if no parameter does.
         only_here: whether only the client of the edition of ``PORTS`` has our method.
@@ -77,11 +77,12 @@ class Method:
         self._lacks = [(name, places[name]) for name in self.lacks]
         self._ranges = [(name, places[name], low, high) for name, low, high in self.ranges]
         passed = [theirs for _, theirs, *_ in self.arguments if theirs]
-        # The arguments of our method, as indexes: numbers follow the arguments that are given.
+        # For each argument of our method, an index into the arguments that the caller gives,
+        # followed by the numbers.
         self._numbers = tuple(int(each) for each in passed if each not in places)
         after = iter(range(len(places), len(places) + len(self._numbers)))
         self._passes = [places[each] if each in places else next(after) for each in passed]
-        # A flag that is False is left out if that is its default, and None is ours.
+        # A flag that is False is left out if False is the library's default, and None is ours.
         no = {name for name, _, *default in self.parameters if default in ([False], [0])}
         self._left_out = [
             place

@@ -62,7 +62,7 @@ class ModbusGripper(CompatibleClient):
     def _sent(
         self, head: bytes, function: int, register: int, value: int, gripper_id: int
     ) -> bytes | int:
-        """Send a frame; return the reply, or what a call returns that fails."""
+        """Send a frame; return the reply, or the result of a failed call."""
         data = bytes(
             [gripper_id, function, *register.to_bytes(2, "big"), *value.to_bytes(2, "big")]
         )

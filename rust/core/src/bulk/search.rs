@@ -11,7 +11,7 @@ use crate::scan::{Sink, scan};
 use crate::tally::Tally;
 use cobotwire_simd::SEEN;
 
-/// A shorter block is scanned position by position: its lanes would need more memory than it has.
+/// A shorter block is scanned position by position: its lanes would need more memory than the block.
 const WORTH: usize = 1 << 15;
 
 /// Receives the frames of a stream in order, in portions.
@@ -160,7 +160,7 @@ impl Search {
         at_end: bool,
         collect: &mut impl Collect,
     ) -> usize {
-        // What starts before the stop ends in the block; kept bytes are always scanned whole.
+        // A frame that starts before `stop` ends in the block; kept bytes are always scanned whole.
         let stop = stop.min(BLOCK.min((BLOCK + MARGIN).saturating_sub(self.rules.longest())));
         if stop == 0 {
             return 0;

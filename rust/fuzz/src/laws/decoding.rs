@@ -13,7 +13,7 @@ use crate::subjects::LISTENING;
 
 /// Check that the whole stream, taken as one frame, and each frame in it have the oracle's result:
 /// the same values, or the same reason and offset. Decoded values encode to the same bytes.
-pub fn frames_read_as_the_oracles(data: &[u8]) {
+pub fn frames_decode_as_in_the_oracle(data: &[u8]) {
     let input = Input::read(data);
     let table = &input.subject.table;
     for (index, listening) in LISTENING.iter().enumerate() {

@@ -9,7 +9,7 @@ use crate::oracle::{Oracle, number};
 
 /// Check after each chunk that the framer and the oracle report the same events and offsets, and
 /// that the same bytes are pending.
-pub fn events_are_the_oracles(data: &[u8]) {
+pub fn events_equal_those_of_the_oracle(data: &[u8]) {
     let input = Input::read(data);
     hold(input.oracle(), input.rules(), &input.chunks());
 }

@@ -40,7 +40,7 @@ EXPLANATIONS = (
     Explanation(
         "limit-differs",
         "A vector states that a field accepts or refuses a value, and the spec differs.",
-        "The ends of a range are facts: the vector shows from its source where they are.",
+        "The ends of a range are facts, and the vector states what its source says about them.",
         "Find out which of the two is right; correct the range, or the vector's values.",
         "values: {brightness: 50, colour: RED}\nrefused: {brightness: [100]}",
         "values: {brightness: 50, colour: RED}",

@@ -31,7 +31,7 @@ MOVING = TestCase(
 KEEPS = TestCase("limits-kept", "No joint moves beyond the limit that is set for it.")
 STOPS = TestCase("stops", "A stop ends the motion, and the arm stays at rest.", timed=True)
 
-# The tolerance between sent and read values, by unit: one tick, and how far it moves the end.
+# The tolerance between sent and read values, by unit: one tick, and how far a tick moves the arm.
 NEAR = {"millimetre": 1.5, "tick": 1.0, "percent": 1.0}
 # After this time, in seconds, an arm on its way reports that it moves.
 UNDER_WAY = 0.1

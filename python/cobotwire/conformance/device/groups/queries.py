@@ -242,8 +242,8 @@ QUERIES = Group(
     _query,
     is_query,
     sends=(
-        "The query with every argument of short lists and the ends of long ranges; the last "
-        "one twice."
+        "The query with each value of an argument, or with both ends of a long range; the last "
+        "request twice."
     ),
     subject="each query",
 )
