@@ -2,7 +2,7 @@
 
 A late reply looks like the reply to the next request of the same command. So that request is held
 until the late reply is too late to come at all. It is not sent earlier, even if a late reply has
-come: some lines double replies, so that reply may be a copy of the reply to another attempt.
+come: some lines double replies, so the late reply may be a copy of the reply to another attempt.
 
 What an ended session leaves outstanding on its port is persisted, for the next session there.
 """

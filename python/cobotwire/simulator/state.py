@@ -113,7 +113,7 @@ class ArmState:
 
     @property
     def tool(self) -> tuple[float, ...] | None:
-        """The tool's pose on the flange, if it is the end; else None."""
+        """The tool's pose on the flange if the tool counts as the end of the arm; else None."""
         return self._pose("tool") if self.kept.get("end_type", 0) else None
 
     @property
@@ -283,7 +283,7 @@ class ArmState:
         return tuple(coords[place] for place in self.coordinates)
 
     def pose_of(self, values: Sequence[float], angles: tuple[float, ...]) -> Pose:
-        """Return the end's pose with coordinates of the edition; the rest is as at ``angles``."""
+        """Return the end's pose; coordinates that the edition lacks are as at ``angles``."""
         return pose_with(values, self.coordinates, self.end(angles))
 
     def end(self, angles: tuple[float, ...], *, base: bool = False) -> Pose | None:

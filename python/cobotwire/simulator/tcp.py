@@ -23,7 +23,7 @@ MOST_CLIENTS = 64
 IDLE_SECONDS = 2.0
 # While the system has no descriptor left, a client is accepted at most this often.
 RETRY_SECONDS = 0.2
-# A client is accepted only if as many descriptors are free.
+# A client is accepted only if this many descriptors are free.
 SPARE_DESCRIPTORS = 4
 
 

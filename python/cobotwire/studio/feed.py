@@ -59,7 +59,7 @@ class Feed:
                 return
             wish = _wish(text)
             if wish.get("wish") == "stop":
-                # In a task of its own, so that a second one is not held up by the first.
+                # In a task of its own, so that a second stop is not held up by the first.
                 task = asyncio.create_task(self._stop(viewer, wish.get("number")))
                 stops.add(task)
                 task.add_done_callback(stops.discard)

@@ -17,7 +17,7 @@ use crate::{BadEdition, Command, Edition, Field, Outcome, Value, Within};
 /// The longest time of a file, in milliseconds: a day.
 const LONGEST_MS: Nanos = 24 * 3600 * 1000;
 
-/// A command as the table, the exchange, and texts and clients need it.
+/// A command in the forms that the table, the exchange and the clients need.
 pub(crate) type Parts = (wire::Command, Facts, Command);
 
 /// Return a command; its id is at most `last`.

@@ -19,7 +19,7 @@ Row = tuple[object, ...]
 class Stated(NamedTuple):
     """What is stated about a class, in the file of that name: each text is a Python literal.
 
-    ``methods`` are those that no earlier class has, each with all classes that have it.
+    ``methods`` has each method that no earlier class has, with all classes that have it.
     """
 
     file: str

@@ -63,7 +63,7 @@ def call(command: Command, family: Family) -> str:
     """Return the body of a command's method."""
     given = [argument.name for argument in arguments(command)]
     head = f"return self.{'_call' if command.awaits_reply else '_send'}("
-    # The constructor of a request with overloads accepts only what one of them accepts.
+    # The constructor of a request with overloads accepts only the arguments of one overload.
     made = "._of" if overloads(command) else ""
     opening = f"messages.{family.name}.{message_class(command.name)}{made}("
     request = f"{opening}{', '.join(given)})"

@@ -73,7 +73,7 @@ EXPLANATIONS = (
     Explanation(
         "unknown-fact",
         "An evidence file names a part or an aspect that the command does not have.",
-        "What an arm showed must be found at the command that it is about.",
+        "What an arm showed is listed at the part that it is about, so that part must exist.",
         "Write COMMAND/PART/ASPECT; after a field was renamed, rename it in the evidence too.",
         "- fact: light/reply.lit/range",
         "- fact: light/request.lit/range",
