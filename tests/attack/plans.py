@@ -19,14 +19,14 @@ class Plan:
         seed: repeats the draws of the run, not its timing.
         tcp: whether the line is TCP or a pty.
         client: blocking or asyncio, the Rust client that resembles it, or the one in Node.
-        codec: native or reference; it is Python's.
+        codec: the codec of the Python client, native or reference.
         edition: the edition's package.
         users: how many threads or tasks share the client.
         timeout: seconds that each request has.
         attempts: how often a query is sent.
         grace: seconds for which late replies are expected; the delays of the line fit into it.
         seconds: how long users call.
-        calls: how many calls end the run earlier.
+        calls: after how many calls the run ends early.
         restores: whether a client that got a LinkError is replaced.
         reopens: whether its transport is reopened instead.
         deadline: seconds that each call may take as a whole; None: any time.
@@ -89,8 +89,8 @@ def plan(profile: Profile, seed: int, seconds: float | None = None, calls: int =
     return Plan(
         profile,
         seed,
-        # Only a pty takes half a frame. TCP may lose what is written just before it is closed.
-        # Serial ports in Node need a third-party package.
+        # Only a pty can take a part of a frame. TCP may lose what is written just before it is
+        # closed. Serial ports in Node need a third-party package.
         tcp=(random.random() < (0.2 if profile.stalls else 0.5) and not profile.signals)
         or client == "node",
         client=client,

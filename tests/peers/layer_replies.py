@@ -179,7 +179,7 @@ def _is_accepted(robot: Robot, codec: Codec, call: Call) -> bool:
 
 
 def _by_method(robot: Robot) -> dict[str, list[Call]]:
-    """Return the calls with a reply that our class offers."""
+    """Return the calls that our class offers and that have a reply."""
     offered = set(dir(class_of(robot)))
     found: dict[str, list[Call]] = {}
     # A robot that reports the end of a motion sends the reply then, perhaps minutes later.

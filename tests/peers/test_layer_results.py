@@ -123,7 +123,7 @@ def test_register_of_320_is_read_as_by_the_maker(register: int) -> None:
 @pytest.mark.parametrize("value", [0, 1, 100, 101])
 def test_registers_of_320_are_written_as_by_the_maker_or_rejected(value: int) -> None:
     reply = frame(ALL_ROBOTS["MyCobot320"], 0xE8, b"\1", 0)
-    # The library checks no value of these, which move the gripper or give it force.
+    # The library checks no value of the registers that move the gripper or set its force.
     unchecked = {11, 27, 32, 36} if value > 100 else {32} if value == 0 else set()
     unchecked |= {13, 37, 38, 39} if value else set()
     for register in range(46):

@@ -1,8 +1,8 @@
 """Half a request on the line: what must be sent before the next one.
 
 A write may end after a part of a frame. The peer's parser then waits for the rest, and takes the
-next request for it: both together can be a legal frame that nobody sent. So fill bytes are sent
-first. They end the incomplete frame and make its check wrong, whatever LEN the parser accepts.
+next request as that rest: both together can be a legal frame that nobody sent. So fill bytes are
+sent first. They end the incomplete frame and make its check wrong, whatever LEN the parser accepts.
 
 Fill bytes cannot help if the part that was written contains a whole legal frame: a parser that
 rejects the outer frame finds the inner one. Then the rest of the frame is sent instead, so that the

@@ -26,7 +26,7 @@
 //! A client that is dropped without `close()` stops an arm that it has set in motion: see
 //! [`OnDrop`].
 
-// Generated modules name this crate, also those in it.
+// Generated modules refer to this crate by its name, and so do those inside it.
 extern crate self as cobotwire;
 
 #[cfg(feature = "tokio")]

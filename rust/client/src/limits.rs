@@ -23,7 +23,7 @@ const FRAMES: [&str; 4] = ["tool", "world", "reference_frame", "end_type"];
 pub struct Limits {
     /// The highest speed in percent, 1..100.
     pub speed: Option<f64>,
-    /// Ranges for x, y and z in millimetres: where the end may be sent by coordinates. Motions by
+    /// Ranges for x, y and z in millimetres: where coordinates may send the end of the arm. Motions by
     /// angles of joints are refused then. The path to a target is not checked.
     pub workspace: Option<[Option<Range>; 3]>,
 }

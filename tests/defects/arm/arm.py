@@ -14,7 +14,7 @@ from defects.arm.numbers import ANGLES, COORDS, coords, flange, framed, product,
 from defects.arm.travel import Travel
 
 IDLE = 0.2
-# At full speed: a quarter of a turn and half of the gripper's way in a second.
+# At full speed: a quarter of a turn and half of the gripper's travel in a second.
 TICKS_PER_SECOND, PERCENT_PER_SECOND = 1024.0, 50.0
 TICKS_PER_DEGREE = 4096 / 360
 SIGNS = (-1, -1, 1, -1, -1, -1)

@@ -121,7 +121,7 @@ def _reason(robot: Robot, call: Call, theirs: bytes | str, ours: bytes | str) ->
         return "the nearest step; the maker truncates"
     if robot.edition == OLDEST or isinstance(ours, str):
         return ""
-    # The results of the class of the same name in `make layer`, which compares it with its edition.
+    # `make layer` compares the class of the same name with its edition; these are its results.
     side = "only ours" if isinstance(theirs, str) else "other bytes"
     for each in rulings():
         named = robot.peer in each.names and call.method in each.methods

@@ -1,8 +1,8 @@
 //! Half a request on the line: what must be sent before the next one.
 //!
 //! A write may end after a part of a frame. The peer's parser then waits for the rest, and takes the
-//! next request for it: both together can be a legal frame that nobody sent. So fill bytes go out
-//! first. They end the frame that was begun, and make its check wrong, whatever LEN the parser
+//! next request as that rest: both together can be a legal frame that nobody sent. So fill bytes are
+//! sent first. They end the frame that was begun, and make its check wrong, whatever LEN the parser
 //! accepts.
 //!
 //! Fill bytes cannot help if the part that was written contains a whole legal frame: a parser that
@@ -20,7 +20,7 @@ use crate::framer::{Event, Framer};
 
 /// The first `written` bytes of a request, which is all that the peer has of it.
 #[derive(Clone, Debug, PartialEq, Eq)]
-#[allow(missing_docs)] // as above
+#[allow(missing_docs)] // of fields, whose names say what they are
 pub struct Part {
     pub request: Arc<[u8]>,
     pub written: usize,

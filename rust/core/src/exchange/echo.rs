@@ -2,7 +2,7 @@
 //!
 //! A few requests are legal replies too. So the first copy of a request is only a candidate. If
 //! another reply follows, that one counts. If none does by the deadline, the candidate counts,
-//! unless the line was ever seen to echo: to send back a request that cannot be a reply.
+//! unless the line is known to echo: it has sent back a request that cannot be a reply.
 
 use alloc::vec::Vec;
 
@@ -71,8 +71,8 @@ impl EchoDetector {
         self.noise.drain(..old);
     }
 
-    /// Return whether a frame is a copy of a request. Each sending has one copy; one that comes
-    /// beyond that is the arm's own frame.
+    /// Return whether a frame is a copy of a request. A request that was sent has one copy; the
+    /// next equal frame comes from the arm itself.
     pub(super) fn take_copy(&mut self, frame: &SeenFrame) -> bool {
         self.noise.clear();
         let mut watched = self.sent.iter_mut().flatten();

@@ -35,7 +35,7 @@ pub enum ReplyError {
     Text(TextError),
 }
 
-/// What received bytes are, or what time has ended. `command` is an index in the table.
+/// What received bytes are, or which wait has ended by time. `command` is an index in the table.
 #[derive(Clone, Debug, PartialEq)]
 #[allow(missing_docs)] // of fields, whose names say what they are
 pub enum Event {

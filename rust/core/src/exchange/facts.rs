@@ -32,7 +32,7 @@ pub enum Safety {
 /// The name of a field. `echo`: a reply repeats the argument of that name. `status`: the field can
 /// report success or failure; this excludes only constants without labels.
 #[derive(Clone, Debug, PartialEq, Eq)]
-#[allow(missing_docs)] // as above
+#[allow(missing_docs)] // of fields, whose names say what they are
 pub struct Named {
     pub name: Box<str>,
     pub echo: bool,
@@ -42,7 +42,7 @@ pub struct Named {
 /// A text outside any frame: `prefix field prefix field suffix`. A `silence` ends it; 0 for a text
 /// that is sent.
 #[derive(Clone, Debug, PartialEq, Eq)]
-#[allow(missing_docs)] // as above
+#[allow(missing_docs)] // of fields, whose names say what they are
 pub struct TextForm {
     pub prefixes: Vec<Box<str>>,
     pub fields: Vec<Box<str>>,
@@ -92,7 +92,7 @@ pub enum Replier {
 /// An address of the frame format: its byte, who replies, and how many joints the device has. If
 /// `joints` is 0, the device has all joints of the protocol.
 #[derive(Clone, Debug, PartialEq, Eq)]
-#[allow(missing_docs)] // as above
+#[allow(missing_docs)] // of fields, whose names say what they are
 pub struct Addressee {
     pub name: Box<str>,
     pub value: u8,
@@ -102,7 +102,7 @@ pub struct Addressee {
 
 /// A table, and what the exchange must know of each of its commands, in the same order.
 #[derive(Clone, Debug)]
-#[allow(missing_docs)] // as above
+#[allow(missing_docs)] // of fields, whose names say what they are
 pub struct Protocol {
     pub table: Table,
     pub facts: Vec<Facts>,

@@ -113,8 +113,8 @@ impl Protocol {
         Event::Unexpected { frame }
     }
 
-    /// Return whether a frame that is no legal reply of a command replies to one that shares its
-    /// id.
+    /// Return whether a frame that is no legal reply of a command replies to another command with
+    /// the same id.
     ///
     /// A constant in each reply tells them apart, for instance the number of the register that a
     /// device behind the arm reports. The rest of such a reply may be illegal.

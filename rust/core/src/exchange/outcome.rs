@@ -27,7 +27,7 @@ pub struct Answer {
 /// What a request waited for when its caller's deadline passed: its turn, the end of the time in
 /// which a late reply could pass for its own (hold), the line, which took no bytes, or its reply.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[allow(missing_docs)] // as above
+#[allow(missing_docs)] // of fields, whose names say what they are
 pub enum WaitedFor {
     Turn,
     Hold,

@@ -12,7 +12,7 @@ use super::{Nanos, Part, Protocol, Request, SeenFrame};
 
 /// A reply to a request that may come before `until`.
 #[derive(Clone, Debug, PartialEq)]
-#[allow(missing_docs)] // as above
+#[allow(missing_docs)] // of fields, whose names say what they are
 pub struct OutstandingReply {
     pub request: Arc<Request>,
     pub until: Nanos,

@@ -105,7 +105,7 @@ impl Pending {
         self.received.push(Received { event, size });
     }
 
-    /// Return the failure of a time that is over, with what was received meanwhile.
+    /// Return the failure of a request whose time is over, with what was received meanwhile.
     pub(super) fn expire(&mut self, now: Nanos, waited_for: Option<WaitedFor>) -> Failure {
         let since = waited_for.map_or(self.requested_at, |_| self.queued_at);
         Failure::Timeout {
@@ -116,7 +116,7 @@ impl Pending {
         }
     }
 
-    /// Return what it has got.
+    /// Return the answer with what was received.
     pub(super) fn answer(&self, (decoded, texts): Got, replied_at: Nanos) -> Answer {
         let requested_at = self.requested_at;
         Answer {

@@ -7,12 +7,12 @@ use super::{Nanos, TextForm};
 
 /// Names and passwords of a network have at most 32 and 63 characters.
 const LIMIT: usize = 4096;
-/// This many bytes of a text that is longer are part of its error.
+/// The error shows at most this many bytes of a longer text.
 const SHOWN: usize = 64;
 
 /// What is wrong with a text that was received, and the index of the wrong byte.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[allow(missing_docs)] // as above
+#[allow(missing_docs)] // of fields, whose names say what they are
 pub struct TextError {
     pub mistake: TextMistake,
     pub offset: usize,
@@ -105,7 +105,7 @@ impl TextForm {
 pub(super) struct TextCollector {
     pub(super) form: TextForm,
     data: Vec<u8>,
-    /// When the last bytes of a text that has begun came.
+    /// The time at which the last bytes of a begun text came.
     last: Option<Nanos>,
 }
 
@@ -152,7 +152,7 @@ impl TextCollector {
     }
 }
 
-/// Return where some bytes first stand in others.
+/// Return where some bytes first occur in others.
 pub(super) fn find(data: &[u8], bytes: &[u8]) -> Option<usize> {
     (0..=data.len()).find(|at| data.get(*at..).is_some_and(|rest| rest.starts_with(bytes)))
 }
