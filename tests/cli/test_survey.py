@@ -101,6 +101,31 @@ def test_survey_continues_an_interrupted_one(tmp_path: Path) -> None:
     assert "is the survey of edition 'mycobot280'" in other.stderr
 
 
+def test_recording_is_judged_by_the_requests_that_it_has(tmp_path: Path) -> None:
+    path, recording = tmp_path / "survey.zip", tmp_path / "recording.pcapng"
+    cobotwire("survey", "--simulated", "-o", path)
+    whole, traffic = read_survey(path)
+    recording.write_bytes(traffic)
+    half = tmp_path / "half.pcapng"
+    assert cobotwire("capture", "cut", recording, "--to", "0.2", "-o", half).returncode == 0
+    found = {}
+    for source in (recording, half):
+        judged = tmp_path / f"{source.stem}.zip"
+        done = cobotwire("survey", "--from", source, "-o", judged)
+        assert done.returncode == 0, done.stdout + done.stderr
+        found[source], _ = read_survey(judged)
+    assert found[recording]["facts"] == whole["facts"]
+    assert found[recording]["finished"] is True
+    assert found[recording]["date"] <= whole["date"]
+    decided = {f["fact"]: f["verdict"] for f in found[half]["facts"] if f["verdict"] != "not seen"}
+    # The device is silent to what was not recorded, which contradicts nothing.
+    assert {*decided.values()} == {"confirmed"}
+    assert 20 < len(decided) < sum(f["verdict"] == "confirmed" for f in whole["facts"])
+    assert found[half]["finished"] is False
+    done = cobotwire("survey", "--from", recording, "--settings", "-o", tmp_path / "no.zip")
+    assert (done.returncode, "shows only the queries" in done.stderr) == (2, True)
+
+
 def _archive(head: bytes, data: bytes) -> bytes:
     file = BytesIO()
     with zipfile.ZipFile(file, "w") as archive:

@@ -7,6 +7,7 @@ import sys
 import tempfile
 from collections import Counter
 from collections.abc import Iterator
+from datetime import UTC, datetime
 from hashlib import sha256
 from pathlib import Path
 from typing import Any, Literal
@@ -17,6 +18,7 @@ from cobotwire import codec as codecs
 from cobotwire import editions
 from cobotwire.capture import Recording
 from cobotwire.capture.export.atomic_file import AtomicFile
+from cobotwire.capture.streams import packets_of_interface
 from cobotwire.cli.shared.any_key import interrupted_by_any_key
 from cobotwire.cli.shared.arm_options import baudrate_option
 from cobotwire.cli.shared.completers import complete_ports
@@ -24,11 +26,14 @@ from cobotwire.cli.shared.edition_option import uses_edition
 from cobotwire.cli.shared.exit_codes import INTERRUPTED, LINK_FAILED
 from cobotwire.cli.shared.output import fold, report_written
 from cobotwire.cli.shared.progress_bar import step_progress
+from cobotwire.cli.shared.recordings import open_recording, warn_if_incomplete
 from cobotwire.cli.shared.subject_connection import Lacking, Subject, connected
 from cobotwire.conformance.device import DeviceConnection
 from cobotwire.conformance.sources import spec_lines
 from cobotwire.conformance.survey import Survey, read_survey, survey_file
 from cobotwire.conformance.survey.file import RECORDING, content_of, continued
+from cobotwire.conformance.survey.recorded import RecordedTransport
+from cobotwire.inspect.captured import codec_of_interface
 from cobotwire.inspect.seal import load_signer
 from cobotwire.protocol.errors import LinkError, UsageError
 from cobotwire.protocol.table import Table
@@ -46,6 +51,10 @@ NOT_SHOWN = (
     "evidence; if it is a real arm, stop with Ctrl-C and state it with --real-arm"
 )
 
+INCOMPLETE = (
+    "the recording lacks requests of the survey, such as calculations with the arm's position; "
+    "--continue sends them to the arm"
+)
 VERDICTS = ("confirmed", "contradicted", "not seen")
 
 
@@ -59,6 +68,13 @@ VERDICTS = ("confirmed", "contradicted", "not seen")
 @click.option("--continue", "resume", is_flag=True, help="Continue the interrupted survey of -o.")
 @click.option("--simulated", is_flag=True, help="Survey a simulated arm instead of URL.")
 @click.option("--real-arm", is_flag=True, help="State that URL is a real arm, not a simulated one.")
+@click.option(
+    "--from",
+    "recording",
+    type=click.Path(),
+    metavar="FILE",
+    help="Judge the survey that the page live/ recorded in FILE; nothing is sent.",
+)
 @click.option(
     "--sign", type=click.Path(), metavar="KEY", help="Sign the file with this key (Ed25519)."
 )
@@ -76,6 +92,7 @@ def survey(
     resume: bool,
     simulated: bool,
     real_arm: bool,
+    recording: str | None,
     sign: str | None,
     as_json: bool,
     baudrate: int | None,
@@ -97,8 +114,13 @@ def survey(
     Exit codes: 0 nothing is contradicted; 1 a fact is contradicted, or the arm is another one;
     3 the port failed; 130 interrupted.
     """
+    recorded = None
+    if recording is not None:
+        if settings or allow_motion:
+            raise UsageError("from", message="a recording shows only the queries that it has")
+        edition, recorded = _recorded(recording, edition)
     table = editions.load(edition).TABLE
-    subject = Subject(port, None, None, simulated, baudrate)
+    subject = Subject(port, None, None, simulated, baudrate, recorded)
     subject.validate()
     if port is not None and not (real_arm or leads_to_device(port)):
         simulated = True
@@ -119,28 +141,41 @@ def survey(
         message = f"{output} exists already; --continue goes on with an interrupted survey"
         raise UsageError("output", output, message=message)
     file = AtomicFile(Path(output), overwrite=resume)
+    began = datetime.now(UTC) if recorded is None else recorded.began
     try:
         with tempfile.TemporaryDirectory(prefix="cobotwire-") as folder:
-            recording = Path(folder) / RECORDING
-            found, stopped = _run(
-                table, edition, subject, recording, earlier, settings, allow_motion
-            )
-            content = content_of(found, edition, robot, simulated=simulated)
-            recorded = recording.read_bytes()
+            path = Path(folder) / RECORDING
+            found, stopped = _run(table, edition, subject, path, earlier, settings, allow_motion)
+            if recorded is not None and recorded.missing:
+                found.finished = False
+                found.obstacle = found.obstacle or INCOMPLETE
+            content = content_of(found, edition, robot, simulated=simulated, began=began)
+            traffic = path.read_bytes()
         if earlier is not None:
-            content, recorded = continued(earlier, content, recorded)
+            content, traffic = continued(earlier, content, traffic)
         click.echo(
             json.dumps(content, indent=1) if as_json else fold("\n".join(_lines(found, content)))
         )
         if found.other:
             # The file says nothing about this edition, so it is not kept.
             sys.exit(1)
-        file.file.write(survey_file(content, recorded, signer))
+        file.file.write(survey_file(content, traffic, signer))
         file.publish()
     finally:
         file.discard()
     report_written(output)
     sys.exit(stopped or int(bool(found.contradicted)))
+
+
+def _recorded(path: str, edition: str) -> tuple[str, RecordedTransport]:
+    """Return the edition of a recording, and the arm of its first interface."""
+    with open_recording(path) as capture:
+        packets = list(packets_of_interface(capture, 0))
+        codec = codec_of_interface(capture, 0, edition)
+        warn_if_incomplete(capture)
+    if codec.table.edition in editions.names():
+        edition = codec.table.edition
+    return edition, RecordedTransport(packets, codec)
 
 
 def _run(

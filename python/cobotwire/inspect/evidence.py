@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from functools import cache
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -18,6 +19,7 @@ if TYPE_CHECKING:
 # from that of an edition, in degrees.
 LIMIT_QUERIES = ("get_joint_min_angle", "get_joint_max_angle")
 NEAR = 0.5
+NO_REPLY = "no reply"
 
 
 class Evidence(NamedTuple):
@@ -50,7 +52,7 @@ def ask(client: Client, command: Command, edition: str = "", *arguments: int) ->
     try:
         result = getattr(client, command.name)(*arguments)
     except ReplyTimeout:
-        return Evidence(query, edition, False, None, "no reply")
+        return Evidence(query, edition, False, None, NO_REPLY)
     except ProtocolError as error:
         return Evidence(query, edition, False, None, f"an illegal reply: {error}")
     return Evidence(query, edition, True, result, f"replied {result}")
@@ -191,7 +193,7 @@ def limits_apart(names: list[str]) -> Iterator[JointLimit]:
     """Return the queries for limits that differ between editions, the most telling first."""
     found = []
     for end, query in enumerate(LIMIT_QUERIES):
-        rows = {name: _ranges(_table(name)) for name in names}
+        rows = {name: target_ranges(_table(name)) for name in names}
         commands = {name: _command(_table(name), query) for name in names}
         command = next((each for each in commands.values() if each is not None), None)
         if command is None or None in commands.values():
@@ -205,7 +207,7 @@ def limits_apart(names: list[str]) -> Iterator[JointLimit]:
     yield from (limit for _, limit in sorted(found, key=lambda each: each[0]))
 
 
-def _ranges(table: Table) -> list[tuple[float, float]]:
+def target_ranges(table: Table) -> list[tuple[float, float]]:
     """Return the lowest and the highest target of each joint."""
     command = table.find_role("joint targets")
     if command is None:
@@ -222,9 +224,15 @@ def _command(table: Table, name: str) -> Command | None:
         return None
 
 
+@cache
 def _table(name: str) -> Table:
     return editions.load(name).TABLE
 
 
 def _having(id: int, names: Iterable[str]) -> list[str]:
-    return [name for name in names if any(c.id == id for c in bare_queries(_table(name)))]
+    return [name for name in names if id in _ids(name)]
+
+
+@cache
+def _ids(name: str) -> frozenset[int]:
+    return frozenset(command.id for command in bare_queries(_table(name)))

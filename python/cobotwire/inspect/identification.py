@@ -9,8 +9,9 @@ joint decides, as the arm reports it.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import closing
+from functools import partial
 from itertools import islice
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -19,6 +20,7 @@ from cobotwire.client.opening import open_port
 from cobotwire.client.persisted_state import PortMemory
 from cobotwire.inspect.cross_checks import doubts
 from cobotwire.inspect.evidence import (
+    NO_REPLY,
     Candidates,
     Evidence,
     ask,
@@ -28,8 +30,9 @@ from cobotwire.inspect.evidence import (
 )
 from cobotwire.inspect.frame_families import Probes, families, with_same_frames
 from cobotwire.protocol.errors import EditionUnknown
+from cobotwire.protocol.frame_format import FrameFormat
 from cobotwire.protocol.table import Command, Role, Table
-from cobotwire.session.outstanding import merged
+from cobotwire.session.outstanding import PersistedState, merged
 from cobotwire.transport import Transport
 from cobotwire.transport.tapped import borrowed
 
@@ -40,6 +43,8 @@ if TYPE_CHECKING:
 
 # The queries that show whether an arm at rest is where it reports.
 PLACE: tuple[Role, ...] = ("moving", "joints", "coordinates")
+# Sends a query with the client of an edition; the last values are its arguments.
+Ask = Callable[..., Evidence]
 
 
 class Identification(NamedTuple):
@@ -92,21 +97,19 @@ def other_edition(
     if own.replied:
         return own, None
     found, against = Candidates(names), None
-    for evidence in _narrowed(transport, found, timeout=timeout):
+    for evidence in _narrowed(partial(_asked, transport, timeout), found):
         if against is None and table.edition not in found.proven:
             against = evidence
     return own, against and against._replace(edition=" or ".join(found.proven))
 
 
-def _narrowed(
-    transport: Transport, found: Candidates, *, timeout: float | None
-) -> Iterator[Evidence]:
+def _narrowed(ask: Ask, found: Candidates) -> Iterator[Evidence]:
     """Send one query after another, until one edition is left, or no query tells them apart."""
-    yield from _row_evidence(transport, found, timeout=timeout)
+    yield from _row_evidence(ask, found)
     query = found.next_query()
     while query is not None and not found.known:
         name, command = query
-        reply = found.evidence(_asked(transport, name, command, timeout=timeout), command)
+        reply = found.evidence(ask(name, command), command)
         found.note(command, reply.replied)
         yield reply
         query = found.next_query()
@@ -129,27 +132,43 @@ def identify_on(
     Raises:
         LinkError: the transport is gone.
     """
-    memory, left = PortMemory(transport), []
-    evidence: list[Evidence] = []
-    probes = Probes(transport)
+    memory, probes = PortMemory(transport), Probes(transport)
+    left: list[PersistedState] = []
+
+    def separate(format: FrameFormat) -> None:
+        # The next session has another frame format, and drops outstanding replies of this one.
+        left.append(memory.recall())
+        probes.separate(format)
+
     try:
-        for names in families([n for n in newest_first() if not among or n in among]):
-            found = Candidates(names)
-            probes.separate(editions.load(names[0]).TABLE.frame)
-            for name, command in _first_queries(names):
-                reply = _asked(probes.transport, name, command, timeout=timeout)
-                shown = found.evidence(reply, command)
-                if len(names) == 1:
-                    shown = shown._replace(edition=name, shows=f"only {name} has these frames")
-                evidence.append(shown)
-                found.note(command, reply.replied)
-                if reply.text != "no reply":
-                    return _identified(transport, found, evidence, timeout)
-            # The next session has another frame format, and drops outstanding replies of this one.
-            left.append(memory.recall())
-        return Identification(transport.url, "", (), "", tuple(evidence))
+        ask = partial(_asked, probes.transport, timeout)
+        return identify_by(ask, separate, among)._replace(url=transport.url)
     finally:
         memory.leave(merged([*left, memory.recall()]))
+
+
+def identify_by(
+    ask: Ask, separate: Callable[[FrameFormat], object], among: Sequence[str] = ()
+) -> Identification:
+    """Find out the edition by a function that sends queries; what it raises ends this.
+
+    ``separate`` is called with another frame format before the first query that has it.
+    """
+    evidence: list[Evidence] = []
+    for names in families([n for n in newest_first() if not among or n in among]):
+        found = Candidates(names)
+        if evidence:
+            separate(editions.load(names[0]).TABLE.frame)
+        for name, command in _first_queries(names):
+            reply = ask(name, command)
+            shown = found.evidence(reply, command)
+            if len(names) == 1:
+                shown = shown._replace(edition=name, shows=f"only {name} has these frames")
+            evidence.append(shown)
+            found.note(command, reply.replied)
+            if reply.text != NO_REPLY:
+                return _identified(ask, found, evidence)
+    return Identification("", "", (), "", tuple(evidence))
 
 
 def _first_queries(names: list[str]) -> Iterator[tuple[str, Command]]:
@@ -166,38 +185,31 @@ def _first_queries(names: list[str]) -> Iterator[tuple[str, Command]]:
             return
 
 
-def _identified(
-    transport: Transport,
-    found: Candidates,
-    evidence: list[Evidence],
-    timeout: float | None,
-) -> Identification:
+def _identified(ask: Ask, found: Candidates, evidence: list[Evidence]) -> Identification:
     """Find out which of the editions with the same frames the arm that replied speaks."""
     first = editions.load(found.proven[0]).TABLE
-    evidence += _narrowed(transport, found, timeout=timeout)
+    evidence += _narrowed(ask, found)
     edition, firmware = found.known, ""
     version = editions.load(edition or first.edition).TABLE.find_role("version")
     asked = {each.query: each for each in evidence}
     if version is not None and version.name in asked and asked[version.name].replied:
         firmware = str(asked[version.name].result)
     elif version is not None and edition:
-        reply = _asked(transport, edition, version, timeout=timeout)
+        reply = ask(edition, version)
         evidence.insert(-1, reply._replace(shows="it does not tell the editions in question apart"))
         firmware = str(reply.result) if reply.replied else ""
     if not edition:
-        limits = list(_limit_evidence(transport, found.proven, timeout=timeout))
+        limits = list(_limit_evidence(ask, found.proven))
         evidence += limits
         edition = limits[-1].edition if limits else ""
     candidates = (edition,) if edition else tuple(found.proven)
-    return Identification(transport.url, edition, candidates, firmware, tuple(evidence))
+    return Identification("", edition, candidates, firmware, tuple(evidence))
 
 
-def _row_evidence(
-    transport: Transport, found: Candidates, *, timeout: float | None
-) -> Iterator[Evidence]:
+def _row_evidence(ask: Ask, found: Candidates) -> Iterator[Evidence]:
     """Read the row of angles with one number of joints after another, until one fits."""
     for count in joint_counts(found.proven):
-        reply = _asked(transport, count.edition, count.command, timeout=timeout)
+        reply = ask(count.edition, count.command)
         joints = editions.load(count.edition).TABLE.joints
         shows = f"a row of {joints} joints, as in {', '.join(count.editions)}"
         only = count.editions[0] if len(count.editions) == 1 else ""
@@ -208,12 +220,10 @@ def _row_evidence(
             return
 
 
-def _limit_evidence(
-    transport: Transport, names: list[str], *, timeout: float | None
-) -> Iterator[Evidence]:
+def _limit_evidence(ask: Ask, names: list[str]) -> Iterator[Evidence]:
     """Read limits of joints that differ between editions, until one decides; at most two."""
     for limit in islice(limits_apart(names), 2):
-        found = _asked(transport, names[0], limit.command, limit.joint, timeout=timeout)
+        found = ask(names[0], limit.command, limit.joint)
         edition = limit.edition_of(found.result) if found.replied else ""
         stated = ", ".join(f"{value:g} in {name}" for name, value in limit.editions.items())
         yield found._replace(edition=edition, shows=f"the limit is {stated}")
@@ -222,7 +232,7 @@ def _limit_evidence(
 
 
 def _asked(
-    transport: Transport, name: str, command: Command, *arguments: int, timeout: float | None
+    transport: Transport, timeout: float | None, name: str, command: Command, *arguments: int
 ) -> Evidence:
     with closing(editions.load(name).CLIENT(borrowed(transport), timeout=timeout)) as client:
         return ask(client, command, "", *arguments)
@@ -257,7 +267,7 @@ def _doubts(found: Identification, transport: Transport, timeout: float | None) 
     results = {evidence.query: evidence.result for evidence in found.evidence}
     for command in filter(None, map(table.find_role, PLACE)):
         if results.get(command.name) is None:
-            evidence = _asked(transport, found.edition, command, timeout=timeout)
+            evidence = _asked(transport, timeout, found.edition, command)
             results[command.name] = evidence.result
     return doubts(table, results)
 
@@ -330,7 +340,7 @@ def _found(
 ) -> tuple[Identification, Transport]:
     """Identify the arm at a port; return the open transport and the baud rate of its reply, too."""
     evidence: list[Evidence] = []
-    rates = _rates(port, baudrate)
+    rates = rates_of(port, baudrate)
     while True:
         rate, names = rates.pop(0)
         transport = open_port(port, rate)
@@ -346,7 +356,7 @@ def _found(
         transport.close()
 
 
-def _rates(port: str, baudrate: int | None) -> list[tuple[int, list[str]]]:
+def rates_of(port: str, baudrate: int | None = None) -> list[tuple[int, list[str]]]:
     """Return the baud rates to try, without duplicates, each with the editions to look for.
 
     The first rate looks for all editions, since a pseudo-terminal or an adapter has its own rate.

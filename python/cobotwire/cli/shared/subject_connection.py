@@ -13,7 +13,7 @@ from cobotwire.simulator import SimulatedArm
 from cobotwire.simulator.arm import Note
 from cobotwire.simulator.clock import SteppedClock
 from cobotwire.simulator.memory import MemoryTransport
-from cobotwire.transport import open_transport
+from cobotwire.transport import Transport, open_transport
 
 IN_MEMORY = "simulated arm in memory"
 
@@ -27,6 +27,7 @@ class Subject:
     attach: str | None = None
     simulated: bool = False
     baudrate: int | None = None
+    recorded: Transport | None = None
 
     def validate(self) -> None:
         """Check it before anything is opened.
@@ -34,7 +35,8 @@ class Subject:
         Raises:
             UsageError: no device is named, or several are, or its command is not valid.
         """
-        if [self.url is not None, self.command is not None, self.simulated].count(True) != 1:
+        given = (self.url, self.command, self.recorded, self.simulated or None)
+        if sum(each is not None for each in given) != 1:
             message = "give one of these: the URL of an arm, --command, or --simulated"
             raise UsageError("URL", self.url, message=message)
         if self.command is None and self.attach is not None:
@@ -85,6 +87,8 @@ def connected(table: Table, subject: Subject, lacking: Lacking) -> Iterator[Devi
         command, attach = parse_command(subject.command, subject.attach)
         with StartedDevice(command, attach, baudrate) as started:
             yield DeviceConnection(started.transport)
+    elif subject.recorded is not None:
+        yield DeviceConnection(subject.recorded)
     elif subject.url is None:
         clock = SteppedClock()
         arm = SimulatedArm(table, clock=clock, on_note=lacking.note)

@@ -7,7 +7,7 @@ import json
 import platform
 import zipfile
 from collections.abc import Mapping
-from datetime import UTC, datetime
+from datetime import datetime
 from hashlib import sha256
 from pathlib import Path
 from typing import Any
@@ -29,7 +29,9 @@ MOST_NAME = 80
 FACT = ("fact", "verdict", "why")
 
 
-def content_of(survey: Survey, package: str, robot: str, *, simulated: bool) -> dict[str, Any]:
+def content_of(
+    survey: Survey, package: str, robot: str, *, simulated: bool, began: datetime
+) -> dict[str, Any]:
     """Return what the file states: no name of a host, user, port or folder."""
     return {
         "format": FORMAT,
@@ -39,7 +41,7 @@ def content_of(survey: Survey, package: str, robot: str, *, simulated: bool) -> 
         "robot": printable(robot)[:MOST_NAME],
         "simulated": simulated,
         "firmware": survey.firmware,
-        "date": datetime.now(UTC).strftime("%Y-%m-%dT%H:%M:%SZ"),
+        "date": began.strftime("%Y-%m-%dT%H:%M:%SZ"),
         "cobotwire": cobotwire.__version__,
         "codec": cobotwire.codec_in_use(),
         "level": survey.level,

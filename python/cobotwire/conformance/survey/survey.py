@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from contextlib import suppress
 from dataclasses import replace
 from functools import cached_property
 from typing import Any
@@ -10,6 +11,7 @@ from typing import Any
 from cobotwire import editions
 from cobotwire.client import Client
 from cobotwire.conformance.device import DeviceConnection, Permissions, Step, Tester
+from cobotwire.conformance.device.device import NotSupported
 from cobotwire.conformance.device.groups import (
     agreement,
     at_rest,
@@ -162,7 +164,11 @@ class Survey:
             return False
         client_type: type[Client] = editions.load(self._package).CLIENT
         transport = self._tester.connection.transport
-        with client_type(borrowed(transport), timeout=EDITION_SECONDS) as client:
+        other = None
+        with (
+            suppress(NotSupported),
+            client_type(borrowed(transport), timeout=EDITION_SECONDS) as client,
+        ):
             own, other = other_edition(client, self.table, transport, timeout=EDITION_SECONDS)
         if other is None:
             return False
@@ -181,7 +187,7 @@ class Survey:
             if step.group.name in order
             and not self._tester.missing(step)
             and step.command is not None
-            and not PRIVATE & {*_states(step.command)}
+            and not PRIVATE & {*states(step.command)}
             and self.facts.name(step.command.name, "command", _decides(step)) not in self._done
         ]
         return sorted(found, key=lambda s: (order.index(s.group.name), not s.command.role))  # type: ignore[union-attr]
@@ -194,7 +200,7 @@ class Survey:
                 self.obstacle = f"the survey ended early: {self._ended}; --continue goes on"
                 return
             progress(step.name, at, len(steps))
-            private = step.command is not None and bool(SERIAL & {*_states(step.command)})
+            private = step.command is not None and bool(SERIAL & {*states(step.command)})
             if private and step.command is not None:
                 self.hashed.append(step.command.name)
                 self._on_private(True)
@@ -224,7 +230,10 @@ class Survey:
             requests = [request_of(source.query, *given) for given in arguments]
             values: list[float] = []
             for request in requests:
-                response = probe.device.request(request)
+                try:
+                    response = probe.device.request(request)
+                except NotSupported:
+                    break
                 if response.valid is not None and response.valid.decoded is not None:
                     values += as_row(response.valid.decoded.fields[source.field.name])
                     frames = Frames(response.request.frame, response.valid.data)
@@ -321,7 +330,7 @@ class Survey:
                 self.firmware[source.query.name] = ".".join(f"{v:g}" for v in rows[source.key])
 
 
-def _states(command: Command) -> tuple[str, ...]:
+def states(command: Command) -> tuple[str, ...]:
     """Return the names of what a query reports, as state and as field."""
     effect = effect_of(command)
     named = tuple(effect.values.values()) if isinstance(effect, Reports) else ()

@@ -7,7 +7,7 @@ from typing import Any
 from cobotwire.conformance.device.device import Device, NotSupported
 from cobotwire.conformance.device.mover import give_power
 from cobotwire.conformance.device.probe import Probe
-from cobotwire.conformance.device.requests import as_row, limits_of, requests
+from cobotwire.conformance.device.requests import Known, as_row, limits_of, requests
 from cobotwire.conformance.device.response import ReceivedReply, Response
 from cobotwire.conformance.hex_text import shown
 from cobotwire.conformance.suite import Group, TestCase
@@ -87,17 +87,20 @@ def _every(probe: Probe) -> list[Request[Any]]:
     Raises:
         NotSupported: it takes a position that the device does not report.
     """
-    command = probe.command
-    known = probe.device.known(command)
-    every = [
-        query
-        for variant in command.request
-        for query in requests(command, variant, known, limits_of(command, variant))
-        if _has_part(probe, query)
-    ]
+    known = probe.device.known(probe.command)
+    every = [query for query in requests_of(probe.command, known) if _has_part(probe, query)]
     if not every:
         raise NotSupported(UNKNOWN_ROW)
     return every
+
+
+def requests_of(command: Command, known: Known) -> list[Request[Any]]:
+    """Return a query with each set of arguments; ``known`` is where the arm is."""
+    return [
+        query
+        for variant in command.request
+        for query in requests(command, variant, known, limits_of(command, variant))
+    ]
 
 
 def is_framed_query(table: Table, command: Command) -> bool:

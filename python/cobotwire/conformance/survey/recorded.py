@@ -1,0 +1,66 @@
+"""A survey of a recording: what a program asks that cannot judge, and the arm that it recorded."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Sequence
+from datetime import UTC, datetime
+from typing import Any
+
+from cobotwire.capture import Packet
+from cobotwire.codec.interface import Codec
+from cobotwire.conformance.device.device import NotSupported
+from cobotwire.conformance.device.groups.queries import is_query, requests_of
+from cobotwire.conformance.survey.survey import PRIVATE, SERIAL, states
+from cobotwire.protocol.messages import Request
+from cobotwire.protocol.table import Table
+from cobotwire.simulator import MemoryTransport, ReplayedArm, SteppedClock
+from cobotwire.simulator.replayed import exchanges
+
+NOT_RECORDED = "the recording does not have this request"
+
+
+def questions(table: Table) -> tuple[list[Request[Any]], dict[str, str]]:
+    """Return the queries of level 1 in their order, and why each other query is not among them."""
+    found, left_out = list[Request[Any]](), dict[str, str]()
+    for command in sorted(table.commands, key=lambda each: not each.role):
+        if command.event or not is_query(table, command):
+            continue
+        if (PRIVATE | SERIAL) & {*states(command)}:
+            left_out[command.name] = "private"
+        elif any(field.many for variant in command.request for field in variant.fields):
+            left_out[command.name] = "takes a position"
+        else:
+            found += requests_of(command, {})
+    return found, left_out
+
+
+class RecordedTransport(MemoryTransport):
+    """A transport to the arm of a recording, which replies as it did.
+
+    A request that was not recorded is not supported: that the arm is silent then shows nothing.
+
+    Attributes:
+        began: when the recording began.
+        missing: how many requests were not recorded.
+    """
+
+    def __init__(self, packets: Sequence[Packet], codec: Codec) -> None:
+        began_ns = min(packet.time_ns for packet in packets)
+        self.began = datetime.fromtimestamp(began_ns / 1e9, UTC)
+        # A recording of the survey has the times of this one.
+        clock = SteppedClock((began_ns - time.time_ns() + time.monotonic_ns()) / 1e9)
+        super().__init__(ReplayedArm(packets, codec, clock=clock), clock)
+        self._recorded = {each.request for each in exchanges(packets)}
+        self.missing = 0
+
+    def write(self, data: bytes) -> None:
+        """Send a request that was recorded.
+
+        Raises:
+            NotSupported: it was not recorded.
+        """
+        if data not in self._recorded:
+            self.missing += 1
+            raise NotSupported(NOT_RECORDED)
+        super().write(data)
