@@ -94,7 +94,7 @@ def _lead_on(app: Sphinx, error: Exception | None) -> None:
 def _build_live(app: Sphinx, error: Exception | None) -> None:
     """Add the page that drives an arm in the browser."""
     if app.builder.format == "html":
-        live_page.build(Path(app.outdir, "live"), EDITIONS)
+        live_page.build(Path(app.outdir, "live"), lambda: EDITIONS)
 
 
 def _add_robots(app: Sphinx, page: str, source: list[str]) -> None:

@@ -5,15 +5,16 @@ from __future__ import annotations
 import hashlib
 import json
 import shutil
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
+import identification_tree
 import npm_package
 from cobotwire import editions
+from cobotwire.conformance.survey.recorded import questions
 from cobotwire.editions import Edition, mycobot280
 from cobotwire.editions.mycobot280 import MyCobot280
-from cobotwire.inspect.evidence import own_query
 from cobotwire.inspect.readiness import ROLES, problems
 from cobotwire.protocol.limits import Limits, limited
 from cobotwire.protocol.loading import load_sources
@@ -40,20 +41,23 @@ META = f'<meta http-equiv="Content-Security-Policy" content="{POLICY}; worker-sr
 UNNAMED = 173
 
 
-def facts(edition: Edition, others: list[Table]) -> dict[str, Any]:
+def facts(edition: Edition) -> dict[str, Any]:
     """Return what the page must know about an edition, as JSON values."""
     table, limits = edition.TABLE, Limits(speed=100)
     refused = refusals(table, limits)
-    own, sources = own_query(table, others), load_sources(getattr(edition, "__name__", ""))
+    sources = load_sources(getattr(edition, "__name__", ""))
+    asked, left_out = questions(table)
     return {
         "robot": robot_facts(table),
-        "client": edition.CLIENT.__name__,
         "controls": controls(limited(table, limits), refused),
         "forms": [form for form in forms(table) if form["name"] not in refused],
         "commands": {each.name: _described(each, sources) for each in table.commands},
-        "own": own.name if own else "",
         "ready": [_readiness(table, role) for role in ROLES if table.find_role(role)],
         "places": coordinates(table),
+        "survey": {
+            "questions": [(each.command, dict(each.fields)) for each in asked],
+            "leftOut": left_out,
+        },
     }
 
 
@@ -117,8 +121,8 @@ def missing() -> str:
     return npm_package.missing() or ("" if CURVES.is_file() else "needs uPlot: make front-end")
 
 
-def build(folder: Path, found: list[Model]) -> None:
-    """Write the page, or what is missing; ``found`` are the checked editions."""
+def build(folder: Path, found: Callable[[], list[Model]]) -> None:
+    """Write the page, or what is missing; ``found`` returns the checked editions."""
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
     if needs := missing():
@@ -126,7 +130,7 @@ def build(folder: Path, found: list[Model]) -> None:
         page = f'<!doctype html><html lang="en"><title>No page</title><p>{text}</p>'
         (folder / "index.html").write_text(page, "utf-8")
         return
-    package = npm_package.build(lambda: found)
+    package = npm_package.build(found)
     shutil.copytree(PAGE, folder, dirs_exist_ok=True)
     shutil.copytree(HERE, folder, dirs_exist_ok=True)
     for part, pattern in (("dist", "*.js"), ("dist", "*.wasm"), ("editions", "*.js")):
@@ -139,11 +143,12 @@ def build(folder: Path, found: list[Model]) -> None:
     tables = {name: editions.load(name).TABLE for name in editions.names()}
     (folder / "editions").mkdir(exist_ok=True)
     for name in tables:
-        others = [table for other, table in tables.items() if other != name]
-        text = json.dumps(facts(editions.load(name), others), ensure_ascii=False)
+        text = json.dumps(facts(editions.load(name)), ensure_ascii=False)
         (folder / "editions" / f"{name}.json").write_text(text, "utf-8")
     titles = {name: table.title for name, table in tables.items()}
     (folder / "editions.json").write_text(json.dumps(titles), "utf-8")
+    trees = json.dumps(identification_tree.trees())
+    (folder / "identification.json").write_text(trees, "utf-8")
     record_example(folder / "example.pcapng")
     _list_files(folder)
 

@@ -1,12 +1,14 @@
 // A session with an arm. The rules are those of the studio's server: arm_line.py, sending.py and holding.py.
 
-import { LinkError, ReplyTimeout } from "./cobotwire/dist/errors.js";
-import { nameOf, openWebSerial } from "./cobotwire/dist/transport.js";
+import { LinkError, ProtocolError, ReplyTimeout } from "./cobotwire/dist/errors.js";
+import { clientOf } from "./identify.js";
 import { Session, Stream } from "./session.js";
 
 const POLL_MS = 100;
 // If one query gets no reply and another one does, the first is sent again only after a pause.
 const [UNANSWERED, PAUSE_MS] = [2, 60_000];
+// After as many queries without a reply, a survey checks that the arm is there.
+const MOST_SILENT = 3;
 // The longest silence of a page that holds a button; how long noise waits for more bytes.
 const [SILENCE_MS, IDLE_MS] = [500, 300];
 const now = () => performance.now();
@@ -17,14 +19,14 @@ export class Live extends Session {
     const live = new Live(publish, facts, streams, { url: "", baudrate });
     const polled = ["joints", "coordinates"].map((role) => Object.values(facts.commands).find((command) => command.role === role)?.about.name);
     if (facts.controls.speeds) facts.controls.speeds.high = Math.min(facts.controls.speeds.high, speed);
-    Object.assign(live, { client: module[facts.client], speed, start: now(), startNs: BigInt(Date.now()) * 1000000n, stops: 0 });
+    Object.assign(live, { client: clientOf(module), speed, start: now(), startNs: BigInt(Date.now()) * 1000000n, stops: 0 });
     return Object.assign(live, { polled: polled.filter(Boolean).map((name) => ({ name, unanswered: 0, due: 0 })) });
   }
 
-  // Open the port, and check the edition with queries; return what they showed.
+  // Use an open port, and poll the arm.
   async connect(port) {
-    const [url, [sent, received]] = [nameOf(port), this.streams];
-    const inner = await openWebSerial(port, url, this.port.baudrate);
+    const [{ inner }, [sent, received]] = [port, this.streams];
+    const { url } = inner;
     let arm;
     const transport = {
       ...{ url, close: () => inner.close(), abort: () => inner.abort() },
@@ -35,7 +37,7 @@ export class Live extends Session {
           this.idle = setTimeout(() => this.note(() => received.silence()), IDLE_MS);
           take(data);
         };
-        inner.start(heard, (detail) => (ended(detail), this.lose(arm, `${url}: ${detail}`)));
+        port.lend().start(heard, (detail) => (ended(detail), this.lose(arm, `${url}: ${detail}`)));
       },
       write: (data) => {
         const written = inner.write(data);
@@ -43,27 +45,11 @@ export class Live extends Session {
         return written;
       },
     };
-    try {
-      arm = await this.client.open(transport, { limits: { speed: this.speed } });
-      await arm.call(this.polled[0].name);
-    } catch (error) {
-      await (arm ?? inner).close();
-      if (!arm) throw error;
-      const { edition } = this.facts.robot;
-      throw new Error(`no legal reply: is it an arm of the edition ${edition}? \`cobotwire identify\` finds out (${error.message})`);
-    }
+    arm = await this.client.open(transport, { limits: { speed: this.speed } });
     Object.assign(this, { arm, port: { ...this.port, url } });
-    const { own, robot } = this.facts;
-    if (!own) return "the joints were read, as other editions allow, too; check that they fit the arm";
-    const replied = await arm.call(own).then(() => true, () => false);
-    return `${own}, which only ${robot.edition} has, ${replied ? "replied" : "got no reply: check that the joints fit the arm"}`;
-  }
-
-  // Show that the arm is connected, and poll it.
-  begin() {
-    this.publish({ states: { port: { url: this.port.url, problem: "" } } });
+    this.publish({ states: { port: { url, problem: "" } } });
     this.control(true);
-    this.poll(this.arm);
+    this.poll(arm);
   }
 
   get time() {
@@ -73,7 +59,7 @@ export class Live extends Session {
   async poll(arm) {
     while (this.arm === arm) {
       const due = now() + POLL_MS;
-      for (const poll of this.polled) if (poll.due <= now()) await this.ask(arm, poll);
+      for (const poll of this.polled) if (poll.due <= now() && !this.surveying) await this.ask(arm, poll);
       await new Promise((go) => setTimeout(go, Math.max(0, due - now())));
     }
   }
@@ -101,6 +87,7 @@ export class Live extends Session {
   async leave() {
     const { arm } = this;
     this.stops += 1;
+    this.endSurvey();
     this.end("not connected");
     await arm?.[Symbol.asyncDispose]();
   }
@@ -123,7 +110,7 @@ export class Live extends Session {
   }
 
   allowMotion(on) {
-    this.control(this.mine, on && this.mine);
+    this.control(this.mine, on && this.mine && !this.surveying);
   }
 
   form(name) {
@@ -148,6 +135,7 @@ export class Live extends Session {
   // Send a command with the texts of its arguments; return its result.
   async send(name, texts, force) {
     const form = this.permitted(name);
+    if (this.surveying) throw new Error("end the survey before you send something else");
     const { arm, stops } = this;
     const given = values(form, texts);
     // A wrong value is reported before the state of the arm is queried.
@@ -187,12 +175,57 @@ export class Live extends Session {
   // Stop the arm at once, and drop the motions that were requested before.
   async stop() {
     this.stops += 1;
+    this.endSurvey();
     await this.sendStop();
   }
 
   async sendStop() {
     if (!this.arm) throw new Error("no arm is connected; stop it by its switch");
     await this.arm.call(this.facts.robot.stop);
+  }
+
+  // Send the queries of a survey; return in words what came, and when the recording of it begins and ends.
+  async survey() {
+    const [{ arm, facts }, { questions, leftOut }] = [this, this.facts.survey];
+    if (!arm) throw new Error("no arm is connected");
+    this.allowMotion(false);
+    const moving = Object.values(facts.commands).find((command) => command.role === "moving")?.about.name;
+    if (moving && Object.values(await arm.call(moving)).some(Boolean)) throw new Error("the arm is moving: wait until it rests, or stop it");
+    const { signal } = (this.surveying = new AbortController());
+    let [asked, replied, silent, why] = [0, 0, 0, ""];
+    const [begin, asking] = [this.time, arm.withSignal(signal)];
+    let end = begin;
+    const ask = async (name, given) => {
+      this.permitted(name);
+      asked += 1;
+      silent += 1;
+      try {
+        await asking.call(name, given);
+      } catch (error) {
+        if (error instanceof ReplyTimeout) return;
+        if (!(error instanceof ProtocolError)) throw error;
+      }
+      [silent, replied, end] = [0, replied + 1, this.time + 0.001];
+    };
+    const alive = questions.find(([name]) => name === this.polled[0].name);
+    try {
+      for (const question of [...questions, alive]) {
+        await ask(...question);
+        // An arm that is off must not look like one that lacks commands.
+        if (silent === MOST_SILENT) await ask(...alive);
+        if (silent > MOST_SILENT) throw new Error("the arm no longer replies");
+        this.publish({ states: { survey: `The survey has sent ${asked} of ${questions.length + 1} queries. Stop ends it, too.` } });
+      }
+    } catch (error) {
+      why = `It ended early: ${signal.aborted ? "you ended it" : error.message}. `;
+    }
+    this.surveying = undefined;
+    const not = Object.entries(leftOut).map(([name, reason]) => `${name} (${reason})`);
+    return { begin, end, text: `${why}${asked} queries were sent, and ${replied} got a reply. Not sent: ${not.join(", ") || "nothing"}.` };
+  }
+
+  endSurvey() {
+    this.surveying?.abort();
   }
 
   // Send a motion that lasts only while the page holds a button, and says so.

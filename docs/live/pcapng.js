@@ -63,6 +63,15 @@ function block(kind, body, options) {
 // Return what a recording holds of its first interface: its packets with times in nanoseconds, how many interfaces there
 // are, and a remark if it is cut or damaged.
 export function read(file) {
+  try {
+    return parsed(file);
+  } catch (error) {
+    if (!(error instanceof RangeError)) throw error;
+    throw new Error("the recording is damaged: an option is too short");
+  }
+}
+
+function parsed(file) {
   const view = new DataView(file.buffer, file.byteOffset, file.byteLength);
   const whole = (at) => view.getUint32(at, true);
   const found = { url: "", edition: "", baudrate: 0, interfaces: 0, packets: [], remark: "" };

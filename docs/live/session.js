@@ -31,6 +31,12 @@ export class Stream {
     return this.entries(this.decoder.flush());
   }
 
+  // Return the bytes that may still become a frame.
+  begun() {
+    const { pending } = this.decoder;
+    return pending.length ? [{ t: this.times.findLast(([at]) => at <= this.size - pending.length)[1], d: this.direction, data: pending, reason: "truncated" }] : [];
+  }
+
   entries(found) {
     return found.map(({ offset, data, noise }) => {
       while (this.times[1]?.[0] <= offset) this.times.shift();
@@ -115,7 +121,8 @@ export class Session {
     const inside = ({ t, d, data }) => data && t >= from && t < to && (!direction || d === direction);
     const chosen = (entry) => inside(entry) && (!command || this.read(entry)?.command === command);
     // A copy, since entries come and go meanwhile.
-    return written([...this.entries], chosen, { ...this.port, edition: this.facts.robot.edition, startNs: this.startNs });
+    const entries = [...this.entries, ...this.streams.flatMap((stream) => stream.begun())];
+    return written(entries, chosen, { ...this.port, edition: this.facts.robot.edition, startNs: this.startNs });
   }
 }
 

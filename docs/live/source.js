@@ -7,6 +7,10 @@ const SERIAL = "serial" in navigator;
 const ABOUT = SERIAL
   ? "Everything stays in this browser: there is no server. Motion needs your permission, and this is no emergency stop: keep the switch of the arm within reach."
   : "This browser cannot open a serial port, because it lacks WebSerial. Chrome and Edge on a computer have it. Recordings can be opened here, too.";
+const SURVEY =
+  "The file will hold the bytes of these queries and of what came, with their times, and the name of the edition: no serial number, " +
+  "and no name of this computer, its user or its port. It is not judged here: `cobotwire survey --from FILE -o survey.zip` does that. " +
+  "Settings and motions are surveyed only by the command line.";
 // How long a page that is left waits for its worker, which ends with the page.
 const LEAVE_MS = 100;
 const infoOf = (port) => JSON.stringify(port.getInfo());
@@ -37,6 +41,7 @@ export class Source {
     const button = (id, text, click) => (this[id] = el("button", { id, type: "button", click }, text));
     const row = (...parts) => el("div", { class: "filters" }, ...parts);
     this.edition = el("select", { id: "edition" });
+    const saved = (text) => this.say(text);
     this.speed = el("input", { id: "highest-speed", type: "number", min: 1, max: 100, value: 30 });
     const file = el("input", { id: "capture", type: "file", accept: ".pcapng", change: () => this.open(file.files[0]) });
     const arm = [el("label", {}, "Highest speed ", this.speed, " %"), button("connect", "Connect", () => this.choose())];
@@ -48,17 +53,19 @@ export class Source {
     this.later = row(
       button("again", "Connect", () => this.choose()),
       button("disconnect", "Disconnect", () => this.wish("leave")),
-      button("save", "Save the recording", () => keep(this.exported(new URLSearchParams()), (text) => this.say(text))),
+      button("save", "Save the recording", () => keep(this.exported(new URLSearchParams()), saved)),
+      button("run", "Run the survey", () => this.survey()),
+      button("keep", "Save the survey", () => keep(this.exported(this.range, `survey-${this.robot.edition}`), saved)),
       button("anew", "Start anew", () => location.reload()),
     );
-    this.later.hidden = true;
+    this.later.hidden = this.keep.hidden = true;
     this.said = el("p", { id: "said", role: "status" });
+    this.surveyed = el("p", { id: "surveyed", class: "hint", role: "status" });
     const label = { "aria-label": "Connect an arm, or open a recording" };
-    document.querySelector("main").before(el("section", { id: "connecting", class: "card", ...label }, ...this.first, this.later, this.said));
+    document.querySelector("main").before(el("section", { id: "connecting", class: "card", ...label }, ...this.first, this.later, this.said, this.surveyed));
     const titles = await (await fetch("editions.json")).json();
     const options = Object.entries(titles).map(([value, title]) => el("option", { value }, `${title} (${value})`));
-    this.edition.replaceChildren(...options);
-    this.edition.value = "mycobot280";
+    this.edition.replaceChildren(el("option", { value: "" }, "find out by queries"), ...options);
     document.documentElement.dataset.offered = "yes";
   }
 
@@ -80,8 +87,25 @@ export class Source {
     this.busy = false;
   }
 
+  // Begin the survey, or end it.
+  async survey() {
+    if (this.surveying) return this.wish("endSurvey");
+    this.surveying = true;
+    this.run.textContent = "End the survey";
+    try {
+      const { text, ...range } = await this.ask("survey");
+      this.range = new URLSearchParams(range);
+      this.keep.hidden = false;
+      this.surveyed.textContent = `${text} ${SURVEY}`;
+    } catch (error) {
+      this.surveyed.textContent = error.message;
+    }
+    this.surveying = false;
+    this.run.textContent = "Run the survey";
+  }
+
   choose() {
-    return this.attempt("connecting", async () => {
+    return this.attempt("finding out which robot it is, with queries", async () => {
       if (self !== top) throw new Error("open this page on its own: inside another page it connects no arm");
       const port = await navigator.serial.requestPort();
       // The worker finds the port by its information, so the page keeps no other port that looks like it.
@@ -112,15 +136,17 @@ export class Source {
       this.asked.delete(id);
       return error === undefined ? done(result) : failed(new Error(error));
     }
-    const { hello, port } = news.states;
+    const { hello, port, survey } = news.states;
+    if (survey && this.surveying) this.surveyed.textContent = survey;
     if (hello) {
       for (const part of this.first) part.hidden = true;
       document.querySelector("main").hidden = this.later.hidden = false;
-      this.again.hidden = this.disconnect.hidden = this.save.hidden = hello.mode === "recording";
+      for (const each of [this.again, this.disconnect, this.save, this.run]) each.hidden = hello.mode === "recording";
+      this.robot = hello.robot;
     }
     if (port) {
       this.connected = this.again.disabled = port.problem === "";
-      this.disconnect.disabled = !this.connected;
+      this.disconnect.disabled = this.run.disabled = !this.connected;
       if (port.problem) this.say(port.problem, true);
     }
     this.onBatch(news);
@@ -137,9 +163,9 @@ export class Source {
     return true;
   }
 
-  async exported(query) {
+  async exported(query, name = "live") {
     const data = await this.ask("exported", Object.fromEntries(query));
-    return new Response(data, { headers: { "content-disposition": 'attachment; filename="live.pcapng"' } });
+    return new Response(data, { headers: { "content-disposition": `attachment; filename="${name}.pcapng"` } });
   }
 
   // Let the worker stop the arm before it ends.

@@ -1,7 +1,7 @@
 // Hold the session in a worker, so that the arm is stopped even if the page hangs. The page sends requests, and messages
 // that need no reply; it gets batches of entries, samples and states.
 
-import { edition, machine } from "./cobotwire/dist/machine.js";
+import { identify } from "./identify.js";
 import { Live } from "./live.js";
 import { read } from "./pcapng.js";
 import { Recorded } from "./recorded.js";
@@ -37,20 +37,22 @@ const requests = {
   async connect({ name, speed, at, infos }) {
     const ports = await navigator.serial.getPorts();
     if (JSON.stringify(ports.map((port) => port.getInfo())) !== infos) throw new Error("the ports changed meanwhile: connect again");
-    let live = session;
-    if (!live) {
-      const [facts, module] = await load(name);
-      live = await Live.make(publish, facts, module, { speed, baudrate: edition(await machine(), module.table)[1] });
+    const { port, shown, ...found } = await identify(ports[at], session?.facts.robot.edition ?? name);
+    try {
+      const live = session ?? (await Live.make(publish, ...(await load(found.name)), { speed, baudrate: found.baudrate }));
+      await live.connect(port);
+      begin(live, { mode: "live" });
+    } catch (error) {
+      await port.inner.close();
+      throw error;
     }
-    const shown = await live.connect(ports[at]);
-    begin(live, { mode: "live" });
-    live.begin();
     return shown;
   },
 
   async open({ file, name, usual }) {
     const capture = read(file);
     if (!capture.packets.some(({ data }) => data.length)) throw new Error("the recording holds no bytes");
+    if (!capture.edition && !usual) throw new Error("the recording names no edition: choose the robot first");
     const opened = await Recorded.make(publish, ...(await load(capture.edition || usual)), capture);
     const { seconds, remarks } = opened;
     begin(opened, { mode: "recording", recording: { name, seconds, remarks } });

@@ -2,27 +2,26 @@
 
 from __future__ import annotations
 
-import asyncio
-import socket
+import mimetypes
 import threading
 import time
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
-import uvicorn
-from starlette.applications import Starlette
-from starlette.requests import Request
-from starlette.responses import FileResponse, Response
-from starlette.routing import Route, WebSocketRoute
-from starlette.websockets import WebSocket, WebSocketDisconnect
+from websockets.datastructures import Headers
+from websockets.exceptions import ConnectionClosed
+from websockets.http11 import Request, Response
+from websockets.sync.server import ServerConnection, serve
 
 from cobotwire.editions.mycobot280.table import TABLE
-from cobotwire.simulator import SimulatedArm, TcpServer
+from cobotwire.protocol.errors import LinkError
+from cobotwire.protocol.table import Table
+from cobotwire.simulator import MemoryTransport, SimulatedArm
 from live_page import POLICY
 
 STOP = bytes.fromhex("FE FE 02 29 FA")
-# The script of the page and the worker each have this port.
+# The script of the page and the worker each have this port. A page with the hash #none has none.
 PORT = """
 const port = {
   getInfo: () => ({ usbVendorId: 0x1a86, usbProductId: 0x55d4 }),
@@ -39,83 +38,109 @@ const port = {
     port.close = async () => socket.close();
   },
 };
-const serial = { requestPort: async () => port, getPorts: async () => [port] };
-Object.defineProperty(navigator, "serial", { value: serial });
+if (location.hash === "#none") delete Navigator.prototype.serial;
+else {
+  const serial = { requestPort: async () => port, getPorts: async () => [port] };
+  Object.defineProperty(navigator, "serial", { value: serial });
+}
 """
+
+
+# Else the browser keeps all files for each test.
+NO_SERVICE = {"service.js": ""}
 
 
 class LiveSite:
     """The page at ``url``, and the arm that is plugged in.
 
     Attributes:
+        table: what the next arm speaks.
+        instead: by name, the text of files that differ from those of the folder.
         sent: the bytes that the page has written to its port.
         stopped_at: when the last stop was written, by the monotonic clock.
+        silent_after: how many further writes the arm replies to; None: to all.
     """
 
-    def __init__(self, folder: Path, arm: TcpServer, before: str, url: str) -> None:
-        self._folder, self._arm, self._before, self.url = folder, arm, before, url
+    def __init__(self, folder: Path) -> None:
+        self._folder, self.url = folder, ""
+        self.table: Table = TABLE
+        self.instead = dict(NO_SERVICE)
         self.sent, self.stopped_at = bytearray(), 0.0
-        self._sockets: set[WebSocket] = set()
-        self._loop: asyncio.AbstractEventLoop | None = None
+        self.silent_after: int | None = None
+        self._sockets: set[ServerConnection] = set()
+
+    @property
+    def plugged(self) -> bool:
+        """Whether the port is open."""
+        return bool(self._sockets)
+
+    def reset(self) -> None:
+        """Plug in another arm, as the first one was."""
+        self.unplug()
+        self.sent, self.table, self.silent_after = bytearray(), TABLE, None
+        self.instead = dict(NO_SERVICE)
 
     def unplug(self) -> None:
         """Let the port disappear."""
-        for port in [*self._sockets]:
-            assert self._loop is not None
-            asyncio.run_coroutine_threadsafe(port.close(), self._loop).result(5)
+        for socket in [*self._sockets]:
+            socket.close()
 
-    async def file(self, request: Request) -> Response:
-        """Serve a file; the worker has a port too."""
-        name = request.path_params["name"] or "index.html"
-        headers = {"cache-control": "no-store"}
-        if name != "index.html":  # which has the policy in itself
-            headers["content-security-policy"] = POLICY
+    def answer(self, _: ServerConnection, request: Request) -> Response | None:
+        """Serve a file; the page and its worker have a port too."""
+        name = request.path.strip("/") or "index.html"
+        if name == "port":
+            return None
+        if name == "slow":
+            time.sleep(1.2)
+        path = self._folder / name
+        if not path.is_file():
+            return Response(404, "Not Found", Headers({"Content-Length": "0"}))
+        data = self.instead[name].encode() if name in self.instead else path.read_bytes()
         if name in ("source.js", "worker.js"):
-            text = self._before + (self._folder / name).read_text("utf-8")
-            return Response(text, media_type="text/javascript", headers=headers)
-        return FileResponse(self._folder / name, headers=headers)
+            data = PORT.encode() + data
+        kind = mimetypes.guess_type(name)[0] or "application/wasm"
+        headers = Headers({"Content-Type": kind, "Cache-Control": "no-store"})
+        headers["Content-Length"] = str(len(data))
+        if name != "index.html":  # which has the policy in itself
+            headers["Content-Security-Policy"] = POLICY
+        return Response(200, "OK", headers, data)
 
-    async def port(self, page: WebSocket) -> None:
-        """Forward between the page and the arm."""
-        self._loop = asyncio.get_running_loop()
-        await page.accept()
-        self._sockets.add(page)
-        host, _, port = self._arm.url.removeprefix("socket://").rpartition(":")
-        reader, writer = await asyncio.open_connection(host, int(port))
-        replies = asyncio.create_task(self._replies(reader, page))
-        try:
-            while True:
-                data = await page.receive_bytes()
+    def port(self, socket: ServerConnection) -> None:
+        """Forward between the page and an arm."""
+        arm = MemoryTransport(SimulatedArm(self.table, powered=True))
+        self._sockets.add(socket)
+        threading.Thread(target=_forward, args=(arm, socket), daemon=True).start()
+        with suppress(ConnectionClosed):
+            for data in socket:
+                assert isinstance(data, bytes)
                 self.sent += data
                 if STOP in data:
                     self.stopped_at = time.monotonic()
-                writer.write(data)
-        except (WebSocketDisconnect, RuntimeError):
-            self._sockets.discard(page)
-        replies.cancel()
-        writer.close()
+                if self.silent_after is not None:
+                    self.silent_after -= 1
+                if self.silent_after is None or self.silent_after >= 0:
+                    arm.write(data)
+        self._sockets.discard(socket)
+        arm.close()
 
-    async def _replies(self, reader: asyncio.StreamReader, page: WebSocket) -> None:
-        while data := await reader.read(4096):
-            await page.send_bytes(data)
+
+def _forward(arm: MemoryTransport, socket: ServerConnection) -> None:
+    """Send the page what the arm sends."""
+    with suppress(LinkError, ConnectionClosed):
+        while True:
+            if data := arm.read(60):
+                socket.send(data)
 
 
 @contextmanager
-def serving(folder: Path, before: str = PORT) -> Iterator[LiveSite]:
-    """Serve the page and an arm; a script comes before those of the page and the worker."""
-    with TcpServer(SimulatedArm(TABLE, powered=True).connect) as arm, socket.socket() as listening:
-        listening.bind(("127.0.0.1", 0))
-        listening.listen()
-        site = LiveSite(folder, arm, before, f"http://127.0.0.1:{listening.getsockname()[1]}/")
-        routes = [WebSocketRoute("/port", site.port), Route("/{name:path}", site.file)]
-        app = Starlette(routes=routes)
-        config = uvicorn.Config(app, log_level="error", ws="websockets-sansio")
-        server = uvicorn.Server(config)
-        thread = threading.Thread(target=server.run, args=([listening],), daemon=True)
+def serving(folder: Path) -> Iterator[LiveSite]:
+    """Serve the page and an arm."""
+    site = LiveSite(folder)
+    with serve(site.port, "127.0.0.1", 0, process_request=site.answer, compression=None) as server:
+        site.url = f"http://127.0.0.1:{server.socket.getsockname()[1]}/"
+        thread = threading.Thread(target=server.serve_forever, daemon=True)
         thread.start()
-        try:
-            yield site
-        finally:
-            server.should_exit = True
-            site.unplug()
-            thread.join(5)
+        yield site
+        site.unplug()
+        server.shutdown()
+        thread.join(5)

@@ -19,7 +19,7 @@ UNTIL = """
 async (look) => {
   const end = Date.now() + %d;
   for (;;) {
-    const found = look();
+    const found = await look();
     if (found || Date.now() > end) return typeof found === "object" ? Boolean(found) : found;
     await new Promise((go) => setTimeout(go, 30));
   }
@@ -32,8 +32,6 @@ class Page:
 
     def __init__(self, tab: Tab) -> None:
         self.tab = tab
-        for domain in ("Runtime", "Log", "Network"):
-            tab.call(f"{domain}.enable")
 
     def show(self, width: int = 1280, height: int = 900, *, dark: bool = False) -> None:
         """Set the size of the screen, and its colours."""

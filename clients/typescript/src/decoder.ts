@@ -84,6 +84,11 @@ export class Decoder {
     return this.cut(all);
   }
 
+  /** The bytes that may still become a frame. */
+  get pending(): Uint8Array {
+    return this.rest;
+  }
+
   /** Note that the line is silent: bytes that could have begun a frame are noise. */
   flush(): Found[] {
     return this.cut(this.rest, undefined);

@@ -87,12 +87,18 @@ class Tab:
         os.close(theirs_out)
         self._in, self._out = open(ours_in, "rb", buffering=0), open(ours_out, "wb", buffering=0)
         self._read = b""
+        self.renew()
+        self.open(self._url)
+        return self
+
+    def renew(self) -> None:
+        """Use a new page of the browser from now on."""
+        self._session = {}
         target = self.call("Target.createTarget", url="about:blank")["targetId"]
         attached = self.call("Target.attachToTarget", targetId=target, flatten=True)
         self._session = {"sessionId": attached["sessionId"]}
-        self.call("Page.enable")
-        self.open(self._url)
-        return self
+        for domain in ("Page", "Runtime", "Log", "Network"):
+            self.call(f"{domain}.enable")
 
     def __exit__(
         self,
