@@ -139,12 +139,17 @@ def new_folder(folder: Path) -> None:
     run(folder, "npm", "install", "--no-audit", "--no-fund", "--offline", archive.name)
 
 
+def program(name: str) -> str:
+    """Return a program of the docs."""
+    page = (ROOT / "docs/typescript.md").read_text("utf-8")
+    block = re.search(rf"<!-- file: {name} -->\n```js\n(.*?)```", page, re.DOTALL)
+    assert block is not None, name
+    return block[1]
+
+
 def first_program(folder: Path) -> str:
     """Run the program of the docs against a simulated arm, and return what it prints."""
-    page = (ROOT / "docs/typescript.md").read_text()
-    block = re.search(r"<!-- file: first.mjs -->\n```js\n(.*?)```", page, re.S)
-    assert block is not None, "the page has the program"
-    (folder / "first.mjs").write_text(block[1])
+    (folder / "first.mjs").write_text(program("first.mjs"))
     words = ("cobotwire", "sim", "--tcp", "127.0.0.1:0", "--quiet")
     with subprocess.Popen(words, stdout=subprocess.PIPE, text=True) as arm:
         assert arm.stdout is not None

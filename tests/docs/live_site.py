@@ -25,8 +25,8 @@ STOP = bytes.fromhex("FE FE 02 29 FA")
 PORT = """
 const port = {
   getInfo: () => ({ usbVendorId: 0x1a86, usbProductId: 0x55d4 }),
-  async open() {
-    const socket = new WebSocket(`ws://${location.host}/port`);
+  async open({ baudRate }) {
+    const socket = new WebSocket(`ws://${location.host}/port?${baudRate}`);
     socket.binaryType = "arraybuffer";
     await new Promise((done) => (socket.onopen = done));
     const start = (received) => {
@@ -35,7 +35,7 @@ const port = {
     };
     port.readable = new ReadableStream({ start });
     port.writable = new WritableStream({ write: (data) => socket.send(data) });
-    port.close = async () => socket.close();
+    port.close = async () => port.readable.locked || port.writable.locked || socket.close();
   },
 };
 if (location.hash === "#none") delete Navigator.prototype.serial;
@@ -58,6 +58,7 @@ class LiveSite:
         instead: by name, the text of files that differ from those of the folder.
         sent: the bytes that the page has written to its port.
         stopped_at: when the last stop was written, by the monotonic clock.
+        baudrate: with which the port was opened last.
         silent_after: how many further writes the arm replies to; None: to all.
     """
 
@@ -65,7 +66,7 @@ class LiveSite:
         self._folder, self.url = folder, ""
         self.table: Table = TABLE
         self.instead = dict(NO_SERVICE)
-        self.sent, self.stopped_at = bytearray(), 0.0
+        self.sent, self.stopped_at, self.baudrate = bytearray(), 0.0, 0
         self.silent_after: int | None = None
         self._sockets: set[ServerConnection] = set()
 
@@ -85,10 +86,12 @@ class LiveSite:
         for socket in [*self._sockets]:
             socket.close()
 
-    def answer(self, _: ServerConnection, request: Request) -> Response | None:
+    def answer(self, connection: ServerConnection, request: Request) -> Response | None:
         """Serve a file; the page and its worker have a port too."""
-        name = request.path.strip("/") or "index.html"
+        name, _, query = request.path.strip("/").partition("?")
+        name = name or "index.html"
         if name == "port":
+            self.baudrate = int(query)
             return None
         if name == "slow":
             time.sleep(1.2)

@@ -475,15 +475,13 @@ def test_questions_of_a_survey_are_queries_of_the_page(folder: Path, edition: st
 def test_program_of_the_docs_reads_an_arm_in_a_page(
     site: LiveSite, page: Page, folder: Path
 ) -> None:
-    text = (npm_package.ROOT / "docs/typescript.md").read_text("utf-8")
-    program = re.search(r"<!-- file: page.mjs -->\n```js\n(.*?)```", text, re.DOTALL)
-    assert program is not None
     (folder / "program.html").write_text(PROGRAM, "utf-8")
-    (folder / "page.mjs").write_text(program[1], "utf-8")
+    (folder / "page.mjs").write_text(npm_package.program("page.mjs"), "utf-8")
     (folder / "port.mjs").write_text(PORT, "utf-8")
     page.tab.open(f"{site.url}program.html")
     page.click("button")
     page.until("document.querySelector('output').value === '0,0,0,0,0,0'")
+    assert site.baudrate == 115200
     # The program closes the port.
     _soon(lambda: not site.plugged)
 

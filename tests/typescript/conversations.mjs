@@ -91,36 +91,6 @@ const conversations = {
     const call = arm.getAngles().catch(failed);
     say([await call, await arm.getAngles().catch(failed)]);
   },
-  async web() {
-    // A port of the browser that replies to queries of encoders, in two pieces.
-    const [log, reply] = [[], Uint8Array.of(0xfe, 0xfe, 4, 0x3b, 0, 7, 0xfa)];
-    let replies;
-    const port = {
-      open: async ({ baudRate }) => {
-        log.push(["open", baudRate]);
-        port.readable = new ReadableStream({ start: (controller) => (replies = controller) });
-        port.writable = new WritableStream({
-          write(bytes) {
-            log.push(Buffer.from(bytes).toString("hex"));
-            if (bytes[3] === 0x3b) [reply.slice(0, 3), reply.slice(3)].forEach((piece) => replies.enqueue(piece));
-          },
-        });
-      },
-      close: async () => log.push(["close", port.readable.locked, port.writable.locked]),
-    };
-    for (const joint of [1, 2]) {
-      const arm = await MyCobot280.open(port);
-      log.push(await arm.getEncoder(joint));
-      await arm.setColor(1, 2, 3);
-      await arm.close();
-    }
-    const arm = await MyCobot280.open(port);
-    const call = arm.getAngles().catch(failed);
-    setTimeout(() => replies.error(new Error("it was unplugged")), 20);
-    const unplugged = await call;
-    while (log.at(-1)[0] !== "close") await new Promise(setImmediate);
-    say([...log, unplugged]);
-  },
   async late() {
     const first = await MyCobot280.open(url, { timeout: 0.1 });
     say(await first.getEncoder(1).catch((error) => error.name));

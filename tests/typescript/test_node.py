@@ -171,19 +171,6 @@ def test_late_reply_to_earlier_client_is_not_paired_with_request_of_next() -> No
         assert talk("late", url) == ["ReplyTimeout", 2]
 
 
-def test_port_of_the_browser_is_opened_used_and_closed() -> None:
-    [[*log, unplugged]] = talk("web", "")
-    opened, closed = ["open", 115200], ["close", False, False]
-    calls = [["fefe033b01fa", 7], ["fefe033b02fa", 7]]
-    assert log == [
-        *[each for call in calls for each in (opened, *call, "fefe056a010203fa", closed)],
-        opened,
-        "fefe0220fa",
-        closed,
-    ]
-    assert unplugged == ["LinkError", "serial port 1: cannot be read: it was unplugged"]
-
-
 def test_page_needs_no_module_of_node() -> None:
     for path in (package() / "dist").glob("*.js"):
         imports = re.findall(r"""(?:from|import)[ (]+["']([^"']+)""", path.read_text())
@@ -191,28 +178,18 @@ def test_page_needs_no_module_of_node() -> None:
         assert path.name == "node.js" or "./node.js" not in imports, path
 
 
-def test_page_shows_first_program() -> None:
-    program = (npm_package.PACKAGE / "examples/first.mjs").read_text()
-    assert len(program.splitlines()) == 8
-    page = (npm_package.ROOT / "docs/typescript.md").read_text()
-    assert f"<!-- file: first.mjs -->\n```js\n{program}```" in page
-
-
 def test_first_program_moves_simulated_arm() -> None:
-    package()
-    program = npm_package.PACKAGE / "examples/first.mjs"
+    text = npm_package.program("first.mjs")
+    assert len(text.splitlines()) == 8
     with TcpServer(SimulatedArm(mycobot280.TABLE).connect) as server:
-        words = ("node", program, server.url)
-        done = subprocess.run(words, capture_output=True, text=True, check=False)
+        words = ("node", "--input-type=module", "--eval", text, "first", server.url)
+        done = subprocess.run(words, cwd=package(), capture_output=True, text=True, check=False)
     assert (done.returncode, done.stderr) == (0, "")
     assert re.fullmatch(r"-?[\d.]+ \[( -?[\d.]+,?){5} \]\n", done.stdout.replace("\n ", ""))
 
 
 def test_program_of_the_docs_decodes_bytes() -> None:
-    page = (npm_package.ROOT / "docs/typescript.md").read_text()
-    program = re.search(r"<!-- file: decode.mjs -->\n```js\n(.*?)```", page, re.DOTALL)
-    assert program is not None
-    words = ("node", "--input-type=module", "--eval", program[1])
+    words = ("node", "--input-type=module", "--eval", npm_package.program("decode.mjs"))
     done = subprocess.run(words, cwd=package(), capture_output=True, text=True, check=True)
     assert done.stdout == "0 1 no-header \n1 6 is_power_on { powered: 1 }\n"
 
