@@ -65,7 +65,7 @@ function decide({ editions, alike }, chosen, shown) {
   const names = editions.join(" or ");
   if (chosen && !editions.includes(chosen)) throw new Error(`the arm speaks ${names}, not ${chosen}: ${shown}. Choose its own edition.`);
   if (editions.length === 1) return { name: names, shown: `edition ${names}: ${shown}` };
-  const open = `the replies cannot decide between ${names}: ${shown}. ${alike}`;
+  const open = `the replies fit several editions, ${editions.join(", ")}: ${shown}. ${alike}`;
   if (!chosen) throw new Error(`${open}. Choose your robot, and connect again.`);
   return { name: chosen, shown: `edition ${chosen}, as you chose; ${open}` };
 }

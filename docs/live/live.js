@@ -217,7 +217,7 @@ export class Live extends Session {
         this.publish({ states: { survey: `The survey has sent ${asked} of ${questions.length + 1} queries. Stop ends it, too.` } });
       }
     } catch (error) {
-      why = `It ended early: ${signal.aborted ? "you ended it" : error.message}. `;
+      why = `The survey ended early: ${signal.aborted ? "you ended it" : error.message}. `;
     }
     this.surveying = undefined;
     const not = Object.entries(leftOut).map(([name, reason]) => `${name} (${reason})`);

@@ -16,7 +16,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from cobotwire import editions
-from cobotwire.capture import read
+from cobotwire.capture import Recording, read
 from cobotwire.conformance.survey import ASPECTS, read_survey, survey_file
 from cobotwire.protocol.errors import UsageError
 from cobotwire.session.device import DeviceEvent, RequestReceived
@@ -123,7 +123,13 @@ def test_recording_is_judged_by_the_requests_that_it_has(tmp_path: Path) -> None
     assert 20 < len(decided) < sum(f["verdict"] == "confirmed" for f in whole["facts"])
     assert found[half]["finished"] is False
     done = cobotwire("survey", "--from", recording, "--settings", "-o", tmp_path / "no.zip")
-    assert (done.returncode, "shows only the queries" in done.stderr) == (2, True)
+    assert (done.returncode, "queries only" in done.stderr) == (2, True)
+    received = tmp_path / "received.pcapng"
+    tap = Recording(received, None)
+    tap.record("received", b"\0", 0.0)
+    tap.close()
+    done = cobotwire("survey", "--from", received, "-o", tmp_path / "no.zip")
+    assert (done.returncode, "holds no request" in done.stderr) == (2, True)
 
 
 def _archive(head: bytes, data: bytes) -> bytes:

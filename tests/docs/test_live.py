@@ -365,7 +365,7 @@ def test_wrong_edition_is_named_and_an_open_one_must_be_chosen(site: LiveSite, p
     site.table = editions.load("mercury_a1").TABLE
     page.choose("edition", "")
     page.click("#connect")
-    page.until(f"{SAID}.includes('cannot decide between mercury_a1 or mercury_b1 or mercury_x1')")
+    page.until(f"{SAID}.includes('several editions, mercury_a1, mercury_b1, mercury_x1: ')")
     assert "116 of their 159 commands are the same; these differ: " in page.text("said")
     page.choose("edition", "mercury_x1")
     page.click("#connect")
@@ -437,7 +437,7 @@ def test_survey_that_ends_early_says_why_and_its_file_contradicts_nothing(
         page.click("#run")
         _soon(lambda: (site.silent_after or 0) < 0)
         end()
-        page.until(f"/^It ended early: .*{why}/.test({SURVEYED})")
+        page.until(f"/^The survey ended early: .*{why}/.test({SURVEYED})")
         site.silent_after = None
 
     _connect(page)
@@ -458,7 +458,7 @@ def test_survey_refuses_a_question_that_is_no_query(
     site.instead["editions/mycobot280.json"] = json.dumps(facts)
     _connect(page)
     page.click("#run")
-    page.until(f"{SURVEYED}.startsWith('It ended early: power_off is not a query (power)')")
+    page.until(f"{SURVEYED}.startsWith('The survey ended early: power_off is not a query (power)')")
     assert bytes.fromhex("FE FE 02 11 FA") not in site.sent
 
 

@@ -116,8 +116,9 @@ def survey(
     """
     recorded = None
     if recording is not None:
-        if settings or allow_motion:
-            raise UsageError("from", message="a recording shows only the queries that it has")
+        if settings or allow_motion or simulated or port is not None:
+            message = "--from judges a recording: no URL and no --simulated, and queries only"
+            raise UsageError("from", message=message)
         edition, recorded = _recorded(recording, edition)
     table = editions.load(edition).TABLE
     subject = Subject(port, None, None, simulated, baudrate, recorded)
@@ -173,6 +174,9 @@ def _recorded(path: str, edition: str) -> tuple[str, RecordedTransport]:
         packets = list(packets_of_interface(capture, 0))
         codec = codec_of_interface(capture, 0, edition)
         warn_if_incomplete(capture)
+    if not any(packet.direction == "sent" for packet in packets):
+        message = f"{path} holds no request, so there is nothing to judge"
+        raise UsageError("from", path, message=message)
     if codec.table.edition in editions.names():
         edition = codec.table.edition
     return edition, RecordedTransport(packets, codec)
