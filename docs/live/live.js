@@ -184,7 +184,7 @@ export class Live extends Session {
     await this.arm.call(this.facts.robot.stop);
   }
 
-  // Send the queries of a survey; return in words what came, and when the recording of it begins and ends.
+  // Send the queries of a survey; return in words what came, and the numbers of its entries.
   async survey() {
     const [{ arm, facts }, { questions, leftOut }] = [this, this.facts.survey];
     if (!arm) throw new Error("no arm is connected");
@@ -193,8 +193,8 @@ export class Live extends Session {
     if (moving && Object.values(await arm.call(moving)).some(Boolean)) throw new Error("the arm is moving: wait until it rests, or stop it");
     const { signal } = (this.surveying = new AbortController());
     let [asked, replied, silent, why] = [0, 0, 0, ""];
-    const [begin, asking] = [this.time, arm.withSignal(signal)];
-    let end = begin;
+    const [first, asking] = [this.count, arm.withSignal(signal)];
+    let last = first;
     const ask = async (name, given) => {
       this.permitted(name);
       asked += 1;
@@ -205,7 +205,7 @@ export class Live extends Session {
         if (error instanceof ReplyTimeout) return;
         if (!(error instanceof ProtocolError)) throw error;
       }
-      [silent, replied, end] = [0, replied + 1, this.time + 0.001];
+      [silent, replied, last] = [0, replied + 1, this.count];
     };
     const alive = questions.find(([name]) => name === this.polled[0].name);
     try {
@@ -221,7 +221,7 @@ export class Live extends Session {
     }
     this.surveying = undefined;
     const not = Object.entries(leftOut).map(([name, reason]) => `${name} (${reason})`);
-    return { begin, end, text: `${why}${asked} queries were sent, and ${replied} got a reply. Not sent: ${not.join(", ") || "nothing"}.` };
+    return { first, last, text: `${why}${asked} queries were sent, and ${replied} got a reply. Not sent: ${not.join(", ") || "nothing"}.` };
   }
 
   endSurvey() {

@@ -60,6 +60,11 @@ export class Session {
     }
   }
 
+  // The number of the next entry.
+  get count() {
+    return this.dropped + this.entries.length;
+  }
+
   add(entries) {
     for (const entry of entries) {
       entry.n = this.dropped + this.entries.push(entry) - 1;
@@ -115,10 +120,12 @@ export class Session {
   }
 
   // Return a recording of the entries that a query selects.
-  exported({ begin, end, direction, command }) {
+  exported({ begin, end, direction, command, first = 0, last = Infinity }) {
     const [from, to] = [Number(begin || -Infinity), Number(end || Infinity)];
     if (Number.isNaN(from) || Number.isNaN(to)) throw new Error("a time is a number of seconds");
-    const inside = ({ t, d, data }) => data && t >= from && t < to && (!direction || d === direction);
+    // Bytes that may still become a frame have no number.
+    const numbered = (n = Infinity) => n >= Number(first) && (n < Number(last) || last === Infinity);
+    const inside = ({ n, t, d, data }) => data && numbered(n) && t >= from && t < to && (!direction || d === direction);
     const chosen = (entry) => inside(entry) && (!command || this.read(entry)?.command === command);
     // A copy, since entries come and go meanwhile.
     const entries = [...this.entries, ...this.streams.flatMap((stream) => stream.begun())];

@@ -116,6 +116,7 @@ def test_recording_is_judged_by_the_requests_that_it_has(tmp_path: Path) -> None
         found[source], _ = read_survey(judged)
     assert found[recording]["facts"] == whole["facts"]
     assert found[recording]["finished"] is True
+    assert found[recording]["simulated"] is True
     assert found[recording]["date"] <= whole["date"]
     decided = {f["fact"]: f["verdict"] for f in found[half]["facts"] if f["verdict"] != "not seen"}
     # The device is silent to what was not recorded, which contradicts nothing.

@@ -420,7 +420,7 @@ def test_survey_sends_queries_only_and_its_file_is_judged(
     assert {TABLE.command(request.command).safety for request in sent} == {"query"}
     file, judged = _kept(page, tmp_path, "survey-mycobot280.pcapng"), tmp_path / "survey.zip"
     whole = tmp_path / "whole.zip"
-    assert cobotwire("survey", "--from", file, "-o", judged).returncode == 1
+    assert cobotwire("survey", "--from", file, "--real-arm", "-o", judged).returncode == 1
     assert cobotwire("survey", "--simulated", "-o", whole).returncode == 0
     found, expected = (
         {each["fact"]: each["verdict"] for each in read_survey(path)[0]["facts"]}

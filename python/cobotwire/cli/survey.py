@@ -47,7 +47,7 @@ WORKSPACE = (
 )
 
 NOT_SHOWN = (
-    "a program may be at this port, so the survey counts as one of a simulated arm and is no "
+    "a program may be {}, so the survey counts as one of a simulated arm and is no "
     "evidence; if it is a real arm, stop with Ctrl-C and state it with --real-arm"
 )
 
@@ -67,7 +67,9 @@ VERDICTS = ("confirmed", "contradicted", "not seen")
 @click.option("--yes-workspace-is-clear", is_flag=True, help="Do not ask before the motions.")
 @click.option("--continue", "resume", is_flag=True, help="Continue the interrupted survey of -o.")
 @click.option("--simulated", is_flag=True, help="Survey a simulated arm instead of URL.")
-@click.option("--real-arm", is_flag=True, help="State that URL is a real arm, not a simulated one.")
+@click.option(
+    "--real-arm", is_flag=True, help="State that the arm is a real one, not a simulated one."
+)
 @click.option(
     "--from",
     "recording",
@@ -105,7 +107,8 @@ def survey(
     the arm, after a question; any key stops it.
 
     A USB port shows that the arm is a real one. Of another port, such as socket://HOST:PORT,
-    --real-arm states it; without it, the survey counts as one of a simulated arm.
+    or of a recording, --real-arm states it; without it, the survey counts as one of a simulated
+    arm.
 
     The file holds the recording and each fact with its bytes. It names no port, host or user;
     passwords are not requested, and serial numbers are replaced by their hash. If the survey is
@@ -123,9 +126,10 @@ def survey(
     table = editions.load(edition).TABLE
     subject = Subject(port, None, None, simulated, baudrate, recorded)
     subject.validate()
-    if port is not None and not (real_arm or leads_to_device(port)):
+    if not (simulated or real_arm or (port is not None and leads_to_device(port))):
         simulated = True
-        click.echo(fold(NOT_SHOWN, err=True), err=True)
+        where = "at this port" if recorded is None else "what was recorded"
+        click.echo(fold(NOT_SHOWN.format(where), err=True), err=True)
     signer = None if sign is None else load_signer(sign)
     earlier = read_survey(output) if resume else None
     if earlier is not None and earlier[0].get("edition") != table.edition:
