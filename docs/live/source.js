@@ -10,7 +10,7 @@ const ABOUT = SERIAL
 const SURVEY =
   "The file will hold these bytes with their times, and the name of the edition: no serial number, and no name of this computer, " +
   "its user or its port. “cobotwire survey --from FILE --real-arm -o survey.zip” judges it. Settings and motions are surveyed only by the command line.";
-// How long a page that is left waits for its worker, which ends with the page.
+// How long a page that is being closed waits for its worker to stop the arm.
 const LEAVE_MS = 100;
 const infoOf = (port) => JSON.stringify(port.getInfo());
 

@@ -24,7 +24,7 @@ export interface Found {
   noise: Reason | undefined;
 }
 
-/** A run of bytes inside a frame. Parts of a word share its bytes: the last one has them. */
+/** A run of bytes inside a frame. If several parts are bits of one word, only the last of them lists the bytes. */
 export interface Part {
   at: number;
   size: number;
