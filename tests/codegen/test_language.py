@@ -201,7 +201,10 @@ STUFFED, NO_LENGTH = "cannot-say: Byte stuffing", "A protocol without a length"
         ),
         (
             {"check": "crc-16/umts"},
-            ["unknown-word: check of the frame cannot be crc-16/umts; did you mean crc16-umts?"],
+            [
+                "unknown-word: check of the frame cannot be crc-16/umts; did you mean crc16-umts "
+                "(FEE8)? In parentheses is the CRC of the ASCII digits 123456789"
+            ],
         ),
         (
             {"replies_have_command": False, "check_from": "data", "length_counts": ["data"]},
@@ -216,3 +219,32 @@ def test_frame_that_the_language_cannot_state_is_refused_by_name(
     frame: dict[str, Any], refused: list[str]
 ) -> None:
     assert _refusals(frame) == refused
+
+
+@pytest.mark.parametrize(
+    ("given", "named"),
+    [
+        ("crc16-ccitt-false", ["crc16-ibm-3740"]),
+        ("crc16-x25", ["crc16-ibm-sdlc"]),
+        ("CRC-32", ["crc32-iso-hdlc"]),
+        ("crc8", ["crc8-smbus"]),
+        ("CRC-CCITT", ["crc16-kermit", "crc16-ibm-3740", "crc16-xmodem"]),
+        ("crc16", ["crc16-arc", "crc16-modbus", "crc16-kermit", "crc16-ibm-3740", "crc16-xmodem"]),
+        ("crc16-modbsu", []),
+        ("crc32-mpg", []),
+        ("summ", ["sum"]),
+    ],
+)
+def test_only_crcs_that_have_the_given_name_elsewhere_are_suggested(
+    given: str, named: list[str]
+) -> None:
+    [text] = _refusals({"check": given})
+    hint = text.partition("; ")[2].partition("? ")[0]
+    suggested = re.findall(r"[\w-]+", re.sub(r" \(\w+\)|did you mean| or ", " ", hint))
+    assert (suggested if "did you mean" in text else []) == named
+    assert named or "compare the CRC of the ASCII digits 123456789" in text
+
+
+def test_page_lists_the_crcs_with_their_check_values() -> None:
+    assert "Greg Cook's catalogue" in language_page()
+    assert "`crc16-ibm-3740` 29B1, " in language_page()

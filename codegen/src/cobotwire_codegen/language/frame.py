@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from cobotwire_codegen.catalogue import CRCS
+from cobotwire_codegen.catalogue import CATALOGUE, CRCS
 from cobotwire_codegen.language import facts
 from cobotwire_codegen.language.limits import LIMITS, messages_by_key
 from cobotwire_codegen.language.names import ADDRESS
@@ -49,7 +49,8 @@ class Frame(Record):
     footer = optional(Hex(), "The bytes that end a frame. Left out: it ends with its check.")
     check = optional(
         Catalogued((*CHECKS, *CRCS), CHECKS.values()),
-        "How a damaged frame is detected: by a number after the data, or by the footer alone.",
+        "How a damaged frame is detected: by a number after the data, or by the footer alone. CRCs "
+        f"have the names of [Greg Cook's catalogue]({CATALOGUE}).",
         "footer",
     )
     check_from = optional(

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from fractions import Fraction
 from typing import Any
 
+from cobotwire_codegen.catalogue import CRCS, value_shown
 from cobotwire_codegen.language.changes import (
     CHANGE,
     REPLY_CHANGE,
@@ -112,6 +113,9 @@ def _record(record: type[Record]) -> Iterator[str]:
             yield from ("", f"Values of `{name}`:", "")
             words = zip(key.shape.known, key.shape.docs)
             yield from (f"- `{word}`: {doc}" for word, doc in words)
+    if record is Frame:
+        values = ", ".join(f"`{name}` {value_shown(name)}" for name in CRCS)
+        yield from ("", f"The CRCs, each with its value for the ASCII digits 123456789: {values}.")
     for pair in record.EXCLUSIVE:
         yield from ("", f"Only one of {' and '.join(f'`{key}`' for key in pair)} may be given.")
 

@@ -6,6 +6,7 @@ import re
 from collections.abc import Callable, Iterable
 from typing import Any, Generic, TypeVar
 
+from cobotwire_codegen.catalogue import check_hint
 from cobotwire_codegen.errors import Place, nearest
 from cobotwire_codegen.language.json_schema import Schema, either
 from cobotwire_codegen.language.names import wrong_name
@@ -123,9 +124,12 @@ class Word(Shape[str]):
         if isinstance(node, Scalar) and node.value in self.known:
             return str(node.value)
         given = str(node.value) if isinstance(node, Scalar) else KIND[type(node)]
-        hint = nearest(given, self.known)
-        note("unknown-word", f"{subject} cannot be {given}{hint}", node.place)
+        note("unknown-word", f"{subject} cannot be {given}{self.hint(given)}", node.place)
         return self.blank
+
+    def hint(self, given: str) -> str:
+        """Return a hint for an unknown word."""
+        return nearest(given, self.known)
 
     def schema(self) -> Schema:
         """Return the list of words."""
@@ -134,7 +138,7 @@ class Word(Shape[str]):
 
 
 class Catalogued(Word):
-    """A word of a list that is too long to show; the first words have descriptions."""
+    """A check; the list is too long to show, and only the words that are no CRC have docs."""
 
     def __init__(self, known: Iterable[str], docs: Iterable[str]) -> None:
         super().__init__(known)
@@ -142,6 +146,10 @@ class Catalogued(Word):
         first, last = self.known[: len(self.docs)], self.known[-1]
         shown = ", ".join(f"`{word}`" for word in first)
         self.words = f"one of {shown}, or a name of the catalogue such as `{last}`"
+
+    def hint(self, given: str) -> str:
+        """Return a hint for an unknown check."""
+        return check_hint(given, self.known[: len(self.docs)])
 
     def schema(self) -> Schema:
         """Return the list of words; only the first ones have descriptions."""
