@@ -133,6 +133,23 @@ def test_recording_is_judged_by_the_requests_that_it_has(tmp_path: Path) -> None
     assert (done.returncode, "holds no request" in done.stderr) == (2, True)
 
 
+def test_survey_continued_without_its_options_is_not_finished(tmp_path: Path) -> None:
+    path = tmp_path / "survey.zip"
+    cobotwire("survey", "--simulated", "-o", path)
+    content, recording = read_survey(path)
+    both, one = ["--settings", "--allow-motion"], ["--allow-motion"]
+    path.write_bytes(survey_file({**content, "finished": False, "left_out": both}, recording))
+    for words, left, level in (([], both, 1), (["--settings"], one, 2)):
+        done = cobotwire("survey", "--simulated", "--continue", *words, "-o", path)
+        assert f"still to run: --continue {' '.join(left)}" in " ".join(done.stdout.split())
+        content, _ = read_survey(path)
+        found = content["finished"], content["left_out"], content["level"]
+        assert found == (False, left, level)
+    path.write_bytes(survey_file({**content, "left_out": 5}, recording))
+    done = cobotwire("survey", "--simulated", "--continue", "-o", path)
+    assert "left_out is not a list of options" in done.stderr
+
+
 def _archive(head: bytes, data: bytes) -> bytes:
     file = BytesIO()
     with zipfile.ZipFile(file, "w") as archive:
@@ -178,6 +195,7 @@ def test_any_key_stops_the_motion_and_the_file_holds_what_was_found(tmp_path: Pa
     assert stopped
     content, _ = read_survey(path)
     assert (content["finished"], content["level"]) == (False, 3)
+    assert content["left_out"] == ["--allow-motion"]
     assert any(fact["verdict"] == "confirmed" for fact in content["facts"])
 
 

@@ -250,6 +250,8 @@ def _lines(found: Survey, content: dict[str, Any]) -> Iterator[str]:
     yield from (f"- {question}" for question in found.questions)
     if found.obstacle:
         yield f"{'!' if found.other else '-'} {found.obstacle}"
+    if found.left_out and not found.other:
+        yield f"- still to run: --continue {' '.join(found.left_out)}"
     verdicts = Counter(fact["verdict"] for fact in content["facts"])
     simulated = "; of a simulated arm" if content["simulated"] else ""
     yield "facts: " + ", ".join(f"{verdicts[v]} {v}" for v in VERDICTS) + simulated

@@ -45,6 +45,7 @@ def content_of(
         "cobotwire": cobotwire.__version__,
         "codec": cobotwire.codec_in_use(),
         "level": survey.level,
+        "left_out": survey.left_out,
         "host": {"system": platform.system(), "python": platform.python_version()},
         "hashed": survey.hashed,
         "finished": survey.finished,
@@ -150,6 +151,8 @@ def _check(content: Any) -> None:
     if not isinstance(content, dict) or content.get("format") != FORMAT:
         raise ValueError(f"{JSON} does not have the format {FORMAT!r}")
     facts = content.get("facts")
+    if not isinstance(content.get("left_out", []), list):
+        raise ValueError("left_out is not a list of options")
     if content.get("version") != VERSION or not isinstance(facts, list):
         raise ValueError(f"{JSON} is not of version {VERSION}, or lists no facts")
     for fact in facts:

@@ -87,6 +87,12 @@ class Survey:
         self.hashed: list[str] = []
         self.firmware: dict[str, str] = {}
         self.finished = False
+        # The highest level of which anything ran: 1 queries, 2 also settings, 3 also motion.
+        self.level = 1
+        # The options that were given, now or earlier, and that have not run to their end.
+        before = (earlier or {}).get("left_out", ())
+        options = {"--settings": settings, "--allow-motion": motion}
+        self.left_out = [name for name, given in options.items() if given or name in before]
         # Why the arm was not moved, or not surveyed at all; empty: it was, or need not be.
         self.obstacle = ""
         # Whether the arm speaks another edition.
@@ -114,11 +120,6 @@ class Survey:
         return list(self._tester.steps())
 
     @property
-    def level(self) -> int:
-        """The level: 1 sends queries, 2 also settings, 3 also motion."""
-        return 3 if self._motion else 2 if self._settings else 1
-
-    @property
     def contradicted(self) -> list[str]:
         """The contradicted facts: each reason once, after the names of its facts."""
         names: dict[str, list[str]] = {}
@@ -144,16 +145,25 @@ class Survey:
         if self.other:
             return
         try:
-            self._run_steps([*self._steps(QUERIES), *self._steps(SETTINGS)], progress)
+            queries, setting = self._steps(QUERIES), self._steps(SETTINGS)
+            self._run_steps(queries, progress)
+            self.level = 2 if self._settings and not self._ended else 1
+            self._run_steps(setting, progress)
+            self._note_end("--settings", self._settings)
             self._read_now(progress)
             if self._motion:
                 self._move(progress)
-            self.finished = not self._ended
+            self._note_end("--allow-motion", self._motion)
+            self.finished = not self._ended and not self.left_out
         finally:
             try:
                 self._tester.end()
             finally:
                 self._conclude()
+
+    def _note_end(self, option: str, given: bool) -> None:
+        if given and not self._ended:
+            self.left_out.remove(option)
 
     def _is_other_edition(self) -> bool:
         """Return whether the arm speaks another edition, as far as this package has it.
@@ -255,7 +265,7 @@ class Survey:
         if not around:
             self.obstacle = "no motion: the edition or the arm does not report the joints' angles"
             return
-        device = self._tester.device
+        self.level, device = 3, self._tester.device
         classes = device.permissions.classes | {"motion", "power"}
         device.permissions = Permissions(classes, SPEED, around)
         for body in (self._first_step, self._poses):
