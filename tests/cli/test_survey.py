@@ -186,7 +186,8 @@ def test_any_key_stops_the_motion_and_the_file_holds_what_was_found(tmp_path: Pa
         PtyServer(SimulatedArm(TABLE, on_event=note)) as server,
         Terminal("survey", server.url, *words, columns=80, lines=24) as terminal,
     ):
-        terminal.until(lambda: "gripperempty?[y/N]" in terminal.text())
+        terminal.until(lambda: "supported?[y/N]" in terminal.text())
+        assert "anditsinks" in terminal.text()
         terminal.press(b"y\n")
         terminal.until(lambda: "firstmotions" in terminal.text())
         terminal.press(b"x")

@@ -42,8 +42,9 @@ from cobotwire.transport.tapped import tapped
 
 WORKSPACE = (
     "The arm will make a few small slow motions, up to 5 degrees from where each joint is; a fact "
-    "that is wrong may make one larger. Any key stops it. Is the workspace clear, the emergency "
-    "stop within reach, and the gripper empty?"
+    "that is wrong may make one larger. Any key stops it. An arm that is off is switched on, and "
+    "off again at the end, and it sinks then. Is the workspace clear, the emergency stop within "
+    "reach, the gripper empty, and the arm supported?"
 )
 
 NOT_SHOWN = (
@@ -104,7 +105,8 @@ def survey(
     It takes at most ten minutes. At first only queries are sent, and what the arm reports is
     compared: encoders with angles, angles with coordinates, targets with readings. --settings
     also changes settings that a power cycle resets, and restores them. --allow-motion also moves
-    the arm, after a question; any key stops it.
+    the arm, after a question; any key stops it. It switches an arm that is off on, and off at the
+    end: then the arm sinks.
 
     A USB port shows that the arm is a real one. Of another port, such as socket://HOST:PORT,
     or of a recording, --real-arm states it; without it, the survey counts as one of a simulated
