@@ -42,7 +42,7 @@ test: set-up front-end-if-reachable ## run everything: linters, types, generated
 	$(MAKE) --no-print-directory --jobs 6 $(IN_TURN) $(LANES) lint-and-rust
 
 # Compile while pip fetches the tools. Only one pip at a time may install.
-set-up: .venv/.base
+set-up: .venv/.base ## make .venv with the tools and the compiled package, for all other targets
 	+$(MAKE) --no-print-directory --jobs 2 .venv/.tools .venv/.compiled
 	+$(MAKE) --no-print-directory .venv/.native spec/schema.json $(RUST_DATA)
 
