@@ -160,6 +160,11 @@ USUAL = {
     "doc": "A frame.",
 }
 DELIMITED = {"check": "footer", "length_counts": ["command", "data"]}
+OWN = {"value": 1, "doc": "A device."}
+SILENT = {"value": 254, "doc": "All devices.", "replies": "none"}
+SILENT_FIRST = (
+    "bad-frame: the first address, ALL, is the default, but has no replies; list another one first"
+)
 STUFFED, NO_LENGTH = "cannot-say: Byte stuffing", "A protocol without a length"
 
 
@@ -175,6 +180,9 @@ STUFFED, NO_LENGTH = "cannot-say: Byte stuffing", "A protocol without a length"
         ({**DELIMITED, "header": "7E", "footer": "7E", "stuffing": False}, []),
         ({**DELIMITED, "header": "7E", "footer": "7F"}, []),
         ({**DELIMITED, "header": "00", "footer": "00", "cobs": True}, [STUFFED]),
+        ({"addresses": {"ALL": SILENT}}, []),
+        ({"addresses": {"A": OWN, "ALL": SILENT}}, []),
+        ({"addresses": {"ALL": SILENT, "A": OWN}}, [SILENT_FIRST]),
         ({"header": "24 4D 3C"}, ["cannot-say: A header for each direction"]),  # MSP
         ({"header": "24 4D", "direction": {}}, ["cannot-say: A header for each direction"]),
         ({"header": "24 58 3C 00"}, ["cannot-say: Further bytes before the data"]),

@@ -63,6 +63,10 @@ def mistakes(frame: Frame) -> Iterator[str]:
         yield "the footer must have one byte, since `check` is footer"
     if len(frame.footer) > 2:
         yield "the footer must have at most two bytes"
+    silent = [address.replies == "none" for address in frame.addresses]
+    if silent[:1] == [True] and not all(silent):
+        first = f"the first address, {frame.addresses[0].name}, is the default"
+        yield f"{first}, but has no replies; list another one first"
     yield from _layout(frame)
     yield from _counted(frame)
     yield from _check(frame)
