@@ -180,6 +180,7 @@ STUFFED, NO_LENGTH = "cannot-say: Byte stuffing", "A protocol without a length"
         ({**DELIMITED, "header": "7E", "footer": "7E", "stuffing": False}, []),
         ({**DELIMITED, "header": "7E", "footer": "7F"}, []),
         ({**DELIMITED, "header": "00", "footer": "00", "cobs": True}, [STUFFED]),
+        ({"encoding": "hex"}, ["cannot-say: Bytes in another encoding"]),  # Modbus ASCII
         ({"addresses": {"ALL": SILENT}}, []),
         ({"addresses": {"A": OWN, "ALL": SILENT}}, []),
         ({"addresses": {"ALL": SILENT, "A": OWN}}, [SILENT_FIRST]),

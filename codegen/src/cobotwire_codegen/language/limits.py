@@ -43,7 +43,15 @@ STUFFING = Limit(
     "they are, so such frames would be wrong. If the header suggests stuffing but the device "
     "inserts no bytes, write `stuffing: false` in the frame.",
     "choose a mode of the device without it, such as Dynamixel 1.0",
-    ("byte_stuffing", "bit_stuffing", "escape", "escapes", "escaping", "encoding", "cobs", "slip"),
+    ("byte_stuffing", "bit_stuffing", "escape", "escapes", "escaping", "cobs", "slip"),
+)
+OTHER_ENCODING = Limit(
+    "Bytes in another encoding",
+    "the ASCII hexadecimal digits of Modbus ASCII, Base64",
+    "Each byte of a frame is sent as it is: not as two ASCII digits, and not by COBS or SLIP (see "
+    "[byte stuffing](#byte-stuffing)).",
+    "choose a binary mode of the device, or use a library for that protocol",
+    ("encoding", "ascii", "hexadecimal", "base64"),
 )
 NO_HEADER = Limit(
     "A protocol without a header",
@@ -100,6 +108,7 @@ CHARACTER = Limit(
 )
 LIMITS = (
     STUFFING,
+    OTHER_ENCODING,
     NO_HEADER,
     NO_LENGTH,
     NO_COMMAND,
