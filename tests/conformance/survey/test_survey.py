@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 import small_specs
 from cobotwire import editions
 from cobotwire.conformance.survey import Survey
+from cobotwire.conformance.survey.facts import Fact, Frames
 from cobotwire.conformance.survey.file import continued
 from cobotwire.protocol.table import Command, Number, Table
 from targets.specs import edition_of
@@ -154,3 +156,8 @@ def test_continued_survey_keeps_a_fact_that_only_the_earlier_one_could_decide() 
     content = {"facts": [unseen], "hashed": [], "level": 2}
     merged, _ = continued(({"facts": [unseen, late], "level": 2}, b""), content, b"")
     assert merged["facts"] == [unseen, late]
+
+
+def test_long_evidence_of_a_fact_is_hex_that_a_reader_of_the_file_accepts() -> None:
+    fact: Any = Fact("a/b/command/present", frames=(Frames(bytes(60), bytes(2000)),)).as_json()
+    assert [len(bytes.fromhex(fact["frames"][0][k])) for k in ("sent", "received")] == [60, 300]

@@ -6,7 +6,6 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from typing import Literal, NamedTuple
 
-from cobotwire.conformance.hex_text import shown
 from cobotwire.conformance.report import Exchange
 from cobotwire.protocol.effects import effect_of
 from cobotwire.protocol.table import Command, Field, Table
@@ -31,6 +30,8 @@ Found = Literal["confirmed", "contradicted", "not seen"]
 NOT_SEEN = "No reading of this survey shows it."
 # How many exchanges a fact keeps.
 MOST_FRAMES = 3
+# How many bytes of a frame it keeps; any frame is shorter, but noise can be longer.
+MOST_BYTES = 300
 
 
 class Frames(NamedTuple):
@@ -51,7 +52,8 @@ class Fact:
 
     def as_json(self) -> dict[str, object]:
         """Return the fact as the file holds it."""
-        frames = [{"sent": shown(f.sent), "received": shown(f.received)} for f in self.frames]
+        pairs = (f._asdict().items() for f in self.frames)
+        frames = [{k: data[:MOST_BYTES].hex(" ").upper() for k, data in pair} for pair in pairs]
         return {"fact": self.fact, "verdict": self.verdict, "why": self.why, "frames": frames}
 
 
