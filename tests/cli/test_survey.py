@@ -150,6 +150,20 @@ def test_survey_continued_without_its_options_is_not_finished(tmp_path: Path) ->
     assert "left_out is not a list of options" in done.stderr
 
 
+def test_survey_and_doctor_send_to_the_given_address(tmp_path: Path) -> None:
+    path, table = tmp_path / "survey.zip", editions.load("mybuddy").TABLE
+    traffic = [tmp_path / "survey.pcapng", tmp_path / "doctor.pcapng"]
+    words = ("--edition", "mybuddy"), ("--address", "right")
+    cobotwire(*words[0], "survey", "--simulated", *words[1], "-o", path)
+    traffic[0].write_bytes(read_survey(path)[1])
+    with PtyServer(SimulatedArm(table, powered=True)) as server:
+        cobotwire(*words[0], "doctor", server.url, *words[1], "--record", traffic[1])
+    at = table.frame.address_at
+    assert at is not None
+    for recorded in map(read, traffic):
+        assert {each.data[at] for each in recorded if each.direction == "sent"} == {2}
+
+
 def _archive(head: bytes, data: bytes) -> bytes:
     file = BytesIO()
     with zipfile.ZipFile(file, "w") as archive:

@@ -10,7 +10,7 @@ import click
 
 from cobotwire import codec as codecs
 from cobotwire import editions
-from cobotwire.cli.shared.arm_options import arm_options, open_arm
+from cobotwire.cli.shared.arm_options import address_option, arm_options, open_arm, parse_address
 from cobotwire.cli.shared.completers import complete_ports
 from cobotwire.cli.shared.edition_option import uses_edition
 from cobotwire.cli.shared.exit_codes import LINK_FAILED
@@ -27,6 +27,7 @@ MOST = 10_000
 @click.command()
 @click.argument("port", metavar="URL", shell_complete=complete_ports)
 @arm_options
+@address_option
 @click.option(
     "--timeout", type=float, default=0.5, show_default=True, help="Seconds to wait for a reply."
 )
@@ -44,6 +45,7 @@ def doctor(
     port: str,
     baudrate: int | None,
     record: str | None,
+    address: str | None,
     timeout: float,
     count: int,
     as_json: bool,
@@ -62,7 +64,9 @@ def doctor(
         # Without retries, so that the report shows lost replies.
         once = RetryPolicy(attempts=1)
         with open_arm(port, package.TABLE, baudrate, record) as transport:
-            arm: Client = package.CLIENT(transport, timeout=timeout, retry=once, on_error="leave")
+            options: dict[str, Any] = {"timeout": timeout, "retry": once, "on_error": "leave"}
+            to = None if address is None else parse_address(address)
+            arm: Client = package.CLIENT(transport, address=to, **options)
             with arm:
                 Doctor(arm, transport, codecs.load(package.TABLE), report).examine(count)
     except LinkError as error:

@@ -20,7 +20,7 @@ from cobotwire.capture import Recording
 from cobotwire.capture.export.atomic_file import AtomicFile
 from cobotwire.capture.streams import packets_of_interface
 from cobotwire.cli.shared.any_key import interrupted_by_any_key
-from cobotwire.cli.shared.arm_options import baudrate_option
+from cobotwire.cli.shared.arm_options import address_option, baudrate_option, parse_address
 from cobotwire.cli.shared.completers import complete_ports
 from cobotwire.cli.shared.edition_option import uses_edition
 from cobotwire.cli.shared.exit_codes import INTERRUPTED, LINK_FAILED
@@ -83,6 +83,7 @@ VERDICTS = ("confirmed", "contradicted", "not seen")
 )
 @click.option("--json", "as_json", is_flag=True, help="Print what was found as JSON.")
 @baudrate_option
+@address_option
 @uses_edition
 def survey(
     edition: str,
@@ -99,6 +100,7 @@ def survey(
     sign: str | None,
     as_json: bool,
     baudrate: int | None,
+    address: str | None,
 ) -> None:
     """Survey the arm at URL: which facts of the edition it confirms, and which it contradicts.
 
@@ -132,6 +134,7 @@ def survey(
         simulated = True
         where = "at this port" if recorded is None else "what was recorded"
         click.echo(fold(NOT_SHOWN.format(where), err=True), err=True)
+    to = None if address is None else parse_address(address)
     signer = None if sign is None else load_signer(sign)
     earlier = read_survey(output) if resume else None
     if earlier is not None and earlier[0].get("edition") != table.edition:
@@ -152,7 +155,9 @@ def survey(
     try:
         with tempfile.TemporaryDirectory(prefix="cobotwire-") as folder:
             path = Path(folder) / RECORDING
-            found, stopped = _run(table, edition, subject, path, earlier, settings, allow_motion)
+            found, stopped = _run(
+                table, edition, subject, path, earlier, settings, allow_motion, to
+            )
             if recorded is not None and recorded.missing:
                 found.finished = False
                 found.obstacle = found.obstacle or INCOMPLETE
@@ -196,6 +201,7 @@ def _run(
     earlier: tuple[dict[str, Any], bytes] | None,
     settings: bool,
     motion: bool,
+    address: int | str | None,
 ) -> tuple[Survey, int]:
     """Return the survey, and the exit code if it was interrupted; 0 if not."""
     tap = _Tap(Recording(path, codecs.load(table), baudrate=subject.baudrate or table.baudrate))
@@ -210,6 +216,7 @@ def _run(
             earlier=earlier and earlier[0],
             sources=spec_lines(edition),
             on_private=tap.hide,
+            address=address,
         )
         try:
             with step_progress() as show, interrupted_by_any_key(motion):

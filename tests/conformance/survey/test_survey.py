@@ -12,6 +12,7 @@ from cobotwire import editions
 from cobotwire.conformance.survey import Survey
 from cobotwire.conformance.survey.facts import Fact, Frames
 from cobotwire.conformance.survey.file import continued
+from cobotwire.protocol.errors import UsageError
 from cobotwire.protocol.table import Command, Number, Table
 from targets.specs import edition_of
 from vectors import sampled
@@ -161,3 +162,10 @@ def test_continued_survey_keeps_a_fact_that_only_the_earlier_one_could_decide() 
 def test_long_evidence_of_a_fact_is_hex_that_a_reader_of_the_file_accepts() -> None:
     fact: Any = Fact("a/b/command/present", frames=(Frames(bytes(60), bytes(2000)),)).as_json()
     assert [len(bytes.fromhex(fact["frames"][0][k])) for k in ("sent", "received")] == [60, 300]
+
+
+def test_default_address_without_replies_is_refused_with_the_option_to_choose_another() -> None:
+    table = editions.load("mybuddy").TABLE
+    silent = table.addresses[0]._replace(replies="none")
+    with pytest.raises(UsageError, match=r"'ALL'; allowed: .* \(--address\)"):
+        Survey(connected(table), table._replace(addresses=(silent, *table.addresses[1:])))

@@ -80,7 +80,7 @@ class Tester:
         """
         device_address = find_address(table, address)
         if device_address is not None and device_address.replies == "none":
-            raise UsageError("address", device_address.name, "an address that has replies")
+            raise UsageError("address", device_address.name, "one that has replies (--address)")
         self.connection = connection
         self.table = table
         self._repeat = repeat

@@ -69,6 +69,7 @@ class Survey:
         earlier: Mapping[str, Any] | None = None,
         sources: Mapping[str, str] | None = None,
         on_private: Callable[[bool], object] = bool,
+        address: int | str | None = None,
     ) -> None:
         """Prepare a survey; nothing is sent.
 
@@ -82,6 +83,7 @@ class Survey:
                 tested again.
             sources: where the spec defines each command, by name.
             on_private: called with True before replies come that name a device, False after them.
+            address: the device's address, by number or name; left out: the edition's first one.
         """
         self.table, self.facts = table, Facts(table)
         self.hashed: list[str] = []
@@ -103,7 +105,10 @@ class Survey:
         self._done = {f["fact"] for f in facts if f["verdict"] != "not seen"}
         self._settings, self._on_private = settings, on_private
         allowed = Permissions(frozenset({"setting"} if settings else ()))
-        self._tester = Tester(connection, table, permissions=allowed, sources=sources)
+        self._address = address
+        self._tester = Tester(
+            connection, table, permissions=allowed, sources=sources, address=address
+        )
         self._interpreter = Interpreter(table, self._tester.device, self.facts)
         self._snapshots: list[dict[Key, Row]] = []
         self._evidence: dict[Key, list[Frames]] = {}
@@ -174,10 +179,11 @@ class Survey:
             return False
         client_type: type[Client] = editions.load(self._package).CLIENT
         transport = self._tester.connection.transport
+        options: dict[str, Any] = {"timeout": EDITION_SECONDS, "address": self._address}
         other = None
         with (
             suppress(NotSupported),
-            client_type(borrowed(transport), timeout=EDITION_SECONDS) as client,
+            client_type(borrowed(transport), **options) as client,
         ):
             own, other = other_edition(client, self.table, transport, timeout=EDITION_SECONDS)
         if other is None:
