@@ -79,6 +79,13 @@ def test_motion_needs_an_answer_before_a_byte_is_sent(tmp_path: Path) -> None:
     assert not list(tmp_path.iterdir())
 
 
+def test_motion_of_all_devices_at_once_is_refused(tmp_path: Path) -> None:
+    words = ("--allow-motion", "--yes-workspace-is-clear", "-o", tmp_path / "survey.zip")
+    done = cobotwire("--edition", "mybuddy", "survey", "--simulated", *words)
+    assert (done.returncode, "LEFT, RIGHT, WAIST" in done.stderr) == (2, True)
+    assert not list(tmp_path.iterdir())
+
+
 def test_survey_continues_an_interrupted_one(tmp_path: Path) -> None:
     path = tmp_path / "survey.zip"
     cobotwire("survey", "--simulated", "-o", path)

@@ -35,6 +35,7 @@ from cobotwire.conformance.survey.file import RECORDING, content_of, continued
 from cobotwire.conformance.survey.recorded import RecordedTransport
 from cobotwire.inspect.captured import codec_of_interface
 from cobotwire.inspect.seal import load_signer
+from cobotwire.protocol.addresses import check_one_moves
 from cobotwire.protocol.errors import LinkError, UsageError
 from cobotwire.protocol.table import Table
 from cobotwire.transport.serial.ports import leads_to_device
@@ -135,6 +136,8 @@ def survey(
         where = "at this port" if recorded is None else "what was recorded"
         click.echo(fold(NOT_SHOWN.format(where), err=True), err=True)
     to = None if address is None else parse_address(address)
+    if allow_motion:
+        check_one_moves(table, to)
     signer = None if sign is None else load_signer(sign)
     earlier = read_survey(output) if resume else None
     if earlier is not None and earlier[0].get("edition") != table.edition:
