@@ -180,6 +180,9 @@ commands:
     [
         ("nosuchpackage:arm", "no-package: the package nosuchpackage is not installed"),
         ("cobotwire:mycobot281", "ships no edition mycobot281; did you mean mycobot280?"),
+        ("mycobot280", "there is no file mycobot280; did you mean cobotwire:mycobot280?"),
+        ("mycobot280.yaml", "no file mycobot280.yaml; did you mean cobotwire:mycobot280?"),
+        ("mycobot281", "there is no file mycobot281\n"),
         ("os:path", "no-package: the package os is not installed"),
     ],
 )

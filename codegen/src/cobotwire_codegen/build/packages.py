@@ -30,15 +30,29 @@ def packaged_edition(base: str, place: Place) -> Path:
         SpecError: the package is not installed, or it has no such edition.
     """
     package, _, edition = base.partition(":")
-    found = find_spec(package)
-    folders = (found.submodule_search_locations or ()) if found is not None else ()
+    folders = _folders(package)
     if not folders:
         message = f"the package {package} is not installed: pip install {package}"
         raise SpecError([Problem(place, "no-package", message)])
-    shipped = {
-        path.stem: path for folder in folders for path in Path(folder).glob("spec/editions/*.yaml")
-    }
+    shipped = _shipped(folders)
     if edition not in shipped:
         message = f"the package {package} ships no edition {edition}{nearest(edition, shipped)}"
         raise SpecError([Problem(place, "no-file", message)])
     return shipped[edition]
+
+
+def packaged_hint(name: str) -> str:
+    """Return a hint for a base that is no file, if ``cobotwire`` ships an edition of its name."""
+    edition = name.removesuffix(".yaml")
+    known = edition in _shipped(_folders("cobotwire"))
+    return f"; did you mean cobotwire:{edition}?" if known else ""
+
+
+def _folders(package: str) -> list[str]:
+    found = find_spec(package)
+    return list((found and found.submodule_search_locations) or ())
+
+
+def _shipped(folders: list[str]) -> dict[str, Path]:
+    files = (path for folder in folders for path in Path(folder).glob("spec/editions/*.yaml"))
+    return {path.stem: path for path in files}

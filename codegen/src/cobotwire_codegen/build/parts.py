@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from cobotwire_codegen import language
-from cobotwire_codegen.build.packages import names_package, packaged_edition
+from cobotwire_codegen.build.packages import names_package, packaged_edition, packaged_hint
 from cobotwire_codegen.errors import Place, Problem, SpecError, nearest
 from cobotwire_codegen.language.records import Key
 from cobotwire_codegen.language.shapes import items_of
@@ -157,7 +157,8 @@ class Files:
             return packaged_edition(name, node.place)
         if not isinstance(name, str) or not self._is_file(name):
             shown = str(name) if len(str(name)) <= 80 else f"{str(name)[:77]}..."
-            problem = Problem(node.place, "no-file", f"there is no file {shown}")
+            message = f"there is no file {shown}{packaged_hint(str(name))}"
+            problem = Problem(node.place, "no-file", message)
             raise SpecError([*self._problems, problem])
         return self._folder / name
 
