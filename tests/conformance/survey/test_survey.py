@@ -164,6 +164,13 @@ def test_long_evidence_of_a_fact_is_hex_that_a_reader_of_the_file_accepts() -> N
     assert [len(bytes.fromhex(fact["frames"][0][k])) for k in ("sent", "received")] == [60, 300]
 
 
+def test_query_that_a_part_of_the_robot_never_replies_to_contradicts_no_effect() -> None:
+    table = editions.load("mybuddy").TABLE
+    survey = Survey(connected(table), table, address="left")
+    survey.run()
+    assert survey.contradicted == []
+
+
 def test_default_address_without_replies_is_refused_with_the_option_to_choose_another() -> None:
     table = editions.load("mybuddy").TABLE
     silent = table.addresses[0]._replace(replies="none")

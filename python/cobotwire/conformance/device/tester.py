@@ -37,6 +37,11 @@ SILENCE = ("came nothing", "came no valid reply", "came noise ")
 Progress = Callable[[Step, int, int], None]
 
 
+def is_silence(result: Result) -> bool:
+    """Return whether a verdict says that no valid reply came."""
+    return any(words in result.reason for words in SILENCE)
+
+
 class Tester:
     """Tests the device at the other end of a connection against an edition."""
 
@@ -253,8 +258,7 @@ class Tester:
         """Turn a failure by silence into not supported, if the device may lack the command."""
         if result.verdict is not Verdict.FAIL:
             return result
-        silent = any(words in result.reason for words in SILENCE)
-        stated = self._lacking.get(result.command, "") if silent else ""
+        stated = self._lacking.get(result.command, "") if is_silence(result) else ""
         never = not self.device.noticed.reply_seconds.get(result.command)
         if not stated and not (never and result.command in self._optional):
             return result

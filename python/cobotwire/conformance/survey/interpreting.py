@@ -7,6 +7,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from cobotwire import codec as codecs
 from cobotwire.codec.interface import Frame
 from cobotwire.conformance.device.device import Device
+from cobotwire.conformance.device.tester import is_silence
 from cobotwire.conformance.report import Result, Verdict
 from cobotwire.conformance.survey.facts import Facts, Found, Frames, frames_of
 from cobotwire.inspect.cross_checks import CrossChecks, Mistake
@@ -85,6 +86,8 @@ class Interpreter:
                 if not any(frame.received for frame in own):
                     self._silent[command.name] = own
                 return None
+        elif command.name not in self._device.noticed.reply_seconds and is_silence(result):
+            return None  # The verdict on ``query-replied`` says it.
         elif result.case == "reply-frame":
             aspect = "id" if self._has_other_id(command, frames) else "length"
         elif result.case == "reply-fields":
