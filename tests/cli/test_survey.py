@@ -106,6 +106,8 @@ def test_survey_continues_an_interrupted_one(tmp_path: Path) -> None:
     assert after["level"] == 2
     other = cobotwire("--edition", "mycobot", "survey", "--simulated", "--continue", "-o", path)
     assert "is the survey of edition 'mycobot280'" in other.stderr
+    other = cobotwire("survey", "--simulated", "--continue", "--address", "2", "-o", path)
+    assert "is the survey of another device: continue it without --address" in other.stderr
 
 
 def test_recording_is_judged_by_the_requests_that_it_has(tmp_path: Path) -> None:

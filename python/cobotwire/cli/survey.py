@@ -139,20 +139,12 @@ def survey(
     if allow_motion:
         check_one_moves(table, to)
     signer = None if sign is None else load_signer(sign)
-    earlier = read_survey(output) if resume else None
-    if earlier is not None and earlier[0].get("edition") != table.edition:
-        message = f"{output} is the survey of edition {earlier[0].get('edition')!r}"
-        raise UsageError("continue", output, message=message)
-    if allow_motion and not yes_workspace_is_clear:
-        if not sys.stdin.isatty():
-            message = (
-                "--allow-motion needs a terminal for its question, or --yes-workspace-is-clear"
-            )
-            raise UsageError("allow_motion", message=message)
-        click.confirm(fold(WORKSPACE, err=True), abort=True, err=True)
+    earlier = _earlier(output, table, to) if resume else None
     if not resume and Path(output).exists():
         message = f"{output} exists already; --continue goes on with an interrupted survey"
         raise UsageError("output", output, message=message)
+    if allow_motion and not yes_workspace_is_clear:
+        _confirm_workspace()
     file = AtomicFile(Path(output), overwrite=resume)
     began = datetime.now(UTC) if recorded is None else recorded.began
     try:
@@ -180,6 +172,27 @@ def survey(
         file.discard()
     report_written(output)
     sys.exit(stopped or int(bool(found.contradicted)))
+
+
+def _earlier(path: str, table: Table, to: int | str | None) -> tuple[dict[str, Any], bytes]:
+    """Return the content and the recording of the survey of this device that is continued."""
+    content, recording = read_survey(path)
+    if content.get("edition") != table.edition:
+        message = f"{path} is the survey of edition {content.get('edition')!r}"
+        raise UsageError("continue", path, message=message)
+    address = content.get("address")
+    if address != to:
+        option = "without --address" if address is None else f"with --address {address!r}"
+        message = f"{path} is the survey of another device: continue it {option}"
+        raise UsageError("address", to, message=message)
+    return content, recording
+
+
+def _confirm_workspace() -> None:
+    if not sys.stdin.isatty():
+        message = "--allow-motion needs a terminal for its question, or --yes-workspace-is-clear"
+        raise UsageError("allow_motion", message=message)
+    click.confirm(fold(WORKSPACE, err=True), abort=True, err=True)
 
 
 def _recorded(path: str, edition: str) -> tuple[str, RecordedTransport]:

@@ -38,6 +38,7 @@ def content_of(
         "version": VERSION,
         "edition": survey.table.edition,
         "edition_digest": edition_digest(package),
+        "address": survey.address,
         "robot": printable(robot)[:MOST_NAME],
         "simulated": simulated,
         "firmware": survey.firmware,

@@ -105,7 +105,7 @@ class Survey:
         self._done = {f["fact"] for f in facts if f["verdict"] != "not seen"}
         self._settings, self._on_private = settings, on_private
         allowed = Permissions(frozenset({"setting"} if settings else ()))
-        self._address = address
+        self.address = address
         self._tester = Tester(
             connection, table, permissions=allowed, sources=sources, address=address
         )
@@ -179,7 +179,7 @@ class Survey:
             return False
         client_type: type[Client] = editions.load(self._package).CLIENT
         transport = self._tester.connection.transport
-        options: dict[str, Any] = {"timeout": EDITION_SECONDS, "address": self._address}
+        options: dict[str, Any] = {"timeout": EDITION_SECONDS, "address": self.address}
         other = None
         with (
             suppress(NotSupported),
