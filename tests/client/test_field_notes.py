@@ -53,7 +53,7 @@ def test_call_on_a_field_notes_line_ends_with_the_verdict_of_its_case(
 ) -> None:
     with line_of(case, transport) as line:
         outcomes, seconds = _played(case, who, line.url)
-        line.settle()
+        line.settle(case.requests or 0)
     verdicts = [outcome.verdict for outcome in outcomes]
     if case.clients > 1:
         verdicts.sort(key=case.verdicts.index)

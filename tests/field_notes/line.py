@@ -75,10 +75,15 @@ class Line:
         """How many other bytes arrived."""
         return sum(len(event.data) for event in self._received if isinstance(event, Noise))
 
-    def settle(self) -> None:
-        """Wait until no new bytes arrive for 60 ms, so that all that clients wrote has arrived."""
-        received = -1
-        while received != (received := len(self.frames) + self.garbled):
+    def settle(self, least: int = 0) -> None:
+        """Wait until no new bytes arrive for 60 ms, so that all that clients wrote has arrived.
+
+        The system may pass on the bytes of a pty later: wait up to 2 s for ``least`` frames.
+        """
+        received, until = -1, time.monotonic() + 2
+        while received != (received := len(self.frames) + self.garbled) or (
+            len(self.frames) < least and time.monotonic() < until
+        ):
             time.sleep(0.06)
 
 
