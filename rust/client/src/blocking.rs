@@ -13,8 +13,9 @@ use crate::streams::{Polling, Received, client_methods};
 use crate::typed::{DeviceEvent, Request, Table};
 use crate::{Error, Options, Sample, Value, lock};
 
-/// The longest that a thread reads before it checks whether others have something to do. A timer
-/// that is due before the next tick of the system, usually 4 ms, would cost a third of a call.
+/// The longest that a thread reads before it checks whether others have something to do; threads that
+/// wait for the connection share that time. A timer that is due before the next tick of the system,
+/// usually 4 ms, would cost a third of a call.
 const SLICE: Duration = Duration::from_millis(5);
 /// How long a thread leaves the port to others.
 const TURN: Duration = Duration::from_micros(500);
@@ -84,7 +85,12 @@ impl Client {
             if let Some(found) = done(&mut connection.session, left.is_zero()) {
                 return found;
             }
-            connection.step(left.min(SLICE));
+            let others = self.shared.turns.load(Ordering::SeqCst);
+            let sharing = u32::try_from(others.saturating_add(1)).unwrap_or(u32::MAX);
+            connection.step(left.min(SLICE / sharing));
+            if let Some(found) = done(&mut connection.session, false) {
+                return found;
+            }
             connection = self.leave(connection);
         }
     }

@@ -117,6 +117,7 @@ impl Connection {
     fn port(&mut self, longest: Duration) -> std::io::Result<&mut dyn Port> {
         let port = self.port.as_mut().ok_or(ErrorKind::NotConnected)?;
         if !(self.is_instant && longest.is_zero()) {
+            self.is_instant = false;
             port.wait_at_most(longest)?;
             self.is_instant = longest.is_zero();
         }

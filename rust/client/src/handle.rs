@@ -50,13 +50,11 @@ impl Handle {
     pub fn at(mut self, address: &str) -> Result<Self, Error> {
         let (edition, number) = (&self.edition, address.parse());
         let given = number.map_or_else(|_| Value::Text(address.to_owned()), Value::Integer);
-        let is_own = |raw: &u8| {
-            let name = edition.address_name(*raw);
-            name.eq_ignore_ascii_case(address) || given == Value::Integer((*raw).into())
-        };
-        let mut all = edition.protocol.table.frame().addresses.iter().copied();
-        let unknown = || Error::usage(edition.no_address(&given));
-        self.address = Some(all.find(is_own).ok_or_else(unknown)?);
+        let all = || edition.protocol.table.frame().addresses.iter().copied();
+        let has_name = |raw: &u8| edition.address_name(*raw).eq_ignore_ascii_case(address);
+        let has_number = |raw: &u8| given == Value::Integer((*raw).into());
+        let found = all().find(has_name).or_else(|| all().find(has_number));
+        self.address = Some(found.ok_or_else(|| Error::usage(edition.no_address(&given)))?);
         Ok(self)
     }
 

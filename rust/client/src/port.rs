@@ -1,6 +1,6 @@
 //! Ports: what a blocking client reads and writes.
 
-use std::io::{ErrorKind, Read, Write};
+use std::io::{Read, Write};
 use std::net::{TcpStream, ToSocketAddrs};
 use std::time::Duration;
 
@@ -41,7 +41,9 @@ impl Port for TcpStream {
             // This is as exact as the system can be, and takes one call of it.
             let longest = Timespec::try_from(longest).map_err(std::io::Error::other)?;
             let ready = poll(&mut [PollFd::new(self, PollFlags::IN)], Some(&longest))?;
-            (ready > 0).then_some(()).ok_or(ErrorKind::TimedOut.into())
+            (ready > 0)
+                .then_some(())
+                .ok_or(std::io::ErrorKind::TimedOut.into())
         }
         #[cfg(not(unix))]
         self.set_nonblocking(false)
@@ -73,7 +75,7 @@ impl Port for Box<dyn serialport::SerialPort> {
         }
         // With unsent bytes, the system would wait for the line when the port is closed.
         self.clear(serialport::ClearBuffer::Output)?;
-        Err(ErrorKind::TimedOut.into())
+        Err(std::io::ErrorKind::TimedOut.into())
     }
 }
 

@@ -69,6 +69,9 @@ impl Polling {
     /// Return the query, and for how long to wait for its next period; those that have passed are
     /// missed. `None`: the samples have ended.
     pub fn tick(&mut self) -> Option<(Prepared, Duration)> {
+        if self.ended {
+            return None;
+        }
         let now = Instant::now();
         let at = self.next.unwrap_or(now);
         let late = now.saturating_duration_since(at).as_nanos() / self.period.as_nanos().max(1);
@@ -76,7 +79,7 @@ impl Polling {
         self.missed += u64::from(late);
         self.next = Some(at + self.period * late + self.period);
         let wait = (at + self.period * late).saturating_duration_since(now);
-        (!self.ended).then(|| (self.prepared.clone(), wait))
+        Some((self.prepared.clone(), wait))
     }
 }
 

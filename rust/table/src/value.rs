@@ -42,7 +42,9 @@ impl Given for Value {
             Self::Integer(raw) => Ok(*raw),
             Self::Flag(set) if flag => Ok(i64::from(*set)),
             // An array of reals may have integers among them.
-            Self::Real(real) if real.fract() == 0.0 && real.abs() < EXACT => Ok(*real as i64),
+            Self::Real(real) if real.abs() < EXACT && (*real as i64) as f64 == *real => {
+                Ok(*real as i64)
+            }
             _ => Err(WRONG_TYPE),
         }
     }
