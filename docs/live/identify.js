@@ -32,14 +32,15 @@ export async function identify(port, chosen) {
     try {
       let node = tree;
       while (node.query) node = await ask(opened, node, near, evidence);
-      if (node.editions.length) return { port: opened, baudrate, ...decide(node, chosen, evidence.join(", ")) };
+      // Without a legal reply, nothing shows that it is one of these editions.
+      if (node.editions.length && opened.legal) return { port: opened, baudrate, ...decide(node, chosen, evidence.join(", ")) };
     } catch (error) {
-      await opened.inner.close();
+      opened.inner.abort();
       throw error;
     }
     await opened.inner.close();
   }
-  throw new Error(`no arm replied: is it switched on, and is this its port? ${evidence.join(", ")}`);
+  throw new Error(`no arm sent a legal reply: is it switched on, and is this its port? ${evidence.join(", ")}`);
 }
 
 // Send the query of a node; return the next node.
@@ -50,6 +51,7 @@ async function ask(port, { edition, query, given, fill, replied, illegal, silent
   try {
     const result = Object.values(await client.call(query, given)).at(-1);
     evidence.push(`${query} replied ${result}`);
+    port.legal = true;
     return replied.find(([limit]) => limit === null || Math.abs(limit - result) <= near)?.[1] ?? silent;
   } catch (error) {
     if (!(error instanceof ReplyTimeout || error instanceof ProtocolError)) throw error;

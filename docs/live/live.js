@@ -188,12 +188,32 @@ export class Live extends Session {
   async survey() {
     const [{ arm, facts }, { questions, leftOut }] = [this, this.facts.survey];
     if (!arm) throw new Error("no arm is connected");
-    this.allowMotion(false);
-    const moving = Object.values(facts.commands).find((command) => command.role === "moving")?.about.name;
-    if (moving && Object.values(await arm.call(moving)).some(Boolean)) throw new Error("the arm is moving: wait until it rests, or stop it");
+    // From now on nothing else is sent, and Stop ends the survey.
     const { signal } = (this.surveying = new AbortController());
+    this.allowMotion(false);
+    try {
+      const asking = arm.withSignal(signal);
+      const moving = Object.values(facts.commands).find((command) => command.role === "moving")?.about.name;
+      if (moving && (await this.moves(asking, moving))) throw new Error("the arm is moving: wait until it rests, or stop it");
+      return await this.sendQuestions(asking, signal, questions, leftOut);
+    } finally {
+      this.surveying = undefined;
+    }
+  }
+
+  // Return whether the arm moves. One that lacks the query can be surveyed, too.
+  async moves(asking, query) {
+    try {
+      return Object.values(await asking.call(query)).some(Boolean);
+    } catch (error) {
+      if (error instanceof ReplyTimeout || error instanceof ProtocolError) return false;
+      throw this.surveying.signal.aborted ? new Error("you ended the survey") : error;
+    }
+  }
+
+  async sendQuestions(asking, signal, questions, leftOut) {
     let [asked, replied, silent, why] = [0, 0, 0, ""];
-    const [first, asking] = [this.count, arm.withSignal(signal)];
+    const first = this.count;
     let last = first;
     const ask = async (name, given) => {
       this.permitted(name);
@@ -219,7 +239,6 @@ export class Live extends Session {
     } catch (error) {
       why = `The survey ended early: ${signal.aborted ? "you ended it" : error.message}. `;
     }
-    this.surveying = undefined;
     const not = Object.entries(leftOut).map(([name, reason]) => `${name} (${reason})`);
     return { first, last, text: `${why}${asked} queries were sent, and ${replied} got a reply. Not sent: ${not.join(", ") || "nothing"}.` };
   }

@@ -43,7 +43,7 @@ const requests = {
       await live.connect(port);
       begin(live, { mode: "live" });
     } catch (error) {
-      await port.inner.close();
+      port.inner.abort();
       throw error;
     }
     return shown;

@@ -26,15 +26,17 @@ PORT = """
 const port = {
   getInfo: () => ({ usbVendorId: 0x1a86, usbProductId: 0x55d4 }),
   async open({ baudRate }) {
+    if (port.readable?.locked) throw new Error("The port is already open.");
     const socket = new WebSocket(`ws://${location.host}/port?${baudRate}`);
     socket.binaryType = "arraybuffer";
     await new Promise((done) => (socket.onopen = done));
-    const start = (received) => {
-      socket.onmessage = ({ data }) => received.enqueue(new Uint8Array(data));
-      socket.onclose = () => received.error(new Error("The device has been lost."));
-    };
-    port.readable = new ReadableStream({ start });
-    port.writable = new WritableStream({ write: (data) => socket.send(data) });
+    let received, written;
+    port.readable = new ReadableStream({ start: (controller) => (received = controller) });
+    const write = (data) => socket.send(data);
+    port.writable = new WritableStream({ start: (controller) => (written = controller), write });
+    socket.onmessage = ({ data }) => received.enqueue(new Uint8Array(data));
+    const lost = (controller) => controller.error(new Error("The device has been lost."));
+    socket.onclose = () => [received, written].map(lost);
     port.close = async () => port.readable.locked || port.writable.locked || socket.close();
   },
 };

@@ -269,6 +269,12 @@ def test_left_page_stops_an_arm_in_motion(site: LiveSite, page: Page, way: str) 
 
 
 def test_unplugged_arm_is_reported_and_can_be_connected_again(site: LiveSite, page: Page) -> None:
+    site.silent_after = 0
+    page.click("#connect")
+    _soon(lambda: bool(site.sent))
+    site.unplug()
+    page.until(f"{SAID}.includes('lost')")
+    site.silent_after = None
     _connect(page)
     _allow(page)
     _jog(page, site)
@@ -405,14 +411,20 @@ def test_tree_leads_to_the_editions_that_identify_finds(
 def test_survey_sends_queries_only_and_its_file_is_judged(
     site: LiveSite, page: Page, tmp_path: Path
 ) -> None:
-    lacks = {"get_servo_speeds", "get_servo_voltages", "get_servo_status", "get_servo_temps"}
+    lacks = {
+        "is_moving",
+        "get_servo_speeds",
+        "get_servo_voltages",
+        "get_servo_status",
+        "get_servo_temps",
+    }
     site.table = without(TABLE, lambda command: command.name in lacks)
     _connect(page)
     _allow(page)
     before = len(site.sent)
     page.click("#run")
     # One of them shows that the arm is there, although it was silent to three in a row.
-    page.until(f"{SURVEYED}.startsWith('98 queries were sent, and 94 got a reply')")
+    page.until(f"{SURVEYED}.startsWith('98 queries were sent, and 93 got a reply')")
     assert page.get("document.getElementById('motion').checked") is False
     events = codec.load(TABLE).framer("request").feed(bytes(site.sent[before:]))
     sent = [event.message.typed for event in events if isinstance(event, Frame)]
@@ -451,6 +463,12 @@ def test_survey_that_ends_early_says_why_and_its_file_contradicts_nothing(
         site.silent_after = None
 
     _connect(page)
+    # Stop also ends a survey that still checks whether the arm moves.
+    site.silent_after = 0
+    page.click("#run")
+    page.press("Escape")
+    page.until(f"{SURVEYED} === 'you ended the survey'")
+    site.silent_after = None
 
     def stop() -> None:
         assert page.send("is_paused").startswith("end the survey before you send")

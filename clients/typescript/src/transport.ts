@@ -93,8 +93,11 @@ class WebSerial implements Transport {
   }
 
   async close(): Promise<void> {
-    await within(1, this.writer.close());
-    this.abort();
+    try {
+      await within(1, this.writer.close());
+    } finally {
+      this.abort();
+    }
   }
 
   abort(): void {
