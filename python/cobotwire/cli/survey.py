@@ -57,6 +57,7 @@ INCOMPLETE = (
     "the recording lacks requests of the survey, such as calculations with the arm's position; "
     "--continue sends them to the arm"
 )
+LATEST_NS = 2**63
 VERDICTS = ("confirmed", "contradicted", "not seen")
 
 
@@ -171,7 +172,7 @@ def survey(
     finally:
         file.discard()
     report_written(output)
-    sys.exit(stopped or int(bool(found.contradicted)))
+    sys.exit(stopped or int(any(f["verdict"] == "contradicted" for f in content["facts"])))
 
 
 def _earlier(path: str, table: Table, to: int | str | None) -> tuple[dict[str, Any], bytes]:
@@ -204,6 +205,8 @@ def _recorded(path: str, edition: str) -> tuple[str, RecordedTransport]:
     if not any(packet.direction == "sent" for packet in packets):
         message = f"{path} holds no request, so there is nothing to judge"
         raise UsageError("from", path, message=message)
+    if not all(0 <= packet.time_ns < LATEST_NS for packet in packets):
+        raise UsageError("from", path, message=f"{path} has times before 1970 or after 2262")
     if codec.table.edition in editions.names():
         edition = codec.table.edition
     return edition, RecordedTransport(packets, codec)

@@ -152,8 +152,14 @@ def _check(content: Any) -> None:
     if not isinstance(content, dict) or content.get("format") != FORMAT:
         raise ValueError(f"{JSON} does not have the format {FORMAT!r}")
     facts = content.get("facts")
-    if not isinstance(content.get("left_out", []), list):
-        raise ValueError("left_out is not a list of options")
+    for key in ("left_out", "hashed"):
+        texts = content.get(key, [])
+        if not isinstance(texts, list) or not all(
+            isinstance(each, str) and each.isprintable() for each in texts
+        ):
+            raise ValueError(f"{key} is not a list of texts")
+    if content.get("level", 1) not in (1, 2, 3):
+        raise ValueError("level is not 1, 2 or 3")
     if content.get("version") != VERSION or not isinstance(facts, list):
         raise ValueError(f"{JSON} is not of version {VERSION}, or lists no facts")
     for fact in facts:

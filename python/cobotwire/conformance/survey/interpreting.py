@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 
 from cobotwire import codec as codecs
-from cobotwire.codec.interface import Frame
+from cobotwire.codec.interface import Codec, Frame
 from cobotwire.conformance.device.device import Device
 from cobotwire.conformance.device.tester import is_silence
 from cobotwire.conformance.report import Result, Verdict
@@ -43,11 +43,18 @@ MOST_SHOWN = 3
 SEVERAL = 2
 
 
+def ids_of(codec: Codec, direction: Direction, data: bytes) -> set[int]:
+    """Return the ids of the frames in some bytes."""
+    framer = codec.framer(direction)
+    return {e.command for e in (*framer.feed(data), *framer.flush()) if isinstance(e, Frame)}
+
+
 class Interpreter:
     """Turns what a survey has seen into facts."""
 
     def __init__(self, table: Table, device: Device, facts: Facts) -> None:
         self._table, self._device, self.facts = table, device, facts
+        self._codec = codecs.load(table)
         self._silent: dict[str, list[Frames]] = {}
         # Observations that decide no fact, but that a person should read.
         self.questions: list[str] = []
@@ -82,7 +89,7 @@ class Interpreter:
                 return self._note(command.name, part, "present", "not seen", why, frames)
             else:
                 # The frames may include a later query and its reply: choose those of this command.
-                own = [f for f in frames if command.id in self._ids("request", f.sent)]
+                own = [f for f in frames if command.id in ids_of(self._codec, "request", f.sent)]
                 if not any(frame.received for frame in own):
                     self._silent[command.name] = own
                 return None
@@ -101,12 +108,8 @@ class Interpreter:
     def _has_other_id(self, command: Command, frames: Sequence[Frames]) -> bool:
         """Return whether a whole frame came that has another id than the command's."""
         received = b"".join(frame.received for frame in frames)
-        return self._table.frame.reply_has_id and bool(self._ids("reply", received) - {command.id})
-
-    def _ids(self, direction: Direction, data: bytes) -> set[int]:
-        """Return the ids of the frames in some bytes."""
-        framer = codecs.load(self._table).framer(direction)
-        return {e.command for e in (*framer.feed(data), *framer.flush()) if isinstance(e, Frame)}
+        ids = ids_of(self._codec, "reply", received)
+        return self._table.frame.reply_has_id and bool(ids - {command.id})
 
     def add_silence(self, firmware: str) -> None:
         """Add which commands have no reply, and the argument that they have in common."""

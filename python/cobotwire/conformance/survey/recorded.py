@@ -11,11 +11,12 @@ from cobotwire.capture import Packet
 from cobotwire.codec.interface import Codec
 from cobotwire.conformance.device.device import NotSupported
 from cobotwire.conformance.device.groups.queries import is_query, requests_of
+from cobotwire.conformance.survey.interpreting import ids_of
 from cobotwire.conformance.survey.survey import PRIVATE, SERIAL, states
 from cobotwire.protocol.messages import Request
 from cobotwire.protocol.table import Table
 from cobotwire.simulator import MemoryTransport, ReplayedArm, SteppedClock
-from cobotwire.simulator.replayed import exchanges
+from cobotwire.simulator.replayed import Exchange, exchanges
 
 NOT_RECORDED = "the recording does not have this request"
 
@@ -51,7 +52,7 @@ class RecordedTransport(MemoryTransport):
         # A recording of the survey has the times of this one.
         clock = SteppedClock((began_ns - time.time_ns() + time.monotonic_ns()) / 1e9)
         super().__init__(ReplayedArm(packets, codec, clock=clock), clock)
-        self._recorded = {each.request for each in exchanges(packets)}
+        self._recorded = _judged(exchanges(packets), codec)
         self.missing = 0
 
     def write(self, data: bytes) -> None:
@@ -64,3 +65,20 @@ class RecordedTransport(MemoryTransport):
             self.missing += 1
             raise NotSupported(NOT_RECORDED)
         super().write(data)
+
+
+def _judged(recorded: list[Exchange], codec: Codec) -> set[bytes]:
+    """Return the requests whose replies, or silence, a recording shows.
+
+    It shows no silence of a request that it ends with, or whose reply came after the next request.
+    """
+    while recorded and not recorded[-1].chunks:
+        recorded.pop()
+    ids = {each.request: ids_of(codec, "request", each.request) for each in recorded}
+    replied, late = set[bytes](), set[int]()
+    for request, chunks in recorded:
+        came = ids_of(codec, "reply", b"".join(data for _, data in chunks))
+        if came & ids[request]:
+            replied.add(request)
+        late |= came - ids[request]
+    return {request for request, own in ids.items() if request in replied or not own & late}
