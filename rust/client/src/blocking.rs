@@ -1,6 +1,6 @@
 //! The blocking client: threads that share a port take turns in reading and writing for all.
 
-use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicU32, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard};
 use std::time::{Duration, Instant};
 
@@ -28,7 +28,7 @@ const TURN: Duration = Duration::from_micros(500);
 pub struct Client {
     handle: Handle,
     /// With the number of threads that want the connection.
-    shared: Arc<Shared<AtomicUsize>>,
+    shared: Arc<Shared<AtomicU32>>,
 }
 
 client_methods!(Client Option std::thread::sleep, [] [] [] []);
@@ -47,7 +47,7 @@ impl Client {
         port: impl Port + 'static,
         options: Options,
     ) -> Result<Self, Error> {
-        let turns = (LONGEST_STOP, AtomicUsize::new(0));
+        let turns = (LONGEST_STOP, AtomicU32::new(0));
         let (handle, shared) = Connection::open(edition, Box::new(port), options, turns)?;
         Ok(Self { handle, shared })
     }
@@ -86,8 +86,7 @@ impl Client {
                 return found;
             }
             let others = self.shared.turns.load(Ordering::SeqCst);
-            let sharing = u32::try_from(others.saturating_add(1)).unwrap_or(u32::MAX);
-            connection.step(left.min(SLICE / sharing));
+            connection.step(left.min(SLICE / others.saturating_add(1)));
             if let Some(found) = done(&mut connection.session, false) {
                 return found;
             }

@@ -1,6 +1,6 @@
 //! Ports: what a blocking client reads and writes.
 
-use std::io::{Read, Write};
+use std::io::{self, Read, Write};
 use std::net::{TcpStream, ToSocketAddrs};
 use std::time::Duration;
 
@@ -17,21 +17,21 @@ pub(crate) const CONNECT: Duration = Duration::from_secs(5);
 pub trait Port: Read + Write + Send {
     /// Limit the next `read`, or wait that long for bytes instead. Zero holds until the next limit:
     /// `read` returns at once, and so does `write_some`, which is called only then.
-    fn wait_at_most(&mut self, longest: Duration) -> std::io::Result<()>;
+    fn wait_at_most(&mut self, longest: Duration) -> io::Result<()>;
 
     /// Write some of the bytes at once, and return how many; by default, with `write`.
-    fn write_some(&mut self, data: &[u8]) -> std::io::Result<usize> {
+    fn write_some(&mut self, data: &[u8]) -> io::Result<usize> {
         self.write(data)
     }
 
     /// Wait until what was written is sent, before the port is closed; by default, with `flush`.
-    fn finish(&mut self) -> std::io::Result<()> {
+    fn finish(&mut self) -> io::Result<()> {
         self.flush()
     }
 }
 
 impl Port for TcpStream {
-    fn wait_at_most(&mut self, longest: Duration) -> std::io::Result<()> {
+    fn wait_at_most(&mut self, longest: Duration) -> io::Result<()> {
         if longest.is_zero() {
             return self.set_nonblocking(true);
         }
@@ -39,11 +39,11 @@ impl Port for TcpStream {
         {
             use rustix::event::{PollFd, PollFlags, Timespec, poll};
             // This is as exact as the system can be, and takes one call of it.
-            let longest = Timespec::try_from(longest).map_err(std::io::Error::other)?;
+            let longest = Timespec::try_from(longest).map_err(io::Error::other)?;
             let ready = poll(&mut [PollFd::new(self, PollFlags::IN)], Some(&longest))?;
             (ready > 0)
                 .then_some(())
-                .ok_or(std::io::ErrorKind::TimedOut.into())
+                .ok_or(io::ErrorKind::TimedOut.into())
         }
         #[cfg(not(unix))]
         self.set_nonblocking(false)
@@ -53,19 +53,19 @@ impl Port for TcpStream {
 
 #[cfg(feature = "serial")]
 impl Port for Box<dyn serialport::SerialPort> {
-    fn wait_at_most(&mut self, longest: Duration) -> std::io::Result<()> {
+    fn wait_at_most(&mut self, longest: Duration) -> io::Result<()> {
         // On Windows, no time at all means any time.
         let shortest = Duration::from_millis(u64::from(cfg!(windows)));
         Ok(self.set_timeout(longest.max(shortest))?)
     }
 
-    fn write_some(&mut self, data: &[u8]) -> std::io::Result<usize> {
+    fn write_some(&mut self, data: &[u8]) -> io::Result<usize> {
         // It waits within its limit until the line takes bytes, then for all of them. A driver that
         // is ready takes so few without a wait.
         self.write(data.get(..32).unwrap_or(data))
     }
 
-    fn finish(&mut self) -> std::io::Result<()> {
+    fn finish(&mut self) -> io::Result<()> {
         // A flush would wait for a stuck line without limit.
         for _ in 0..1000 {
             if self.bytes_to_write()? == 0 {
@@ -75,20 +75,20 @@ impl Port for Box<dyn serialport::SerialPort> {
         }
         // With unsent bytes, the system would wait for the line when the port is closed.
         self.clear(serialport::ClearBuffer::Output)?;
-        Err(std::io::ErrorKind::TimedOut.into())
+        Err(io::ErrorKind::TimedOut.into())
     }
 }
 
 impl<P: Port + ?Sized> Port for Box<P> {
-    fn wait_at_most(&mut self, longest: Duration) -> std::io::Result<()> {
+    fn wait_at_most(&mut self, longest: Duration) -> io::Result<()> {
         (**self).wait_at_most(longest)
     }
 
-    fn write_some(&mut self, data: &[u8]) -> std::io::Result<usize> {
+    fn write_some(&mut self, data: &[u8]) -> io::Result<usize> {
         (**self).write_some(data)
     }
 
-    fn finish(&mut self) -> std::io::Result<()> {
+    fn finish(&mut self) -> io::Result<()> {
         (**self).finish()
     }
 }
@@ -111,7 +111,7 @@ pub(crate) fn open(url: &str, baudrate: u32) -> Result<Box<dyn Port>, Error> {
         )));
     };
     let failed = |error| not_opened(url, error);
-    let none = Err(std::io::Error::other("the name has no address"));
+    let none = Err(io::Error::other("the name has no address"));
     let sockets = address.to_socket_addrs().map_err(failed)?;
     let stream = sockets.fold(none, |tried, socket| {
         tried.or_else(|_| TcpStream::connect_timeout(&socket, CONNECT))
