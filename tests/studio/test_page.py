@@ -130,7 +130,8 @@ def test_line_is_filtered_searched_paused_and_explained(opened: Page) -> None:
     opened.until(
         f"{ROWS}.length > 2 && {ROWS}.every((row) => row.children[2].textContent === 'get_coords')"
     )
-    assert opened.get(f"{ROWS}.every((row) => row.children[1].textContent === '←')")
+    # The page shows the second filter in its next frame.
+    opened.until(f"{ROWS}.every((row) => row.children[1].textContent === '←')")
     opened.click("#pause")
     opened.until("document.getElementById('line-count').textContent.includes('more came')")
     # What came before the pause may be drawn in the next frame.
