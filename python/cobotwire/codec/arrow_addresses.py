@@ -19,7 +19,7 @@ ADDRESS = "address"
 def with_address(leading: Mapping[str, Any], table: Table, address: memoryview) -> dict[str, Any]:
     """Return leading columns, and one with the name of a device for each address byte.
 
-    The new column follows the column ``offset``, or all columns if there is none of that name.
+    The new column follows the column ``offset``. Without a column ``offset``, it is the last one.
 
     Raises:
         UsageError: a leading column is called ``address``.

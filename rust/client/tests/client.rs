@@ -321,7 +321,7 @@ fn stop_does_not_wait_for_the_replies_that_other_threads_wait_for() {
     let listener = std::net::TcpListener::bind("127.0.0.1:0").unwrap();
     let arm = MyCobot280::open(&format!("socket://{}", listener.local_addr().unwrap())).unwrap();
     let mut far = listener.accept().unwrap().0;
-    let waiting = [(); 4].map(|()| {
+    let waiting = [(); 8].map(|()| {
         let waiting = arm.clone();
         std::thread::spawn(move || waiting.get_angles())
     });

@@ -21,7 +21,7 @@ EARLY = 0.1
 
 
 class ClosedLoopArm(Arm):
-    """The arm; ``ends_at`` is when a motion ends that was not reported yet; None: there is none."""
+    """The arm; ``ends_at`` is the time at which an unreported motion ends, or None."""
 
     ends_at: float | None = None
 

@@ -20,8 +20,8 @@ class Method:
         title: what it does, without a full stop.
         by: the method of ``CompatibleClient`` that makes the call, without its underscore.
         parameters: each parameter, its annotation, and its default if it has one.
-        arguments: for each argument of our method: its name; the library's parameter or the number
-            that is passed for it, empty if there is none; and its default if it has one.
+        arguments: for each argument of our method: its name, the library's parameter or the number
+            that is passed for it (empty: nothing is passed), and its default if it has one.
         calls: our method.
         address: the parameter that selects the device; empty if no parameter does.
         only_here: whether only the client of the edition of ``PORTS`` has our method.
