@@ -52,13 +52,14 @@ def opened(page: Page, studio: Studio) -> Page:
     """Return the page on the simulated arm, at the width of a desktop."""
     page.show()
     page.open(studio.url)
+    # The page of the test before may hold the control until the server sees it close.
+    page.control()
     page.until(f"{ANGLES}.every(Number.isFinite)")
     return page
 
 
 def test_page_drives_the_arm_and_shows_the_values_that_a_client_reads(opened: Page) -> None:
     url = str(opened.get("document.getElementById('source').title"))
-    opened.control()
     assert opened.send("power_on") == "sent"
     drawing = "document.getElementById('arm-canvas').toDataURL().length"
     before = opened.get(drawing)
@@ -198,7 +199,6 @@ def test_page_can_be_used_with_only_the_keyboard(opened: Page) -> None:
 
 
 def test_page_starts_a_fault_scenario_and_shows_its_faults_and_noise(opened: Page) -> None:
-    opened.control()
     opened.show_tab("line")
     opened.choose("scenario", "servo-leaks")
     opened.click("#begin")
