@@ -1,7 +1,7 @@
 /// <reference lib="esnext.disposable" preserve="true" />
 /** The client: what users call. Modules of editions add a method for each command. */
 import { ProtocolError, ReplyTimeout, UsageError } from "./errors.js";
-import { Line, WRITE_SECONDS, now } from "./line.js";
+import { Line, WRITE_SECONDS, nanoseconds } from "./line.js";
 import { edition, machine, objectOf, type Value } from "./machine.js";
 import { nameOf, openWebSerial, reason, type Transport, type WebSerialPort } from "./transport.js";
 import { inNode, node } from "./wasm.js";
@@ -124,7 +124,7 @@ export class Client {
     try {
       transport = await opened(port, url, baudrate);
     } catch (error) {
-      session.ask("lose", id, now(), true, reason(error));
+      session.ask("lose", id, nanoseconds(), false, false, reason(error));
       throw error;
     }
     const line = new Line(session, id, transport, Math.min(WRITE_SECONDS, deadline ?? Infinity));

@@ -21,8 +21,8 @@ export const WRITE_SECONDS = 1;
 /** A port that was empty counts as empty for these milliseconds; a byte takes longer at 115,200 baud. */
 const EMPTY_MS = 0.05;
 
-/** Return the time in nanoseconds. */
-export const now = (): number => Math.round(performance.now() * 1e6);
+/** Return a time of the session, in nanoseconds. */
+export const nanoseconds = (at = performance.now()): number => Math.round(at * 1e6);
 
 /** Run a function when everything that has come by now was received. */
 const afterTurn: (run: () => void) => void =
@@ -42,6 +42,8 @@ export class Line {
   private wakesAt = Infinity;
   private turning = false;
   private emptyAt = -Infinity;
+  /** Whether everything that had come was read before the last step. */
+  private drained = false;
   private writing = false;
   private open = true;
 
@@ -133,14 +135,16 @@ export class Line {
   }
 
   private step<T = Step>(what: string, ...rest: Value[]): T {
-    return this.ask<T>(what, now(), !this.writing, ...rest);
+    const at = performance.now();
+    this.drained = at - this.emptyAt < EMPTY_MS;
+    return this.ask<T>(what, nanoseconds(at), !this.writing, this.drained, ...rest);
   }
 
   private advance(what: string, ...rest: Value[]): void {
     if (this.open) this.take(this.step(what, ...rest));
   }
 
-  private take([bytes, ended, idle]: Step, drained = false): void {
+  private take([bytes, ended, idle]: Step): void {
     const written = bytes && this.write(bytes);
     for (const [call, good, answer] of ended) {
       const caller = this.callers.get(call);
@@ -151,7 +155,7 @@ export class Line {
       else caller?.done(answer);
     }
     for (const wake of this.waiting.splice(0)) wake();
-    if (idle === 0 && !drained) this.turn();
+    if (idle === 0 && !this.drained) this.turn();
     else this.schedule(idle);
   }
 
@@ -180,13 +184,12 @@ export class Line {
   /** Continue when everything that has come was read, and the transport is free. */
   private turn(): void {
     if (this.turning || this.writing) return;
-    const go = (): void => {
-      this.turning = false;
-      if (this.open) this.take(this.step("drained"), true);
-    };
     this.turning = true;
-    if (performance.now() - this.emptyAt < EMPTY_MS) go();
-    else afterTurn(go);
+    afterTurn(() => {
+      this.turning = false;
+      this.emptyAt = performance.now();
+      this.advance("step");
+    });
   }
 
   private schedule(idle: number | undefined): void {

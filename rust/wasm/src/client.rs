@@ -70,16 +70,29 @@ impl Client {
                     _ => Value::Integer(queue.lost as i64),
                 })
             }
-            (_, [Value::Integer(now), Value::Flag(free), given @ ..]) => {
-                self.step(*now as u64, *free, what, given)
-            }
+            (
+                _,
+                [
+                    Value::Integer(now),
+                    Value::Flag(free),
+                    Value::Flag(drained),
+                    given @ ..,
+                ],
+            ) => self.step(*now as u64, free.then_some(*drained), what, given),
             _ => Err(wrong()),
         }
     }
 
-    /// Take what happens at a time; return the bytes to write if the transport is free, the calls
-    /// that have ended, for how long nothing is to be done, and the number of a new call.
-    fn step(&mut self, now: u64, free: bool, what: &str, given: &[Value]) -> Result<Value, Error> {
+    /// Take what happens at a time; return the bytes to write, the calls that have ended, for how
+    /// long nothing is to be done, and the number of a new call. `drained`: whether everything that
+    /// has come was received; `None`: the transport takes no bytes now.
+    fn step(
+        &mut self,
+        now: u64,
+        drained: Option<bool>,
+        what: &str,
+        given: &[Value],
+    ) -> Result<Value, Error> {
         let mut call = Value::Absent;
         match (what, given) {
             ("call", given) => call = self.call(given, now)?,
@@ -99,12 +112,12 @@ impl Client {
                 let state = self.session.close(now);
                 self.ended = self.session.fault.clone().map(|fault| (state, fault));
             }
-            ("step" | "drained", []) => self.session.receive(&[], now),
+            ("step", []) => self.session.receive(&[], now),
             _ => return Err(wrong()),
         }
         let mut bytes = Value::Absent;
-        if free {
-            let outgoing = self.session.outgoing(now, what == "drained").to_vec();
+        if let Some(drained) = drained {
+            let outgoing = self.session.outgoing(now, drained).to_vec();
             // The transport takes them, or it is lost.
             self.session.wrote(outgoing.len(), now);
             bytes = Some(outgoing)
