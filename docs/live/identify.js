@@ -2,7 +2,7 @@
 // does. All that is sent are queries, and bytes that end half a frame.
 
 import { ProtocolError, ReplyTimeout } from "./cobotwire/dist/errors.js";
-import { nameOf, openWebSerial } from "./cobotwire/dist/transport.js";
+import { nameOf, openWebSerial, within } from "./cobotwire/dist/transport.js";
 
 // A port that several clients use, one after the other.
 class Port {
@@ -46,7 +46,8 @@ export async function identify(port, chosen) {
 // Send the query of a node; return the next node.
 async function ask(port, { edition, query, given, fill, replied, illegal, silent }, near, evidence) {
   const module = await import(`./cobotwire/editions/${edition}.js`);
-  if (fill) await port.inner.write(Uint8Array.from(fill.match(/../g), (pair) => Number.parseInt(pair, 16)));
+  // If the port takes no bytes, the query reports that.
+  if (fill) await within(1, port.inner.write(Uint8Array.from(fill.match(/../g), (pair) => Number.parseInt(pair, 16))));
   const client = await clientOf(module).open(port.lend());
   try {
     const result = Object.values(await client.call(query, given)).at(-1);
