@@ -4,7 +4,6 @@ use alloc::boxed::Box;
 
 /// The parameters of a CRC.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "serde", derive(serde::Deserialize))]
 pub struct CrcParameters {
     /// Its bits: 1 to 120.
     pub width: u32,

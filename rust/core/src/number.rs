@@ -8,11 +8,6 @@ const EXACT: u64 = 1 << 53;
 
 /// Which byte of a number comes first.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[cfg_attr(
-    feature = "serde",
-    derive(serde::Deserialize),
-    serde(rename_all = "lowercase")
-)]
 pub enum Order {
     /// The most significant.
     #[default]
@@ -78,19 +73,12 @@ pub enum Value {
 
 /// How a text is encoded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(
-    feature = "serde",
-    derive(serde::Deserialize),
-    serde(rename_all = "lowercase")
-)]
 pub enum Encoding {
     /// Bytes below 128.
     Ascii,
     /// UTF-8.
-    #[cfg_attr(feature = "serde", serde(rename = "utf-8"))]
     Utf8,
     /// Each byte is the Unicode character of that number.
-    #[cfg_attr(feature = "serde", serde(rename = "latin-1"))]
     Latin1,
 }
 

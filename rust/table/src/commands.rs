@@ -6,9 +6,9 @@ use alloc::string::String;
 use alloc::vec::Vec;
 
 use cobotwire_core as wire;
-use cobotwire_core::exchange::{Facts, Nanos, TextForm};
+use cobotwire_core::exchange::{Facts, Nanos, Safety, TextForm};
 
-use crate::json::Record;
+use crate::json::{Record, Word};
 use crate::messages::Messages;
 use crate::texts::text;
 use crate::value::join;
@@ -19,6 +19,16 @@ const LONGEST_MS: Nanos = 24 * 3600 * 1000;
 
 /// A command in the forms that the table, the exchange and the clients need.
 pub(crate) type Parts = (wire::Command, Facts, Command);
+
+impl Word for Safety {
+    const WORDS: &[(&str, Self)] = &[
+        ("query", Self::Query),
+        ("setting", Self::Setting),
+        ("motion", Self::Motion),
+        ("power", Self::Power),
+        ("persistent write", Self::Persistent),
+    ];
+}
 
 /// Return a command; its id is at most `last`.
 pub(crate) fn command<'a>(
@@ -37,7 +47,7 @@ pub(crate) fn command<'a>(
     let (request, (request_texts, request_names)) = request.into_iter().unzip();
     let (reply, (reply_texts, reply_names)) = reply.into_iter().unzip();
     let facts = Facts {
-        safety: record.get("safety")?,
+        safety: record.word("safety")?,
         deadline: record.within("deadline_ms", 0..=LONGEST_MS)? * 1_000_000,
         ack: record.any("ack")?,
         event,

@@ -1,24 +1,28 @@
 //! Reads the frame format of a file.
 
 use alloc::boxed::Box;
+use alloc::collections::BTreeMap;
 use alloc::format;
-use alloc::vec;
+use alloc::string::String;
 use alloc::vec::Vec;
+use core::fmt::Display;
 use core::ops::RangeInclusive;
+use core::str::FromStr;
 
 use cobotwire_core::exchange::{Addressee, Replier};
-use cobotwire_core::{Algorithm, Check, Computed, Crc, CrcParameters, FrameFormat, Layout, Part};
-use serde::Deserialize;
+use cobotwire_core::{
+    Algorithm, Check, Computed, Crc, CrcParameters, FrameFormat, Layout, Order, Part,
+};
+use serde_json::value::RawValue;
 
-use crate::json::Record;
-use crate::{BadEdition, Outcome};
+use crate::json::{Record, Word};
+use crate::{BadEdition, Outcome, Within};
 
 /// The most data bytes: the longest LEN of two bytes that the core supports.
 pub(crate) const LONGEST: usize = 0x4000;
 
 /// A part of a frame.
-#[derive(Clone, Copy, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "lowercase")]
+#[derive(Clone, Copy, PartialEq, Eq)]
 enum Place {
     Header,
     Address,
@@ -29,15 +33,16 @@ enum Place {
     Footer,
 }
 
-/// The numbers of a CRC, which can have more bits than a generic number of JSON.
-#[derive(Deserialize)]
-struct Wide {
-    frame: WideFrame,
-}
-
-#[derive(Deserialize)]
-struct WideFrame {
-    crc: CrcParameters,
+impl Word for Place {
+    const WORDS: &[(&str, Self)] = &[
+        ("header", Self::Header),
+        ("address", Self::Address),
+        ("length", Self::Length),
+        ("command", Self::Command),
+        ("data", Self::Data),
+        ("check", Self::Check),
+        ("footer", Self::Footer),
+    ];
 }
 
 /// Return the frame format; `json` are the bytes of the whole file.
@@ -70,8 +75,8 @@ pub(crate) fn frame_format(
         own.map(|(_, size)| *size).sum::<usize>()
     };
     // The parts between header and data, and those that LEN counts.
-    let order = record.or("layout", vec![Address, Length, Command])?;
-    let counted = record.or("counted", vec![Command, Data, CheckBytes, Footer])?;
+    let order = record.words_or("layout", &[Address, Length, Command])?;
+    let counted = record.words_or("counted", &[Command, Data, CheckBytes, Footer])?;
     let reply_has_id = !record.any::<bool>("replies_without_id")?;
     let times = |parts: &[Place], part| parts.iter().filter(|each| **each == part).count();
     let can_be_last = |last: &&Place| **last == Command || reply_has_id;
@@ -106,7 +111,7 @@ pub(crate) fn frame_format(
         Ok(Part {
             at: offset(part),
             wide: size(&part) == 2,
-            order: of.any("order")?,
+            order: of.word_or("order", Order::Big)?,
         })
     };
     let uncounted = sizes.iter().filter(|(part, _)| !counted.contains(part));
@@ -122,7 +127,7 @@ pub(crate) fn frame_format(
         (None, &[footer]) => Check::Footer(footer),
         (None, _) => return BadEdition::because("footer must be one byte, since check is footer"),
         (algorithm, _) => {
-            let from = record.get("check_from")?;
+            let from = record.word("check_from")?;
             let fixed = order.contains(&from) && size(&from) > 0;
             if from != Header && !fixed && !(from == Data && reply_has_id) {
                 return BadEdition::because(
@@ -131,7 +136,7 @@ pub(crate) fn frame_format(
             }
             Check::Computed(Box::new(Computed {
                 width: check_width,
-                order: record.any("check_order")?,
+                order: record.word_or("check_order", Order::Big)?,
                 from: offset(from),
                 algorithm,
                 footer,
@@ -191,9 +196,32 @@ fn algorithm(record: Record<'_>, json: &[u8]) -> Outcome<(Option<Algorithm>, usi
     }
 }
 
+/// Return the text of the value of a key of an object: the numbers of a CRC can have more bits than a
+/// generic number of JSON.
+fn part<'a>(object: &'a str, key: &str) -> Outcome<&'a str> {
+    let object: Result<BTreeMap<String, &RawValue>, _> = serde_json::from_str(object);
+    let object = object.or_else(BadEdition::because)?;
+    let found = object.get(key).map(|value| value.get());
+    found.map_or_else(|| BadEdition::because("it is missing").within(key, ""), Ok)
+}
+
+/// Return the number or flag of a key of an object.
+fn stated<T: FromStr<Err: Display>>(object: &str, key: &str) -> Outcome<T> {
+    let value = part(object, key)?.parse();
+    value.or_else(BadEdition::because).within(key, "")
+}
+
 fn crc(json: &[u8], size: usize) -> Outcome<Algorithm> {
-    let wide: Wide = serde_json::from_slice(json).or_else(BadEdition::because)?;
-    let crc = wide.frame.crc;
+    let file = str::from_utf8(json).or_else(BadEdition::because)?;
+    let crc = part(part(file, "frame")?, "crc")?;
+    let crc = CrcParameters {
+        width: stated(crc, "width")?,
+        poly: stated(crc, "poly")?,
+        init: stated(crc, "init")?,
+        refin: stated(crc, "refin")?,
+        refout: stated(crc, "refout")?,
+        xorout: stated(crc, "xorout")?,
+    };
     let fits = |number: u128| number.checked_shr(crc.width).unwrap_or_default() == 0;
     match Crc::new(crc).filter(|crc| crc.size() == size) {
         Some(made) if fits(crc.poly | crc.init | crc.xorout) => Ok(Algorithm::Crc(made)),

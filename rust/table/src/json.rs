@@ -9,6 +9,12 @@ use serde_json::Value;
 
 use crate::{BadEdition, Outcome, Within};
 
+/// A value that a file states as a word.
+pub(crate) trait Word: Copy + 'static {
+    /// Each word, and what it states.
+    const WORDS: &'static [(&'static str, Self)];
+}
+
 static NULL: Value = Value::Null;
 
 /// An object of the file.
@@ -40,6 +46,36 @@ impl<'a> Record<'a> {
     /// Return the value of a key; an empty one if it is missing.
     pub(crate) fn any<T: Deserialize<'a> + Default>(self, key: &str) -> Outcome<T> {
         self.or(key, T::default())
+    }
+
+    /// Return the value that a word states.
+    pub(crate) fn word<T: Word>(self, key: &str) -> Outcome<T> {
+        self.at(key).as_word().within(key, "")
+    }
+
+    /// Return the value that a word states; the usual one if it is missing.
+    pub(crate) fn word_or<T: Word>(self, key: &str, usual: T) -> Outcome<T> {
+        self.some(key).map_or(Ok(usual), |_| self.word(key))
+    }
+
+    /// Return the values that a list of words states; the usual ones if it is missing.
+    pub(crate) fn words_or<T: Word>(self, key: &str, usual: &[T]) -> Outcome<Vec<T>> {
+        let read = |list: Self| list.items()?.into_iter().map(Self::as_word).collect();
+        let words = self.some(key).map(read);
+        words.unwrap_or_else(|| Ok(usual.to_vec())).within(key, "")
+    }
+
+    fn as_word<T: Word>(self) -> Outcome<T> {
+        let found = T::WORDS.iter().find(|(word, _)| self.0 == word);
+        let unknown = || {
+            let words: Vec<&str> = T::WORDS.iter().map(|(word, _)| *word).collect();
+            BadEdition::because(format_args!(
+                "{} is not one of {}",
+                self.0,
+                words.join(", ")
+            ))
+        };
+        found.map_or_else(unknown, |(_, value)| Ok(*value))
     }
 
     /// Return a number in a range.

@@ -26,7 +26,6 @@ use core::fmt;
 
 use cobotwire_core::exchange::{Protocol, Safety};
 use cobotwire_core::{Direction, Table};
-use serde::Deserialize;
 
 use crate::json::Record;
 use crate::messages::Messages;
@@ -115,8 +114,7 @@ impl Field {
 
 /// What texts need of a number: its name in a row, its unit, and the words of its choices. What is
 /// empty does not exist.
-#[derive(Clone, Debug, Default, Deserialize)]
-#[serde(default)]
+#[derive(Clone, Debug, Default)]
 #[allow(missing_docs)] // of fields, whose names say what they are
 pub struct Number {
     pub name: String,

@@ -11,9 +11,17 @@ use cobotwire_core::Shape;
 use cobotwire_core::exchange::Named;
 
 use crate::frame::LONGEST;
-use crate::json::Record;
+use crate::json::{Record, Word};
 use crate::types::{Kind, Numbers, Types, all_choices, bits, fitting, kind, words};
 use crate::{BadEdition, Field, Outcome, Value, Within};
+
+impl Word for wire::Encoding {
+    const WORDS: &[(&str, Self)] = &[
+        ("ascii", Self::Ascii),
+        ("utf-8", Self::Utf8),
+        ("latin-1", Self::Latin1),
+    ];
+}
 
 /// One variant of a message, as the table, texts and clients, and the exchange need it.
 type Variant = (wire::Variant, (Vec<Field>, Vec<Named>));
@@ -182,7 +190,7 @@ impl<'a> Messages<'a> {
                 Numbers::bytes(1, 255)
             }
             Kind::Text => {
-                let encoding = of.get("encoding")?;
+                let encoding = of.word("encoding")?;
                 field.shape = Shape::Text(encoding, of.get("padding")?);
                 let count = if in_list { bounds(of)?.0 } else { 1 };
                 field.each = if in_list { count } else { 0 };

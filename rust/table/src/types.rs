@@ -7,10 +7,9 @@ use alloc::vec::Vec;
 use core::cell::Cell;
 
 use cobotwire_core as core_table;
-use cobotwire_core::Bits;
-use serde::Deserialize;
+use cobotwire_core::{Bits, Order};
 
-use crate::json::Record;
+use crate::json::{Record, Word};
 use crate::{BadEdition, Number, Outcome, Within};
 
 /// The most memory of all numbers and fields together, in bytes. Each number repeats the choices of
@@ -26,8 +25,7 @@ pub(crate) struct Types<'a> {
     left: Cell<usize>,
 }
 
-#[derive(Clone, Copy, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "lowercase")]
+#[derive(Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Kind {
     Quantity,
     Enum,
@@ -39,12 +37,31 @@ pub(crate) enum Kind {
     List,
 }
 
-#[derive(Default, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "lowercase")]
+impl Word for Kind {
+    const WORDS: &[(&str, Self)] = &[
+        ("quantity", Self::Quantity),
+        ("enum", Self::Enum),
+        ("flag", Self::Flag),
+        ("value", Self::Value),
+        ("bits", Self::Bits),
+        ("bytes", Self::Bytes),
+        ("text", Self::Text),
+        ("list", Self::List),
+    ];
+}
+
+impl Word for Order {
+    const WORDS: &[(&str, Self)] = &[("big", Self::Big), ("little", Self::Little)];
+}
+
+#[derive(Clone, Copy, PartialEq, Eq)]
 enum Encoding {
-    #[default]
     Integer,
     Float,
+}
+
+impl Word for Encoding {
+    const WORDS: &[(&str, Self)] = &[("integer", Self::Integer), ("float", Self::Float)];
 }
 
 /// The numbers of a type in the order of the wire, and what texts need of each.
@@ -75,12 +92,15 @@ impl Numbers {
     }
 
     fn push(&mut self, wire: core_table::Number, name: &str, of: Record<'_>) -> Outcome<()> {
-        let text = Number::deserialize(of.0).or_else(BadEdition::because)?;
+        let text = Number {
+            name: name.into(),
+            unit: of.any("unit")?,
+            labels: of.any("labels")?,
+        };
         let words = name.len() + text.unit.len() + words(&text.labels);
         self.weight += size_of_val(&wire) + 8 * wire.choices.len() + size_of_val(&text) + words;
         self.wire.push(wire);
-        let name = name.into();
-        self.texts.push(Number { name, ..text });
+        self.texts.push(text);
         Ok(())
     }
 }
@@ -190,11 +210,11 @@ fn number(wire: Record<'_>, of: Record<'_>, all: &[i64]) -> Outcome<core_table::
     let (multiply, divide) = of.rational("scale")?;
     let mut number = core_table::Number {
         width: wire.get("width")?,
-        order: wire.get("order")?,
+        order: wire.word("order")?,
         signed_at: wire.get("signed_at")?,
         multiply,
         divide,
-        float: wire.any::<Encoding>("encoding")? == Encoding::Float,
+        float: wire.word_or("encoding", Encoding::Integer)? == Encoding::Float,
         choices: of.any("choices")?,
         ..core_table::Number::default()
     };
@@ -222,7 +242,7 @@ pub(crate) fn fitting<'a>(
 }
 
 pub(crate) fn kind(of: Record<'_>) -> Outcome<Kind> {
-    of.get("kind")
+    of.word("kind")
 }
 
 /// Return all legal raw values of a type; empty if it has a range.

@@ -10,11 +10,6 @@ pub type Nanos = u64;
 
 /// What a command does to the arm.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(
-    feature = "serde",
-    derive(serde::Deserialize),
-    serde(rename_all = "lowercase")
-)]
 pub enum Safety {
     /// It only reads: it may be sent again.
     Query,
@@ -25,7 +20,6 @@ pub enum Safety {
     /// It switches power.
     Power,
     /// It writes what remains without power.
-    #[cfg_attr(feature = "serde", serde(rename = "persistent write"))]
     Persistent,
 }
 
