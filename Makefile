@@ -29,7 +29,7 @@ WASM := wasm32-unknown-unknown
 CHECK_WASM := RUSTFLAGS=-Dwarnings cargo check --release --package cobotwire-core --target $(WASM) --quiet
 CARGO_FUZZ := .cargo-tools/bin/cargo-fuzz
 
-.PHONY: set-up spec-mutants help demo test lint lint-and-rust python-test computing-tests simulating-tests calling-tests waiting-tests other-tests rust-test products gen targets docs bench plots smoothness picture answers table fuzz figures clean faults conform defects attack archives lerobot bench-archive bench-compare rust-asan robots layer demos front-end front-end-if-reachable four-hours studio-pictures explore nightly rust-package npm-package release-check figures-page every-edition urdf
+.PHONY: set-up spec-mutants help demo test lint lint-and-rust python-test computing-tests simulating-tests calling-tests waiting-tests other-tests rust-test products gen targets docs bench plots smoothness picture answers table fuzz figures clean faults conform defects attack archives lerobot bench-archive bench-compare rust-asan layer demos front-end front-end-if-reachable four-hours studio-pictures explore nightly rust-package npm-package release-check figures-page every-edition urdf
 .DEFAULT_GOAL := help
 
 help: ## list the targets
@@ -230,9 +230,6 @@ wheels-check: .venv/.base ## build the distributions; run README, website and th
 
 release-check: .venv/.tools .venv/.native ## compare API, editions, spec language and recordings with the last release, or with the revision SINCE
 	$(BIN)/python tools/promises.py $(SINCE)
-
-robots: .venv/.tools .venv/.native ## compare every request of the maker's classes with ours
-	PYTHONPATH=tests:tests/peers $(BIN)/python -W ignore -m robots $(ROBOTS)
 
 layer: .venv/.tools .venv/.native ## compare every call of the maker's classes with ours of the same names
 	PYTHONPATH=python:codegen/src:tests:tests/peers $(BIN)/python -W ignore -m layer_main

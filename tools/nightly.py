@@ -26,7 +26,6 @@ SEARCHES = {
     "urdf": [],
     "archives": [],
     "every-edition": [],
-    "robots": [],
     "attack": ["ATTACK_SECONDS=600"],
     "layer": [],
     "explore": [],

@@ -1,14 +1,11 @@
-"""The numbers and words of docs/robots.md agree with the editions and the maker's classes."""
+"""The numbers and words of docs/robots.md agree with the editions."""
 
 from __future__ import annotations
 
 import re
 from pathlib import Path
 
-import pytest
-
 from cobotwire.editions import load, names
-from robots.classes import ROBOTS
 
 ROOT = Path(__file__).parents[2]
 PAGE = (ROOT / "docs" / "robots.md").read_text()
@@ -40,13 +37,3 @@ def test_geometry_is_unknown_where_the_edition_has_none() -> None:
         for name in re.findall(r"`(\w+)`", cells[0])
     }
     assert found == {name: load(name).TABLE.robot.geometry is None for name in names()}
-
-
-@pytest.mark.parametrize("peer", ROBOTS)
-def test_every_class_has_a_row_of_agreement(peer: str) -> None:
-    # `make robots` compares all calls, and fails if any other number of this table is wrong.
-    [row] = [cells for cells in rows("| class | edition | methods |") if cells[0] == peer]
-    robot, (edition, *counts) = ROBOTS[peer], row[1:]
-    methods, equal, ruled, opened = map(int, counts)
-    assert (edition.strip("`"), methods, opened) == (robot.edition, len(robot.public), 0)
-    assert equal + ruled == methods

@@ -9,10 +9,7 @@ from collections.abc import Sequence
 from functools import lru_cache, partial
 from typing import Any
 
-from cobotwire.client import Client
-from cobotwire.codec import CodecName
-from cobotwire.editions.mycobot import MyCobot as OurMyCobot
-from pymycobot_ports import RecordingPort, RecordingTransport, Written
+from pymycobot_ports import RecordingPort, Written
 
 with warnings.catch_warnings():
     # Its import uses features that Python 3.11 deprecates (locale.getdefaultlocale). We cannot fix
@@ -24,7 +21,7 @@ with warnings.catch_warnings():
     from pymycobot.error import calibration_parameters
     from pymycobot.robot_info import RobotLimit
 
-__all__ = ["RobotLimit", "library", "peer_on", "recording_client", "without_port", "written"]
+__all__ = ["RobotLimit", "library", "peer_on", "without_port", "written"]
 
 
 def library(name: str) -> Any:
@@ -58,14 +55,6 @@ def peer_on(name: str, port: Any) -> Any:
 def without_port(name: str) -> Any:
     """Return one of its classes on a port that only records."""
     return peer_on(name, RecordingPort())
-
-
-def recording_client(codec: CodecName, kind: type[Client] = OurMyCobot) -> Client:
-    """Return a new generated client of ours on a transport that only records.
-
-    A client cannot be used twice: after an abandoned request, it holds the next equal one.
-    """
-    return kind(RecordingTransport(), codec=codec)
 
 
 def written(who: Any, method: str, arguments: Sequence[Any]) -> bytes:

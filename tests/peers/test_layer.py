@@ -178,7 +178,7 @@ def test_each_call_of_the_makers_palletizer_fails_and_ours_succeeds() -> None:
     theirs = peer_on("MyPalletizer", RecordingPort())
     with pytest.raises(ValueError, match="too many values to unpack"):
         theirs.get_angles()
-    calls = {call.method: call for call in calls_of(PALLETIZER) if not call.why}
+    calls = {call.method: call for call in calls_of(PALLETIZER)}
     assert len(calls) >= 40
     results = {name: call_ours(PALLETIZER, call).result for name, call in calls.items()}
     rejected = {name for name, result in results.items() if str(result).startswith(FAILURES)}

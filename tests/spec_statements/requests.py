@@ -1,7 +1,8 @@
 """Compares requests, and which values they accept, with the maker's classes.
 
 A call counts as a second source where the class and the unchanged edition agree: they send the same
-bytes, or both reject the call. The other calls differ for reasons that ``tests/peers`` lists.
+bytes, or both reject the call. The other calls differ for reasons that
+``tests/peers/differences.txt`` lists.
 """
 
 from __future__ import annotations
@@ -9,6 +10,7 @@ from __future__ import annotations
 import os
 from collections.abc import Iterator
 from contextlib import redirect_stdout
+from dataclasses import replace
 from functools import lru_cache
 from typing import Any
 
@@ -18,13 +20,15 @@ from cobotwire.protocol.addresses import find_address
 from cobotwire.protocol.errors import UsageError
 from cobotwire.protocol.radians import to_degrees
 from cobotwire_codegen.model import Edition
+from pymycobot_classes import library
 from robots.arguments import Named
 from robots.classes import ROBOTS
 from robots.comparison import calls_of, sent_by_peer
-from robots.robot import Call
+from robots.robot import Call, Robot
 from targets.expected import codec_of_edition
 
 Expected = tuple[Call, bytes | None]
+OLDEST = ROBOTS["MyCobot"]
 
 
 def requests(edition: Edition) -> Iterator[str]:
@@ -45,22 +49,34 @@ def requests(edition: Edition) -> Iterator[str]:
 @lru_cache(maxsize=32)
 def compared(name: str) -> tuple[tuple[Expected, ...], int]:
     """Return the calls in which the class and the unchanged edition agree, and how many differ."""
-    robot = next((each for each in ROBOTS.values() if each.edition == name), None)
-    if robot is None:
-        return (), 0
     codec = codec_of_edition(vectors.edition(name))
-    names = {command.name for command in robot.table.commands}
-    calls = [call for call in calls_of(robot) if call.command in names and not call.why]
     found, differ = [], 0
-    for call in {_key(each): each for each in (*calls, *_beyond(calls))}.values():
-        with open(os.devnull, "w") as nowhere, redirect_stdout(nowhere):  # some classes print
-            theirs = sent_by_peer(robot, call)
-        wanted = theirs if isinstance(theirs, bytes) else None
-        if _sent(codec, call) == wanted:
-            found.append((call, wanted))
-        else:
-            differ += 1
+    for robot in _robots(name):
+        for call in _calls(robot):
+            with open(os.devnull, "w") as nowhere, redirect_stdout(nowhere):  # some classes print
+                theirs = sent_by_peer(robot, call)
+            if _sent(codec, call) == theirs:
+                found.append((call, theirs))
+            else:
+                differ += 1
     return tuple(found), differ
+
+
+def _robots(name: str) -> Iterator[Robot]:
+    """Yield the class for an edition. Newer classes have the document's further requests, too."""
+    yield from (robot for robot in ROBOTS.values() if robot.edition == name)
+    if name == OLDEST.edition:
+        for newer in ("MyCobot280", "MyPalletizer260"):
+            yield replace(ROBOTS[newer], edition=name, calls=())
+
+
+def _calls(robot: Robot) -> list[Call]:
+    """Return the different calls of the edition's commands, with values in and beyond limits."""
+    names = {command.name for command in robot.table.commands}
+    calls = [call for call in calls_of(robot) if call.command in names]
+    if robot.edition == OLDEST.edition and robot is not OLDEST:
+        calls = [call for call in calls if not hasattr(library(OLDEST.peer), call.method)]
+    return list({_key(each): each for each in (*calls, *_beyond(calls))}.values())
 
 
 def _key(call: Call) -> str:

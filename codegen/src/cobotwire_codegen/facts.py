@@ -29,7 +29,7 @@ ASPECTS = (
 )
 # The kinds of sources that confirm a fact; a later one is nearer to a real arm.
 SOURCES = {
-    "library": "the maker's library sends and reads the same bytes (`make robots`, `make layer`)",
+    "library": "the maker's library sends and reads the same bytes (`tests/spec`, `make layer`)",
     "page": "the maker's document or page states it",
     "capture": "a public capture of an arm shows it",
     "survey": "an owner's survey, or conformance report, shows it",

@@ -1,4 +1,4 @@
-"""Describe one of the maker's classes: our edition for it, and where both sides differ."""
+"""Describe one of the maker's classes: our edition for it, and the calls that mean the same."""
 
 from __future__ import annotations
 
@@ -13,25 +13,8 @@ from pymycobot_classes import library, peer_on
 
 Arguments = tuple[Any, ...]
 
-# Public names of all classes that send nothing to the arm.
-LOCAL = frozenset({"check_python_version", "close", "crc_check", "crc_robot_class", "open", "wait"})
-# These drive pins of a Raspberry Pi.
-GPIO = frozenset({"gpio_init", "gpio_output"})
-# Methods of a base class of some of the maker's classes. Their frames begin with FF FF: they are
-# for the bus of the servos, not for the arm.
-SERVO_BUS = frozenset(
-    {"ping", "rxPacket", "txPacket", "txRxPacket", "readTxRx", "read1ByteTxRx", "read2ByteTxRx"}
-    | {"writeTxRx", "write1ByteTxRx", "write2ByteTxRx", "save_command", "search_servo"}
-    | {"scs_hibyte", "scs_lobyte", "scs_makeword", "scs_tohost", "get_servo_firmware_version"}
-    | {f"get_servo_{what}" for what in ("error", "baud", "d_time", "pid", "min_start", "phase")}
-    | {f"set_servo_{what}" for what in ("baud", "d_time", "pid", "min_start", "phase")}
-    | {
-        f"{verb}_servo_{what}"
-        for verb in ("get", "set")
-        for what in ("clockwise", "counter_clockwise", "max_temperature", "max_voltage")
-    }
-    | {f"{verb}_servo_response_speed" for verb in ("get", "set")}
-)
+# Public names that send nothing to the arm; two of them drive pins of a Raspberry Pi.
+LOCAL = frozenset({"close", "gpio_init", "gpio_output", "open", "wait"})
 
 
 class Call(NamedTuple):
@@ -43,7 +26,6 @@ class Call(NamedTuple):
         command: the name of our command; empty if we have none.
         ours: its arguments.
         address: the device that our request goes to; None if frames have no address.
-        why: not empty if the two sides differ in this call: the reason.
     """
 
     method: str
@@ -51,20 +33,6 @@ class Call(NamedTuple):
     command: str
     ours: Arguments
     address: str | None = None
-    why: str = ""
-
-
-class Ruling(NamedTuple):
-    """Why calls of a method differ from ours.
-
-    Attributes:
-        shows: a part of what these calls show: the hex digits of the maker's frame, or
-            ``rejected:`` and the text of the exception.
-        why: the reason.
-    """
-
-    shows: str
-    why: str
 
 
 @dataclass(frozen=True)
@@ -77,12 +45,11 @@ class Robot:
         further: editions for methods that ``edition`` has no command for: the class sends the
             requests of other firmware too.
         methods: for our commands, the methods of the class that have another name.
-        local: public names of the class that send no frame to the arm.
+        local: public names of the class whose arguments are not compared.
         lacking: for our commands without a method, the reason.
         not_ours: for methods without a command of ours, the reason.
         own_arguments: for commands, arguments that replace those drawn from the table.
         calls: further calls. With ``why``, the two sides differ.
-        rulings: for methods, the reasons why calls differ, where ``differences.txt`` has none.
         before: for each name of an address, the arguments that the maker's methods take first.
         without_address: commands with methods that do not take an address.
         opened: makes an object of the class on a port.
@@ -97,7 +64,6 @@ class Robot:
     not_ours: Mapping[str, str] = field(default_factory=dict)
     own_arguments: Mapping[str, Sequence[Arguments]] = field(default_factory=dict)
     calls: Sequence[Call] = ()
-    rulings: Mapping[str, Sequence[Ruling]] = field(default_factory=dict)
     before: Mapping[str | None, Arguments] = field(default_factory=lambda: {None: ()})
     without_address: frozenset[str] = frozenset()
     opened: Callable[[str, Any], Any] = peer_on

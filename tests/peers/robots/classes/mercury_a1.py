@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from robots.crc_classes import SINGLE, opened_as
-from robots.robot import LOCAL, Arguments, Call, Robot, Ruling
+from robots.robot import LOCAL, Arguments, Call, Robot
 
 _PRO = {"angle": (11, 12), "torque": (27, 28), "speed": (32, 33)}
 _HAND = {"angle": (11, 12), "torque": (27, 28), "p": (15, 16), "d": (17, 18), "i": (19, 20)}
 _HAND |= {"clockwise": (21, 22), "counterclockwise": (23, 24), "min_pressure": (25, 26)}
-_TWICE = "the maker sends the tool's number a second time by mistake, and as a byte"
 # Methods that write or read one register of a tool, by our commands for any register.
 TOOLS = [
     *(
@@ -51,7 +50,7 @@ TOOLS = [
         "set_hand_gripper_angles",
         ([1, 2, 3, 4, 5, 6], 50),
     ),
-    Call("get_hand_gripper_angles", (), "get_hand_gripper", (50, 0), why=_TWICE),
+    Call("get_hand_gripper_angles", (), "get_hand_gripper", (50, 0)),
     # Two bytes, which are one word.
     Call(
         "set_hand_gripper_pinch_action_speed_consort", (4, 5), "set_pro_gripper", (52, 4 * 256 + 5)
@@ -59,29 +58,22 @@ TOOLS = [
 ]
 _HOME = [0, 0, 0, 0, 0, 90, 0]
 _PLACE = [300, 0, 200, 90, 0, -90]
-_SEVEN = "the arm has six joints; the maker sends seven angles"
 
 
 def calls_of(joints: int) -> list[Call]:
     """Return the calls of methods without a command of the same name."""
-    zero, why = [0] * joints, "" if joints == len(_HOME) else _SEVEN
+    zero = [0] * joints
     return [
         *TOOLS,
         Call("clear_encoders_error", (joints,), "clear_encoder_error", (joints,)),
         Call("set_servos_calibration", (), "set_servo_calibration", (1,)),
-        Call("go_home", (), "send_angles", (_HOME, 20), why=why),
+        Call("go_home", (), "send_angles", (_HOME, 20)),
         Call("sync_send_angles", (zero, 50), "send_angles", (zero, 50)),
         Call("is_in_position", (_PLACE, 1), "is_in_position_coords", (_PLACE,)),
         Call("get_coords", (zero,), "angles_to_coords", (zero,)),
     ]
 
 
-LOCAL_NAMES = (LOCAL - {"wait"}) | {
-    "bytes4_to_int",
-    "calibration_parameters",
-    "identify_print",
-    "read_thread",
-}
 # On a port that is not one of two arms, the class refuses these before it sends anything.
 _TWO_ARMS = {"get_base_coords", "send_base_coord", "send_base_coords", "jog_base_coord"}
 _TWO_ARMS |= {"jog_base_increment_coord", "jog_base_rpy", "set_servo_cw", "get_servo_cw"}
@@ -97,20 +89,13 @@ LACKING = {
     "set_hand_gripper": "a method for each register",
     "get_hand_gripper": "a method for each register",
 }
-RULINGS = {
-    "drag_teach_execute": [
-        Ruling("fe fe 03 47", "the maker asks first whether points are recorded")
-    ],
-    "set_limit_switch": [Ruling("fe fe 03 12", "the maker asks first whether the arm has power")],
-}
 ROBOT = Robot(
     "Mercury (A1)",
     "mercury_a1",
     further=("mercury_b1",),
-    local=LOCAL_NAMES | _TWO_ARMS,
+    local=LOCAL | _TWO_ARMS,
     lacking=LACKING,
     own_arguments=OWN_ARGUMENTS,
     calls=calls_of(7),
-    rulings=RULINGS,
     opened=opened_as(SINGLE),
 )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from robots.robot import GPIO, LOCAL, SERVO_BUS, Call, Robot
+from robots.robot import Call, Robot
 
 _ZERO = [0] * 7
 _LOWEST, _HIGHEST = [-160, -70, -170, -113, -170, -115, -180], [160, 115, 170, 75, 170, 115, 180]
@@ -10,7 +10,6 @@ _END = [200, -25.8, 100, 9, -2.58, 180]
 ROBOT = Robot(
     "MyArm",
     "myarm300",
-    local=LOCAL | GPIO | SERVO_BUS | {"get_quick_move_info", "set_ssid_pwd"},
     calls=[
         Call("is_in_position", (_HIGHEST, 0), "is_in_position", (_HIGHEST,)),
         Call("is_in_position", (_END, 1), "is_in_position_coords", (_END,)),

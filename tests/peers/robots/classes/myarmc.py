@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from robots.robot import LOCAL, Robot
+from robots.robot import Robot
 
 METHODS = {
     "get_system_version": "get_robot_firmware_version",
@@ -16,7 +16,6 @@ ROBOT = Robot(
     "MyArmC",
     "myarm_c650",
     methods=METHODS,
-    local=LOCAL - {"open", "close", "wait"},
     lacking=PIN_MODE
     | dict.fromkeys(
         (

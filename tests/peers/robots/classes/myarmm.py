@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from robots.classes.myarmc import METHODS, PIN_MODE
-from robots.robot import LOCAL, Call, Robot
+from robots.robot import Call, Robot
 
 _ENCODERS = [2000, 1598, 2498, 2000, 2000, 2000, 2000, 2000]
 ROBOT = Robot(
@@ -19,7 +19,6 @@ ROBOT = Robot(
         "stop": "stop_robot",
         "is_moving": "is_robot_moving",
     },
-    local=LOCAL - {"open", "close", "wait"},
     lacking=PIN_MODE,
     calls=[
         Call("set_servos_encoder", (_ENCODERS, 50), "set_servos_encoder", (_ENCODERS, 50)),

@@ -5,7 +5,7 @@ The maker's methods take the address of a limb as their first argument.
 
 from __future__ import annotations
 
-from robots.robot import LOCAL, SERVO_BUS, Call, Robot
+from robots.robot import LOCAL, Call, Robot
 
 _PINS = frozenset(
     {"set_gpio_clearup", "set_gpio_init_mode", "set_gpio_output", "set_gpio_pwm_change_dc"}
@@ -32,7 +32,7 @@ ROBOT = Robot(
         "set_pwm_output": "set_tool_pwm_output",
         "set_color": "set_tool_color",
     },
-    local=LOCAL | SERVO_BUS | _PINS,
+    local=LOCAL | _PINS,
     before={"ALL": (0,), "LEFT": (1,), "RIGHT": (2,), "WAIST": (3,)},
     without_address=_WHOLE_ROBOT,
     lacking={

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from robots.robot import GPIO, LOCAL, Call, Robot
+from robots.robot import Call, Robot
 
 _LOWEST = [-168, -140, -150, -150, -155, -180]
 # Header and footer inside the data: FE FE and 00 FA.
@@ -10,7 +10,6 @@ _COORDS = [-25.8, 25.0, -0.1, -2.58, 2.5, 0.1]
 ROBOT = Robot(
     "MyCobot280",
     "mycobot280",
-    local=LOCAL | GPIO,
     lacking={"jog_stop": "a command of the document's edition, which the 280 keeps"},
     calls=[
         Call("is_in_position", (_LOWEST,), "is_in_position", (_LOWEST, 0)),

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from robots.robot import LOCAL, Call, Robot, Ruling
+from robots.robot import Call, Robot
 
 _ZERO = [0] * 6
 _OTHER_NAME = "the older class for the 280 has the method"
@@ -19,7 +19,6 @@ ROBOT = Robot(
         "is_controller_connected": "is_tool_connected",
         "set_color": "set_tool_color",
     },
-    local=LOCAL | {"parametric_verification"},
     lacking={
         "jog_stop": "a command of the document's edition, which the 280 keeps",
         "jog_increment": _OTHER_NAME,
@@ -30,11 +29,4 @@ ROBOT = Robot(
         Call("sync_send_angles", (_ZERO, 50), "send_angles", (_ZERO, 50)),
         Call("sync_send_coords", (_ZERO, 50, 1), "send_coords", (_ZERO, 50, 1)),
     ],
-    rulings={
-        "get_gripper_value": [
-            Ruling(
-                "fe fe 03 65 01 fa", "the kind may be left out, as on the 280; the maker sends 1"
-            )
-        ],
-    },
 )

@@ -2,20 +2,18 @@
 
 from __future__ import annotations
 
-from robots.robot import GPIO, LOCAL, Call, Robot
+from robots.robot import Call, Robot
 
-_THREE = "0x22: the arm has four joints; the maker sends three angles"
 _ZERO = [0, 0, 0, 0]
 _LOWEST, _HIGHEST = [-162, -2, -92, -180], [162, 90, 60, 180]
 ROBOT = Robot(
     "MyPalletizer260",
     "mypalletizer260",
-    local=LOCAL | GPIO,
     calls=[
         Call("is_in_position", (_LOWEST,), "is_in_position", (_LOWEST, 0)),
         Call("set_color", (), "set_color", (0, 0, 0)),
         Call("sync_send_angles", (_HIGHEST, 50), "send_angles", (_HIGHEST, 50)),
         Call("sync_send_coords", ([200, 0, 100, 9], 50), "send_coords", ([200, 0, 100, 9], 50)),
-        Call("go_home", (), "send_angles", (_ZERO, 10), why=_THREE),
+        Call("go_home", (), "send_angles", (_ZERO, 10)),
     ],
 )

@@ -4,9 +4,7 @@ from __future__ import annotations
 
 from robots.classes.mercury_a1 import (
     LACKING,
-    LOCAL_NAMES,
     OWN_ARGUMENTS,
-    RULINGS,
     calls_of,
 )
 from robots.crc_classes import SINGLE, opened_as
@@ -18,8 +16,6 @@ ROBOT = Robot(
     further=("mercury_b1",),
     lacking=LACKING,
     calls=calls_of(6),
-    local=LOCAL_NAMES,
     own_arguments=OWN_ARGUMENTS,
-    rulings=RULINGS,
     opened=opened_as(SINGLE),
 )

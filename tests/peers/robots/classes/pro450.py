@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from robots.classes.mercury_a1 import LOCAL_NAMES
-from robots.robot import Arguments, Call, Robot, Ruling
+from robots.robot import LOCAL, Arguments, Call, Robot
 from robots.tcp_classes import opened_on_socket
 
 GRIPPER = 14
@@ -66,14 +65,10 @@ _CALLS = [
 ]
 _PLACE = [300, 0, 200, 90, 0, -90]
 _ZERO = [0] * 6
-_FIRST = "the maker asks first whether a new target replaces the present one"
-_JOG = [Ruling("fe fe 03 17", _FIRST)]
 ROBOT = Robot(
     "Pro450Client",
     "pro450",
-    local=LOCAL_NAMES - {"calibration_parameters", "identify_print"}
-    | {"clear_socket_buffer", "connect_socket", "debug_clear_socket"}
-    | {"read_thread_old", "set_limit_switch"},
+    local=LOCAL | {"set_limit_switch"},
     lacking={
         "angles_to_coords": "get_coords with angles",
         "is_in_position_coords": "is_in_position with the mode 1",
@@ -98,10 +93,6 @@ ROBOT = Robot(
         Call("base_external_485_control", ([1, 2, 255],), "base_external_control", ([1, 2, 255],)),
         Call("base_external_can_control", (258, [3]), "base_external_control", ([0, 0, 1, 2, 3],)),
     ],
-    rulings={
-        **dict.fromkeys(("jog_angle", "jog_coord", "jog_rpy"), _JOG),
-        **dict.fromkeys(("jog_increment_angle", "jog_increment_coord"), _JOG),
-    },
     opened=opened_on_socket,
     # Motions return their final status; the robot type is returned as a string of digits.
 )
