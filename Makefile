@@ -29,7 +29,7 @@ WASM := wasm32-unknown-unknown
 CHECK_WASM := RUSTFLAGS=-Dwarnings cargo check --release --package cobotwire-core --target $(WASM) --quiet
 CARGO_FUZZ := .cargo-tools/bin/cargo-fuzz
 
-.PHONY: set-up spec-mutants help demo test lint lint-and-rust python-test computing-tests simulating-tests calling-tests waiting-tests other-tests rust-test products gen targets docs bench plots smoothness picture answers table fuzz figures clean faults conform defects attack archives lerobot bench-archive bench-compare rust-asan layer demos front-end front-end-if-reachable four-hours studio-pictures explore nightly rust-package npm-package release-check figures-page every-edition urdf
+.PHONY: set-up spec-mutants help demo test lint lint-and-rust python-test computing-tests simulating-tests calling-tests waiting-tests other-tests rust-test products gen targets docs bench plots smoothness picture answers table fuzz figures clean faults conform defects attack archives lerobot bench-archive bench-compare rust-asan layer front-end front-end-if-reachable four-hours studio-pictures explore nightly rust-package npm-package release-check figures-page every-edition urdf
 .DEFAULT_GOAL := help
 
 help: ## list the targets
@@ -233,9 +233,6 @@ release-check: .venv/.tools .venv/.native ## compare API, editions, spec languag
 
 layer: .venv/.tools .venv/.native ## compare every call of the maker's classes with ours of the same names
 	PYTHONPATH=python:codegen/src:tests:tests/peers $(BIN)/python -W ignore -m layer_main
-
-demos: .venv/.tools .venv/.native ## run the maker's public demos: with the library, with our layer, rewritten
-	PYTHONPATH=python:tests:tests/peers $(BIN)/python -m demos $(DEMOS)
 
 faults: .venv/.tools .venv/.native ## run our client and pymycobot on each fault; write docs/fault-scenarios.md
 	PYTHONPATH=tests $(BIN)/python bench/fault_scenarios.py

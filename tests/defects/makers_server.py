@@ -20,8 +20,9 @@ from cobotwire.conformance import Report
 from cobotwire.editions.mycobot import TABLE
 from cobotwire.transport import open_transport
 from defects.devices import firmware, report_on
-from demos.scripts import COMMIT, REPOSITORY
 
+REPOSITORY = "https://github.com/elephantrobotics/pymycobot"
+COMMIT = "44d7fb1"
 SERVER = "demo/Server_280.py"
 START = """import sys
 from Server_280 import MycobotServer

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import inspect
 import pickle
+import re
 import threading
 from importlib import import_module
 from typing import Any
@@ -14,10 +15,14 @@ from typing import Any
 import pytest
 
 import cobotwire.pymycobot
-from cobotwire.pymycobot import Mercury, MyBuddy, MyCobot280, MyCobot280Socket
+from cobotwire.protocol.errors import UsageError
+from cobotwire.pymycobot import Mercury, MyBuddy, MyCobot280, MyCobot280Socket, error
 from cobotwire.pymycobot.layer import making
 from cobotwire.pymycobot.layer.data import NAMES
 from cobotwire.pymycobot.layer.stated import class_row
+
+# Exceptions of robots that no edition covers.
+OTHER_ROBOT = re.compile("MyAgv|MyArmMControl|[uU]ltraArm")
 
 
 @pytest.mark.parametrize("name", NAMES)
@@ -82,6 +87,24 @@ def test_method_shows_its_parameters_and_what_it_calls() -> None:
         "debug: 'bool' = False, save_serial_log: 'bool' = False, *, "
         "errors: 'OnFailure | None' = None) -> 'None'"
     )
+
+
+# pymycobot reads the locale in a way that Python deprecates.
+@pytest.mark.filterwarnings("ignore:.*getdefaultlocale:DeprecationWarning")
+def test_constants_and_exceptions_are_those_of_the_library() -> None:
+    import pymycobot
+    from pymycobot import error as theirs
+    from pymycobot import genre as numbers
+
+    ours = cobotwire.pymycobot
+    for name in ("PI_PORT", "PI_BAUD", "__version__"):
+        assert getattr(ours, name) == getattr(pymycobot, name)
+    for mine, their in ((ours.Angle, numbers.Angle), (ours.Coord, numbers.Coord)):
+        assert [(each.name, each.value) for each in mine] == [
+            (each.name, each.value) for each in their
+        ]
+    exceptions = {n for n in vars(theirs) if n.endswith("Exception") and not OTHER_ROBOT.match(n)}
+    assert {n: getattr(error, n, None) for n in exceptions} == dict.fromkeys(exceptions, UsageError)
 
 
 @pytest.mark.parametrize("place", ["cobotwire.pymycobot", "cobotwire.pymycobot.layer.classes"])

@@ -97,17 +97,19 @@ def test_ctrl_c_stops_the_arm_once(served: tuple[Served, str]) -> None:
     assert arm.received.count("stop") == before + 1
 
 
-def test_arm_stays_open_for_the_threads_of_a_program(
+def test_program_imports_from_its_folder_and_its_threads_keep_the_arm_open(
     served: tuple[Served, str], tmp_path: Path
 ) -> None:
     arm, port = served
+    (tmp_path / "port_setup.py").write_text("SECONDS = 1\n")
     script = tmp_path / "threads.py"
     script.write_text(
         "import sys, threading, time\n"
+        "from port_setup import SECONDS\n"
         "from pymycobot import MyCobot280\n"
         "mc = MyCobot280(sys.argv[1])\n"
         "def later():\n"
-        "    time.sleep(1)\n"
+        "    time.sleep(SECONDS)\n"
         "    mc.get_angles()\n"
         "    print('read')\n"
         "threading.Thread(target=later).start()\n"

@@ -1,1 +1,0 @@
-"""Stand in for the package of a Raspberry Pi's pins."""
