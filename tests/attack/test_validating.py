@@ -4,6 +4,7 @@ client in none."""
 from __future__ import annotations
 
 import time
+from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
@@ -15,6 +16,8 @@ from attack.running import attack
 from attack.tally import FORBIDDEN, Tally
 from cobotwire.session.outstanding import OutstandingReplies
 from cobotwire.simulator.faults import Corrupted
+
+Method = Callable[..., Any]
 
 
 def chosen(name: str = "benign", **changes: Any) -> Plan:
@@ -47,20 +50,6 @@ def test_correct_client_on_good_line_is_right_in_each_call(client: str, tcp: boo
     assert counts(tally) == []
 
 
-def test_value_of_another_request_is_silently_wrong() -> None:
-    def change(client: Any) -> Any:
-        class Stale(client):  # type: ignore[misc]
-            last = 0
-
-            def get_encoder(self, joint: int) -> int:
-                before, Stale.last = Stale.last, super().get_encoder(joint)
-                return before
-
-        return Stale
-
-    assert counts(attack(chosen(), change)) == ["wrong"]
-
-
 def test_late_reply_that_is_not_waited_for_is_silently_wrong(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
@@ -69,76 +58,74 @@ def test_late_reply_that_is_not_waited_for_is_silently_wrong(
     assert "wrong" in counts(tally)
 
 
-def test_setter_that_sends_nothing_is_silently_wrong() -> None:
+def previous(call: Method) -> Method:
+    """Return the value of the request before."""
+    values = [0]
+
+    def instead(arm: Any, *arguments: Any) -> Any:
+        values.append(call(arm, *arguments))
+        return values[-2]
+
+    return instead
+
+
+def twice(call: Method) -> Method:
+    """Send the request twice."""
+    return lambda arm, *given, **options: (call(arm, *given), call(arm, *given, **options))[0]
+
+
+def nothing(call: Method) -> Method:
+    """Send nothing."""
+    return lambda arm, *given, **options: None
+
+
+def another(call: Method) -> Method:
+    """Send a motion that nobody called, then the request."""
+
+    def instead(arm: Any, **options: Any) -> None:
+        arm.send_angles([0.0, 0.0, 0.0, 0.0, 0.0, 1.0], 77)
+        call(arm, **options)
+
+    return instead
+
+
+def raising(call: Method) -> Method:
+    """Raise an error that no page describes."""
+
+    def instead(arm: Any) -> Any:
+        raise AssertionError("not for users")
+
+    return instead
+
+
+def slow(seconds: float) -> Callable[[Method], Method]:
+    """Sleep after the call."""
+    return lambda call: lambda arm, *given: (call(arm, *given), time.sleep(seconds))[0]
+
+
+@pytest.mark.parametrize(
+    ("method", "broken", "changes", "columns"),
+    [
+        ("get_encoder", previous, {}, ["wrong"]),
+        ("set_color", nothing, {}, ["wrong"]),
+        ("send_angle", twice, {}, ["duplicates"]),
+        ("stop", another, {}, ["merged"]),
+        ("is_power_on", raising, {}, ["exceptions"]),
+        ("get_encoder", slow(0.6), {"users": 1, "seconds": 1.0}, ["late"]),
+        ("get_encoder", slow(0.35), {"users": 1, "seconds": 1.0, "deadline": 0.2}, ["late"]),
+        ("get_encoder", slow(60.0), {"users": 1, "seconds": 0.3}, ["lost"]),
+    ],
+)
+def test_broken_client_shows_in_its_column(
+    method: str,
+    broken: Callable[[Method], Method],
+    changes: dict[str, Any],
+    columns: list[str],
+) -> None:
     def change(client: Any) -> Any:
-        class Mute(client):  # type: ignore[misc]
-            def set_color(self, *arguments: Any, **options: Any) -> None:
-                pass
+        return type("Broken", (client,), {method: broken(getattr(client, method))})
 
-        return Mute
-
-    assert counts(attack(chosen(), change)) == ["wrong"]
-
-
-def test_motion_that_is_sent_twice_is_a_duplicate() -> None:
-    def change(client: Any) -> Any:
-        class Twice(client):  # type: ignore[misc]
-            def send_angle(self, *arguments: Any, **options: Any) -> None:
-                super().send_angle(*arguments)
-                super().send_angle(*arguments, **options)
-
-        return Twice
-
-    assert counts(attack(chosen(), change)) == ["duplicates"]
-
-
-def test_motion_that_nobody_called_is_merged() -> None:
-    def change(client: Any) -> Any:
-        class Own(client):  # type: ignore[misc]
-            def stop(self, **options: Any) -> None:
-                super().send_angles([0.0, 0.0, 0.0, 0.0, 0.0, 1.0], 77)
-                super().stop(**options)
-
-        return Own
-
-    assert counts(attack(chosen(), change)) == ["merged"]
-
-
-def test_undocumented_exception_is_counted() -> None:
-    def change(client: Any) -> Any:
-        class Raising(client):  # type: ignore[misc]
-            def is_power_on(self) -> bool:
-                raise AssertionError("not for users")
-
-        return Raising
-
-    assert counts(attack(chosen(), change)) == ["exceptions"]
-
-
-@pytest.mark.parametrize(("deadline", "slept"), [(None, 0.6), (0.2, 0.35)])
-def test_call_that_ends_after_its_deadline_is_late(deadline: float | None, slept: float) -> None:
-    def change(client: Any) -> Any:
-        class Slow(client):  # type: ignore[misc]
-            def get_encoder(self, joint: int) -> int:
-                value: int = super().get_encoder(joint)
-                time.sleep(slept)
-                return value
-
-        return Slow
-
-    assert "late" in counts(attack(chosen(users=1, seconds=1.0, deadline=deadline), change))
-
-
-def test_call_that_never_ends_is_lost() -> None:
-    def change(client: Any) -> Any:
-        class Waiting(client):  # type: ignore[misc]
-            def get_encoder(self, joint: int) -> int:
-                time.sleep(60.0)
-                return 0
-
-        return Waiting
-
-    assert counts(attack(chosen(users=1, seconds=0.3), change)) == ["lost"]
+    assert counts(attack(chosen(**changes), change)) == columns
 
 
 def test_process_that_fails_is_lost(monkeypatch: pytest.MonkeyPatch) -> None:
