@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import subprocess
 import sys
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -105,30 +106,6 @@ def test_places_that_a_person_must_decide_are_listed(line: str, says: str) -> No
     assert any(each.startswith(says) for each in found), found
 
 
-@pytest.mark.parametrize(
-    ("before", "after", "says"),
-    [
-        (
-            "mc.set_pro_gripper_angle(50)",
-            "mc.set_pro_gripper(11, 50)",
-            "if the port is that of an arm on a body, write MercuryB1",
-        ),
-        (
-            "mc.get_hand_gripper_p(3, gripper_id=15)",
-            "mc.get_hand_gripper(16, 3, gripper=15)",
-            "write MercuryB1",
-        ),
-        ("mc.send_angles(row, 50)", "mc.send_angles(row, 50)", "use move_angles or move_coords"),
-        ("mc.go_home(2)", "mc.go_home(2)", "go_home waits"),
-    ],
-)
-def test_program_of_a_mercury_is_rewritten(before: str, after: str, says: str) -> None:
-    head = "from {} import {}\nmc = {}(port)\n"
-    found = migrate(f"{head.format('pymycobot', 'Mercury', 'Mercury')}{before}\n")
-    assert found.text == f"{head.format('cobotwire', 'MercuryA1', 'MercuryA1')}{after}\n"
-    assert any(says in str(each) for each in found.decisions)
-
-
 @pytest.mark.parametrize("name", sorted(library()))
 def test_constructor_opens_what_the_library_opens_by_default(name: str) -> None:
     kind = library()[name]
@@ -143,64 +120,59 @@ def test_constructor_opens_what_the_library_opens_by_default(name: str) -> None:
         assert str(number) == str(kind.usual) or str(number) in opened
 
 
-def test_default_argument_of_the_library_is_written_if_our_method_requires_it() -> None:
-    head = "from pymycobot import MyCobot280RDKX5\nmc = MyCobot280RDKX5(port)\n"
-    assert migrate(f"{head}mc.get_gripper_value()\n").text.endswith("mc.get_gripper_value(1)\n")
+# The library's class and ours; calls, what they become, and a part of the decision if there is one.
+OF_CLASSES = """
+MyCobot280RDKX5, MyCobot280RDKX5
+    get_gripper_value() -> get_gripper_value(1)
+MyBuddy, MyBuddy
+    get_angles(1) -> left.get_angles()
+    send_angle(2, 1, 30, 50) -> right.send_angle(1, 30, 50)
+    send_angle(3, joint=1, angle=30, speed=50) -> waist.send_angle(joint=1, angle=30, speed=50)
+    power_on() -> power_on()
+    stop(0) -> all.stop()
+    set_tool_color(side, 255, 0, 0) -> at(side).set_color(255, 0, 0)
+    sync_send_angles(1, row, 50) -> left.move_angles(row, 50, timeout=15)
+    get_base_coords() -> get_base_coords()
+    set_encoders(1, row, pace) -> left.set_encoders(row, speed=pace) -> if this speed is a row
+MyCobot, MyCobot280
+    sync_send_angles(row, 50) -> move_angles(row, 50, timeout=30)
+    go_home() -> send_angles([0] * 6, 10)
+MechArm, MechArm270
+    release_servo(1) -> release_servo(1)
+MyPalletizer, MyPalletizer260
+    send_coords(row, 50) -> send_coords(row, 50)
+Mercury, MercuryA1
+    set_pro_gripper_angle(50) -> set_pro_gripper(11, 50) -> on a body, write MercuryB1
+    get_hand_gripper_p(3, gripper_id=15) -> get_hand_gripper(16, 3, gripper=15) -> write MercuryB1
+    send_angles(row, 50) -> send_angles(row, 50) -> use move_angles or move_coords
+    go_home(2) -> go_home(2) -> go_home waits
+"""
 
 
-@pytest.mark.parametrize(
-    ("before", "after"),
-    [
-        ("mb.get_angles(1)", "mb.left.get_angles()"),
-        ("mb.send_angle(2, 1, 30, 50)", "mb.right.send_angle(1, 30, 50)"),
-        (
-            "mb.send_angle(3, joint=1, angle=30, speed=50)",
-            "mb.waist.send_angle(joint=1, angle=30, speed=50)",
-        ),
-        ("mb.power_on()", "mb.power_on()"),
-        ("mb.stop(0)", "mb.all.stop()"),
-        ("mb.set_tool_color(side, 255, 0, 0)", "mb.at(side).set_color(255, 0, 0)"),
-        ("mb.sync_send_angles(1, row, 50)", "mb.left.move_angles(row, 50, timeout=15)"),
-        ("mb.get_base_coords()", "mb.get_base_coords()"),
-    ],
-)
-def test_address_becomes_a_part_of_the_robot(before: str, after: str) -> None:
-    head = "from {} import MyBuddy\nmb = MyBuddy(port)\n"
-    found = migrate(f"{head.format('pymycobot')}{before}\n")
-    assert found.text == f"{head.format('cobotwire')}{after}\n"
-    assert found.decisions == ()
+def of_classes() -> Iterator[list[str]]:
+    """Yield the library's class, ours, the call before and after, and what must be decided."""
+    names: list[str] = []
+    for line in OF_CLASSES.strip().splitlines():
+        if line.startswith(" "):
+            yield [*names, *f"{line.strip()} -> ".split(" -> ")[:3]]
+        else:
+            names = line.split(", ")
 
 
-@pytest.mark.parametrize(
-    ("opened", "before", "after"),
-    [
-        ("MyCobot(port)", "mc.sync_send_angles(row, 50)", "mc.move_angles(row, 50, timeout=30)"),
-        ("MyCobot(port)", "mc.go_home()", "mc.send_angles([0] * 6, 10)"),
-        ("MechArm(port)", "mc.release_servo(1)", "mc.release_servo(1)"),
-        ("MyPalletizer(port)", "mc.send_coords(row, 50)", "mc.send_coords(row, 50)"),
-    ],
-)
-def test_older_class_becomes_class_of_its_robot(opened: str, before: str, after: str) -> None:
-    name = opened.partition("(")[0]
-    native = {"MyCobot": "MyCobot280", "MechArm": "MechArm270"}.get(name, "MyPalletizer260")
-    found = migrate(f"from pymycobot import {name}\nmc = {opened}\n{before}\n")
-    assert found.text == f"from cobotwire import {native}\nmc = {native}(port)\n{after}\n"
-    assert found.decisions == ()
+@pytest.mark.parametrize(("name", "ours", "before", "after", "says"), [*of_classes()])
+def test_call_of_another_class_is_rewritten(
+    name: str, ours: str, before: str, after: str, says: str
+) -> None:
+    head = "from {} import {}\narm = {}(port)\n"
+    found = migrate(f"{head.format('pymycobot', name, name)}arm.{before}\n")
+    assert found.text == f"{head.format('cobotwire', ours, ours)}arm.{after}\n"
+    assert any(says in str(each) for each in found.decisions) if says else not found.decisions
 
 
 @pytest.mark.parametrize("module", ["pymycobot", "pymycobot.myarm"])
 def test_class_with_another_name_is_imported_under_ours(module: str) -> None:
     found = migrate(f"from {module} import MyArm\nmc = MyArm(port)\n")
     assert found == ("from cobotwire import MyArm300\nmc = MyArm300(port)\n", ())
-
-
-def test_speed_that_may_be_a_row_is_a_decision() -> None:
-    head = "from {} import MyBuddy\nmb = MyBuddy(port)\n"
-    found = migrate(f"{head.format('pymycobot')}mb.set_encoders(1, row, pace)\n")
-    assert found.text == f"{head.format('cobotwire')}mb.left.set_encoders(row, speed=pace)\n"
-    assert [each.what.partition(",")[0] for each in found.decisions] == [
-        "if this speed is a row with a number for each servo"
-    ]
 
 
 @pytest.mark.parametrize(
