@@ -5,6 +5,7 @@ from __future__ import annotations
 import threading
 import time
 from collections.abc import Callable
+from functools import partial
 from importlib import import_module
 from typing import Any, NamedTuple
 
@@ -31,58 +32,30 @@ class Outcome(NamedTuple):
     meant: bool = True
 
 
-def open_blocking(url: str) -> Any:
-    """Open our blocking client."""
-    return MyCobot280(url)
+def _opened(library: str) -> Callable[[str], Any]:
+    """Return a function that imports a class of the maker's names and opens it."""
 
+    def opened(url: str) -> Any:
+        module = import_module(library)
+        if url.startswith("socket://"):
+            host, port = url.removeprefix("socket://").split(":")
+            return module.MyCobot280Socket(host, int(port))
+        return module.MyCobot280(url, "115200")
 
-def open_asyncio(url: str) -> Any:
-    """Open our asyncio client, with its event loop in a separate thread."""
-    return InLoop(AsyncMyCobot280, url)
-
-
-def open_layer(url: str) -> Any:
-    """Open our class with the maker's names."""
-    return _opened(import_module("cobotwire.pymycobot"), url)
-
-
-def open_pymycobot(url: str) -> Any:
-    """Open the maker's client. The import is local, since our clients do not need it."""
-    return _opened(import_module("pymycobot"), url)
-
-
-def open_rust(url: str) -> Any:
-    """Open the blocking client of the Rust crate, in a process of its own."""
-    return ProbeClient(url, "mycobot280")
-
-
-def open_rust_async(url: str) -> Any:
-    """Open the async client of the Rust crate, in a process of its own."""
-    return ProbeClient(url, "mycobot280", tasks=True)
-
-
-def open_node(url: str) -> Any:
-    """Open the client in Node, in a process of its own."""
-    return ProbeClient(url, "mycobot280", command=NODE)
-
-
-def _opened(library: Any, url: str) -> Any:
-    if url.startswith("socket://"):
-        host, port = url.removeprefix("socket://").split(":")
-        return library.MyCobot280Socket(host, int(port))
-    return library.MyCobot280(url, "115200")
+    return opened
 
 
 # The clients that are called as the maker's library is, and do not know `with`.
 AS_LIBRARY = {"layer", "pymycobot"}
+# Those in Rust and Node have a process of their own, and asyncio an event loop in a thread.
 OPENERS: dict[str, Callable[[str], Any]] = {
-    "blocking": open_blocking,
-    "asyncio": open_asyncio,
-    "rust": open_rust,
-    "rust async": open_rust_async,
-    "node": open_node,
-    "layer": open_layer,
-    "pymycobot": open_pymycobot,
+    "blocking": MyCobot280,
+    "asyncio": partial(InLoop, AsyncMyCobot280),
+    "rust": partial(ProbeClient, edition="mycobot280"),
+    "rust async": partial(ProbeClient, edition="mycobot280", tasks=True),
+    "node": partial(ProbeClient, edition="mycobot280", command=NODE),
+    "layer": _opened("cobotwire.pymycobot"),
+    "pymycobot": _opened("pymycobot"),
 }
 
 
