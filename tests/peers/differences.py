@@ -17,6 +17,8 @@ RULED = Path(__file__).with_name("differences.txt")
 # The reasons begin with this mark.
 SECTION = "## "
 ALL = 3
+# What follows in a difference of values; a row without it rules any range.
+RANGE = "; ours sends"
 CALLS, REPLIES = ("conversation",), ("of the edition", "documented", "with its number", "any")
 
 
@@ -39,7 +41,8 @@ class Ruling(NamedTuple):
 
     def rules(self, name: str, each: Difference) -> bool:
         """Return whether a difference of a class has this reason."""
-        same = name in self.names and each.shows == self.shows
+        shows = each.shows if RANGE in self.shows else each.shows.partition(RANGE)[0]
+        same = name in self.names and shows == self.shows
         return same and each.method in self.methods and each.part in self.parts
 
 

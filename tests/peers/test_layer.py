@@ -28,8 +28,10 @@ from layer_comparison import (
 from layer_main import COMPARISONS
 from layer_replies import compare_reply, drawn_reply
 from layer_robots import ALL_ROBOTS, PALLETIZER, SOCKETS, TCP_TWINS
+from layer_values import ONLY_OURS, ONLY_THEIRS, OTHER_BYTES
 from pymycobot_classes import library, peer_on
 from pymycobot_ports import RecordingPort, RecordingTransport
+from robots.classes import ROBOTS
 from robots.comparison import calls_of
 from robots.robot import Call
 from strategies import codec_of
@@ -142,6 +144,10 @@ def test_every_ruling_has_a_reason_and_names_classes_and_methods_that_exist() ->
         offered = [set(dir(library(each))) for each in ruling.names]
         assert ruling.methods <= set().union(*offered)
         assert all(each & ruling.methods for each in offered)
+        # Only a class whose robot has another class may leave out which values ours sends.
+        assert ruling.shows not in (ONLY_OURS, ONLY_THEIRS, OTHER_BYTES) or not (
+            ruling.names & ROBOTS.keys()
+        )
 
 
 @deprecated
