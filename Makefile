@@ -191,11 +191,11 @@ table: .venv/.tools .venv/.native ## compare our clients with pymycobot on bad l
 	PYTHONPATH=tests $(BIN)/python bench/bad_lines.py
 
 conform: .venv/.tools .venv/.native ## break subjects of EDITIONS (all) on purpose; count what the conformance tests find; FULL=1: all mutants
-	PYTHONPATH=tests $(BIN)/python -m mutation $(EDITIONS) $(if $(FULL),,--sample 3)
+	MUTANTS=$(if $(FULL),all,3) EDITIONS='$(EDITIONS)' $(BIN)/python -m pytest -q -rP tests/mutation -k 'of_a_suite or correct_subject'
 	POSES=500 $(BIN)/python -m pytest -q tests/conformance/device/test_start_poses.py -k any_pose
 
 defects: .venv/.tools .venv/.native ## test independent subjects with planted defects
-	PYTHONPATH=tests:tests/peers $(BIN)/python -m defects $(DEFECTS)
+	EVERY_DEFECT=1 $(BIN)/python -m pytest -q -rP tests/defects $(DEFECTS)
 
 attack: .venv/.tools .venv/.native ## attack the clients for ATTACK_SECONDS (180) with a hostile peer; CLIENT=rust or CLIENT=node: those in Rust or Node
 	PYTHONPATH=tests $(BIN)/python -m attack --seconds $(ATTACK_SECONDS) $(if $(CLIENT),--client $(CLIENT)) $(ATTACK)

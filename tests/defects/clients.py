@@ -25,19 +25,16 @@ SETTLED, LONGEST = 0.15, 60.0
 ALLOWED_STALL = 0.1
 
 
-def report_on_client(defect: str = "", line: str = "") -> Report:
-    """Test the client in plain Python."""
-    command = [sys.executable, str(HERE / "plain.py"), "PORT", *([defect] if defect else [])]
-    return _report(command, HERE / "calls.txt", line)
-
-
-def report_on_c_client(defect: str = "", line: str = "") -> Report:
-    """Test the client in C."""
-    return _report([str(built(HERE / "client.c", defect)), "PORT"], HERE / "calls_c.txt", line)
-
-
-def _report(command: list[str], calls: Path, line: str) -> Report:
-    """Return the report on a session; repeat it if the machine stood still: its times are wrong."""
+def report_on_client(subject: str, defect: str = "", line: str = "") -> Report:
+    """Test a client; repeat the session if the machine stood still: its times are wrong."""
+    if subject == "c_client":
+        command, calls = [str(built(HERE / "client.c", defect)), "PORT"], HERE / "calls_c.txt"
+    else:
+        switch = [defect] if defect else []
+        command, calls = (
+            [sys.executable, str(HERE / "plain.py"), "PORT", *switch],
+            HERE / "calls.txt",
+        )
     return unstalled(partial(_session, command, calls, line), ALLOWED_STALL)
 
 

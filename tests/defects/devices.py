@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import suppress
 from pathlib import Path
 
@@ -20,6 +20,7 @@ from cobotwire.protocol.errors import LinkError
 from cobotwire.protocol.loading import table_of
 from cobotwire.protocol.table import Table
 from cobotwire.simulator.clock import SteppedClock
+from cobotwire.simulator.peer import Peer
 from cobotwire.transport import Transport
 from cobotwire_codegen.build import build_edition
 from cobotwire_codegen.publish import edition_json
@@ -58,22 +59,19 @@ class OurTester(Tester):
                 yield step
 
 
-def report_on_arm(defect: str = "") -> Report:
-    """Test the arm in plain Python, in stepped time, with all permissions."""
+# The arms in plain Python, each with its edition.
+ARMS: dict[str, tuple[Callable[[Callable[[], float], str], Peer], Table]] = {
+    "arm": (arm_with, TABLE),
+    "closed_loop": (closed_loop_arm, CLOSED_LOOP),
+    "two_arms": (TwoArms, TWO_ARMS),
+}
+
+
+def report_on_peer(subject: str, switch: str = "") -> Report:
+    """Test an arm in plain Python, in stepped time, with all permissions."""
     clock = SteppedClock()
-    return on_peer(arm_with(clock, defect), clock, TABLE, OurTester).run()
-
-
-def report_on_closed_loop(switch: str = "") -> Report:
-    """Test the arm in a closed loop, in stepped time, with all permissions."""
-    clock = SteppedClock()
-    return on_peer(closed_loop_arm(clock, switch), clock, CLOSED_LOOP, OurTester).run()
-
-
-def report_on_two_arms(defect: str = "") -> Report:
-    """Test the robot with two arms, in stepped time, with all permissions."""
-    clock = SteppedClock()
-    return on_peer(TwoArms(clock, defect), clock, TWO_ARMS, OurTester).run()
+    make, table = ARMS[subject]
+    return on_peer(make(clock, switch), clock, table, OurTester).run()
 
 
 def report_on_firmware(defect: str = "") -> Report:

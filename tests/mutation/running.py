@@ -1,10 +1,10 @@
-"""Run suites in several processes: each mutant once, and each run on a correct subject."""
+"""Name the suites, draw mutants from one, and run them in several processes."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable
 from concurrent.futures import ProcessPoolExecutor
-from functools import cache
+from functools import cache, partial
 from random import Random
 from typing import NamedTuple
 
@@ -13,7 +13,7 @@ from cobotwire.protocol.table import Table
 from mutation.client.suite import ClientSuite, ScriptlessSuite
 from mutation.codec.suite import CodecSuite
 from mutation.device.suite import DeviceSuite
-from mutation.suite import Outcome, RightRun, Suite, missed
+from mutation.suite import Outcome, Suite
 
 TESTERS: dict[str, Callable[[Table], Suite]] = {
     "device": DeviceSuite,
@@ -23,8 +23,6 @@ TESTERS: dict[str, Callable[[Table], Suite]] = {
 }
 # Without a script, the referee checks only whether requests are legal: one edition is enough.
 WITHOUT_SCRIPT = "mycobot280"
-# Mutants per task: few, so that all processes end at about the same time.
-CHUNK = 8
 
 
 class Key(NamedTuple):
@@ -46,34 +44,6 @@ SUITES = tuple(
 )
 
 
-class Verdicts(NamedTuple):
-    """The outcomes of a suite."""
-
-    suite: Key
-    outcomes: list[Outcome]
-    right_runs: list[RightRun]
-
-    @property
-    def sound(self) -> bool:
-        """Whether every mutant is killed or excused, and every correct subject passed."""
-        return not missed(self.outcomes) and not any(run.failure for run in self.right_runs)
-
-
-def run(
-    suites: Sequence[Key], processes: int, sample: int | None = None, seed: int = 1
-) -> Iterator[Verdicts]:
-    """Run suites, with at most ``sample`` mutants of each kind."""
-    with ProcessPoolExecutor(processes) as pool:
-        for key in suites:
-            suite = made(key)
-            tasks = [(key, id) for id in sampled(suite, sample, seed)]
-            rights = [(key, name) for name in suite.right_runs]
-            if sample is not None:
-                rights = rights[:: max(1, len(rights) // 2)]
-            right_runs = list(pool.map(_accepted, rights, chunksize=1))
-            yield Verdicts(key, list(pool.map(_outcome, tasks, chunksize=CHUNK)), right_runs)
-
-
 def sampled(suite: Suite, most: int | None, seed: int) -> list[str]:
     """Return the ids of at most ``most`` mutants of each kind, drawn with a seed; None: all."""
     if most is None:
@@ -92,11 +62,15 @@ def made(key: Key) -> Suite:
     return TESTERS[key.tester](editions.load(key.edition).TABLE)
 
 
-def _outcome(task: tuple[Key, str]) -> Outcome:
-    key, id = task
+def run(key: Key, ids: Iterable[str], processes: int) -> list[Outcome]:
+    """Return the outcomes of mutants of a suite; in this process if it is the only one."""
+    outcome = partial(_outcome, key)
+    if processes == 1:
+        return list(map(outcome, ids))
+    with ProcessPoolExecutor(processes) as pool:
+        # Few mutants for each task, so that all processes end at about the same time.
+        return list(pool.map(outcome, ids, chunksize=8))
+
+
+def _outcome(key: Key, id: str) -> Outcome:
     return made(key).outcome(id)
-
-
-def _accepted(task: tuple[Key, str]) -> RightRun:
-    key, name = task
-    return RightRun(name, made(key).failure(name))

@@ -22,13 +22,6 @@ class Outcome(NamedTuple):
     crash: str = ""
 
 
-class RightRun(NamedTuple):
-    """A run of the tester on a correct subject; ``failure`` is what it reported, if anything."""
-
-    name: str
-    failure: str
-
-
 class Suite:
     """One tester and one edition: the mutants, and whether the tester kills them.
 

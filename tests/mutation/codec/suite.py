@@ -7,13 +7,13 @@ from functools import cached_property, partial
 from typing import NamedTuple
 
 from cobotwire import codec as codecs
+from cobotwire.codec.interface import Codec
 from cobotwire.codec.reference import ReferenceCodec
 from cobotwire.conformance.codec import Implementation, Question, Run
 from cobotwire.conformance.codec.questions.our_codec import OurCodec
 from cobotwire.protocol.table import Table
 from conformance.codec.questions import questions_of
-from mutation.codec.answers import ANSWERS, turned, wrong_formats
-from mutation.codec.framers import broken_framers
+from mutation.codec.patches import TurnedCodec, broken_framers, wrong_frames
 from mutation.codec.reasons import reason
 from mutation.suite import Suite
 from mutation.tables import WrongTable, wrong_tables
@@ -86,7 +86,7 @@ class CodecSuite(Suite):
 def codec_mutants(table: Table) -> Iterator[CodecMutant]:
     """Yield every mutant of an edition's codec in a fixed order, with unique ids."""
     for wrong in wrong_tables(table):
-        make = partial(_reading, wrong.table)
+        make = partial(_answering, ReferenceCodec, wrong.table)
         yield CodecMutant(wrong.kind, wrong.name, wrong.place.command, make, wrong)
     for command in table.commands:
         for direction in ("request", "reply"):
@@ -96,17 +96,13 @@ def codec_mutants(table: Table) -> Iterator[CodecMutant]:
                 for first_two in (False, True):
                     how = "first two swapped" if first_two else "last element first"
                     text = f"{command.name} {direction}: {name} {how}"
-                    make = partial(turned, table, command.name, direction, name, first_two)
+                    make = partial(TurnedCodec, table, command.name, direction, name, first_two)
                     yield CodecMutant("order", text, command.name, make)
     for name, broken in broken_framers():
-        yield CodecMutant("framing", name, "", partial(_framing, broken, table))
-    for name, wrong_answers in (*ANSWERS, *wrong_formats(table)):
-        yield CodecMutant("check", name, "", partial(wrong_answers, table))
+        yield CodecMutant("framing", name, "", partial(_answering, broken, table))
+    for name, wrong_frame in wrong_frames(table):
+        yield CodecMutant("check", name, "", partial(_answering, wrong_frame, table))
 
 
-def _reading(table: Table) -> OurCodec:
-    return OurCodec(ReferenceCodec(table))
-
-
-def _framing(broken: Callable[[Table], ReferenceCodec], table: Table) -> OurCodec:
-    return OurCodec(broken(table))
+def _answering(codec: Callable[[Table], Codec], table: Table) -> OurCodec:
+    return OurCodec(codec(table))
