@@ -133,7 +133,7 @@ targets: products .venv/.native ## build each output target and run it in its re
 	PYTHONPATH=tests $(BIN)/python tests/targets/report.py
 
 spec-mutants: .venv/.tools .venv/.native ## change each fact of the spec, one at a time; report the changes that no check notices
-	PYTHONPATH=tests:tests/peers $(BIN)/python -m spec_mutants
+	SPEC_MUTANTS=1 $(BIN)/python -m pytest -q -rP tests/spec/test_mutants.py -k every_wrong_fact
 
 docs: .venv/.tools .venv/.native front-end-if-reachable ## build the docs site into docs/_build; a warning is an error
 	PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/python tools/npm_package.py --build || echo "decoder.html will not decode, live/ will be missing" >&2

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -29,6 +30,7 @@ from cobotwire.protocol.table import Table
 from cobotwire.simulator import SimulatedArm, SteppedClock
 from cobotwire.simulator.start import steps
 from simulator.bench import Bench
+from trial_specs import HEAD, edition_of
 
 # Angles and coordinates of a real mechArm 270, from a public program (see its edition).
 MECHARM_PAIRS = (
@@ -118,6 +120,20 @@ def test_links_say_which_joints_turn_them() -> None:
     assert found.joints == 1
 
 
+@pytest.mark.parametrize(("own", "has_one"), [("", True), ("joints: 5\n", False)])
+def test_geometry_is_inherited_only_with_the_joints(
+    tmp_path: Path, own: str, has_one: bool
+) -> None:
+    delta, _ = edition_of(f"{HEAD}base: cobotwire:mycobot280\n{own}", tmp_path)
+    assert (delta.robot.geometry is not None) == has_one
+
+
+def test_geometry_is_exact_and_belongs_to_no_name() -> None:
+    known = geometry_of(TABLE._replace(edition="another"))
+    assert known is not None
+    assert (known.links[0].d, known.links[1].a, known.links[5].d) == (131.22, -110.4, 48.6)
+
+
 @pytest.mark.parametrize(("angles", "coords"), MECHARM_PAIRS)
 def test_geometry_of_the_mecharm_fits_positions_of_a_real_one(
     angles: tuple[float, ...], coords: tuple[float, ...]
@@ -156,14 +172,6 @@ def test_arm_with_four_coordinates_moves_its_end() -> None:
     bench.clock.sleep(10)
     assert bench.query("get_coords") == pytest.approx((x - 20, y + 10, z + 15, theta), abs=0.5)
     assert bench.query("is_in_position", (x - 20, y + 10, z + 15, theta), 1)
-
-
-def test_mecharm_moves_its_end_to_coordinates() -> None:
-    bench = Bench(MECHARM)
-    target = (200.0, 20.0, 130.0, -177.0, 27.5, -171.9)
-    bench.send("send_coords", target, 100, 0)
-    bench.clock.sleep(5)
-    assert bench.query("get_coords") == pytest.approx(target, abs=0.5)
 
 
 def test_event_of_a_rejected_motion_has_the_number_of_its_joint() -> None:

@@ -83,11 +83,6 @@ def test_restart_loses_settings_but_moves_no_joint(bench: Bench) -> None:
     assert bench.query("get_reboot_count") == 2
 
 
-def test_limits_are_those_of_the_edition(bench: Bench) -> None:
-    assert bench.query("get_joint_max_angle", 1) == 168.0
-    assert bench.query("get_joint_min_angle", 2) == -140.0
-
-
 def test_servo_registers_are_backed_up_and_restored(bench: Bench) -> None:
     bench.send("backup_servo_params", 254)
     bench.send("set_servo_data", 1, 21, 99)

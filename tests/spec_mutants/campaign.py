@@ -1,8 +1,8 @@
-"""Runs mutants on several processes and counts what was noticed."""
+"""Names the mutants of all files, and runs them on several processes."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Iterable, Iterator
 from concurrent.futures import ProcessPoolExecutor
 from functools import lru_cache
 from pathlib import Path
@@ -28,9 +28,6 @@ class Task(NamedTuple):
         return f"{self.file.relative_to(ROOT / 'spec').as_posix()}: {self.name}"
 
 
-Result = tuple[Task, Verdict]
-
-
 @lru_cache(maxsize=256)
 def _mutants(edition: str, file: Path) -> tuple[Node, tuple[Mutant, ...]]:
     root = load(file, file.relative_to(ROOT).as_posix())
@@ -49,19 +46,13 @@ def tasks() -> Iterator[Task]:
                 yield Task(edition, file, number, mutant.kind, mutant.name)
 
 
-def run(task: Task) -> Result:
+def run(task: Task) -> Verdict:
     """Return what notices a mutant."""
     root, mutants = _mutants(task.edition, task.file)
-    return task, verdict_on(task.edition, task.file, mutants[task.number].applied(root))
+    return verdict_on(task.edition, task.file, mutants[task.number].applied(root))
 
 
-def run_all(
-    chosen: Iterable[Task], processes: int, progress: Callable[[int], None]
-) -> list[Result]:
-    """Run mutants on several processes; report after each how many are done."""
-    results: list[Result] = []
-    with ProcessPoolExecutor(processes) as pool:
-        for result in pool.map(run, chosen, chunksize=8):
-            results.append(result)
-            progress(len(results))
-    return results
+def run_all(chosen: Iterable[Task]) -> Iterator[Verdict]:
+    """Yield what notices each mutant."""
+    with ProcessPoolExecutor(2) as pool:
+        yield from pool.map(run, chosen, chunksize=8)

@@ -3,49 +3,25 @@
 from __future__ import annotations
 
 import re
-from functools import lru_cache
-from typing import NamedTuple
+from functools import cache
+from typing import Any
 
-from cobotwire_codegen.load import Mapping, Node, Scalar, Sequence, load
+from ruamel.yaml import YAML
+
 from spec_mutants.spec_files import ROOT
 
 
-class Unconfirmed(NamedTuple):
-    """A row of the list: a pattern of facts, the editions (empty: all), and the reason."""
-
-    facts: str
-    editions: tuple[str, ...]
-    why: str
-
-
-@lru_cache(maxsize=1)
-def unconfirmed() -> tuple[Unconfirmed, ...]:
-    """Return the rows of the list."""
-    root = load(ROOT / "tests" / "spec_mutants" / "unconfirmed.yaml")
-    assert isinstance(root, Mapping)
-    return tuple(
-        Unconfirmed(
-            _words(row.entries["facts"])[0],
-            _words(row.entries["editions"]) if "editions" in row.entries else (),
-            _words(row.entries["why"])[0],
-        )
-        for row in _items(root.entries["unconfirmed"])
-        if isinstance(row, Mapping)
-    )
+@cache
+def _unconfirmed() -> list[dict[str, Any]]:
+    path = ROOT / "tests" / "spec_mutants" / "unconfirmed.yaml"
+    rows: list[dict[str, Any]] = YAML(typ="safe").load(path.read_text())["unconfirmed"]
+    return rows
 
 
 def accepted(edition: str, kind: str, title: str) -> str:
     """Return why a mutant may survive; empty if it may not."""
-    for row in unconfirmed():
-        named = not row.editions or edition in row.editions
-        if named and re.fullmatch(row.facts, f"{kind} {title}"):
-            return row.why
+    for row in _unconfirmed():
+        named = edition in row.get("editions", [edition])
+        if named and re.fullmatch(row["facts"], f"{kind} {title}"):
+            return str(row["why"])
     return ""
-
-
-def _items(node: Node) -> tuple[Node, ...]:
-    return node.items if isinstance(node, Sequence) else (node,)
-
-
-def _words(node: Node) -> tuple[str, ...]:
-    return tuple(str(each.value) for each in _items(node) if isinstance(each, Scalar))
