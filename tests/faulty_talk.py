@@ -11,6 +11,7 @@ from cobotwire.simulator import SimulatedArm
 from cobotwire.simulator.clock import SteppedClock
 from cobotwire.simulator.faults import AppliedFault, Fault, Scenario
 from cobotwire.simulator.peer import Peer
+from playing import play
 
 CODEC = codecs.load(TABLE)
 IS_POWERED = bytes.fromhex("FE FE 02 12 FA")
@@ -75,38 +76,11 @@ def talk(
     tapped = Tapped(arm, arm.restart)
     scenario = Scenario(name="test", faults=tuple(faults), seed=seed)
     peer = scenario.wrap(tapped, CODEC, clock=clock, on_fault=applied.append)
-    received: list[tuple[float, bytes]] = []
+    writes: list[tuple[float, bytes]] = []
     for step in (*requests, LONG):
         if isinstance(step, float):
-            pass_time(peer, clock, step, received)
-            continue
-        pieces = (
-            [step] if size is None else [step[at : at + size] for at in range(0, len(step), size)]
-        )
-        for piece in pieces:
-            _note(received, clock(), peer.receive(piece))
-    return Talk(received, applied, tapped.sent)
-
-
-def pass_time(
-    peer: Peer, clock: SteppedClock, seconds: float, received: list[tuple[float, bytes]]
-) -> None:
-    """Let time pass; flush the peer whenever it is due."""
-    until = clock() + seconds
-    for _ in range(100_000):
-        wait = peer.wait
-        if wait is None or clock() + wait > until:
-            clock.sleep(until - clock())
-            return
-        clock.sleep(wait)
-        _note(received, clock(), peer.flush())
-    raise AssertionError("the peer needs a flush again and again, without end")
-
-
-def _note(received: list[tuple[float, bytes]], now: float, data: bytes) -> None:
-    if not data:
-        return
-    if received and received[-1][0] == now:
-        received[-1] = (now, received[-1][1] + data)
-    else:
-        received.append((now, data))
+            writes.append((step, b""))
+        else:
+            most = size or len(step)
+            writes += [(0.0, step[at : at + most]) for at in range(0, len(step), most)]
+    return Talk(play(peer, clock, writes), applied, tapped.sent)

@@ -13,7 +13,7 @@ from cobotwire.protocol.table import Table
 from cobotwire.simulator.clock import SteppedClock
 from mutation.device import device_mutants
 from mutation.device.broken import BrokenArm, Fault, Mutant
-from mutation.device.stimulus import STIMULI
+from mutation.device.cells import STIMULI
 from mutation.oracle.conversation import conversations, replies_of
 from mutation.oracle.reasons import reason
 from mutation.oracle.undefined import UNWIRED

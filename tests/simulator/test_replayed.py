@@ -8,7 +8,8 @@ from hypothesis import strategies as st
 from cobotwire import codec as codecs
 from cobotwire.capture import Packet, Piece
 from cobotwire.editions.mycobot import TABLE
-from cobotwire.simulator import ReplayedArm, ReplayedRequest
+from cobotwire.simulator import ReplayedArm, ReplayedRequest, SteppedClock
+from playing import play
 
 QUERY = bytes.fromhex("FE FE 02 20 FA")
 POWER = bytes.fromhex("FE FE 02 12 FA")
@@ -16,36 +17,19 @@ OFF, ON = bytes.fromhex("FE FE 03 12 00 FA"), bytes.fromhex("FE FE 03 12 01 FA")
 MS = 1_000_000
 
 
-class Clock:
-    """A clock that a test sets."""
-
-    def __init__(self) -> None:
-        self.now = 50.0
-
-    def __call__(self) -> float:
-        return self.now
-
-
 def replayed(
     *packets: Packet, speed: float = 1.0, on_request: list[ReplayedRequest] | None = None
-) -> tuple[ReplayedArm, Clock]:
-    clock = Clock()
+) -> tuple[ReplayedArm, SteppedClock]:
+    clock = SteppedClock(50.0)
     append = None if on_request is None else on_request.append
     arm = ReplayedArm(packets, codecs.load(TABLE), speed=speed, clock=clock, on_request=append)
     return arm, clock
 
 
-def let_pass(arm: ReplayedArm, clock: Clock, seconds: float) -> list[tuple[float, bytes]]:
+def let_pass(arm: ReplayedArm, clock: SteppedClock, seconds: float) -> list[tuple[float, bytes]]:
     """Let time pass; return what the arm sends, each with its seconds since the beginning."""
-    start, end = clock.now, clock.now + seconds
-    received = []
-    while arm.wait is not None and clock.now + arm.wait <= end:
-        # Slightly later: rounding may make the sum smaller than the time that is due.
-        clock.now += arm.wait + 1e-9
-        if data := arm.flush():
-            received.append((round(clock.now - start, 6), data))
-    clock.now = max(clock.now, end)
-    return received
+    start = clock()
+    return [(round(at - start, 4), data) for at, data in play(arm, clock, [(seconds, b"")])]
 
 
 def test_replay_speed_divides_the_delays() -> None:

@@ -21,7 +21,7 @@ from cobotwire.conformance.client.script import SCRIPT
 from cobotwire.conformance.report import Cause, Report
 from cobotwire.editions.mycobot280 import TABLE
 from cobotwire.simulator.clock import SteppedClock
-from conformance.client.playing import play
+from playing import play
 
 SCRIPT_CASES = [case.id for case in SCRIPT.cases]
 CODEC = ReferenceCodec(TABLE)

@@ -10,7 +10,7 @@ from cobotwire.protocol.errors import UsageError
 from cobotwire.simulator.clock import SteppedClock
 from cobotwire.simulator.faults import Late, Scenario
 from cobotwire.simulator.faults.noise import COMMAND_ERROR, LEAKS
-from conformance.client.playing import play
+from playing import play
 
 REQUEST, REPLY = bytes.fromhex("FEFE0212FA"), bytes.fromhex("FEFE031201FA")
 SERVO_PACKET = LEAKS["status"]
@@ -21,7 +21,8 @@ def _replies(*faults: str, every: int = 1, requests: int = 1) -> list[tuple[floa
     clock = SteppedClock()
     referee = Referee(TABLE, scenario=faulty_replies(0.008, faults, every), clock=clock)
     writes = [(float(number > 0), REQUEST) for number in range(requests)]
-    return play(referee, clock, [*writes, (1.0, b"")])
+    received = play(referee, clock, [*writes, (1.0, b"")])
+    return [(round(at, 3), data) for at, data in received]
 
 
 def test_each_fault_changes_the_reply_as_its_name_says() -> None:

@@ -18,11 +18,11 @@ from cobotwire.protocol.errors import ProtocolError
 from cobotwire.protocol.table import Table
 from cobotwire.simulator.clock import SteppedClock
 from cobotwire.simulator.faults import Scenario
-from conformance.client.playing import play
 from mutation.client.frames import wrong_frames, wrong_times, wrong_turns
 from mutation.client.sessions import PAUSE, ClientMutant, Sent, sessions
 from mutation.client.values import wrong_values
 from mutation.suite import Suite
+from playing import play
 
 RUNS = 20
 

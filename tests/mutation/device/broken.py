@@ -7,14 +7,14 @@ from collections.abc import Callable
 from functools import partial
 from typing import NamedTuple
 
-from cobotwire.codec.interface import Codec, DecodedMessage, Noise
+from cobotwire.codec.interface import DecodedMessage, Noise
 from cobotwire.protocol.table import Command, Table
 from cobotwire.session import DeviceSession, RequestReceived, TextReceived
 from cobotwire.session.device import DeviceEvent
 from cobotwire.simulator.arm import SimulatedArm
 from cobotwire.simulator.arm_connection import ArmConnection
 from cobotwire.simulator.clock import Clock
-from mutation.device.stimulus import Stimulus, kind_of
+from mutation.device.cells import Stimulus, kind_of
 
 
 class TimedBytes(NamedTuple):
@@ -24,47 +24,34 @@ class TimedBytes(NamedTuple):
     data: bytes
 
 
-class Fault:
-    """A device fault. Every hook behaves correctly unless a fault overrides it."""
-
-    def chunk(self, data: bytes) -> None:
-        """Note a write; its frames follow."""
-
-    def request(self, codec: Codec, request: DecodedMessage, data: bytes) -> bytes:
-        """Return the bytes that the inner arm receives in place of a legal request."""
-        return data
-
-    def reply(self, codec: Codec, request: DecodedMessage, data: bytes) -> list[TimedBytes]:
-        """Return the bytes to send in place of the reply, which may be empty."""
-        return [TimedBytes(0.0, data)]
-
-    def malformed(self, codec: Codec, kind: Stimulus, data: bytes) -> bytes:
-        """Return the reply to bytes that are not a legal request; a correct arm sends nothing."""
-        return b""
-
-    def forgets(self, kind: Stimulus) -> bytes:
-        """Return a request that the arm carries out by itself after malformed input."""
-        return b""
-
-
 # Takes the table, the request and what the correct arm sends; returns what is sent.
 Change = Callable[[Table, DecodedMessage, bytes], bytes | list[TimedBytes]]
 
 
-class WrongReply(Fault):
-    """The reply to one command is changed; a missing reply only with ``also_silence``."""
+class Fault(NamedTuple):
+    """A device fault: what it changes; what is left out is correct.
 
-    def __init__(self, command: Command, change: Change, *, also_silence: bool = False) -> None:
-        self._command = command
-        self._change = change
-        self._also_silence = also_silence
+    ``chunk`` notes a write, before its frames. ``request`` returns the bytes that the inner arm
+    receives in place of a legal request, ``reply`` what is sent in place of the reply, which may be
+    empty. ``malformed`` returns the reply to bytes that are not a legal request; a correct arm
+    sends nothing. ``forgets`` returns a request that the arm then carries out by itself.
+    """
 
-    def reply(self, codec: Codec, request: DecodedMessage, data: bytes) -> list[TimedBytes]:
-        """Return the changed reply."""
-        changed: bytes | list[TimedBytes] = data
-        if request.command is self._command and (data or self._also_silence):
-            changed = self._change(codec.table, request, data)
-        return [TimedBytes(0.0, changed)] if isinstance(changed, bytes) else changed
+    chunk: Callable[[bytes], None] = lambda data: None
+    request: Callable[[Table, DecodedMessage, bytes], bytes] = lambda table, request, data: data
+    reply: Change = lambda table, request, data: data
+    malformed: Callable[[Table, Stimulus, bytes], bytes] = lambda table, kind, data: b""
+    forgets: Callable[[Stimulus], bytes] = lambda kind: b""
+
+
+def wrong_reply(command: Command, change: Change, *, also_silence: bool = False) -> Fault:
+    """Change the reply to one command; a missing reply only with ``also_silence``."""
+
+    def reply(table: Table, request: DecodedMessage, data: bytes) -> bytes | list[TimedBytes]:
+        wrong = request.command is command and (data or also_silence)
+        return change(table, request, data) if wrong else data
+
+    return Fault(reply=reply)
 
 
 class Mutant(NamedTuple):
@@ -94,7 +81,7 @@ class Mutant(NamedTuple):
 
 def mutant_of(kind: str, text: str, command: Command, change: Change, field: str = "") -> Mutant:
     """Return a device with a wrong reply to one command."""
-    return Mutant(kind, text, partial(WrongReply, command, change), command.name, field)
+    return Mutant(kind, text, partial(wrong_reply, command, change), command.name, field)
 
 
 class BrokenArm(ArmConnection):
@@ -156,11 +143,11 @@ class BrokenArm(ArmConnection):
     def _after_request(self, received: RequestReceived) -> bytes:
         """Return what is sent at once in reply to a legal request."""
         message, data = received.message, received.frame.data
-        changed = self._fault.request(self._arm.codec, message, data)
+        changed = self._fault.request(self._arm.table, message, data)
         self._lost = not changed
         answer = b"".join(map(self._handle, self._read_again(received, changed)))
-        sent = b""
-        for delay, part in self._fault.reply(self._arm.codec, message, answer):
+        sent, parts = b"", self._fault.reply(self._arm.table, message, answer)
+        for delay, part in [TimedBytes(0.0, parts)] if isinstance(parts, bytes) else parts:
             if delay <= 0:
                 sent += part
             else:
@@ -179,7 +166,7 @@ class BrokenArm(ArmConnection):
         if request := self._fault.forgets(kind):
             # The arm sends its acknowledgement to a connection that is never read.
             self._correct.receive(request)
-        return self._fault.malformed(self._arm.codec, kind, data)
+        return self._fault.malformed(self._arm.table, kind, data)
 
     def _send_later(self, delay: float, data: bytes) -> None:
         if data:

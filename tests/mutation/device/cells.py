@@ -1,9 +1,10 @@
-"""Take a frame apart into numbers, so that any number can be changed."""
+"""Take a frame apart into numbers, so that any can be changed; classify what is not a request."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
+from typing import Literal, get_args
 
 from cobotwire.codec.interface import DecodedMessage
 from cobotwire.protocol.addresses import devices_of
@@ -86,3 +87,31 @@ def with_address(address: int) -> Edit:
         return checked(table.frame, data[:at] + bytes([address]) + data[at + 1 :])
 
     return edit
+
+
+Stimulus = Literal[
+    "noise", "truncated request", "bad footer", "wrong LEN", "unknown id", "illegal value"
+]
+STIMULI: tuple[Stimulus, ...] = get_args(Stimulus)
+
+
+def kind_of(table: Table, noise: bytes) -> Stimulus:
+    """Return what kind of malformed request a span of noise is, as a simple parser sees it."""
+    frame = table.frame
+    start = noise.find(frame.header)
+    rest = noise[start + frame.length_at :] if start >= 0 else b""
+    if len(rest) < 2:
+        return "truncated request" if start >= 0 else "noise"
+    length, id = rest[0], rest[1]
+    sizes = {
+        variant.size
+        for command in table.commands
+        if command.id == id
+        for variant in command.request
+    }
+    if not sizes:
+        return "unknown id"
+    if length not in map(frame.length, sizes):
+        return "wrong LEN"
+    # The request is complete but ends with another byte, or it stops before its footer.
+    return "bad footer" if len(rest) > length else "truncated request"

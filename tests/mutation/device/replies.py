@@ -7,7 +7,7 @@ from functools import partial
 
 from cobotwire.codec.interface import DecodedMessage
 from cobotwire.protocol.table import Command, Table
-from mutation.device.broken import Change, Mutant, TimedBytes, WrongReply, mutant_of
+from mutation.device.broken import Change, Fault, Mutant, TimedBytes, mutant_of, wrong_reply
 from mutation.device.cells import (
     Edit,
     checked,
@@ -170,7 +170,7 @@ def _acknowledged(command: Command, text: str, body: bytes) -> Mutant:
     def change(table: Table, request: DecodedMessage, data: bytes) -> bytes:
         return framed(table.frame, command.id, body, replier(table, request.address)) + data
 
-    fault = partial(WrongReply, command, change, also_silence=True)
+    fault = partial(wrong_reply, command, change, also_silence=True)
     return Mutant("wrong ack", text, fault, command.name)
 
 
@@ -182,7 +182,7 @@ def stale_replies(table: Table) -> Iterator[Mutant]:
             yield Mutant("stale reply", "that to the query before", fault, command.name)
 
 
-def _stale(command: Command) -> WrongReply:
+def _stale(command: Command) -> Fault:
     """Return a fault that keeps the last reply to each address; the first reply is right."""
     before: dict[int | None, bytes] = {}
 
@@ -191,4 +191,4 @@ def _stale(command: Command) -> WrongReply:
         before[request.address] = data
         return sent
 
-    return WrongReply(command, change, also_silence=True)
+    return wrong_reply(command, change, also_silence=True)

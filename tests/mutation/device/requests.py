@@ -12,58 +12,53 @@ from cobotwire.conformance.device.requests import gentle
 from cobotwire.protocol.errors import ProtocolError, UsageError
 from cobotwire.protocol.table import Command, Field, Table
 from cobotwire.session.request import RequestEncoder
-from mutation.device.broken import Fault, Mutant, TimedBytes
-from mutation.device.cells import Cell, framed, joined, replier, take_apart
+from mutation.device.broken import Fault, Mutant
+from mutation.device.cells import (
+    STIMULI,
+    Cell,
+    Stimulus,
+    framed,
+    joined,
+    replier,
+    take_apart,
+)
 from mutation.device.exchanges import distinct, next_value, pickers, request_fields
-from mutation.device.stimulus import STIMULI, Stimulus
 
 
-class Ignored(Fault):
-    """One setter gets its reply, but is not carried out."""
+def _ignored(command: Command) -> Fault:
+    """One setter gets its reply, the first variant with its usual value, but is not carried out."""
 
-    def __init__(self, command: Command) -> None:
-        self._command = command
-
-    def request(self, codec: Codec, request: DecodedMessage, data: bytes) -> bytes:
-        """Return nothing, so that the arm does not receive the request."""
-        return b"" if request.command is self._command else data
-
-    def reply(self, codec: Codec, request: DecodedMessage, data: bytes) -> list[TimedBytes]:
-        """Return the acknowledgement, or the first variant of the reply with its usual value."""
-        if request.command is not self._command or not self._command.reply:
-            return [TimedBytes(0.0, data)]
-        fields = [
-            [Cell(number, min(max(1, number.minimum), number.maximum)) for number in numbers]
-            for numbers in (field.cases[0].numbers for field in self._command.reply[0].fields)
-        ]
-        address = replier(codec.table, request.address)
-        reply = framed(codec.table.frame, self._command.id, joined(fields), address)
-        return [TimedBytes(0.0, reply)]
-
-
-class Misread(Fault):
-    """One field of one request is misread; the reply has the fields that were sent."""
-
-    def __init__(self, command: Command, field: Field, change: Callable[[Cell], int]) -> None:
-        self._command = command
-        self._field = field
-        self._change = change
-
-    def request(self, codec: Codec, request: DecodedMessage, data: bytes) -> bytes:
-        """Return the request with its field changed, unless that is not legal."""
-        if request.command is not self._command:
+    def reply(table: Table, request: DecodedMessage, data: bytes) -> bytes:
+        if request.command is not command or not command.reply:
             return data
-        frame = codec.table.frame
-        fields = take_apart(frame, request, data)
-        for at, field in enumerate(request.variant.fields):
-            if field.name == self._field.name:
-                fields[at] = [self._changed(cell) for cell in fields[at]]
-        changed = framed(frame, request.command.id, joined(fields), request.address)
-        return changed if _is_legal(codec, request.command, changed) else data
+        fields = [
+            [Cell(number, number.clamp(1)) for number in field.cases[0].numbers]
+            for field in command.reply[0].fields
+        ]
+        address = replier(table, request.address)
+        return framed(table.frame, command.id, joined(fields), address)
 
-    def _changed(self, cell: Cell) -> Cell:
-        raw = self._change(cell)
-        return replace(cell, raw=raw if self._field.choices else cell.number.clamp(raw))
+    return Fault(request=lambda _, r, data: b"" if r.command is command else data, reply=reply)
+
+
+def _misread(command: Command, field: Field, change: Callable[[Cell], int]) -> Fault:
+    """Misread one field of one request, if that is legal; reply with the fields that were sent."""
+
+    def changed(cell: Cell) -> Cell:
+        raw = change(cell)
+        return replace(cell, raw=raw if field.choices else cell.number.clamp(raw))
+
+    def request(table: Table, request: DecodedMessage, data: bytes) -> bytes:
+        if request.command is not command:
+            return data
+        fields = take_apart(table.frame, request, data)
+        for at, each in enumerate(request.variant.fields):
+            if each.name == field.name:
+                fields[at] = list(map(changed, fields[at]))
+        misread = framed(table.frame, command.id, joined(fields), request.address)
+        return misread if _is_legal(codecs.load(table), command, misread) else data
+
+    return Fault(request=request)
 
 
 def _is_legal(codec: Codec, command: Command, data: bytes) -> bool:
@@ -79,10 +74,10 @@ def wrong_setters(table: Table) -> Iterator[Mutant]:
     for command in distinct(table):
         if command.safety == "query":
             continue
-        yield Mutant("ignored", "", partial(Ignored, command), command.name)
+        yield Mutant("ignored", "", partial(_ignored, command), command.name)
         for field in request_fields(command):
             for kind, text, change in _misreadings(field, parts):
-                fault = partial(Misread, command, field, change)
+                fault = partial(_misread, command, field, change)
                 yield Mutant(kind, text, fault, command.name, field.name)
 
 
@@ -100,99 +95,69 @@ def _misreadings(field: Field, parts: set[str]) -> Iterator[tuple[str, str, Call
             yield "stored wrong", "without its sign", lambda cell: abs(cell.raw)
 
 
-class GoesSilent(Fault):
-    """After some malformed input, the next requests (or all) get no reply."""
+def _goes_silent(after: Stimulus, requests: int | None) -> Fault:
+    """After some malformed input, the next requests (None: all) get no reply."""
+    left: int | None = 0
 
-    def __init__(self, after: Stimulus, requests: int | None) -> None:
-        self._after = after
-        self._requests = requests
-        self._left: int | None = 0
-
-    def malformed(self, codec: Codec, kind: Stimulus, data: bytes) -> bytes:
-        """Break, and send nothing."""
-        if kind == self._after:
-            self._left = self._requests
+    def malformed(table: Table, kind: Stimulus, data: bytes) -> bytes:
+        nonlocal left
+        left = requests if kind == after else left
         return b""
 
-    def request(self, codec: Codec, request: DecodedMessage, data: bytes) -> bytes:
-        """Return nothing while the device is broken."""
-        if self._left == 0:
+    def request(table: Table, request: DecodedMessage, data: bytes) -> bytes:
+        nonlocal left
+        if left == 0:
             return data
-        self._left = None if self._left is None else self._left - 1
+        left = None if left is None else left - 1
         return b""
 
-
-class RepliesToMalformed(Fault):
-    """Some malformed input gets a reply."""
-
-    def __init__(self, to: Stimulus, reply: Callable[[Table, bytes], bytes]) -> None:
-        self._to = to
-        self._reply = reply
-
-    def malformed(self, codec: Codec, kind: Stimulus, data: bytes) -> bytes:
-        """Return the reply."""
-        return self._reply(codec.table, data) if kind == self._to else b""
+    return Fault(malformed=malformed, request=request)
 
 
-class ReceivesFewPerWrite(Fault):
-    """Only the first requests of a write are received."""
-
-    def __init__(self, most: int) -> None:
-        self._most = most
-        self._received = 0
-
-    def chunk(self, data: bytes) -> None:
-        """Restart the count."""
-        self._received = 0
-
-    def request(self, codec: Codec, request: DecodedMessage, data: bytes) -> bytes:
-        """Return nothing after the first requests of a write."""
-        self._received += 1
-        return data if self._received <= self._most else b""
+def _replies_to_malformed(to: Stimulus, reply: Callable[[Table, bytes], bytes]) -> Fault:
+    return Fault(malformed=lambda table, kind, data: reply(table, data) if kind == to else b"")
 
 
-class NeedsWholeWrites(Fault):
-    """A request that arrives in more than ``writes`` writes is not received."""
+def _receives_few_per_write(most: int) -> Fault:
+    """Receive only the first requests of a write."""
+    received: list[bytes] = []
 
-    def __init__(self, writes: int) -> None:
-        self._writes = writes
-        self._sizes: list[int] = []
+    def request(table: Table, request: DecodedMessage, data: bytes) -> bytes:
+        received.append(data)
+        return data if len(received) <= most else b""
 
-    def chunk(self, data: bytes) -> None:
-        """Remember the size of a write."""
-        self._sizes.append(len(data))
-
-    def request(self, codec: Codec, request: DecodedMessage, data: bytes) -> bytes:
-        """Return nothing for a request that arrived in more writes."""
-        return data if sum(self._sizes[-self._writes :]) >= len(data) else b""
+    return Fault(chunk=lambda _: received.clear(), request=request)
 
 
-class Forgets(Fault):
+def _needs_whole_writes(writes: int) -> Fault:
+    """Receive no request that arrives in more writes."""
+    sizes: list[int] = []
+
+    def request(table: Table, request: DecodedMessage, data: bytes) -> bytes:
+        return data if sum(sizes[-writes:]) >= len(data) else b""
+
+    return Fault(chunk=lambda data: sizes.append(len(data)), request=request)
+
+
+def _forgets(after: Stimulus, request: bytes) -> Fault:
     """After some malformed input, one setting has its simplest value again."""
-
-    def __init__(self, after: Stimulus, request: bytes) -> None:
-        self._after = after
-        self._request = request
-
-    def forgets(self, kind: Stimulus) -> bytes:
-        """Return the request that sets the simplest value."""
-        return self._request if kind == self._after else b""
+    return Fault(forgets=lambda kind: request if kind == after else b"")
 
 
 def breaks_on_malformed(table: Table) -> Iterator[Mutant]:
     """Yield a mutant for each kind of malformed input and each way to break on it."""
     for stimulus in STIMULI:
         for text, requests in SILENCES:
-            yield _malformed(f"after {stimulus}, {text}", partial(GoesSilent, stimulus, requests))
+            yield _malformed(f"after {stimulus}, {text}", partial(_goes_silent, stimulus, requests))
         for text, reply in ANSWERS:
-            fault = partial(RepliesToMalformed, stimulus, reply)
+            fault = partial(_replies_to_malformed, stimulus, reply)
             yield _malformed(f"in reply to {stimulus}, {text}", fault)
     for most in (1, 2):
         text = f"at most {most} of the requests in one write are received"
-        yield _malformed(text, partial(ReceivesFewPerWrite, most))
+        yield _malformed(text, partial(_receives_few_per_write, most))
     for writes in (1, 2):
         text = f"a request in more than {writes} writes is not received"
-        yield _malformed(text, partial(NeedsWholeWrites, writes))
+        yield _malformed(text, partial(_needs_whole_writes, writes))
 
 
 def _malformed(text: str, fault: Callable[[], Fault]) -> Mutant:
@@ -228,5 +193,5 @@ def loses_state(table: Table) -> Iterator[Mutant]:
         except UsageError:
             continue
         for after in STIMULI:
-            fault = partial(Forgets, after, data)
+            fault = partial(_forgets, after, data)
             yield Mutant("state lost", f"after {after}", fault, command.name)

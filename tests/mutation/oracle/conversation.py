@@ -5,7 +5,7 @@ They have legal and malformed requests.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from random import Random
 from typing import NamedTuple
 
@@ -15,12 +15,11 @@ from cobotwire.protocol.errors import ProtocolError
 from cobotwire.protocol.table import Command, Table
 from cobotwire.simulator.arm import SimulatedArm
 from cobotwire.simulator.clock import SteppedClock
-from cobotwire.simulator.memory import TICK_SECONDS
 from cobotwire.simulator.peer import Peer
 from mutation.device.broken import Mutant
-from mutation.device.cells import checked, framed, take_apart
-from mutation.device.legal import draw_request, shape
-from mutation.device.stimulus import kind_of
+from mutation.device.cells import checked, framed, kind_of, take_apart
+from mutation.device.exchanges import draw_request, shape
+from playing import Received, play
 
 # Long enough for a late reply, and for the longest motion of a joint.
 PAUSES = (0.0, 0.0, 0.001, 0.02, 0.05, 0.3, 1.0, 8.0)
@@ -36,13 +35,6 @@ class Step(NamedTuple):
     """Bytes that are written after a pause in seconds."""
 
     pause: float
-    data: bytes
-
-
-class Received(NamedTuple):
-    """Bytes that a device sent, with their time."""
-
-    at: float
     data: bytes
 
 
@@ -62,7 +54,7 @@ class Conversation:
         about: Sequence[Command] = (),
     ) -> None:
         self.steps: list[Step] = []
-        self.received: list[Received] = []
+        self.received: Received = []
         self._table = table
         self._random = random
         self._commands = commands
@@ -87,21 +79,19 @@ class Conversation:
             if self._random.random() > PART_LEGAL:
                 data = _damage(self._table, self._random, data)
             self._exchange(_written(self._random, data))
-        _play(self._right, self._clock, [QUIET], self.received)
+        play(self._right, self._clock, [QUIET], self.received)
 
-    def again(self, peer: Peer, clock: SteppedClock) -> list[Received]:
+    def again(self, peer: Peer, clock: SteppedClock) -> Received:
         """Return what another device sends when it receives the same bytes at the same times."""
-        received: list[Received] = []
-        _play(peer, clock, (*self.steps, QUIET), received)
-        return received
+        return play(peer, clock, (*self.steps, QUIET))
 
     def _exchange(self, steps: list[Step]) -> None:
         self.steps.extend(steps)
-        before = sum(len(piece.data) for piece in self.received[-1:])
+        before = sum(len(data) for _, data in self.received[-1:])
         pieces = len(self.received)
-        _play(self._right, self._clock, steps, self.received)
+        play(self._right, self._clock, steps, self.received)
         new = self.received[max(pieces - 1, 0) :]
-        self._listen(b"".join(piece.data for piece in new)[before:])
+        self._listen(b"".join(data for _, data in new)[before:])
 
     def _listen(self, data: bytes) -> None:
         for event in self._framer.feed(data):
@@ -118,29 +108,6 @@ class Conversation:
 
 # The pause at the end of a conversation, in which late replies arrive.
 QUIET = Step(max(PAUSES), b"")
-
-
-def _play(peer: Peer, clock: SteppedClock, steps: Iterable[Step], received: list[Received]) -> None:
-    for step in steps:
-        _wait(peer, clock, clock() + step.pause, received)
-        if step.data:
-            _note(received, clock(), peer.receive(step.data))
-
-
-def _wait(peer: Peer, clock: SteppedClock, until: float, received: list[Received]) -> None:
-    while (wait := peer.wait) is not None and clock() + wait <= until:
-        # Time must advance even if a wait is only a rounding error.
-        clock.sleep(max(wait, TICK_SECONDS))
-        _note(received, clock(), peer.flush())
-    clock.sleep(until - clock())
-
-
-def _note(received: list[Received], now: float, data: bytes) -> None:
-    """Add bytes; join those with the same time into one piece."""
-    if data and received and received[-1].at == now:
-        received[-1] = Received(now, received[-1].data + data)
-    elif data:
-        received.append(Received(now, data))
 
 
 def _written(random: Random, data: bytes) -> list[Step]:
@@ -209,17 +176,17 @@ def _conversation(table: Table, command: str, seed: int) -> Conversation:
     return conversation
 
 
-def replies_of(table: Table, mutant: Mutant, conversation: Conversation) -> list[Received]:
+def replies_of(table: Table, mutant: Mutant, conversation: Conversation) -> Received:
     """Return what a mutant sends when a conversation with the correct device is repeated."""
     clock = SteppedClock()
     return conversation.again(mutant.make(table, clock), clock)
 
 
-def only_legal(table: Table, received: list[Received]) -> bool:
+def only_legal(table: Table, received: Received) -> bool:
     """Return whether everything received is a frame that the edition allows, or its text."""
     codec = codecs.load(table)
     framer = codec.framer("reply")
-    data = b"".join(piece.data for piece in received)
+    data = b"".join(data for _, data in received)
     try:
         for event in (*framer.feed(data), *framer.flush()):
             if isinstance(event, Frame):

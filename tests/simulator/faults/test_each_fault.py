@@ -41,7 +41,8 @@ from cobotwire.simulator.faults import (
     noise,
 )
 from cobotwire.simulator.peer import PeerDisconnected
-from faulty_talk import ACK, CODEC, GET_ANGLES, IS_POWERED, OFF, POWER_ON, ZEROS, pass_time, talk
+from faulty_talk import ACK, CODEC, GET_ANGLES, IS_POWERED, OFF, POWER_ON, ZEROS, talk
+from playing import play
 
 TEXT = b"cmd_len error\r\n"
 PING = bytes.fromhex("FF FF 07 02 01 F5")
@@ -192,9 +193,7 @@ def test_xoff_is_swallowed_and_stops_the_host() -> None:
     )
     assert peer.receive(request) == bytes.fromhex("FE FE 03 53 FA")
     assert peer.receive(IS_POWERED) == b""
-    received: list[tuple[float, bytes]] = []
-    pass_time(peer, clock, 5.0, received)
-    assert received == [(1.0, OFF)]
+    assert play(peer, clock, [(5.0, b"")]) == [(1.0, OFF)]
 
 
 def test_wrong_baud_rate_gives_the_garbage_of_the_field_notes() -> None:

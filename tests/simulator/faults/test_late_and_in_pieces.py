@@ -14,7 +14,8 @@ from cobotwire.simulator.faults import (
     Silent,
     Stalled,
 )
-from faulty_talk import CODEC, IS_POWERED, OFF, pass_time, talk
+from faulty_talk import CODEC, IS_POWERED, OFF, talk
+from playing import play
 
 TEXT = b"cmd_len error\r\n"
 ACCOUNT = bytes.fromhex("FE FE 02 B0 FA"), b"home(secret)"
@@ -45,10 +46,7 @@ def received_from_slow(*faults: Fault) -> tuple[list[tuple[float, bytes]], list[
     clock, applied = SteppedClock(), list[AppliedFault]()
     scenario = Scenario(name="test", faults=faults)
     peer = scenario.wrap(Slow(clock), CODEC, clock=clock, on_fault=applied.append)
-    first = peer.receive(IS_POWERED)
-    received = [(clock(), first)] if first else []
-    pass_time(peer, clock, 10.0, received)
-    return received, applied
+    return play(peer, clock, [(0.0, IS_POWERED), (10.0, b"")]), applied
 
 
 @pytest.mark.parametrize("size", [1, 2, None])
@@ -88,10 +86,5 @@ def test_silent_arm_loses_its_late_reply() -> None:
     clock, applied = SteppedClock(), list[AppliedFault]()
     scenario = Scenario(name="test", faults=(Silent(nth=(2,), seconds=1),))
     peer = scenario.wrap(Slow(clock), CODEC, clock=clock, on_fault=applied.append)
-    assert peer.receive(IS_POWERED) == b""
-    clock.sleep(0.2)
-    assert peer.receive(IS_POWERED) == b""
-    received: list[tuple[float, bytes]] = []
-    pass_time(peer, clock, 5.0, received)
-    assert received == []
+    assert play(peer, clock, [(0.0, IS_POWERED), (0.2, IS_POWERED), (5.0, b"")]) == []
     assert [(one.fault, one.added) for one in applied] == [("silent", 0), ("deaf", -len(OFF))]

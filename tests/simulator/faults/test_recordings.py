@@ -12,7 +12,8 @@ from cobotwire.protocol.errors import CaptureError, UsageError
 from cobotwire.simulator import SimulatedArm
 from cobotwire.simulator.clock import SteppedClock
 from cobotwire.simulator.faults import Inserted, Late, Lost, Split, derived, load
-from faulty_talk import CODEC, GET_ANGLES, IS_POWERED, OFF, ZEROS, pass_time, talk
+from faulty_talk import CODEC, GET_ANGLES, IS_POWERED, OFF, ZEROS, talk
+from playing import play
 
 PING = bytes.fromhex("FF FF 07 02 01 F5")
 ON = bytes.fromhex("FE FE 03 12 01 FA")
@@ -50,14 +51,11 @@ def test_scenario_replays_a_recording_beside_its_file(recording: Path) -> None:
     file.write_text("{replay: monday.pcapng, speed: 2, faults: [{fault: duplicated, nth: 2}]}")
     clock = SteppedClock()
     peer = load(file).wrap(SimulatedArm(TABLE), CODEC, clock=clock)
-    received: list[tuple[float, bytes]] = []
-    assert peer.receive(IS_POWERED) == b""
-    pass_time(peer, clock, 1.0, received)
+    received = play(peer, clock, [(0.0, IS_POWERED), (1.0, b"")])
     assert [data for _, data in received] == [PING, ON[:2], ON[2:]]
     assert [at for at, _ in received] == pytest.approx([0.125, 0.25, 0.375])
-    peer.receive(GET_ANGLES)
-    pass_time(peer, clock, 1.0, received)
-    assert len(received) == 3, "this request has no recorded reply"
+    # This request has no recorded reply.
+    assert play(peer, clock, [(0.0, GET_ANGLES), (1.0, b"")]) == []
 
 
 def test_file_that_is_not_a_recording_is_rejected(tmp_path: Path) -> None:
