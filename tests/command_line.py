@@ -27,11 +27,10 @@ def run_program(*words: str | Path, **environment: str) -> subprocess.CompletedP
 
 
 @contextmanager
-def started(*words: str | Path) -> Iterator[subprocess.Popen[str]]:
-    """Start the command line; kill it at the end, if it still runs."""
-    process = subprocess.Popen(
-        [*PROGRAM, *map(str, words)], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
-    )
+def started(*words: str | Path, first: str = "") -> Iterator[subprocess.Popen[str]]:
+    """Start the command line after other statements; kill it at the end, if it still runs."""
+    command = [sys.executable, "-c", f"{first}\n{PROGRAM[2]}", *map(str, words)]
+    process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
     try:
         yield process
     finally:
