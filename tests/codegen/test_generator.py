@@ -76,33 +76,29 @@ def test_output_does_not_depend_on_the_hash_seed(project: Path, template: Path) 
     assert len(_files(project)) > 30
 
 
-def test_second_run_of_the_generator_changes_nothing(generated: Path) -> None:
+def test_check_reports_each_wrong_file_and_the_generator_repairs_them(generated: Path) -> None:
+    stale, missing = (generated / GENERATED[0] / name for name in ("values.py", "enums.py"))
+    stale.write_text(stale.read_text().replace("class Angles", "class Angels"))
+    missing.unlink()
+    left_over = generated / GENERATED[0] / "messages" / "old.py"
+    left_over.write_text("")
+    other_line_ends = generated / "docs/reference/mycobot/README.md"
+    other_line_ends.write_bytes(other_line_ends.read_bytes().replace(b"\n", b"\r\n"))
+    before = _files(generated)
+    result = run(generated, "--check")
+    assert result.returncode == 1
+    for line in (
+        *(f"stale: {path}" for path in (stale, other_line_ends)),
+        *(f"missing: {missing}", f"left over: {left_over}"),
+        "-class Angels(NamedTuple):\n+class Angles(NamedTuple):",
+        "4 generated file(s) are stale",
+    ):
+        assert line in result.stdout
+    assert _files(generated) == before, "--check writes nothing"
+    assert run(generated).returncode == 0
+    assert not left_over.exists()
     assert "0 file(s) changed" in run(generated).stdout
     assert run(generated, "--check").stdout == "fresh\n"
-
-
-def test_check_prints_a_diff_of_stale_files(generated: Path) -> None:
-    path = generated / GENERATED[0] / "values.py"
-    path.write_text(path.read_text().replace("class Angles", "class Angels"))
-    before = path.read_bytes()
-    result = run(generated, "--check")
-    assert result.returncode == 1
-    assert f"stale: {path}" in result.stdout
-    assert "-class Angels(NamedTuple):\n+class Angles(NamedTuple):" in result.stdout
-    assert path.read_bytes() == before, "--check writes nothing"
-
-
-def test_check_reports_missing_and_left_over_files(generated: Path) -> None:
-    (generated / GENERATED[0] / "enums.py").unlink()
-    (generated / GENERATED[0] / "messages" / "old.py").write_text("")
-    result = run(generated, "--check")
-    assert result.returncode == 1
-    assert "missing: " in result.stdout
-    assert "left over: " in result.stdout
-    assert "2 generated file(s) are stale" in result.stdout
-    run(generated)
-    assert run(generated, "--check").returncode == 0
-    assert not (generated / GENERATED[0] / "messages" / "old.py").exists()
 
 
 def test_products_are_written_only_with_their_option(generated: Path) -> None:
@@ -133,12 +129,6 @@ def test_option_rust_data_writes_only_the_files_of_the_rust_crates(generated: Pa
     assert not (generated / "targets").exists()
     assert stale.read_text() == ""
     assert run(generated, "--rust-data", "--products").returncode == 2
-
-
-def test_file_with_other_line_ends_is_stale(generated: Path) -> None:
-    path = generated / "docs/reference/mycobot/README.md"
-    path.write_bytes(path.read_bytes().replace(b"\n", b"\r\n"))
-    assert run(generated, "--check").returncode == 1
 
 
 def test_generator_with_bad_spec_writes_nothing_and_exits_with_2(project: Path) -> None:
