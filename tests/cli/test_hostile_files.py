@@ -34,14 +34,12 @@ def run(*words: str | Path) -> tuple[int, str]:
     return done.returncode, done.stdout + done.stderr
 
 
-def write(path: Path, comment: str = "", options: list[tuple[int, bytes]] | None = None) -> Path:
-    """Write a recording of one frame with a comment, on an interface with options."""
+def write(path: Path, *comments: str, options: list[tuple[int, bytes]] | None = None) -> Path:
+    """Write a recording of a frame for each comment, on an interface with options."""
     interface = struct.pack("<HHI", blocks.LINK_TYPE, 0, 0) + blocks._options(options or [])
-    path.write_bytes(
-        blocks.section("cobotwire")
-        + blocks._block(blocks.INTERFACE, interface)
-        + blocks.packet(0, SECOND, ANGLES, blocks.INBOUND, comment)
-    )
+    packets = (blocks.packet(0, SECOND, ANGLES, blocks.INBOUND, comment) for comment in comments)
+    parts = blocks.section("cobotwire"), blocks._block(blocks.INTERFACE, interface), *packets
+    path.write_bytes(b"".join(parts))
     return path
 
 
@@ -55,24 +53,22 @@ def show(verb: list[str], recording: Path) -> tuple[int, str]:
 
 
 @pytest.mark.parametrize("verb", VERBS, ids=" ".join)
-@pytest.mark.parametrize(
-    "comment",
-    [
+def test_number_with_thousands_of_digits_in_a_comment_changes_nothing(
+    tmp_path: Path, verb: list[str]
+) -> None:
+    recording = write(
+        tmp_path / "arm.pcapng",
         f"in pieces: {DIGITS} bytes at +0 ns",
         f"in pieces: 17 bytes at +{DIGITS} ns",
-        f"in pieces: 17 bytes at +{'9' * 400} ns",
+        f"in pieces: 17 bytes at +{'9' * 400} ns",  # beyond a float
         f"in pieces: {'0' * 5000}17 bytes at +1 ns",
-    ],
-    ids=["size", "delay", "delay beyond a float", "zeros"],
-)
-def test_number_with_thousands_of_digits_in_a_comment_changes_nothing(
-    tmp_path: Path, verb: list[str], comment: str
-) -> None:
-    code, _ = show(verb, write(tmp_path / "arm.pcapng", comment))
+    )
+    code, _ = show(verb, recording)
     # The recording lacks the mark of its end; only decode reports this.
     assert code == (verb[0] == "decode")
-    [packet] = read(tmp_path / "arm.pcapng")
-    assert packet.pieces in ((), (Piece(17, SECOND + 1),))
+    *others, last = (packet.pieces for packet in read(recording))
+    assert others == [()] * 3
+    assert last in ((), (Piece(17, SECOND + 1),))
 
 
 @pytest.mark.parametrize("verb", VERBS, ids=" ".join)
@@ -80,7 +76,7 @@ def test_number_with_thousands_of_digits_in_a_comment_changes_nothing(
 def test_number_of_an_interface_with_thousands_of_bytes_is_damage(
     tmp_path: Path, verb: list[str], option: int
 ) -> None:
-    code, text = show(verb, write(tmp_path / "arm.pcapng", "", [(option, b"\x7f" * 5000)]))
+    code, text = show(verb, write(tmp_path / "arm.pcapng", "", options=[(option, b"\x7f" * 5000)]))
     assert code == 6
     assert "a number of an interface is too long" in text
 

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import shutil
 from pathlib import Path
 
 import pytest
 
-import vectors
 from cobotwire_codegen.build import build_edition
 from codegen.author import samples
+from codegen.test_generator import copy_spec
 
 WORDS = ["--name", "dim", "--id", "0x70", "--title", "Dim: a little", "--doc", "Dims the lamp."]
 SETTING = [*WORDS, "--safety", "setting"]
@@ -51,18 +50,9 @@ def test_new_command_can_be_added_to_a_protocol_from_init(tmp_path: Path) -> Non
 
 
 def test_new_command_is_added_to_the_familys_file_and_missing_yaml(tmp_path: Path) -> None:
-    shutil.copytree(vectors.ROOT / "spec", tmp_path / "spec")
+    copy_spec(tmp_path)
     before = {path: path.read_text() for path in (tmp_path / "spec").rglob("*.yaml")}
-    words = [
-        "--family",
-        "gripper",
-        "--name",
-        "get_load",
-        "--id",
-        "0x7E",
-        "--title",
-        "Read the load",
-    ]
+    words = ["--family", "gripper", "--name", "get_load", "--id", "0x7E", "--title", "Read it"]
     query = ["--doc", "Reads it. " * 12, "--safety", "query", "--source", "12-13"]
     fields = ["--request", "joint:joint", "--reply", "joint:joint:echo,load:angle"]
     seen = ["--vector", "FE FE 03 7E 02 FA", "--reply-values", "joint: 2, load: -1.5"]
@@ -143,7 +133,7 @@ def test_new_command_of_an_edition_with_acks_gets_vectors_of_acks(tmp_path: Path
 
 
 def test_new_command_of_a_delta_is_added_to_the_deltas_files(tmp_path: Path) -> None:
-    shutil.copytree(vectors.ROOT / "spec", tmp_path / "spec")
+    copy_spec(tmp_path)
     edition = "spec/editions/mycobot280.yaml"
     code, output = _new(tmp_path, edition, *SETTING, "--id", "0xEE", "--family", "gripper")
     assert code == 0, output
