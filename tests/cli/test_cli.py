@@ -160,11 +160,6 @@ def test_decode_prints_json() -> None:
     ]
 
 
-def test_decode_rejects_arguments_that_are_not_hex() -> None:
-    assert run("decode", "FE F").returncode == 2
-    assert run("decode", "hello").returncode == 2
-
-
 def test_help_of_call_keeps_the_lines_of_its_examples() -> None:
     lines = [line.strip() for line in run("call", "--help").stdout.splitlines()]
     assert "cobotwire call /dev/ttyACM0 get_angles" in lines

@@ -12,7 +12,6 @@ import pyarrow.parquet as pq
 import pytest
 
 from capture.export.exporting import CODEC, START, polled, recording, reply
-from cli.test_missing_packages import run_without
 from cobotwire.capture import Packet
 from cobotwire.capture.export import OutputFile, Report
 from cobotwire.cli.shared.export_report import report_lines
@@ -164,26 +163,6 @@ def test_partitions_are_folders_that_readers_know(arm: Path, tmp_path: Path) -> 
     table: Any = pq.read_table(out / "robot=arm" / "command=get_angles", partitioning="hive")
     assert table.column("day").to_pylist() == ["2026-11-23"] * 3
     assert "robot" not in table.column_names
-
-
-@pytest.mark.parametrize(
-    ("package", "words", "extra"),
-    [
-        ("pyarrow", [], "arrow"),
-        ("mcap", ["--as", "mcap"], "mcap"),
-        ("fsspec", ["memory://none"], "fsspec"),
-        ("zstandard", ["arm.bin.zst"], "zstd"),
-    ],
-)
-def test_missing_package_is_an_error_that_names_the_extra(
-    arm: Path, tmp_path: Path, package: str, words: list[str], extra: str
-) -> None:
-    zst = tmp_path / "arm.bin.zst"
-    zst.write_bytes(b"")
-    named = [str(zst) if word == zst.name else word for word in words]
-    done = run_without(package, "export", str(arm), *named, "-o", str(tmp_path / "out"))
-    assert done.returncode == 2
-    assert f"needs {package}: pip install 'cobotwire[{extra}]'" in done.stderr
 
 
 def test_terminal_shows_progress_and_then_the_report(tmp_path: Path) -> None:

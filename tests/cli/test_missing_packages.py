@@ -47,6 +47,7 @@ def _imported(path: Path) -> set[str]:
     return {name.partition(".")[0] for name in names}
 
 
+# That of `plot` is in newcomer/test_newcomer.py.
 @pytest.mark.parametrize(
     ("package", "words", "sentence"),
     [
@@ -55,11 +56,6 @@ def _imported(path: Path) -> set[str]:
         *(
             ("ruamel", words, "fault scenarios need ruamel.yaml: pip install 'cobotwire[sim]'")
             for words in (["sim", "--scenario", "panic"], ["sim", "--list-scenarios"])
-        ),
-        (
-            "matplotlib",
-            ["plot", "arm.pcapng", "-o", "arm.svg"],
-            "plotting needs matplotlib: pip install 'cobotwire[plot]'",
         ),
         (
             "cyclonedds",
@@ -89,6 +85,26 @@ def test_missing_package_is_named_in_one_sentence(
     assert result.returncode != 0
     assert result.stdout == ""
     assert result.stderr == f"cobotwire: {sentence}\n"
+
+
+@pytest.mark.parametrize(
+    ("package", "words", "extra"),
+    [
+        ("pyarrow", ["arm.bin"], "arrow"),
+        ("mcap", ["arm.bin", "--as", "mcap"], "mcap"),
+        ("fsspec", ["arm.bin", "memory://none"], "fsspec"),
+        ("zstandard", ["arm.bin.zst"], "zstd"),
+    ],
+)
+def test_export_names_the_extra_of_a_missing_package(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, package: str, words: list[str], extra: str
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    for name in ("arm.bin", "arm.bin.zst"):
+        Path(name).write_bytes(bytes.fromhex("FE FE 03 12 01 FA"))
+    done = run_without(package, "export", *words, "-o", "out")
+    assert done.returncode == 2
+    assert f"needs {package}: pip install 'cobotwire[{extra}]'" in done.stderr
 
 
 def test_package_that_was_built_without_the_page_leaves_out_the_verb_and_says_why(

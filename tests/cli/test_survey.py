@@ -27,6 +27,21 @@ from wrong_arms import POSE, WRONG_ARMS
 TABLE = editions.load("mycobot280").TABLE
 
 
+@pytest.fixture(scope="module")
+def surveyed(tmp_path_factory: pytest.TempPathFactory) -> bytes:
+    """Return the file of a survey of the simulated arm."""
+    path = tmp_path_factory.mktemp("surveyed") / "survey.zip"
+    assert cobotwire("survey", "--simulated", "-o", path).returncode == 0
+    return path.read_bytes()
+
+
+@pytest.fixture
+def path(surveyed: bytes, tmp_path: Path) -> Path:
+    """Write the survey of the simulated arm."""
+    (tmp_path / "survey.zip").write_bytes(surveyed)
+    return tmp_path / "survey.zip"
+
+
 def test_file_holds_facts_with_frames_and_recording_but_nothing_personal(tmp_path: Path) -> None:
     path = tmp_path / "survey.zip"
     done = cobotwire("survey", "--simulated", "-o", path, "--robot", "280 M5\x1b[2J")
@@ -86,9 +101,7 @@ def test_motion_of_all_devices_at_once_is_refused(tmp_path: Path) -> None:
     assert not list(tmp_path.iterdir())
 
 
-def test_survey_continues_an_interrupted_one(tmp_path: Path) -> None:
-    path = tmp_path / "survey.zip"
-    cobotwire("survey", "--simulated", "-o", path)
+def test_survey_continues_an_interrupted_one(path: Path) -> None:
     content, recording = read_survey(path)
     known = "mycobot280/get_angles/command/present"
     cut = [f for f in content["facts"] if f["fact"] == known or "get_angles" not in f["fact"]]
@@ -110,9 +123,8 @@ def test_survey_continues_an_interrupted_one(tmp_path: Path) -> None:
     assert "is the survey of another device: continue it without --address" in other.stderr
 
 
-def test_recording_is_judged_by_the_requests_that_it_has(tmp_path: Path) -> None:
-    path, recording = tmp_path / "survey.zip", tmp_path / "recording.pcapng"
-    cobotwire("survey", "--simulated", "-o", path)
+def test_recording_is_judged_by_the_requests_that_it_has(path: Path, tmp_path: Path) -> None:
+    recording = tmp_path / "recording.pcapng"
     whole, traffic = read_survey(path)
     recording.write_bytes(traffic)
     half = tmp_path / "half.pcapng"
@@ -182,9 +194,7 @@ def test_times_that_no_clock_shows_are_refused(tmp_path: Path) -> None:
     assert (done.returncode, "has times before 1970" in done.stderr) == (2, True)
 
 
-def test_continued_survey_keeps_its_exit_code_and_refuses_hostile_values(tmp_path: Path) -> None:
-    path = tmp_path / "survey.zip"
-    cobotwire("survey", "--simulated", "-o", path)
+def test_continued_survey_keeps_its_exit_code_and_refuses_hostile_values(path: Path) -> None:
     content, recording = read_survey(path)
     content["facts"][0]["verdict"] = "contradicted"
     path.write_bytes(survey_file(content, recording))
@@ -197,9 +207,7 @@ def test_continued_survey_keeps_its_exit_code_and_refuses_hostile_values(tmp_pat
         )
 
 
-def test_survey_continued_without_its_options_is_not_finished(tmp_path: Path) -> None:
-    path = tmp_path / "survey.zip"
-    cobotwire("survey", "--simulated", "-o", path)
+def test_survey_continued_without_its_options_is_not_finished(path: Path) -> None:
     content, recording = read_survey(path)
     both, one = ["--settings", "--allow-motion"], ["--allow-motion"]
     path.write_bytes(survey_file({**content, "finished": False, "left_out": both}, recording))
