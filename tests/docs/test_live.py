@@ -31,9 +31,9 @@ from cobotwire.transport.tapped import borrowed
 from codegen.author import samples
 from docs.live_site import PORT, STOP, LiveSite, serving
 from in_process import cobotwire
-from studio.driven_page import Page, browser
+from studio.driven_page import Page
 from studio.test_page import ANGLES, AXE, ROWS, violation
-from targets.decoder.browser import needs_chromium
+from targets.decoder.browser import needs_chromium, new_tab
 from wrong_arms import without
 
 pytestmark = [
@@ -108,9 +108,8 @@ def identification(folder: Path) -> list[dict[str, Any]]:
 
 
 @pytest.fixture(scope="module")
-def page() -> Iterator[Page]:
-    with browser() as found:
-        yield found
+def page() -> Page:
+    return Page(new_tab())
 
 
 @pytest.fixture(scope="module")

@@ -5,14 +5,14 @@ Both run in a browser, on the site as readers get it.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from pathlib import Path
 from urllib.parse import quote
 
 import pytest
 
-from targets.comparison import ToolMissing
-from targets.decoder.browser import Tab
+from targets.decoder.browser import Tab, needs_chromium, new_tab
+
+pytestmark = needs_chromium
 
 # What users type, and the page or the section that must come first.
 QUESTIONS = {
@@ -49,12 +49,8 @@ VISIBLE = """[...document.querySelectorAll(".sidebar-tree a")]
 
 
 @pytest.fixture(scope="module")
-def tab(site: Path) -> Iterator[Tab]:
-    try:
-        with Tab((site / "index.html").as_uri()) as opened:
-            yield opened
-    except ToolMissing as missing:
-        pytest.skip(str(missing))
+def tab(site: Path) -> Tab:
+    return new_tab()
 
 
 def found(tab: Tab, site: Path, question: str) -> list[str]:

@@ -15,7 +15,7 @@ import npm_package
 from docs.pages import LEFT_OUT
 from newcomer.website.blocks import commands, programs
 from strategies import TABLES
-from targets.decoder.browser import SHOWN, Tab, needs_chromium
+from targets.decoder.browser import SHOWN, needs_chromium, new_tab
 from vectors import ROOT
 
 SITE = "https://cobotwire.github.io/cobotwire/"
@@ -127,9 +127,10 @@ def test_pages_link_to_their_source_and_generated_pages_to_the_spec(
 @needs_chromium
 @pytest.mark.skipif(bool(npm_package.missing()), reason=npm_package.missing())
 def test_decoder_page_of_the_site_decodes_a_request_of_each_edition(site: Path) -> None:
-    with Tab((site / "decoder.html").as_uri()) as tab:
-        tab.evaluate(SHOWN)
-        for edition in sorted(TABLES):
-            state = json.dumps({"edition": edition, "hex": "FEFE0220FA"})
-            shown = tab.evaluate(f"shown({state})")
-            assert "request at 0: <code>get_angles</code>" in shown
+    tab = new_tab()
+    tab.open((site / "decoder.html").as_uri())
+    tab.evaluate(SHOWN)
+    for edition in sorted(TABLES):
+        state = json.dumps({"edition": edition, "hex": "FEFE0220FA"})
+        shown = tab.evaluate(f"shown({state})")
+        assert "request at 0: <code>get_angles</code>" in shown

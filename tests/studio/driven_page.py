@@ -155,5 +155,5 @@ class Page:
 @contextmanager
 def browser() -> Iterator[Page]:
     """Run a browser with one page."""
-    with Tab("about:blank") as tab:
+    with Tab() as tab:
         yield Page(tab)

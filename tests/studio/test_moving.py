@@ -12,9 +12,12 @@ import pytest
 from cobotwire.editions import mycobot280
 from cobotwire.kinematics import flange, geometry_of
 from cobotwire.simulator import SimulatedArm, TcpServer
-from studio.driven_page import Page, browser
+from studio.driven_page import Page
 from studio.studio_server import Studio, running
-from studio.test_page import ANGLES, ROWS, pytestmark  # noqa: F401  (skip without a browser)
+from studio.test_page import ANGLES, ROWS
+from targets.decoder.browser import needs_chromium, new_tab
+
+pytestmark = needs_chromium
 
 STATUS = "document.getElementById('move-status').textContent"
 JOG = "#joints li:nth-child({}) .jog:nth-of-type({})"
@@ -22,9 +25,8 @@ SLIDER = "#joints li:nth-child({}) input[type=range]"
 
 
 @pytest.fixture(scope="module")
-def page() -> Iterator[Page]:
-    with browser() as found:
-        yield found
+def page() -> Page:
+    return Page(new_tab())
 
 
 @pytest.fixture(scope="module")

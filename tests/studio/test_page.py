@@ -12,12 +12,11 @@ import pytest
 from cobotwire.editions import mycobot280
 from cobotwire.editions.mycobot280 import MyCobot280
 from cobotwire.simulator import ArmConnection, SimulatedArm, TcpServer
-from studio.driven_page import Page, browser
+from studio.driven_page import Page
 from studio.recordings import TARGET as RECORDED
 from studio.recordings import record
 from studio.studio_server import Studio, running
-from targets.comparison import ToolMissing
-from targets.decoder.browser import chromium
+from targets.decoder.browser import needs_chromium, new_tab
 from vectors import ROOT
 
 AXE = ROOT / "target" / "front-end" / "axe.min.js"
@@ -27,18 +26,12 @@ ANGLES = (
 )
 ROWS = "[...document.querySelectorAll('.row:not([hidden])')]"
 WIDTHS = [(1280, False), (1280, True), (390, False), (390, True)]
-try:
-    chromium()
-    MISSING = ""
-except ToolMissing as error:
-    MISSING = str(error)
-pytestmark = pytest.mark.skipif(bool(MISSING), reason=MISSING)
+pytestmark = needs_chromium
 
 
 @pytest.fixture(scope="module")
-def page() -> Iterator[Page]:
-    with browser() as found:
-        yield found
+def page() -> Page:
+    return Page(new_tab())
 
 
 @pytest.fixture(scope="module")

@@ -1,13 +1,16 @@
-"""Run headless Chromium on pages that are local files."""
+"""Run headless Chromium, which all tests of a process share, since it starts slowly."""
 
 from __future__ import annotations
 
+import atexit
 import json
 import os
 import select
 import shutil
 import signal
 import subprocess
+from contextlib import ExitStack
+from functools import lru_cache
 from pathlib import Path
 from types import TracebackType
 from typing import Any, Self
@@ -56,17 +59,26 @@ needs_chromium = pytest.mark.skipif(
 )
 
 
-def evaluate(url: str, *expressions: str) -> list[Any]:
-    """Return the values of JavaScript expressions, or of their promises, in a loaded page."""
-    with Tab(url) as tab:
-        return [tab.evaluate(expression) for expression in expressions]
+@lru_cache
+def _shared() -> Tab:
+    stack = ExitStack()
+    atexit.register(stack.close)
+    return stack.enter_context(Tab())
+
+
+def new_tab() -> Tab:
+    """Return a new page of the browser that tests share; the page before becomes blank."""
+    tab = _shared()
+    tab.open("about:blank")
+    tab.renew()
+    tab.events.clear()
+    return tab
 
 
 class Tab:
     """A page in a browser that takes commands of the DevTools protocol on descriptors 3 and 4."""
 
-    def __init__(self, url: str) -> None:
-        self._url = url
+    def __init__(self) -> None:
         self._count = 0
         self._session: dict[str, str] = {}
         # What the page reported, such as what it logged, once its domain is enabled.
@@ -88,7 +100,6 @@ class Tab:
         self._in, self._out = open(ours_in, "rb", buffering=0), open(ours_out, "wb", buffering=0)
         self._read = b""
         self.renew()
-        self.open(self._url)
         return self
 
     def renew(self) -> None:

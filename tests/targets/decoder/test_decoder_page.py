@@ -20,7 +20,7 @@ from cobotwire_codegen.emit import Target, write
 from cobotwire_codegen.project import edition_files
 from cobotwire_codegen.targets.decoder import edition_script, render_decoder
 from strategies import TABLES, codec_of
-from targets.decoder.browser import SHOWN, Tab, needs_chromium
+from targets.decoder.browser import SHOWN, Tab, needs_chromium, new_tab
 from targets.expected import codec_of_edition
 from targets.specs import edition_of
 from targets.typescript.comparison import package
@@ -59,10 +59,8 @@ def page(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture(scope="module")
-def tab() -> Iterator[Tab]:
-    """Start a browser for all tests of the page: it starts slowly."""
-    with Tab("about:blank") as started:
-        yield started
+def tab() -> Tab:
+    return new_tab()
 
 
 def _open(tab: Tab, page: Path, **state: str) -> Tab:
