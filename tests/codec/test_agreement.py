@@ -23,6 +23,14 @@ from codec.results import everything
 from strategies import TABLES, codec_of
 
 LISTENING = st.sampled_from(["request", "reply", "both"])
+# Whole frames, the two parts of one, two frames at once, an unknown id, and noise.
+PIECES = [
+    bytes.fromhex(text)
+    for text in (
+        *("FE FE 03 12 01 FA", "FE FE 04 3B 00 01 FA", "FE FE 04", "3B 00 01 FA"),
+        *("FE FE 03 12 01 FA FE FE 03 12 00 FA", "FE FE 03 99 01 FA", "FE FE 03 12 01 FA FE", "00"),
+    )
+]
 # An example draws one of many kinds of tables.
 
 
@@ -55,6 +63,20 @@ def test_both_framers_return_the_same_events_and_keep_the_same_bytes(
         return [*found, framer.flush(), framer.counters]
 
     _same(table, events)
+
+
+@given(st.lists(st.sampled_from(PIECES), max_size=8), st.booleans())
+def test_chunk_that_is_one_frame_has_the_same_events_and_counts(
+    chunks: list[bytes], accept_unknown: bool
+) -> None:
+    """The native framer has a path of its own for such a chunk."""
+
+    def events(codec: Codec) -> list[Any]:
+        framer = codec.framer("reply", accept_unknown=accept_unknown)
+        found = [[framer.feed(chunk), framer.pending, framer.counters] for chunk in chunks]
+        return [*found, framer.flush(), framer.counters]
+
+    _same(TABLES["mycobot"], events)
 
 
 def _readings(codec: Codec, frame: Frame, names: list[str]) -> Iterator[Any]:

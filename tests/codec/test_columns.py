@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from itertools import pairwise
 from typing import Any
 
 import pytest
@@ -12,10 +11,10 @@ from hypothesis import strategies as st
 import random_tables
 import strategies
 from cobotwire import codec as codecs
-from cobotwire.codec.interface import Codec, Columns, Frame, Listening, Noise
+from cobotwire.codec.interface import Codec, Columns, Listening
 from cobotwire.protocol.errors import ProtocolError, UsageError
 from cobotwire.protocol.table import Table
-from codec.results import joined_columns
+from codec.results import check_against_framer, joined_columns
 from strategies import CODECS, TABLES, codec_of
 
 LISTENING = st.sampled_from(["request", "reply", "both"])
@@ -51,39 +50,8 @@ def test_stream_in_chunks_has_the_same_rows(
 def test_columns_and_scan_equal_the_decoded_frames_and_the_noise_of_a_framer(
     edition: str, name: Any, listening: Listening, data: st.DataObject
 ) -> None:
-    codec = codec_of(edition, name)
     stream = data.draw(strategies.streams(TABLES[edition]))
-    framer = codec.framer(listening)
-    events = framer.feed(stream) + framer.flush()
-    rows: dict[Any, list[Any]] = {}
-    rejected = []
-    for event in events:
-        if isinstance(event, Noise):
-            continue
-        try:
-            message = event.message
-        except ProtocolError:
-            rejected.append(event.offset)
-        else:
-            key = message.command.name, message.direction
-            values = [list(v) if isinstance(v, tuple) else v for v in message.values]
-            rows.setdefault(key, []).append((event.offset, values))
-    columns = codec.decode_columns(stream, listening)
-    found: dict[Any, list[Any]] = {}
-    for each in columns:
-        fields = [each[field].tolist() for field in each.names]
-        values = [list(row) for row in zip(*fields)] or [[] for _ in each.offset]
-        all_rows = list(zip(each.offset.tolist(), values))
-        found.setdefault((each.command.name, each.direction), []).extend(all_rows)
-    assert {key: sorted(all_rows) for key, all_rows in found.items()} == rows
-    assert sorted(columns.rejected.tolist()) == rejected
-    assert columns.counters == framer.counters
-    scan = codec.scan(stream, listening)
-    assert scan.offset.tolist() == [e.offset for e in events if isinstance(e, Frame)]
-    assert scan.counters == framer.counters
-    spans = list(zip(scan.noise.offset.tolist(), scan.noise.size.tolist()))
-    assert sum(size for _, size in spans) == sum(scan.counters.noise.values())
-    assert all(at + size < next for (at, size), (next, _) in pairwise(spans)), "adjacent spans join"
+    check_against_framer(codec_of(edition, name), listening, stream)
 
 
 @pytest.mark.parametrize("kind", [bytes, bytearray, memoryview])

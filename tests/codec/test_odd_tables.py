@@ -43,6 +43,34 @@ def test_rejected_frames_are_listed_in_the_order_of_the_stream(frames: int) -> N
             assert [at for part in parts for at in part.rejected.tolist()] == expected
 
 
+class Broken:
+    """A value whose conversion raises an error of its own."""
+
+    def __index__(self) -> int:
+        raise ZeroDivisionError
+
+    __float__ = __index__
+
+
+def test_error_of_a_conversion_is_raised_unless_a_value_before_it_is_wrong() -> None:
+    row = small_tables.field("row", small_tables.number(), small_tables.number(), many=True)
+    table = small_tables.table(small_tables.command(1, "set", (Variant((row, BOUNDED)),)))
+    for codec in both(table):
+        for values in (((Broken(), 999), 1), ((0, Broken()), 1), ((0, 0), Broken())):
+            with pytest.raises(ZeroDivisionError):
+                codec.encode("set", "request", values)
+        for wrong in (((999, Broken()), 1), ((), Broken()), (0, Broken()), ((0, 999), Broken())):
+            with pytest.raises(UsageError, match="row"):
+                codec.encode("set", "request", wrong)
+
+
+def test_value_between_two_raw_values_becomes_the_even_one() -> None:
+    half = small_tables.field("half", small_tables.number(scale=(1, 2)))
+    for codec in both(small_tables.table(small_tables.command(1, "set", (Variant((half,)),)))):
+        frames = [codec.encode("set", "request", (value,)) for value in (0.25, 0.75, 1.25)]
+        assert [frame[4] for frame in frames] == [0, 2, 2]
+
+
 @pytest.mark.parametrize("scale", SCALES)
 @pytest.mark.parametrize("width", [1, 2, 3, 4])
 @pytest.mark.parametrize("times", [1, 5_000])

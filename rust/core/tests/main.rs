@@ -1,4 +1,8 @@
-//! All tests of the core, in one program: each further one would be compiled and linked by itself.
+//! The tests of the core, in one program: each further one would be compiled and linked by itself.
+//!
+//! They cover what the Python tests do not reach, and replay the vectors and the found inputs without
+//! Python. `tests/codec` and `tests/capture` compare the core with the codec in Python, its
+//! specification: framing, values, tables, columns and recordings.
 
 // A failing test may panic.
 #![allow(
@@ -8,15 +12,11 @@
     clippy::unwrap_used
 )]
 
-mod bulk;
-mod capture;
 mod common;
 mod exchange;
-mod formats;
 mod found;
-mod framing;
 mod records;
 mod replay;
-mod values;
+mod tables;
 mod vectors;
 mod workers;

@@ -2,13 +2,18 @@
 
 use std::sync::Arc;
 
-use crate::bulk::{LISTENING, stream};
 use crate::common::{Dice, field, frame_format, number, table_of};
 use crate::records::Edition;
 use cobotwire_core::{
-    ColumnReader, Columns, FrameFormat, Layout, Listening, Numbers, OffsetReader, Offsets, Order,
-    Part, Plans, Table, Tally, Workers,
+    ColumnReader, Columns, Direction, FrameFormat, Layout, Listening, Numbers, OffsetReader,
+    Offsets, Order, Part, Plans, Table, Tally, Workers,
 };
+
+const LISTENING: [Listening; 3] = [
+    Listening::To(Direction::Request),
+    Listening::To(Direction::Reply),
+    Listening::Both,
+];
 
 /// What a reader reports after each chunk and after a flush.
 #[derive(Debug, PartialEq)]
@@ -66,6 +71,29 @@ fn check(table: &Arc<Table>, chunks: &[&[u8]], cuts: impl IntoIterator<Item = (u
             assert!(alone == together, "{count} threads, cut every {stride}");
         }
     }
+}
+
+/// Return a stream of an edition's frames and of bytes that are hard to frame.
+fn stream(dice: &mut Dice, frames: &[Vec<u8>], size: usize, noise: usize) -> Vec<u8> {
+    let mut stream = Vec::new();
+    while stream.len() < size {
+        if dice.roll(100) < noise {
+            match dice.roll(4) {
+                0 => stream.extend(dice.stream()),
+                1 => stream.resize(stream.len() + dice.roll(600), 0),
+                2 => stream.resize(stream.len() + dice.roll(40), 0xFE),
+                _ => stream.extend((0..dice.roll(40)).map(|_| dice.byte())),
+            }
+        }
+        let mut frame = frames[dice.roll(frames.len())].clone();
+        if dice.roll(100) < noise {
+            // The result is often still a frame, with other values, legal or not.
+            let index = dice.roll(frame.len());
+            frame[index] = dice.byte();
+        }
+        stream.extend(frame);
+    }
+    stream
 }
 
 /// Return an edition's table, and the frames of its vectors.

@@ -1,5 +1,7 @@
 //! Helpers of the tests: values to encode, and small tables.
 
+use std::convert::Infallible;
+
 use cobotwire_core::{
     Algorithm, Case, Check, Command, Computed, Crc, CrcParameters, Encoding, Event, Field,
     FrameFormat, Framer, Given, Layout, Number, Order, Reason, Row, Shape, Table, Unread,
@@ -10,49 +12,38 @@ use cobotwire_core::{
 #[derive(Clone, Debug, PartialEq)]
 pub enum Sample {
     Integer(i64),
-    Huge,
     Real(f64),
     Bool(bool),
     Text,
-    /// Its conversion raises an error of its own.
-    Broken,
     Row(Vec<Sample>),
 }
 
 #[derive(Clone, Debug, PartialEq)]
 pub struct Samples(pub Vec<Sample>);
 
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Broken;
-
 impl Given for Sample {
-    type Error = Broken;
+    type Error = Infallible;
     type Row = Samples;
 
-    fn integer(&self, flag: bool) -> Result<i64, Unread<Broken>> {
+    fn integer(&self, flag: bool) -> Result<i64, Unread<Infallible>> {
         match self {
             Self::Integer(integer) => Ok(*integer),
             Self::Bool(set) if flag => Ok(i64::from(*set)),
-            Self::Huge => Err(Unread::Beyond),
-            Self::Broken => Err(Unread::Foreign(Broken)),
             _ => Err(Unread::Fault(ValueFault::Type)),
         }
     }
 
-    fn real(&self) -> Result<f64, Unread<Broken>> {
+    fn real(&self) -> Result<f64, Unread<Infallible>> {
         match self {
             Self::Integer(integer) => Ok(*integer as f64),
             Self::Real(real) => Ok(*real),
-            Self::Huge => Err(Unread::Fault(ValueFault::Range)),
-            Self::Broken => Err(Unread::Foreign(Broken)),
             _ => Err(Unread::Fault(ValueFault::Type)),
         }
     }
 
-    fn row(&self) -> Result<Samples, Unread<Broken>> {
+    fn row(&self) -> Result<Samples, Unread<Infallible>> {
         match self {
             Self::Row(all) => Ok(Samples(all.clone())),
-            Self::Broken => Err(Unread::Foreign(Broken)),
             _ => Err(Unread::Fault(ValueFault::Type)),
         }
     }
@@ -61,11 +52,11 @@ impl Given for Sample {
         false
     }
 
-    fn bytes(&self) -> Result<Option<Vec<u8>>, Unread<Broken>> {
+    fn bytes(&self) -> Result<Option<Vec<u8>>, Unread<Infallible>> {
         Ok(None)
     }
 
-    fn text(&self, _: Encoding) -> Result<Vec<u8>, Unread<Broken>> {
+    fn text(&self, _: Encoding) -> Result<Vec<u8>, Unread<Infallible>> {
         Err(Unread::Fault(ValueFault::Type))
     }
 }
@@ -100,14 +91,6 @@ pub fn number(width: usize, divide: i64, minimum: i64, maximum: i64) -> Number {
         choices: vec![],
         flag: false,
         bits: None,
-    }
-}
-
-/// Return the protocol's signed word: raw 33000 is still positive.
-pub fn word(divide: i64) -> Number {
-    Number {
-        signed_at: 33000,
-        ..number(2, divide, -32535, 33000)
     }
 }
 
