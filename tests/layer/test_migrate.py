@@ -133,7 +133,7 @@ MyBuddy, MyBuddy
     set_tool_color(side, 255, 0, 0) -> at(side).set_color(255, 0, 0)
     sync_send_angles(1, row, 50) -> left.move_angles(row, 50, timeout=15)
     get_base_coords() -> get_base_coords()
-    set_encoders(1, row, pace) -> left.set_encoders(row, speed=pace) -> if this speed is a row
+    set_encoders(1, row, pace) -> left.set_encoders(row, speed=pace) -> if this is a list
 MyCobot, MyCobot280
     sync_send_angles(row, 50) -> move_angles(row, 50, timeout=30)
     go_home() -> send_angles([0] * 6, 10)

@@ -72,7 +72,7 @@ def test_class_has_the_methods_and_parameters_of_the_makers(name: str) -> None:
         "ELSEWHERE",
         "LATE",
         "NATIVE",
-        "ORDERS",
+        "ONE_WAY",
         "PORTS",
         "QUIET",
         "close",
@@ -165,7 +165,7 @@ def test_value_that_only_one_side_sends_is_noticed(monkeypatch: pytest.MonkeyPat
     def narrow(arm: Any, mode: int) -> Any:
         if mode == 1:
             raise UsageError("mode", mode, "0")
-        return arm._order(arm.arm.set_fresh_mode, mode)
+        return arm._send_acked(arm.arm.set_fresh_mode, mode)
 
     monkeypatch.setattr(ours.MyCobot280, "set_fresh_mode", narrow)
     compared = COMPARISONS["values"](ALL_ROBOTS["MyCobot280"], "set_fresh_mode")

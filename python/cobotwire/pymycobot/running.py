@@ -81,7 +81,7 @@ def run_program(
     Args:
         path: the program's file.
         arguments: what follows the file on its command line.
-        errors: what a call that fails does, unless the program says so itself.
+        errors: what a call that fails does, unless the program itself chooses that.
 
     Returns:
         The exit code of the program; 1 if an exception ended it; 130 after Ctrl-C.

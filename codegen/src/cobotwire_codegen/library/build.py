@@ -105,7 +105,7 @@ def _class(entry: Entry, stated: _Stated, problems: list[Problem]) -> LibraryCla
         _parameters(reader, spec.constructor),
         like,
         reader.get(spec.helpers),
-        reader.get(spec.orders),
+        reader.get(spec.one_way),
         _absent(reader.get(spec.absent), problems),
         tuple(sorted(filter(None, methods), key=lambda method: method.name)),
     )

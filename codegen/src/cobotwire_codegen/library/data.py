@@ -72,7 +72,7 @@ def _class(given: LibraryClass) -> dict[str, object]:
         "edition": given.edition.name,
         "elsewhere": given.elsewhere.name if given.ports else "",
         "ports": given.ports,
-        "orders": given.orders if given.orders != "acknowledged" else "",
+        "one_way": given.one_way if given.one_way != "acknowledged" else "",
         "opens": given.opens,
         "constructor": _parameters(of_constructor(given)),
         "like": given.like,
@@ -121,9 +121,9 @@ def _by(method: Method) -> str:
     if method.result == ENDED:
         return "move"
     if method.command.ack:
-        return "order"
+        return "send_acked"
     if method.command.awaits_reply:
-        return "ask"
+        return "query"
     return "finish" if method.result == "done" else "send"
 
 

@@ -40,7 +40,7 @@ RESULTS = {
 }
 
 # What one-way requests of a class return, if the edition may acknowledge them.
-ORDERS = {
+ONE_WAY = {
     "acknowledged": "1 once the acknowledgement has come.",
     "sent": "1 once the request is sent.",
     "listed": "A list with 1 once the request is sent.",
@@ -95,8 +95,10 @@ class Class(Record):
     addresses = optional(
         Names(), "The parameters of its methods that select the device that a request goes to."
     )
-    orders = optional(
-        Word(ORDERS, ORDERS.values()), "What its one-way requests return, and when.", "acknowledged"
+    one_way = optional(
+        Word(ONE_WAY, ONE_WAY.values()),
+        "What its one-way requests return, and when.",
+        "acknowledged",
     )
     absent = optional(Listed(Absent), "Public names of the class that have no counterpart.")
     methods = optional(Named(Method, METHOD), "Methods that differ from those of other classes.")

@@ -49,7 +49,7 @@ class LibraryClass:
     """A class of the library.
 
     ``edition`` is the edition on ``ports``, and ``elsewhere`` the edition on all other ports; they
-    may be equal. ``like`` is the class whose methods it has; empty if none. ``orders`` says what
+    may be equal. ``like`` is the class whose methods it has; empty if none. ``one_way`` says what
     its one-way requests return, and when. ``absent`` are its names that have no counterpart, each
     with why.
     """
@@ -64,7 +64,7 @@ class LibraryClass:
     constructor: tuple[Parameter, ...]
     like: str
     helpers: tuple[str, ...]
-    orders: str
+    one_way: str
     absent: tuple[tuple[str, str], ...]
     methods: tuple[Method, ...]
 

@@ -1,4 +1,4 @@
-"""Says why a name of the maker's library has no counterpart: of a class, or of a class's method."""
+"""Says why a class or method of the maker's library has no counterpart."""
 
 from __future__ import annotations
 

@@ -34,11 +34,11 @@ class Limbs(CompatibleClient):
         """
         device = self.arm.at(id)
         if len(data) == 1:
-            return self._ask(int, device.is_waist_in_position, data[0], mode)
+            return self._query(int, device.is_waist_in_position, data[0], mode)
         if len(data) != 3:
-            return self._ask(int, device.is_in_position, data, mode)
+            return self._query(int, device.is_in_position, data, mode)
         left, right, waist = data
-        return self._ask(int, device.is_robot_in_position, left, right, waist[0], mode)
+        return self._query(int, device.is_robot_in_position, left, right, waist[0], mode)
 
     def get_base_coords(self, *args: Any) -> Any:
         """Read the coordinates of both arms in the base's frame, or convert those of one arm to it.
@@ -47,18 +47,18 @@ class Limbs(CompatibleClient):
         ``single_to_base_coords(coords, arm)``.
         """
         if not args:
-            return self._ask(results.plain, self.arm.get_base_coords)
+            return self._query(results.plain, self.arm.get_base_coords)
         if len(args) != 2:
             message = f"get_base_coords() takes coords and arm, or nothing, not {len(args)} values"
             raise UsageError("get_base_coords", message=message)
-        return self._ask(results.plain, self.arm.single_to_base_coords, *args)
+        return self._query(results.plain, self.arm.single_to_base_coords, *args)
 
     @naming(address="id", axis="joint_id")
     def get_coord(self, id: int, joint_id: int) -> Any:
         """Read a coordinate, in millimetres or degrees; the waist's is in degrees."""
         degrees = id == _WAIST or (isinstance(joint_id, int) and joint_id >= _ROTATIONS)
         scale = 100 if degrees else 10
-        return self._ask(lambda raw: raw / scale, self.arm.at(id).get_coord, joint_id)
+        return self._query(lambda raw: raw / scale, self.arm.at(id).get_coord, joint_id)
 
     @naming(address="id", speeds="speed")
     def set_encoders(self, id: int, encoders: Sequence[int], speed: int | Sequence[int]) -> Any:

@@ -1,4 +1,4 @@
-"""Calls a method of our client as a method of the maker's library is called."""
+"""Makes a call of the maker's library on our client."""
 
 from __future__ import annotations
 
@@ -89,10 +89,10 @@ class Method:
             for place, (_, theirs, *default) in enumerate(self.arguments)
             if theirs in no and default == ["None"]
         ]
-        self._quiet = places.get(QUIET) if self.by in ("order", "move") else None
+        self._quiet = places.get(QUIET) if self.by in ("send_acked", "move") else None
         result = getattr(results, self.result, None)
-        self._first = [result] if self.by == "ask" else []
-        self._options = {"gives": result} if self.by == "order" else {}
+        self._first = [result] if self.by == "query" else []
+        self._options = {"gives": result} if self.by == "send_acked" else {}
         names = {ours: theirs for ours, theirs, *_ in self.arguments if theirs in places}
         self._names = {ours: theirs for ours, theirs in names.items() if ours != theirs}
         if self.address:

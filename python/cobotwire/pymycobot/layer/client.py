@@ -41,7 +41,7 @@ class CompatibleClient:
     QUIET: ClassVar[int | None] = None
     # What a one-way request returns, and when. Older classes serve firmware of any age, and old
     # firmware acknowledges nothing: then the request returns 1, or a list with 1, once it is sent.
-    ORDERS: ClassVar[str] = "acknowledged"
+    ONE_WAY: ClassVar[str] = "acknowledged"
 
     if not TYPE_CHECKING:
 
@@ -82,7 +82,7 @@ class CompatibleClient:
         self._is_open = False
         self.arm.close()
 
-    def _order(
+    def _send_acked(
         self,
         call: Callable[..., None],
         *arguments: Any,
@@ -93,9 +93,9 @@ class CompatibleClient:
 
         ``gives`` converts the 1 to the result of the library's method.
         """
-        if self.ORDERS != "acknowledged":
+        if self.ONE_WAY != "acknowledged":
             call(*arguments)
-            return [DONE] if self.ORDERS == "listed" else DONE
+            return [DONE] if self.ONE_WAY == "listed" else DONE
         if quiet:
             call(*arguments)
             return self.QUIET
@@ -114,7 +114,7 @@ class CompatibleClient:
         call(*arguments)
         return DONE
 
-    def _ask(
+    def _query(
         self, convert: Callable[[Any], Value], call: Callable[..., Any], *arguments: Any
     ) -> Value | int:
         """Return the result of a query as the library gives it."""

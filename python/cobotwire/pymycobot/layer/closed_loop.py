@@ -1,4 +1,4 @@
-"""What the classes of the Mercury and the Pro robots share: motions that the arm reports back."""
+"""What the classes of the Mercury and the Pro robots share: the arm reports the end of motions."""
 
 from __future__ import annotations
 
@@ -20,11 +20,11 @@ from cobotwire.pymycobot.layer.naming import naming
 from cobotwire.pymycobot.layer.ranges import check_range
 from cobotwire.pymycobot.layer.results import plain, tenths
 
-# If the end of a motion is not reported for this long, queries ask whether the arm moves.
-ASK_SECONDS = 1.0
+# After this time without a report of the end of a motion, the client queries whether the arm moves.
+QUERY_SECONDS = 1.0
 # The report was lost if this many queries in a row find the arm at rest.
 STILL_TIMES = 3
-# The number of these queries: for five minutes, as the library waits.
+# The most of these queries: they last five minutes, as long as the library waits.
 MOST_TIMES = 300
 # The library waits this long after the motors got power.
 POWER_SECONDS = 1.0
@@ -55,9 +55,9 @@ class ClosedLoop(CompatibleClient):
         """Send a motion once, wait for its end, and return the status with which it ended."""
         if quiet or not self._waits:
             self._others = True
-            return self._order(call, *arguments, quiet=quiet)
+            return self._send_acked(call, *arguments, quiet=quiet)
         command = self.arm.table.in_role("motion ended")
-        with self.arm.events(command.reply_type, timeout=ASK_SECONDS) as ends:
+        with self.arm.events(command.reply_type, timeout=QUERY_SECONDS) as ends:
             try:
                 # The acceptance may be lost; only the report of the end counts.
                 with suppress(ReplyTimeout):
@@ -78,20 +78,20 @@ class ClosedLoop(CompatibleClient):
             ReplyTimeout: the arm stands still without having reported the end, or moves for longer
                 than five minutes.
         """
-        still, asked = 0, 0
-        while still < STILL_TIMES and asked < MOST_TIMES:
+        still, queries = 0, 0
+        while still < STILL_TIMES and queries < MOST_TIMES:
             for end in ends:
                 # The end of an earlier motion looks the same.
                 if self._others and self.arm.is_moving():
                     continue
                 self._others = False
                 return end
-            asked += 1
+            queries += 1
             with suppress(ReplyTimeout):
                 still = 0 if self.arm.is_moving() else still + 1
         reports = "is_moving() is False" if still else "is_moving() is True"
         request = f"{name}() at the end of its motion"
-        raise ReplyTimeout(name, asked * ASK_SECONDS, (reports,), 1, request)
+        raise ReplyTimeout(name, queries * QUERY_SECONDS, (reports,), 1, request)
 
     def _not_ready(self, name: str, why: str) -> int:
         try:
@@ -102,8 +102,8 @@ class ClosedLoop(CompatibleClient):
     def get_coords(self, angles: Sequence[float] | None = None) -> Any:
         """Read the coordinates, or calculate those of joint angles."""
         if angles is None:
-            return self._ask(plain, self.arm.get_coords)
-        return self._ask(plain, self.arm.angles_to_coords, angles)
+            return self._query(plain, self.arm.get_coords)
+        return self._query(plain, self.arm.angles_to_coords, angles)
 
     @naming(target="data")
     def is_in_position(self, data: Sequence[float], mode: int = 0) -> Any:
@@ -111,26 +111,26 @@ class ClosedLoop(CompatibleClient):
         if mode not in (0, 1):
             raise UsageError("mode", mode, "0 (angles) or 1 (coordinates)")
         query = self.arm.is_in_position_coords if mode else self.arm.is_in_position
-        return self._ask(plain, query, data)
+        return self._query(plain, query, data)
 
     def power_on(self, mode: int = 1) -> Any:
         """Power the arm, and wait a second for its motors."""
-        result = self._ask(plain, self.arm.power_on, mode)
+        result = self._query(plain, self.arm.power_on, mode)
         self.arm.listen(POWER_SECONDS)
         return result
 
     def set_servos_calibration(self) -> None:
         """Make the present positions of all joints their zeros."""
         for joint in range(1, self.arm.table.joints + 1):
-            self._order(self.arm.set_servo_calibration, joint)
+            self._send_acked(self.arm.set_servo_calibration, joint)
 
 
 class Reporting(ClosedLoop):
-    """A robot whose reports of the end of motions can be switched off."""
+    """A robot that can switch off its reports of the end of motions."""
 
     def get_limit_switch(self) -> Any:
-        """Read which checks are on: of positions, and the reports of the end of motions."""
-        result = self._ask(plain, self.arm.get_limit_switch)
+        """Read whether checks of positions, and reports of the end of motions, are on."""
+        result = self._query(plain, self.arm.get_limit_switch)
         if isinstance(result, list):
             self._waits = self._waits and bool(result[1])
         return result
@@ -151,14 +151,14 @@ class Reporting(ClosedLoop):
         if not powered:
             why = f"the arm has {no_power(powered)}; call power_on()"
             return self._not_ready("set_limit_switch", why)
-        result = self._order(self.arm.set_limit_switch, limit_mode, state)
+        result = self._send_acked(self.arm.set_limit_switch, limit_mode, state)
         if limit_mode == REPORTS_ENDS:
             self._waits = bool(state)
         return result
 
     def power_on(self, mode: int = 1) -> Any:
         """Power the arm, and wait a second for its motors."""
-        result = self._ask(plain, self.arm.power_on, mode)
+        result = self._query(plain, self.arm.power_on, mode)
         if result == DONE:
             # The arm has power, even if this query fails.
             with suppress(ProtocolError, ReplyTimeout):
@@ -170,7 +170,7 @@ class Reporting(ClosedLoop):
     def get_pro_gripper(self, gripper_address: int, gripper_id: int = 14) -> Any:
         """Read a register of a tool; the version of its firmware (1) in tenths."""
         gives = tenths if gripper_address == VERSION_REGISTER else plain
-        return self._ask(gives, self.arm.get_pro_gripper, gripper_address, gripper_id)
+        return self._query(gives, self.arm.get_pro_gripper, gripper_address, gripper_id)
 
     def drag_teach_execute(self) -> Any:
         """Move along the recorded points, once.
@@ -225,4 +225,4 @@ class Reporting(ClosedLoop):
         check_range("pinch_pose", pinch_pose, 0, 4)
         check_range("rank_mode", rank_mode, 0, 5)
         value = pinch_pose << 8 | rank_mode
-        return self._order(self.arm.set_pro_gripper, PINCH_REGISTER, value, gripper_id)
+        return self._send_acked(self.arm.set_pro_gripper, PINCH_REGISTER, value, gripper_id)

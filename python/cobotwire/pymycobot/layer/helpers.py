@@ -47,12 +47,12 @@ class Waiting(CompatibleClient):
 
 
 class WaitingWithMode(Waiting):
-    """Waits for the end of a motion of the end, along a path that can be chosen."""
+    """Waits for the end of a motion to coordinates; the caller may choose the path."""
 
     def sync_send_coords(
         self, coords: Sequence[float], speed: int, mode: int = 0, timeout: float = 15
     ) -> int:
-        """Move the end to coordinates, and wait until it is there: ``move_coords``.
+        """Move the end of the arm to coordinates, and wait until it is there: ``move_coords``.
 
         Raises:
             MotionTimeout: as ``sync_send_angles``.
@@ -81,10 +81,10 @@ class WaitingLonger(WaitingForResult):
 
 
 class WaitingWithoutMode(Waiting):
-    """Waits for the end of a motion of the end."""
+    """Waits for the end of a motion to coordinates."""
 
     def sync_send_coords(self, coords: Sequence[float], speed: int, timeout: float = 15) -> int:
-        """Move the end to coordinates, and wait until it is there: ``move_coords``.
+        """Move the end of the arm to coordinates, and wait until it is there: ``move_coords``.
 
         Raises:
             MotionTimeout: as ``sync_send_angles``.
@@ -111,7 +111,7 @@ class WaitingInChain(Waiting):
     def sync_send_coords(
         self, coords: Sequence[float], speed: int, mode: int | None, timeout: float = 15
     ) -> Self:
-        """Move the end to coordinates, and wait until it is there: ``move_coords``.
+        """Move the end of the arm to coordinates, and wait until it is there: ``move_coords``.
 
         Raises:
             UsageError: there is a mode, which the edition cannot send.
@@ -128,7 +128,7 @@ class Homing(CompatibleClient):
     def go_home(self) -> Any:
         """Send all joints to 0 degrees, at a tenth of the fastest speed."""
         joints = self.arm.table.joints
-        return self._order(self.arm.send_angles, [0] * joints, HOME_SPEED)
+        return self._send_acked(self.arm.send_angles, [0] * joints, HOME_SPEED)
 
 
 class HomingQuietly(Homing):
@@ -137,7 +137,7 @@ class HomingQuietly(Homing):
     def go_home(self, _async: bool = False) -> Any:
         """Send all joints to 0 degrees, at a tenth of the fastest speed."""
         joints = self.arm.table.joints
-        return self._order(self.arm.send_angles, [0] * joints, HOME_SPEED, quiet=_async)
+        return self._send_acked(self.arm.send_angles, [0] * joints, HOME_SPEED, quiet=_async)
 
 
 class HomingWithoutResult(CompatibleClient):
@@ -161,7 +161,7 @@ class TorqueGripper(CompatibleClient):
 
     def is_torque_gripper(self) -> Any:
         """Read the kind of the gripper: 40 with force control, 9 without."""
-        return self._ask(int, self.arm.get_servo_data, 7, 1)
+        return self._query(int, self.arm.get_servo_data, 7, 1)
 
 
 class StoppingGripper(TorqueGripper):
@@ -169,7 +169,7 @@ class StoppingGripper(TorqueGripper):
 
     def gripper_stop(self) -> Any:
         """Stop the gripper."""
-        return self._order(self.arm.set_gripper_value, 0, 0, 1, 1)
+        return self._send_acked(self.arm.set_gripper_value, 0, 0, 1, 1)
 
 
 class TwoPositions(CompatibleClient):
@@ -179,7 +179,7 @@ class TwoPositions(CompatibleClient):
     def is_in_position(self, data: Sequence[float], id: int = 0) -> Any:
         """Check whether joint angles are reached, or coordinates if ``id`` is 1."""
         query = self.arm.is_in_position_coords if id == 1 else self.arm.is_in_position
-        return self._ask(int, query, data)
+        return self._query(int, query, data)
 
 
 class Pins:

@@ -47,8 +47,8 @@ def _class(row: Row) -> type:
     }
     if "elsewhere" in row:
         body |= {"ELSEWHERE": _client(row["elsewhere"]), "PORTS": row["ports"]}
-    if "orders" in row:
-        body["ORDERS"] = row["orders"]
+    if "one_way" in row:
+        body["ONE_WAY"] = row["one_way"]
     functions = [_constructor(row), *map(_method, methods(row))]
     for function in functions:
         function.__module__ = body["__module__"]

@@ -17,7 +17,7 @@ BASE_COORDS = 2
 
 
 class ByPort(Reporting):
-    """An arm of a two-armed robot if the port has the name of one; otherwise a single arm.
+    """An arm of a two-armed robot if its port is one of ``PORTS``; otherwise a single arm.
 
     Only an arm on a body has coordinates from the waist, and the joints 11 to 13.
     """
@@ -56,5 +56,5 @@ class ByPort(Reporting):
     def is_in_position(self, data: Sequence[float], mode: int = 0) -> Any:
         """Check whether angles (0), coordinates (1) or those from the waist (2) are reached."""
         if mode == BASE_COORDS:
-            return self._ask(plain, self._only_here("is_in_position_base_coords"), data)
+            return self._query(plain, self._only_here("is_in_position_base_coords"), data)
         return super().is_in_position(data, mode)

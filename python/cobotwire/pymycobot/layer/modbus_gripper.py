@@ -68,7 +68,7 @@ class ModbusGripper(CompatibleClient):
         )
         # In a frame of the gripper's own kind the check covers the head; its high byte comes first.
         check = check_of(head + data).to_bytes(2, "big" if head else "little")
-        reply: Any = self._ask(bytes, self.arm.tool_serial_write_data, head + data + check)
+        reply: Any = self._query(bytes, self.arm.tool_serial_write_data, head + data + check)
         if isinstance(reply, int):
             return reply
         size = len(head)

@@ -159,7 +159,7 @@ class MethodsOfPro450(ClosedLoop, Gripper450):
             self._waits = bool(state)
 
     def _move(self, call: Callable[..., None], *arguments: Any, quiet: bool = False) -> Any:
-        """Move as other robots; jog only if targets are queued, as the library does.
+        """Move as other robots do, but jog only if the arm queues targets, as the library does.
 
         Raises:
             UsageError: an argument is not allowed; nothing was sent, not even the query.
@@ -177,7 +177,7 @@ class MethodsOfPro450(ClosedLoop, Gripper450):
 
     def power_on(self, mode: int = 1) -> Any:
         """Power the arm."""
-        return self._ask(plain, self.arm.power_on, mode)
+        return self._query(plain, self.arm.power_on, mode)
 
     def go_home(self, speed: int = HOME_SPEED, _async: bool = False) -> Any:
         """Send all joints to 0 degrees."""
@@ -185,7 +185,7 @@ class MethodsOfPro450(ClosedLoop, Gripper450):
 
     def fourier_trajectories(self, trajectory: int, _async: bool = False) -> Any:
         """Move along a trajectory for identification, and wait until the arm stands still."""
-        result = self._order(self.arm.fourier_trajectories, trajectory, quiet=_async)
+        result = self._send_acked(self.arm.fourier_trajectories, trajectory, quiet=_async)
         still = 0
         while not _async and result == 1 and still < STILL_TIMES:
             still = 0 if self.arm.is_moving() else still + 1
@@ -197,11 +197,11 @@ class MethodsOfPro450(ClosedLoop, Gripper450):
         """Send a message on the CAN bus of the base; return its reply: 2, the id, the bytes."""
         check_range("can_id", can_id, 1, 65535)
         data = [*can_id.to_bytes(4, "big"), *can_data]
-        return self._ask(_external, self.arm.base_external_control, data)
+        return self._query(_external, self.arm.base_external_control, data)
 
     def base_external_485_control(self, data: Sequence[int]) -> Any:
         """Send bytes on the RS485 bus of the base; return its reply: 1, and the bytes."""
-        return self._ask(_external, self.arm.base_external_control, data)
+        return self._query(_external, self.arm.base_external_control, data)
 
     def set_pro_gripper_init(self, gripper_id: int = GRIPPER) -> bool:
         """Find the gripper at two speeds of the bus, and switch it to Modbus at 115200 baud.
@@ -210,18 +210,18 @@ class MethodsOfPro450(ClosedLoop, Gripper450):
             Whether the gripper was found.
         """
         check_range("gripper_id", gripper_id, 1, 254)
-        self._order(self.arm.set_tool_serial_timeout, SEARCH_TIMEOUT)
+        self._send_acked(self.arm.set_tool_serial_timeout, SEARCH_TIMEOUT)
         found = self._is_there(gripper_id)
         if found:
             self.set_pro_gripper_modbus(1, gripper_id=gripper_id)
         speeds = iter(SEARCHED_SPEEDS)
         while not found and (speed := next(speeds, None)) is not None:
-            self._order(self.arm.set_tool_serial_baud_rate, speed)
+            self._send_acked(self.arm.set_tool_serial_baud_rate, speed)
             found = self._is_there(gripper_id) or self._switches_to_modbus(gripper_id)
         if found:
             self.set_pro_gripper_baud(0, gripper_id)
-            self._order(self.arm.set_tool_serial_baud_rate, SEARCHED_SPEEDS[0])
-            self._order(self.arm.set_tool_serial_timeout, USUAL_TIMEOUT)
+            self._send_acked(self.arm.set_tool_serial_baud_rate, SEARCHED_SPEEDS[0])
+            self._send_acked(self.arm.set_tool_serial_timeout, USUAL_TIMEOUT)
         return found
 
     def _is_there(self, gripper_id: int) -> bool:
@@ -239,7 +239,7 @@ class MethodsOfPro450(ClosedLoop, Gripper450):
 
     def get_force_sensor_data(self) -> Any:
         """Read the force sensor at the end: six numbers."""
-        return self._ask(_six_numbers, self.arm.tool_serial_write_data, FORCE_SENSOR)
+        return self._query(_six_numbers, self.arm.tool_serial_write_data, FORCE_SENSOR)
 
 
 def _six_numbers(reply: bytes) -> list[float]:

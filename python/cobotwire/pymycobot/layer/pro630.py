@@ -46,7 +46,7 @@ class PinsOfPro630(MethodsOfPro630):
 
     def power_off(self) -> Any:
         """Take the power from the arm, and switch it off."""
-        result = self._order(self.arm.power_off)
+        result = self._send_acked(self.arm.power_off)
         gpio = self._gpio()
         gpio.output(self.power_control_2, gpio.LOW)
         return result

@@ -1,4 +1,4 @@
-"""Rejects numbers that the maker's library does not allow, where the edition does not know why."""
+"""Rejects numbers that the edition allows and the maker's library does not."""
 
 from __future__ import annotations
 

@@ -60,8 +60,8 @@ class Registers(CompatibleClient):
             message += f"; call {OF_A_JOINT[address]}(joint_id, gripper_id)"
             raise UsageError("address", address, message=message)
         if address in READ:
-            return self._ask(plain, getattr(self.arm, READ[address]), gripper_id)
-        return self._ask(plain, self.arm.get_pro_gripper, address, gripper_id)
+            return self._query(plain, getattr(self.arm, READ[address]), gripper_id)
+        return self._query(plain, self.arm.get_pro_gripper, address, gripper_id)
 
     @naming(number="value", enabled="value", torque="value", speed="value")
     def set_pro_gripper(self, address: int, value: int, gripper_id: int = 14) -> Any:
@@ -73,7 +73,7 @@ class Registers(CompatibleClient):
         if address in SWITCHED:
             if value != 0:
                 raise UsageError("value", value, "0")
-            return self._order(getattr(self.arm, SWITCHED[address]), gripper_id)
+            return self._send_acked(getattr(self.arm, SWITCHED[address]), gripper_id)
         if address in WRITTEN:
-            return self._order(getattr(self.arm, WRITTEN[address]), value, gripper_id)
-        return self._order(self.arm.set_pro_gripper, address, value, gripper_id)
+            return self._send_acked(getattr(self.arm, WRITTEN[address]), value, gripper_id)
+        return self._send_acked(self.arm.set_pro_gripper, address, value, gripper_id)

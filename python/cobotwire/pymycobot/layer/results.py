@@ -38,7 +38,7 @@ def nothing(value: Any) -> None:
 
 
 def joined(value: Any) -> Any:
-    """Return the parts of all named tuples in one list."""
+    """Return the numbers of all named tuples in one list."""
     return [item for part in plain(value) for item in part]
 
 
@@ -48,12 +48,12 @@ def radians(value: Any) -> Any:
 
 
 def bit_numbers(value: Any) -> Any:
-    """Return for each number the numbers of the bits that are set, lowest first, or 0."""
+    """Return, for each number, the list of its set bits, the lowest first; 0 if none is set."""
     return [[bit for bit in range(16) if word >> bit & 1] or 0 for word in plain(value)]
 
 
 def error_classes(value: Any) -> Any:
-    """Return for each of seven bytes the bits of its class; six bytes as three signed words."""
+    """Return the set bits of the class of each of seven bytes; six bytes as three signed words."""
     if len(value) == 7:
         return bit_numbers([_error_class(byte) for byte in value])
     data = bytes(value)
@@ -65,7 +65,7 @@ def _error_class(byte: int) -> int:
 
 
 def points(value: Any) -> Any:
-    """Return every second number in one list and the others in another; -1 if all are 0."""
+    """Return two lists: the numbers at even and at odd indices; -1 if all are 0."""
     numbers = plain(value)
     return [numbers[::2], numbers[1::2]] if any(numbers) else -1
 
@@ -92,24 +92,24 @@ def tenths(value: Any) -> Any:
 
 
 def pairs(value: Any) -> Any:
-    """Return each two numbers in a list of their own."""
+    """Return a list of pairs: two numbers in each."""
     numbers = plain(value)
     return [numbers[at : at + 2] for at in range(0, len(numbers), 2)]
 
 
 def calibrated(value: Any) -> Any:
-    """Return 1 if the first part is true, else the second part."""
+    """Return 1 if all joints are calibrated, else a number for each joint."""
     every, joints = plain(value)
     return 1 if every else joints
 
 
 def bits_from_the_highest(value: Any) -> Any:
-    """Return for each number the numbers of the bits that are set, highest first, or 0."""
+    """Return, for each number, the list of its set bits, the highest first; 0 if none is set."""
     return [bits and bits[::-1] for bits in bit_numbers(value)]
 
 
 def robot_status(value: Any) -> Any:
-    """Return all parts in one list; the last two with the bits that are set, highest first."""
+    """Return all numbers in one list; the error words as lists of set bits, the highest first."""
     *flags, limits, motors, software = plain(value)
     return [*flags, *limits, *bits_from_the_highest([*motors, *software])]
 
@@ -142,20 +142,20 @@ def hex_text(value: Any) -> Any:
 
 
 def calibrated_joints(value: Any) -> Any:
-    """Return 1 if everything is calibrated, else all parts in one list."""
+    """Return 1 if everything is calibrated, else all numbers in one list."""
     every, joints = plain(value)
     flags = [every, *joints]
     return 1 if all(flags) else flags
 
 
 def robot_status_of_450(value: Any) -> Any:
-    """Return all parts in one list; the last two with the bits that are set, lowest first."""
+    """Return all numbers in one list; the error words as lists of set bits, the lowest first."""
     *flags, limits, motors, software = plain(value)
     return [*flags, *limits, *bit_numbers((*motors, *software))]
 
 
 def flat(value: Any) -> Any:
-    """Return all parts in one list."""
+    """Return all numbers in one list."""
     parts = plain(value)
     return [each for part in parts for each in (part if isinstance(part, list) else [part])]
 

@@ -11,8 +11,8 @@ from cobotwire.pymycobot.migrate.calls import Call, LibraryClass
 
 QUIET = "_async"
 HIDDEN = "the arguments are not known here; compare them by hand"
-DROPPED = "our {} has no argument for {}; remove it, or send what it asks for by another call"
-IN_TURN = "our arguments would be computed in another order; assign their calls to names before"
+DROPPED = "our {} has no argument for {}; remove it, or do what it does by another call"
+IN_TURN = "the calls inside would run in another order; assign their results to names first"
 
 
 def given(

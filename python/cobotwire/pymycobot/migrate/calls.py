@@ -1,4 +1,4 @@
-"""How the calls of the maker's library are written for our clients, as the generator states it."""
+"""Says how each call of the maker's library is written for our clients."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ class Call:
         arguments: our arguments in their order: the library's parameter, and our default.
         result: how the library gives the result.
         gives: how to convert our result to the library's: ``same``, ``int``, ``list``,
-            ``ints``; ``nothing`` if only the library has one, ``parts`` if no function does.
+            ``ints``; ``nothing`` if we have no result; ``parts`` if a person must convert it.
         keywords: our arguments that have no position.
         address: the library's parameter that selects the device; empty if there is none.
         by_hand: whether a helper of the layer has the method, not the generated class.
@@ -105,7 +105,7 @@ class LibraryClass:
 
     @property
     def usual(self) -> int:
-        """The number that a rewritten constructor uses if it is left out: of a port, or a speed."""
+        """The TCP port or the baud rate of a constructor that leaves it out."""
         table: Table = getattr(self.client, "table")  # noqa: B009 - the class is not known here
         return TCP_PORT if self.opens == "socket" else table.baudrate
 
@@ -191,7 +191,7 @@ def library() -> dict[str, LibraryClass]:
 
 @lru_cache
 def counterparts() -> dict[str, str]:
-    """Return by class of ours the library's class whose rules apply to calls of ours."""
+    """Return, for each class of ours, the library's class with the rules for its calls."""
     return {kind.native: name for name, kind in library().items()} | {
         name: name for name, kind in library().items() if kind.native == name
     }

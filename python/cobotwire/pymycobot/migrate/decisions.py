@@ -11,7 +11,7 @@ from cobotwire.pymycobot.migrate.calls import Call, LibraryClass
 
 
 class Decision(NamedTuple):
-    """A place of the program as it was, and what to decide there."""
+    """A position in the original program, and what to decide there."""
 
     line: int
     column: int
@@ -37,7 +37,7 @@ NO_COUNTERPART = {
     ),
     "open": "our clients open the port when they are created; create a new one",
 }
-_BITS = "our result has the error words as they come, not lists of bit numbers"
+_BITS = "our result has the error words as numbers, not lists of their set bits"
 _UNITS = "our result is in the units of the reply, not in steps"
 _FORM = "our result has the parts of the reply, not one list of them"
 _BYTES = "our result has bytes, not a list of numbers"
@@ -54,13 +54,13 @@ RESULTS = {
     "tenths": "our result is ten times the library's",
     "hex_text": "our result is a number, not a text of hex digits",
     "signed": "our result has no sign",
-    "solved": "our result is a row of angles where the library's is a text: there is no solution",
-    "one_speed": "if this speed is a row with a number for each servo, call our argument speeds",
+    "solved": "if there is no solution, the library returns a text, and ours a tuple of angles",
+    "one_speed": "if this is a list with a speed for each servo, pass it as our argument speeds",
     "listed": "our result is a number where the library's is a list of one",
     "joined": "our result has one named tuple for each part, not one list of all numbers",
     "radians": "our result is not rounded to thousandths",
     "servo_register": "our result is 255 where the library's is -1: the read failed",
-    "error_classes": "our result has the bytes as they come",
+    "error_classes": "our result has the bytes unchanged",
     "points": "our result has the numbers in one tuple; it is never -1",
     "words_of_text": "our result has both texts whole, not their first and last words",
 }
@@ -85,7 +85,7 @@ MIXED = (
     "{0} is not always an arm of one class, so the call is left as it is; give each arm a name of "
     "its own"
 )
-NOT_STATEMENT = "this import shares its line; write it in a line of its own, and run this again"
+NOT_STATEMENT = "this import shares its line; write it on a line of its own, and run this again"
 BY_TEXT = "{0} runs code that is not read here; if that uses the library, rewrite it by hand"
 UTILITY = "cobotwire.pymycobot.utils has no {0}"
 HOME = "go_home waits, and its pose and speed depend on its arguments; use move_angles"
@@ -99,14 +99,14 @@ PARAMETER = (
     "{name} may be an arm, whose class is not known here, so its calls are left as they are; write "
     "`def {function}({name}: {kind})`, and run this again"
 )
-EITHER = "this may be the library's call or ours, which have their arguments in another order"
+EITHER = "this may be the library's call or ours; the order of their arguments differs"
 # Methods of the layer that no single call of our client replaces.
 BY_HAND = {
     "power_on": "it waits for the motors; call power_on(), and then time.sleep(1)",
-    "get_coords": "for coordinates now call get_coords(), for those of angles angles_to_coords()",
+    "get_coords": "call get_coords() without angles, and angles_to_coords() with them",
     "set_servos_calibration": "call set_servo_calibration for each joint",
-    "set_limit_switch": "it asks is_power_on() before, and decides whether later motions wait",
-    "drag_teach_execute": "it asks is_drag_fifo_empty() before, and waits for the end",
+    "set_limit_switch": "it calls is_power_on() first, and decides whether later motions wait",
+    "drag_teach_execute": "it calls is_drag_fifo_empty() first, and waits until the motion ends",
 }
 
 

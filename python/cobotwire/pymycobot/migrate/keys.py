@@ -27,7 +27,7 @@ class Keys:
         parents: the parent of each node.
         positions: where each node is.
         loads: where the program reads each variable that is a plain name.
-        stored: the plain names that the program gives to anything.
+        stored: the plain names to which the program assigns.
     """
 
     def __init__(self, wrapper: MetadataWrapper) -> None:

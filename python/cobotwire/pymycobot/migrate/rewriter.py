@@ -88,14 +88,14 @@ class Rewriter(cst.CSTTransformer):
         arms = [library()[each] for each in self.names.arms(arm)]
         if not arms:
             if self.uses.may_be_arm(arm, method):
-                self._ask_class(original_node, arm)
+                self._note_unknown(original_node, arm)
             return updated_node
         if not self.names.is_only(arm, Arm) or not are_alike(arms, method):
             self.decide(original_node, MIXED.format(code(arm)))
             return updated_node
         return self._of_arm(original_node, updated_node, arms[0], method)
 
-    def _ask_class(self, call: cst.Call, arm: cst.BaseExpression) -> None:
+    def _note_unknown(self, call: cst.Call, arm: cst.BaseExpression) -> None:
         """List an arm of unknown class as undecided; a parameter once for all its calls."""
         for found in self.names.keys.assigned(arm) if isinstance(arm, cst.Name) else ():
             function = self.names.keys.function_of(found)
@@ -155,7 +155,7 @@ class Rewriter(cst.CSTTransformer):
         return self._with_result(original, made, call)
 
     def _with_result(self, original: cst.Call, made: cst.Call, call: Call) -> cst.BaseExpression:
-        """Return a call with the library's result, as far as the program uses it."""
+        """Return a call, converted to the library's result where the program needs that."""
         uses = self.uses.of(original)
         if call.gives == "same" or not uses:
             return made

@@ -79,7 +79,7 @@ class Uses:
         if isinstance(node, cst.Comparison):
             sides = [node.left, *(each.comparator for each in node.comparisons)]
             forms = {form for side in sides for form in self._forms(side)}
-            found = bool(forms) and (any(map(_may_be_failure, sides)) or _asks_sign(node))
+            found = bool(forms) and (any(map(_may_be_failure, sides)) or _tests_sign(node))
             return found or any(map(self._is_length, sides))
         if isinstance(node, cst.Call) and isinstance(node.func, cst.Name):
             given = node.args[:1] if node.func.value in _KINDS else ()
@@ -191,7 +191,7 @@ def _may_be_failure(node: cst.CSTNode) -> bool:
     return cst.Module([]).code_for_node(node) in _FAILURES
 
 
-def _asks_sign(node: cst.Comparison) -> bool:
+def _tests_sign(node: cst.Comparison) -> bool:
     """Return whether a comparison distinguishes negative numbers from others."""
     for each in node.comparisons:
         is_zero = isinstance(each.comparator, cst.Integer) and each.comparator.value == "0"

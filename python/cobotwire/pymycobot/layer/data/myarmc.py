@@ -3,5 +3,5 @@
 
 CLASS = {'name': 'MyArmC', 'module': 'myarmc', 'doc': 'A myArm C650 on a serial port.', 'edition': 'myarm_c650', 'opens': 'serial', 'constructor': (('port', 'str'), ('baudrate', 'str | int', 1000000), ('timeout', 'float', 0.1), ('debug', 'bool', False)), 'native': 'MyArmC650', 'joints': 7, 'methods_in': ('myarmm', 'myarmc')}
 METHODS = (
-    (('MyArmC',), 'is_tool_btn_clicked', 'Check whether a button is pressed', 'ask', (('mode', 'int', 1),), (('button', 'mode', '1'),), (('gives', 'parts'),)),
+    (('MyArmC',), 'is_tool_btn_clicked', 'Check whether a button is pressed', 'query', (('mode', 'int', 1),), (('button', 'mode', '1'),), (('gives', 'parts'),)),
 )

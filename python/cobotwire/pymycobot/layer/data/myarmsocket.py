@@ -3,6 +3,6 @@
 
 CLASS = {'name': 'MyArmSocket', 'module': 'myarmsocket', 'doc': 'A myArm 300 behind a TCP server.', 'edition': 'myarm300', 'opens': 'socket', 'constructor': (('ip', 'str'), ('netport', 'int', 9000), ('debug', 'bool', False)), 'like': 'MyArm', 'native': 'MyArm300', 'joints': 7, 'methods_in': ('myarmsocket',)}
 METHODS = (
-    (('MyArmSocket',), 'send_angle', 'Send one joint to an angle', 'order', (('id', 'int'), ('degree', 'float'), ('speed', 'int'), ('_async', 'bool', False)), (('joint', 'id'), ('angle', 'degree'), ('speed', 'speed')), (('result', 'listed'),)),
-    (('MyArmSocket',), 'send_angles', 'Send all joints to angles', 'order', (('angles', 'Sequence[float]'), ('speed', 'int'), ('_async', 'bool', False)), (('angles', 'angles'), ('speed', 'speed')), (('result', 'listed'),)),
+    (('MyArmSocket',), 'send_angle', 'Send one joint to an angle', 'send_acked', (('id', 'int'), ('degree', 'float'), ('speed', 'int'), ('_async', 'bool', False)), (('joint', 'id'), ('angle', 'degree'), ('speed', 'speed')), (('result', 'listed'),)),
+    (('MyArmSocket',), 'send_angles', 'Send all joints to angles', 'send_acked', (('angles', 'Sequence[float]'), ('speed', 'int'), ('_async', 'bool', False)), (('angles', 'angles'), ('speed', 'speed')), (('result', 'listed'),)),
 )

@@ -3,7 +3,7 @@
 
 CLASS = {'name': 'Pro630Client', 'module': 'pro630client', 'doc': 'A myCobot Pro 630 behind a TCP server.', 'edition': 'pro630', 'opens': 'socket', 'constructor': (('host', 'str'), ('port', 'int', 9000), ('timeout', 'float', 0.1), ('debug', 'bool', False)), 'helpers': (('pro630', 'MethodsOfPro630'),), 'native': 'Pro630', 'joints': 6, 'methods_in': ('mycobot280', 'mycobot320', 'mercury', 'pro400', 'pro630client')}
 METHODS = (
-    (('Pro630Client',), 'get_basic_input', 'Read an input of the base', 'ask', (('pin_no', 'int'),), (('pin', 'pin_no'),), (('calls', 'get_base_io_input'), ('gives', 'int'))),
-    (('Pro630Client',), 'send_angles_sync', 'Send all joints to angles', 'order', (('angles', 'Sequence[float]'), ('speed', 'int')), (('angles', 'angles'), ('speed', 'speed')), (('calls', 'send_angles'),)),
-    (('Pro630Client',), 'set_basic_output', 'Set an output of the base', 'order', (('pin_no', 'int'), ('pin_signal', 'int')), (('pin', 'pin_no'), ('high', 'pin_signal')), (('calls', 'set_base_io_output'),)),
+    (('Pro630Client',), 'get_basic_input', 'Read an input of the base', 'query', (('pin_no', 'int'),), (('pin', 'pin_no'),), (('calls', 'get_base_io_input'), ('gives', 'int'))),
+    (('Pro630Client',), 'send_angles_sync', 'Send all joints to angles', 'send_acked', (('angles', 'Sequence[float]'), ('speed', 'int')), (('angles', 'angles'), ('speed', 'speed')), (('calls', 'send_angles'),)),
+    (('Pro630Client',), 'set_basic_output', 'Set an output of the base', 'send_acked', (('pin_no', 'int'), ('pin_signal', 'int')), (('pin', 'pin_no'), ('high', 'pin_signal')), (('calls', 'set_base_io_output'),)),
 )
