@@ -248,7 +248,7 @@ def test_waist_has_one_joint() -> None:
     robot = SimulatedArm(mybuddy.TABLE, clock=clock, powered=True)
     with MyBuddy(MemoryTransport(robot, clock)) as arm:
         assert robot.state_at("waist").joints == 1
-        with pytest.raises(UsageError, match="rows of 6 values, and WAIST has 1 joint"):
+        with pytest.raises(UsageError, match="a value for each of 6 joints, and WAIST has 1 joint"):
             arm.waist.get_angles()
         arm.waist.send_angle(2, 30, 50)
         with pytest.raises(ReplyTimeout):

@@ -145,7 +145,7 @@ def test_error_says_what_the_call_waited_for() -> None:
         "nothing",
         "get_angles() was not sent: its deadline passed after 0.100 s while it waited for its turn",
         "get_encoder(joint=2) was not sent: its deadline passed after 0.500 s while a late reply "
-        "to an earlier request could still come, and pass for its own",
+        "to an earlier request could be mistaken for its own",
         "no reply to is_power_on() within its deadline, 0.100 s after 1 attempt; received "
         "meanwhile: nothing",
         "get_angles() was not sent: its deadline passed after 0.100 s while the line took no bytes",

@@ -17,7 +17,7 @@ from cobotwire.simulator.memory import MemoryTransport
 from cobotwire_codegen.render.robot_page import robot_pages
 
 TABLE = editions.load("mycobot280").TABLE
-STOP = "stop is replied to since firmware 7.0, and the arm has reported 6.5"
+STOP = "stop gets a reply since firmware 7.0, and the arm has reported 6.5"
 
 
 def test_blocking_call_without_a_reply_names_the_firmware_once_the_version_is_known() -> None:
@@ -51,7 +51,7 @@ def test_asyncio_call_without_a_reply_names_the_firmware() -> None:
     [
         ("backup_servo_params", 7.3, "backup_servo_params needs firmware 7.4, and the arm has"),
         ("backup_servo_params", 7.4, ""),
-        ("jog_stop", 7.0, "jog_stop is gone since firmware 7.0, and the arm has reported 7.0"),
+        ("jog_stop", 7.0, "jog_stop was removed in firmware 7.0, and the arm has reported 7.0"),
         ("jog_stop", 6.9, ""),
         ("stop", 7.0, ""),
         ("stop", None, ""),

@@ -178,7 +178,7 @@ def test_limits_of_the_client_hold_for_every_setpoint() -> None:
     with MyCobot280(clock.transport, limits=limits, trace=traffic.append) as arm:
         with pytest.raises(UsageError, match=r"speed is 50; allowed: .* 1..20 percent"):
             arm.follow(PATH)
-        with pytest.raises(UsageError, match=r"path\[0\]: .* would move the end to z 82"):
+        with pytest.raises(UsageError, match=r"path\[0\]: .* the end of the arm to z 82"):
             arm.follow([[0, -90, 0, 0, 0, 0]], speed=20)
         assert not [frame for frame in frames(traffic) if frame[3] == 0x22]
         arm.follow(PATH[:1], speed=20, limits=PathLimits(velocity=15))

@@ -74,7 +74,7 @@ def test_wider_limits_must_be_explicit_and_fit_the_wire(codec: codecs.CodecName)
     transport = RecordingTransport()
     MyCobot280(transport, codec=codec, limits=Limits(wide, wider=True)).send_angle(1, -200, 20)
     assert transport.written == bytes.fromhex("FE FE 06 21 01 B1 E0 14 FA")
-    with pytest.raises(UsageError, match=r"-327\.68\.\.327\.67 degrees, what the wire carries"):
+    with pytest.raises(UsageError, match=r"-327\.68\.\.327\.67 degrees, the limits of the wire"):
         MyCobot280(RecordingTransport(), limits=Limits([(-400, 0), *REST], wider=True))
 
 
@@ -101,7 +101,7 @@ def test_wrong_limit_is_named(ranges: Any, argument: str) -> None:
 
 def test_lasting_writes_are_refused_within_a_speed_and_allowed_without() -> None:
     within, without = RecordingTransport(), RecordingTransport()
-    with pytest.raises(UsageError, match="its effect stays"):
+    with pytest.raises(UsageError, match="its effect is permanent"):
         MyCobot280(within, limits=Limits(speed=30)).set_joint_max(1, 90)
     MyCobot280(without).set_joint_max(1, 90)
     assert within.written == b""
@@ -152,12 +152,15 @@ def test_speed_and_workspace_are_checked_before_a_byte_is_sent(way: str) -> None
             (lambda: arm.send_angles([0] * 6, 31), r"speed is 31; allowed: .* 1\.\.30 percent"),
             (lambda: arm.set_gripper_value(50, 31), r"speed is 31"),
             (lambda: arm.send_angles([0, -130, 0, 0, 0, 0], 30), r"allows z 50\.\.500 mm"),
-            (lambda: arm.send_radians([0, -2.27, 0, 0, 0, 0], 30), r"move the end to z -?\d+"),
+            (
+                lambda: arm.send_radians([0, -2.27, 0, 0, 0, 0], 30),
+                r"the end of the arm to z -?\d+",
+            ),
             (lambda: arm.move_angles([0, -130, 0, 0, 0, 0], 30), r"z 50\.\.500"),
             (lambda: arm.send_coord(3, 49.9, 30), r"coord is 49\.9; allowed: a number 50\.\."),
             (lambda: arm.send_coords([0, 0, 49, 0, 0, 0], 30, 0), r"coords\.z is 49; allowed: "),
             (lambda: arm.send_angle(1, 0, 30), r"send_angle\(\) is refused: limits\.workspace"),
-            (lambda: arm.jog_coord(1, 1, 30), r"where the end would go is not known"),
+            (lambda: arm.jog_coord(1, 1, 30), r"unknown where the end of the arm would go"),
             (lambda: arm.set_tool_reference([0] * 6), r"changes what coordinates mean"),
             (lambda: arm.move_round(), r"refused"),
         ]

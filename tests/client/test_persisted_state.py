@@ -17,7 +17,7 @@ from hypothesis import strategies as st
 from both_ways import InLoop
 from cobotwire import LinkError, MyCobot, ReplyTimeout
 from cobotwire.client import persisted_state, port_notes
-from cobotwire.client.persisted_state import PortMemory
+from cobotwire.client.persisted_state import PersistedSession
 from cobotwire.client.port_notes import LONGEST
 from cobotwire.editions.mycobot import AsyncMyCobot
 from cobotwire.editions.mycobot280 import MyCobot280
@@ -90,20 +90,20 @@ def test_late_reply_is_expected_on_a_link_after_its_device_was_renamed(
         assert time.monotonic() - started > 0.8
 
 
-def _memory(peer: ScriptedPeer) -> PortMemory:
+def _memory(peer: ScriptedPeer) -> PersistedSession:
     transport = open_transport(peer.url, 115200)
     transport.close()
-    return PortMemory(transport)
+    return PersistedSession(transport)
 
 
 @pytest.fixture
-def memory(monkeypatch: pytest.MonkeyPatch) -> Iterator[PortMemory]:
+def memory(monkeypatch: pytest.MonkeyPatch) -> Iterator[PersistedSession]:
     monkeypatch.setattr(persisted_state, "_here", {})
     with ScriptedPeer() as peer:
         yield _memory(peer)
 
 
-def test_note_is_read_once(memory: PortMemory, folder: Path) -> None:
+def test_note_is_read_once(memory: PersistedSession, folder: Path) -> None:
     until = time.monotonic() + 5
     note = PersistedState((LateFrame(GET_ENCODER, until),), (Part(MOTION, 8),))
     memory.leave(note)
@@ -114,7 +114,7 @@ def test_note_is_read_once(memory: PortMemory, folder: Path) -> None:
 
 
 @pytest.mark.parametrize("until", [-1.0, 1e9, float("nan"), float("inf")])
-def test_note_of_another_time_expects_no_reply(memory: PortMemory, until: float) -> None:
+def test_note_of_another_time_expects_no_reply(memory: PersistedSession, until: float) -> None:
     memory.leave(PersistedState((LateFrame(GET_ENCODER, time.monotonic() + until),)))
     persisted_state._here.clear()
     assert memory.recall().empty
@@ -122,7 +122,7 @@ def test_note_of_another_time_expects_no_reply(memory: PortMemory, until: float)
 
 @pytest.mark.parametrize("boot", ["another", "", 5])
 def test_note_of_another_boot_expects_no_reply(
-    memory: PortMemory, folder: Path, monkeypatch: pytest.MonkeyPatch, boot: object
+    memory: PersistedSession, folder: Path, monkeypatch: pytest.MonkeyPatch, boot: object
 ) -> None:
     this_boot = folder.parent / "boot_id"
     this_boot.write_text("this\n")
@@ -134,7 +134,7 @@ def test_note_of_another_boot_expects_no_reply(
 
 @pytest.mark.parametrize("passed", [0.0, 5.0, 20.0])
 def test_note_without_a_boot_id_expires_by_the_clock_that_has_advanced_further(
-    memory: PortMemory, folder: Path, monkeypatch: pytest.MonkeyPatch, passed: float
+    memory: PersistedSession, folder: Path, monkeypatch: pytest.MonkeyPatch, passed: float
 ) -> None:
     monkeypatch.setattr(port_notes, "BOOT_ID", "/nope")
     _damage(memory, folder, clocks=[time.monotonic(), time.time() - passed])
@@ -143,7 +143,7 @@ def test_note_without_a_boot_id_expires_by_the_clock_that_has_advanced_further(
 
 
 def test_clock_that_shows_less_than_the_note_is_of_another_boot(
-    memory: PortMemory, folder: Path, monkeypatch: pytest.MonkeyPatch
+    memory: PersistedSession, folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(port_notes, "BOOT_ID", "/nope")
     later = time.monotonic() + 1000
@@ -151,7 +151,7 @@ def test_clock_that_shows_less_than_the_note_is_of_another_boot(
     assert not memory.recall().late
 
 
-def _damage(memory: PortMemory, folder: Path, **values: object) -> None:
+def _damage(memory: PersistedSession, folder: Path, **values: object) -> None:
     """Leave a note, and replace these values in it."""
     until = time.monotonic() + 10
     memory.leave(PersistedState((LateFrame(GET_ENCODER, until),), (Part(MOTION, 8),)))
@@ -193,7 +193,7 @@ VALUES = {
 )
 @settings(suppress_health_check=[HealthCheck.function_scoped_fixture])
 def test_port_with_any_note_is_opened_and_no_request_is_held_longer_than_the_grace(
-    memory: PortMemory,
+    memory: PersistedSession,
     folder: Path,
     caplog: pytest.LogCaptureFixture,
     content: bytes | dict[str, Any],
@@ -220,7 +220,7 @@ def test_port_with_any_note_is_opened_and_no_request_is_held_longer_than_the_gra
 
 @pytest.mark.parametrize("kind", ["fifo", "link", "folder", "socket", "of another user"])
 def test_file_of_another_kind_at_the_path_of_a_note_is_not_read(
-    memory: PortMemory,
+    memory: PersistedSession,
     folder: Path,
     caplog: pytest.LogCaptureFixture,
     monkeypatch: pytest.MonkeyPatch,
@@ -252,7 +252,7 @@ def _of_another_user(found: os.stat_result) -> os.stat_result:
     return os.stat_result((*found[:4], found.st_uid + 1, *found[5:]))
 
 
-def test_folder_that_others_can_write_is_not_used(memory: PortMemory, folder: Path) -> None:
+def test_folder_that_others_can_write_is_not_used(memory: PersistedSession, folder: Path) -> None:
     folder.mkdir()
     folder.chmod(0o777)
     memory.leave(PersistedState((), (Part(MOTION, 8),)))
@@ -260,14 +260,14 @@ def test_folder_that_others_can_write_is_not_used(memory: PortMemory, folder: Pa
     assert memory.recall().parts, "this process remembers"
 
 
-def test_folder_is_in_the_temporary_folder(folder: Path, memory: PortMemory) -> None:
+def test_folder_is_in_the_temporary_folder(folder: Path, memory: PersistedSession) -> None:
     memory.leave(PersistedState((), (Part(MOTION, 8),)))
     assert folder.parent == Path(os.environ["TMPDIR"])
     assert folder.stat().st_mode & 0o777 == 0o700
 
 
 def test_link_that_is_no_folder_is_not_followed(
-    folder: Path, tmp_path: Path, memory: PortMemory
+    folder: Path, tmp_path: Path, memory: PersistedSession
 ) -> None:
     (tmp_path / "elsewhere").mkdir()
     folder.symlink_to(tmp_path / "elsewhere")

@@ -95,7 +95,7 @@ WRONG = [
     ("set_x", {"channel": 7, "heat": 1.5}, "missing its argument mode; it takes"),
     ("set_x", {"channel": 7, "share": 5, "mode": 1}, "mode together with channel and share"),
     ("set_y", {"p": 5, "r": 5}, r"it takes \(p, fast=True\) or \(r\)"),
-    ("set_y", {"r": 5, "fast": True}, "does not take its argument fast together with r"),
+    ("set_y", {"r": 5, "fast": True}, "does not take the argument fast together with r"),
     ("set_y", {}, "SetY.. is missing its argument"),
     ("set_x", {}, "channel"),
 ]
@@ -182,7 +182,7 @@ def test_words_of_the_command_line_choose_the_same_variant(
 
 
 def test_command_line_rejects_a_combination_that_no_variant_takes(package: Any) -> None:
-    with pytest.raises(UsageError, match=r"set_y\(\) does not take its argument r together with p"):
+    with pytest.raises(UsageError, match=r"set_y\(\) does not take the argument r together with p"):
         parse(package.TABLE.command("set_y"), ["p=5", "r=5"])
 
 

@@ -11,7 +11,7 @@ import pytest
 
 import cobotwire
 from cobotwire import EditionUnknown, LinkError, MyCobot280, codec, connect, identify
-from cobotwire.client.persisted_state import PortMemory
+from cobotwire.client.persisted_state import PersistedSession
 from cobotwire.editions import load, names
 from cobotwire.inspect.identification import identify_on
 from cobotwire.session import RequestReceived
@@ -221,7 +221,7 @@ def test_late_reply_to_a_query_is_left_to_the_next_client_on_the_port() -> None:
     with ScriptedPeer() as peer:
         transport = open_transport(peer.url, 115200)
         identify_on(transport, timeout=0.05)
-        late = [frame.request for frame in PortMemory(transport).recall().late]
+        late = [frame.request for frame in PersistedSession(transport).recall().late]
         transport.close()
     # One query for each frame format that was tried.
     assert bytes.fromhex("FE FE 02 12 FA") in late

@@ -184,7 +184,7 @@ WRONG = {
     "no axis": (joint(ZERO), "the axis of joint 'a' has no direction"),
     "unknown leader": (
         ARM + joint("", "c", "continuous", "y", "z") + joint('<mimic joint="d"/>', "d", parent="z"),
-        "joint 'd' mimics 'd', which is no joint before the flange",
+        "joint 'd' mimics 'd', which is not a joint before the flange",
     ),
     "huge": (" " * LARGEST_BYTES, "the file is larger than 1,000,000 bytes"),
     "deep": ("<a>" * 100_000 + "</a>" * 100_000, "the joints lead to no link"),

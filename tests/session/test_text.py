@@ -54,7 +54,7 @@ def test_text_that_is_not_printable_ascii_is_rejected() -> None:
     ("data", "detail"),
     [
         (b"ssid: caf\xc3\xa9 password: x", "not ASCII"),
-        (b"SSID: a password: b", "starts with 'ssid: '"),
+        (b"SSID: a password: b", "does not start with 'ssid: '"),
         (b"ssid: a", "0 times"),
         (b"", "starts with"),
     ],
@@ -68,7 +68,7 @@ def test_text_in_another_format_is_rejected(data: bytes, detail: str) -> None:
 @pytest.mark.parametrize("data", [b"'a'(b", b"'"])
 def test_text_without_its_suffix_is_rejected(data: bytes) -> None:
     variant = TextRequest(("'", "'("), ("account", "password"), ")")
-    with pytest.raises(ProtocolError, match=r"the text ends with '\)'"):
+    with pytest.raises(ProtocolError, match=r"the text does not end with '\)'"):
         decode(variant, data)
 
 

@@ -13,7 +13,7 @@ export type Port = string | WebSerialPort | Transport;
 export interface Options {
   /** How long the arm has to reply once a request is sent; default: as the edition says. */
   timeout?: number;
-  /** How long a call may take, waiting for its turn included; default: any time. */
+  /** How long a call may take, waiting for its turn included; default: no limit. */
   deadline?: number;
   /** How often queries are sent within their timeout; other requests are sent once. */
   retry?: { attempts?: number; shortestAttempt?: number; grace?: number };
@@ -21,7 +21,7 @@ export interface Options {
   address?: string | number;
   /** The rate of a serial port; default: that of the edition. */
   baudrate?: number;
-  /** The highest speed in percent, and ranges for x, y and z of the end in millimetres. */
+  /** The highest speed in percent, and ranges for x, y and z of the end of the arm in millimetres. */
   limits?: { speed?: number; workspace?: (readonly [number, number] | undefined)[] };
   /** What happens to an arm in motion when `run()` fails, or the client is disposed of. */
   onError?: "stop" | "leave";

@@ -14,7 +14,7 @@ from cobotwire.client.aio_polling import AsyncPoller
 from cobotwire.client.aio_steps import FULL_SECONDS, AsyncSteps
 from cobotwire.client.firmware import ReportedFirmware
 from cobotwire.client.opening import OpenPort, PortOpener
-from cobotwire.client.persisted_state import PortMemory
+from cobotwire.client.persisted_state import PersistedSession
 from cobotwire.client.traffic import TrafficListener, TrafficListeners
 from cobotwire.protocol.errors import CaptureError, LinkError, UsageError
 from cobotwire.session import EncodedRequest, Exchange, Pending, PendingRequest, RetryPolicy
@@ -40,11 +40,11 @@ class AsyncConnection:
     ) -> None:
         """Store the arguments; :meth:`open` opens the port.
 
-        Calls may take ``deadline`` seconds; ``inf``: any time.
+        Calls may take ``deadline`` seconds; ``inf``: there is no limit.
 
         Raises:
-            UsageError: the port is not allowed, or is a transport with a clock of its own; or the
-                path of the recording is not allowed.
+            UsageError: the port or the path of the recording is not allowed, or the transport has a
+                clock of its own.
         """
         opener.check()
         port = opener.port
@@ -73,7 +73,7 @@ class AsyncConnection:
         if self._steps is not None:
             return
         self._loop = asyncio.get_running_loop()
-        # Connecting may take a while: a thread does it, and the loop goes on.
+        # Connecting may take long, so a thread does it, and the loop continues.
         work = self._loop.run_in_executor(None, self._opener.open)
         try:
             self._port = await asyncio.shield(work)
@@ -81,8 +81,8 @@ class AsyncConnection:
             work.add_done_callback(_close_unwanted)
             raise
         transport = self._port.transport
-        self._memory = PortMemory(transport)
-        self._exchange.restore(self._memory.recall())
+        self._persisted = PersistedSession(transport)
+        self._exchange.restore(self._persisted.recall())
         self._steps = AsyncSteps(transport, self._exchange, self.listeners, self._deadline)
 
     async def send(
@@ -166,7 +166,7 @@ class AsyncConnection:
             try:
                 self._steps.transport.close()
             finally:
-                self._memory.leave(self._exchange.persist(self.now()))
+                self._persisted.leave(self._exchange.persist(self.now()))
                 self._steps.lose(LinkError(self.url, "it is closed"))
                 self._port.close_recording()
 
@@ -175,7 +175,7 @@ class AsyncConnection:
         if self._steps is not None and self._steps.lost is None:
             error = LinkError(self.url, f"cannot be used: {forks.opened_by_parent()}")
             self._steps.leave_to_parent(error)
-            self._memory.leave_to_parent()
+            self._persisted.leave_to_parent()
 
     def _opened(self) -> AsyncSteps:
         if self._steps is None:
@@ -184,9 +184,9 @@ class AsyncConnection:
 
     async def _wait(self, pending: Pending) -> None:
         if not pending.done:
-            over: asyncio.Future[None] = self._loop.create_future()
-            pending.when_done(partial(_wake, over))
-            await over
+            done: asyncio.Future[None] = self._loop.create_future()
+            pending.when_done(partial(_wake, done))
+            await done
 
 
 def _close_unwanted(work: asyncio.Future[OpenPort]) -> None:
@@ -196,6 +196,6 @@ def _close_unwanted(work: asyncio.Future[OpenPort]) -> None:
             work.result().close()
 
 
-def _wake(over: asyncio.Future[None]) -> None:
-    if not over.done():
-        over.set_result(None)
+def _wake(done: asyncio.Future[None]) -> None:
+    if not done.done():
+        done.set_result(None)

@@ -1,4 +1,4 @@
-"""Following paths and live targets without stops."""
+"""Follow paths and live targets without stops."""
 
 from __future__ import annotations
 
@@ -23,8 +23,8 @@ if TYPE_CHECKING:
 
 # The default speed, in percent of the highest.
 USUAL_SPEED = 50
-# How long a live source may be silent, and how long the arm may take to the end of a path after its
-# last setpoint.
+# How long a live source may be silent, and how long the arm may take to arrive after the last
+# setpoint.
 SILENCE_SECONDS, ARRIVAL_SECONDS = 0.5, 10.0
 
 
@@ -44,17 +44,18 @@ class AsyncFollowingClient(AsyncClient):
     ) -> FollowReport:
         """Move along a path without stopping at its points, and wait until the arm is at its end.
 
-        Setpoints are sent at a fixed rate while a new target replaces the old one (*fresh mode*,
-        restored afterwards). Their speed, acceleration and jerk are limited (extra ``motion``).
+        Setpoints are sent at a fixed rate in *fresh mode*, in which a new target replaces the old
+        one; afterwards the mode is restored. Their speed, acceleration and jerk are limited (extra
+        ``motion``).
 
         Args:
             path: a sequence of targets or of :class:`Waypoint`, or a live source. A sequence is
-                passed on a smooth curve. A live source is an iterator, of which only the newest
-                target counts, or a function that returns the newest target or None; it raises
+                passed on a smooth curve. A live source is an iterator (only its newest target
+                counts), or a function that returns the newest target or None, and raises
                 StopIteration at the end.
             speed: percent of the highest speed of the joints; no joint exceeds it.
-            rate: setpoints a second; default: 50. The rate is lowered if the line or the arm is
-                too slow for it, as the reply times of three queries show.
+            rate: setpoints a second; default: 50. It is lowered if the line or the arm is too slow
+                for it; three queries before the motion measure that.
             coords: whether targets are coordinates of the flange in the frame of the base: it moves
                 on straight lines, with rounded corners.
             limits: how fast joints may move and speed up; default: what the edition states.
@@ -63,7 +64,7 @@ class AsyncFollowingClient(AsyncClient):
             timeout: seconds to wait at most for the arm after the last setpoint.
 
         Returns:
-            How it went.
+            The report on the motion.
 
         Raises:
             UsageError: an argument is not allowed, another ``follow`` is under way, or the edition
@@ -83,15 +84,15 @@ class AsyncFollowingClient(AsyncClient):
         if not self._connection.follows.acquire(blocking=False):
             message = "another follow() moves an arm of this connection; it has to end first"
             raise UsageError("path", message=message)
-        given: Any = None
+        source: Any = None
         job = None
         try:
-            given = path if is_path(path) else self._source(path)
+            source = path if is_path(path) else self._source(path)
             job = Follow(
                 self._settings.codec.table,
                 self._encoder.encode_request,
                 self._baudrate,
-                given,
+                source,
                 speed=speed,
                 rate=rate,
                 coords=coords,
@@ -106,8 +107,8 @@ class AsyncFollowingClient(AsyncClient):
             raise
         finally:
             self._connection.follows.release()
-            if isinstance(given, Source):
-                given.close()
+            if isinstance(source, Source):
+                source.close()
             if job is not None and job.restore is not None:
                 with suppress(CobotwireError):
                     await self._connection.send(job.restore, None)

@@ -1,4 +1,4 @@
-"""Motions that are waited for."""
+"""Move the arm, and wait until it is there."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from cobotwire.protocol.errors import MotionTimeout, ProtocolError, ReplyTimeout
 from cobotwire.protocol.messages import Request
 from cobotwire.session import EncodedRequest, motion
 
-# How long a motion is waited for by default.
+# The default timeout of a motion.
 MOTION_SECONDS = 30.0
 # The default speeds, in percent of the highest.
 HOME_SPEED, GRIPPER_SPEED = 10, 50
@@ -161,7 +161,7 @@ class AsyncMovingClient(AsyncFollowingClient):
         timeout: float,
     ) -> None:
         check_seconds("timeout", timeout)
-        # A bad target is reported as such, before it is waited for.
+        # Encoded first, so that a bad target is reported as an argument of the command.
         encoded = self._encoder.encode_request(request)
         goal = (
             motion.goal_of(self.table, target, roles.kinds_of(self.table)[label]) if wait else None
@@ -185,7 +185,7 @@ class AsyncMovingClient(AsyncFollowingClient):
         if within is None:
             await self._connection.send(request, None)
             return
-        # The acceptance may be lost; the queries tell whether the arm moves.
+        # The acceptance may be lost; queries will show whether the arm moves.
         try:
             await self._connection.send(request, within)
         except ReplyTimeout:

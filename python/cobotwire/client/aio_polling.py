@@ -36,11 +36,12 @@ class AsyncPoller:
         """Send each request in turn, the first one at a given time.
 
         Returns:
-            No readings if a request had no legal reply; None if the stream was closed by then.
+            A reading for each request; none if a request had no legal reply. None if the stream was
+            closed by then.
 
         Raises:
             LinkError: the transport is gone.
-            ReplyTimeout: the arm, which is simulated, cannot reply.
+            ReplyTimeout: a simulated arm cannot reply.
         """
         self._steps = self._opened()
         readings = []

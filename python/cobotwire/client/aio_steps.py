@@ -15,9 +15,9 @@ from cobotwire.session import Exchange, Pending, PendingRequest
 from cobotwire.transport.aio import attach
 from cobotwire.transport.interface import Transport
 
-# How often a line that takes no bytes is tried again.
+# The pause between attempts to write on a full line.
 FULL_SECONDS = 0.002
-# A timer that is wrong by less than this is not set again.
+# A timer that is late by less than this is not set again.
 TIMER_SLACK = 0.0005
 
 
@@ -30,7 +30,7 @@ class AsyncSteps:
         loop, timers: the loop, and the timers that its connections share.
         listeners: get what passes the connection.
         writer: writes requests.
-        lost: why the transport is gone; None: it is there.
+        lost: why the transport is gone; None: it is open.
         deadline: how many seconds a call may take; perhaps inf.
     """
 
@@ -69,7 +69,7 @@ class AsyncSteps:
         self.turn()
 
     def give_up(self, pending: Pending) -> None:
-        """End a request whose caller waits no longer, and leave everything ready for the next."""
+        """End a request if its caller waits no longer, and leave everything ready for the next."""
         if not pending.done:
             self.exchange.give_up(pending)
             self.turn()

@@ -28,7 +28,7 @@ class Timed:
     """A call at a time of ``time.monotonic()``; it can be set again and again.
 
     Attributes:
-        due: when it is called; inf: it is not.
+        due: when it is called; inf: it is not set.
     """
 
     __slots__ = ("call", "due")

@@ -67,7 +67,7 @@ class AsyncTwoArms(Generic[ArmT]):
 
     # unasync: on
     async def close(self) -> None:
-        """Close both ports, even if closing one fails. The arms are sent nothing."""
+        """Close both ports, even if closing one fails. Nothing is sent to the arms."""
         try:
             await self.left.close()
         finally:

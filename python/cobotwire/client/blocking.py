@@ -74,7 +74,7 @@ class Client:
                 included; default: those of the command in the edition. Before that, a call waits
                 for its turn, and until no late reply can be mistaken for its own reply.
             deadline: seconds that a call may take from its beginning, all of this included;
-                default: any time. At its end the call raises :class:`ReplyTimeout`, which says what
+                default: no limit. At its end the call raises :class:`ReplyTimeout`, which says what
                 the call waited for, and whether the request was sent; if not, it never will be.
                 Waited motions and loops have a ``timeout`` of their own; each of their requests has
                 this deadline. Opening the port is not limited.

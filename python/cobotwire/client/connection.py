@@ -10,7 +10,7 @@ from math import inf
 from cobotwire.client.firmware import ReportedFirmware
 from cobotwire.client.leading import CHECK_SECONDS
 from cobotwire.client.opening import PortOpener
-from cobotwire.client.persisted_state import PortMemory
+from cobotwire.client.persisted_state import PersistedSession
 from cobotwire.client.polling import Poller
 from cobotwire.client.steps import SLICE_SECONDS, TURN_SECONDS, Steps
 from cobotwire.client.traffic import TrafficListener, TrafficListeners
@@ -32,7 +32,7 @@ class Connection:
     ) -> None:
         """Open the port, unless it is an open transport.
 
-        Calls may take ``deadline`` seconds, perhaps inf.
+        Calls may take ``deadline`` seconds; ``inf``: there is no limit.
 
         Raises:
             UsageError: the port, the baud rate or the path of the recording is not allowed.
@@ -49,8 +49,8 @@ class Connection:
         self.follows = threading.Lock()
         self._deadline = deadline
         self._steps = Steps(self._transport, exchange, self.listeners, self.now, deadline)
-        self._memory = PortMemory(self._transport)
-        exchange.restore(self._memory.recall())
+        self._persisted = PersistedSession(self._transport)
+        exchange.restore(self._persisted.recall())
         forks.watch(self)
 
     def send(
@@ -145,10 +145,10 @@ class Connection:
         finally:
             with self._steps.state:
                 state = self._exchange.persist(self.now())
-            self._memory.leave(state)
+            self._persisted.leave(state)
             self._port.close_recording()
 
     def leave_to_parent(self) -> None:
         """Free what other threads of the parent held; in a forked child the transport is closed."""
         self._steps.leave_to_parent()
-        self._memory.leave_to_parent()
+        self._persisted.leave_to_parent()

@@ -40,9 +40,9 @@ class ReportedFirmware:
         if stated is None or version is None:
             return ""
         reported = f"the arm has reported {version:.1f}"
-        for key, words in (("since", "needs"), ("reply_since", "is replied to since")):
+        for key, words in (("since", "needs"), ("reply_since", "gets a reply since")):
             if version < stated.get(key, 0.0):
                 return f"{command.name} {words} firmware {stated[key]:.1f}, and {reported}"
         if version >= stated.get("until", version + 1):
-            return f"{command.name} is gone since firmware {stated['until']:.1f}, and {reported}"
+            return f"{command.name} was removed in firmware {stated['until']:.1f}, and {reported}"
         return ""

@@ -1,4 +1,4 @@
-"""Requests within limits that the ranges of a table cannot state."""
+"""Refuse requests that exceed limits which the ranges of a table cannot state."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ class LimitedEncoder(RequestEncoder):
         """Check where the arm would be with its joints at the angles of a frame.
 
         Raises:
-            UsageError: the end would be outside of the workspace.
+            UsageError: the end of the arm would be outside of the workspace.
         """
         command = request.command
         assert self._workspace is not None, "there is something to check"
@@ -63,7 +63,7 @@ class LimitedEncoder(RequestEncoder):
         end = coords_of(self._geometry, angles)
         for axis, at, allowed in zip(AXES, end, self._workspace):
             if allowed is not None and not allowed[0] <= at <= allowed[1]:
-                low, high = (f"{end:g}" for end in allowed)
+                low, high = (f"{bound:g}" for bound in allowed)
                 message = error_text(
                     "leaves-workspace",
                     command=command.name,

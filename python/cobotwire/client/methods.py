@@ -1,4 +1,4 @@
-"""Docstrings in generated packages for methods that are written elsewhere."""
+"""Reuse a method in a generated class, with its docstring."""
 
 from __future__ import annotations
 

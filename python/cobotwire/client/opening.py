@@ -117,7 +117,7 @@ def check_deadline(seconds: float | None) -> float:
 
 
 def check_on_error(value: OnError) -> OnError:
-    """Check the choice for a moving arm when the program fails.
+    """Check what happens to a moving arm when the program fails.
 
     Raises:
         UsageError: it is neither "stop" nor "leave".

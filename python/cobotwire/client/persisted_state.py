@@ -2,11 +2,12 @@
 
 The next session may be in another process of the same user.
 
-A reply can arrive after its session has ended. The next session takes it for the reply to its own
-first request of the same command. If a session wrote only half of a request, the robot completes it
-with the first bytes of the next session. A session that ends in one of these states leaves a note
-in this process, and in a file for other processes (``port_notes``). Most sessions leave nothing and
-write no file. A process that is killed, or never closes its client, leaves no note.
+A reply can arrive after its session has ended. Without a note, the next session takes it for the
+reply to its own first request of the same command. If a session wrote only half of a request, the
+robot completes it with the first bytes of the next session. A session that ends in one of these
+states leaves a note in this process, and in a file for other processes (``port_notes``). Most
+sessions leave nothing and write no file. A process that is killed, or never closes its client,
+leaves no note.
 """
 
 from __future__ import annotations
@@ -26,7 +27,7 @@ LASTING = ("serial", "socket", "rfc2217")
 PSEUDO_TERMINALS = "/dev/pts/"
 
 
-class PortMemory:
+class PersistedSession:
     """The notes on one port.
 
     Only transports that lead to the same arm again have notes: serial ports and sockets, in real

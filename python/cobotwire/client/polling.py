@@ -33,11 +33,12 @@ class Poller:
         """Send each request in turn, the first one at a given time.
 
         Returns:
-            No readings if a request had no legal reply; None if the stream was closed by then.
+            A reading for each request; none if a request had no legal reply. None if the stream was
+            closed by then.
 
         Raises:
             LinkError: the transport is gone.
-            ReplyTimeout: the arm, which is simulated, cannot reply.
+            ReplyTimeout: a simulated arm cannot reply.
         """
         while (left := at - self._now()) > 0:
             self._sleep(min(left, CHECK_SECONDS))

@@ -146,7 +146,7 @@ def _frame(text: str) -> bytes:
 
 def _part(request: bytes, written: object) -> Part:
     if not isinstance(written, int) or not 0 < written <= len(request):
-        raise ValueError("a part is longer than its request, or empty")
+        raise ValueError("the written part of a request is longer than the request, or empty")
     return Part(request, written)
 
 

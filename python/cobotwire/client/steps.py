@@ -24,7 +24,7 @@ from cobotwire.transport.interface import Transport
 
 # The longest that the reading thread waits before it checks whether others have queued a request.
 SLICE_SECONDS = 0.02
-# How long the leader leaves the line to a thread that writes, before it goes on.
+# How long the leader pauses for a thread that writes.
 TURN_SECONDS = 0.0005
 # The least time that a write has, if a deadline limits it.
 SHORTEST_WRITE = 0.02

@@ -49,7 +49,7 @@ class Stream:
 
     @property
     def report(self) -> StreamReport:
-        """Samples, missed ones and the rate reached, until now or until it was closed."""
+        """The counts of samples and missed periods, until now or until the stream was closed."""
         now = self._connection.now() if self._closed_at is None else self._closed_at
         return self._sampler.report(now)
 

@@ -24,11 +24,11 @@ class Called(Source):
         self._function = function
 
     def take(self) -> list[Target]:
-        """Return the target that the function has now."""
+        """Return the target that the function returns now, if any."""
         try:
             target = self._function()
         except StopIteration:
-            self.over = True
+            self.exhausted = True
             return []
         return [] if target is None else [target]
 
@@ -54,9 +54,9 @@ class Mailbox(Source):
     def take(self) -> list[Target]:
         """Return the targets that came since the last call; raise the error that ended them."""
         # Read the end before the targets, so that targets that came before it are not lost.
-        self.over = self._ended
+        self.exhausted = self._ended
         targets = [self._targets.popleft() for _ in range(len(self._targets))]
-        if self.over and self._error is not None:
+        if self.exhausted and self._error is not None:
             raise self._error
         return targets
 

@@ -86,7 +86,7 @@ class TrafficListeners:
             self._report(Traffic(self._now(), "sent", data))
 
     def received(self, events: Sequence[SessionEvent], now: float) -> None:
-        """Report what the session made of the bytes that were read at ``now``."""
+        """Report the session's events for the bytes that were read at ``now``."""
         logger = self._logger or self._found()
         if logger is not None and logger.isEnabledFor(INFO):
             for event in events:

@@ -56,7 +56,7 @@ class TwoArms(Generic[ArmT]):
             raise
 
     def close(self) -> None:
-        """Close both ports, even if closing one fails. The arms are sent nothing."""
+        """Close both ports, even if closing one fails. Nothing is sent to the arms."""
         try:
             self.left.close()
         finally:

@@ -12,7 +12,7 @@ from cobotwire.transport.interface import PollableTransport, Transport
 from cobotwire.transport.waiting import has_room
 
 # The pause before the next attempt at a write that has a deadline, in seconds.
-TRY_SECONDS = 0.001
+PAUSE_SECONDS = 0.001
 
 
 class Writer:
@@ -96,4 +96,4 @@ class Writer:
             if time.monotonic() >= until:
                 taken = f"only {written} of {len(data)} bytes were taken in {seconds:.3f} s"
                 raise LinkError(transport.url, f"cannot be written: {taken}", written)
-            time.sleep(TRY_SECONDS)
+            time.sleep(PAUSE_SECONDS)

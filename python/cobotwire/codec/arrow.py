@@ -18,7 +18,7 @@ from cobotwire.protocol.fields import Variant
 
 
 @dataclass(frozen=True, slots=True)
-class Part:
+class VariantRows:
     """The rows of one variant of a message.
 
     Attributes:
@@ -33,7 +33,7 @@ class Part:
     columns: Sequence[memoryview]
     leading: Mapping[str, Any]
 
-    def pieces(self) -> Iterator[Part]:
+    def chunks(self) -> Iterator[VariantRows]:
         """Yield the rows in chunks that fit into Arrow's arrays."""
         rows = len(self.offset)
         longest = max([field.size for field in self.variant.fields], default=0)
@@ -51,10 +51,12 @@ class Part:
             )
 
 
-def arrow_table(layout: Layout, parts: Sequence[Part], metadata: Mapping[str, str]) -> pa.Table:
+def arrow_table(
+    layout: Layout, variants: Sequence[VariantRows], metadata: Mapping[str, str]
+) -> pa.Table:
     """Return the rows of variants as one table, in the order of their offsets.
 
-    A value that a variant lacks is null. At least one part must be given; it may have no rows.
+    A value that a variant lacks is null. At least one variant must be given; it may have no rows.
 
     Raises:
         UsageError: a leading column has the name of another column, or another number of rows.
@@ -64,7 +66,7 @@ def arrow_table(layout: Layout, parts: Sequence[Part], metadata: Mapping[str, st
         address_field(layout.table)
         if name == ADDRESS and layout.table.frame.addresses
         else pa.field(name, as_array(values).type, nullable=False)
-        for name, values in parts[0].leading.items()
+        for name, values in variants[0].leading.items()
     ]
     names = {column.name for column, _ in columns}
     for field in leading:
@@ -72,11 +74,11 @@ def arrow_table(layout: Layout, parts: Sequence[Part], metadata: Mapping[str, st
             message = f"the {layout.command.name} {layout.direction} has a column {field.name}"
             raise UsageError("leading", field.name, message=f"{message}: rename the leading one")
     schema = pa.schema([*leading, *[field for _, field in columns]], metadata=dict(metadata))
-    pieces = [piece for part in parts for piece in part.pieces()]
-    table = pa.concat_tables([_piece_table(piece, columns, schema) for piece in pieces])
-    if len(parts) == 1:
+    chunks = [chunk for rows in variants for chunk in rows.chunks()]
+    table = pa.concat_tables([_chunk_table(chunk, columns, schema) for chunk in chunks])
+    if len(variants) == 1:
         return table
-    offsets = pa.chunked_array([flat(piece.offset) for piece in pieces], pa.uint64())
+    offsets = pa.chunked_array([flat(chunk.offset) for chunk in chunks], pa.uint64())
     return table.take(pc.sort_indices(offsets))
 
 
@@ -119,20 +121,22 @@ def in_order_of_time(tables: Sequence[pa.Table]) -> pa.Table:
     return table if len(tables) == 1 else table.take(pc.sort_indices(table["time"]))
 
 
-def _piece_table(piece: Part, columns: Sequence[tuple[TableColumn, Any]], schema: Any) -> Any:
-    rows = len(piece.offset)
-    arrays = [as_array(values) for values in piece.leading.values()]
-    for values, name in zip(arrays, piece.leading):
+def _chunk_table(
+    chunk: VariantRows, columns: Sequence[tuple[TableColumn, Any]], schema: Any
+) -> Any:
+    rows = len(chunk.offset)
+    arrays = [as_array(values) for values in chunk.leading.values()]
+    for values, name in zip(arrays, chunk.leading):
         if len(values) != rows:
             message = f"the leading column {name} has {len(values)} rows, and the table {rows}"
             raise UsageError("leading", len(values), str(rows), message=message)
     for column, field in columns:
-        found = column.find(piece.variant)
+        found = column.find(chunk.variant)
         if found is None:
             arrays.append(pa.nulls(rows, field.type))
             continue
         index, part = found
-        array = cells(piece.variant.fields[index], piece.columns[index], rows, part)
+        array = cells(chunk.variant.fields[index], chunk.columns[index], rows, part)
         arrays.append(array if array.type == field.type else array.cast(field.type))
     return pa.Table.from_arrays(arrays, schema=schema)
 

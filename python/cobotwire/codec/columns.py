@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     import numpy as np
     from typing_extensions import Buffer
 
-    from cobotwire.codec.arrow import Part
+    from cobotwire.codec.arrow import VariantRows
 
     Arrays = dict[str, np.ndarray[Any, Any]]
 
@@ -176,17 +176,17 @@ class Rows:
             "direction": self.direction,
             "variant": str(self.variant_index),
         }
-        return arrow_table(layout, [self._part(leading)], metadata)
+        return arrow_table(layout, [self._variant_rows(leading)], metadata)
 
-    def _part(self, leading: Mapping[str, Any] | None) -> Part:
-        from cobotwire.codec.arrow import Part
+    def _variant_rows(self, leading: Mapping[str, Any] | None) -> VariantRows:
+        from cobotwire.codec.arrow import VariantRows
         from cobotwire.codec.arrow_addresses import with_address
 
         columns = [memoryview(column) for column in self._columns]
         first = {"offset": self.offset} if leading is None else leading
         if self.address is not None:
             first = with_address(first, self.table, self.address)
-        return Part(self.variant, self.offset, columns, first)
+        return VariantRows(self.variant, self.offset, columns, first)
 
     def __arrow_c_stream__(self, requested_schema: object | None = None) -> object:
         """Return the Arrow PyCapsule stream, which polars, DuckDB, pandas and pyarrow read.
@@ -316,10 +316,10 @@ class Columns(Sequence[Rows]):
         found = [
             rows for rows in self if rows.command is first.command and rows.direction == direction
         ]
-        parts = [rows._part(leading and leading(rows)) for rows in found or [first]]
+        found_rows = [rows._variant_rows(leading and leading(rows)) for rows in found or [first]]
         variants = first.command.variants(direction)
         layout = Layout(self.table, first.command, direction, variants, self.raw, wide)
-        return arrow_table(layout, parts, {"command": command, "direction": direction})
+        return arrow_table(layout, found_rows, {"command": command, "direction": direction})
 
     def __repr__(self) -> str:
         return f"<Columns {list(self._rows)!r}>"

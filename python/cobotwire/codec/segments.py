@@ -21,14 +21,14 @@ from cobotwire.protocol.frame_index import longest_frame
 from cobotwire.protocol.table import Direction
 
 # Scans that have not agreed within this many bytes probably never will: such bytes are made on
-# purpose. Then the cut does not count, and the segment before it goes on.
+# purpose. Then the cut is ignored: the segment before it continues.
 PATIENCE = 1 << 16
 # Bytes that are read and decoded at once.
 CHUNK = 1 << 23
 
 
 class Stream(Protocol):
-    """The bytes of a stream, which any part of a program may read at any place."""
+    """The bytes of a stream, which can be read at any offset."""
 
     @property
     def size(self) -> int:
@@ -91,17 +91,17 @@ class Divider:
         reach = self._reach
         window = self._stream.read(cut, self._patience + 2 * reach)
         # A frame that begins before the cut ends at one of these, at most.
-        places = list(range(min(reach, len(window) + 1)))
-        heapify(places)
+        positions = list(range(min(reach, len(window) + 1)))
+        heapify(positions)
         while True:
-            place = heappop(places)
-            while places and places[0] == place:
-                heappop(places)
-            if not places:
-                return cut + place
-            if place > self._patience:
+            at = heappop(positions)
+            while positions and positions[0] == at:
+                heappop(positions)
+            if not positions:
+                return cut + at
+            if at > self._patience:
                 return None
-            heappush(places, place + self._step(window[place : place + reach]))
+            heappush(positions, at + self._step(window[at : at + reach]))
 
     def _step(self, candidate: bytes) -> int:
         """Return the size of the frame at the start of ``candidate``; 1 if there is none."""
@@ -133,8 +133,8 @@ def decode_segment(
     waiting = reader.pending
     last = reader.flush()
     if waiting and end < stream.size:
-        # The scan of the stream stands at the end, so no frame crosses it, and the flush was right
-        # to reject what waited. But its reasons depend on the bytes that follow.
+        # No frame crosses the end of a segment, so the flush was right to reject the waiting bytes.
+        # But the reasons depend on the bytes that follow.
         ahead = stream.read(end - waiting, waiting + _reach(codec, listening))
         noise = _with_reasons(counters, _noise_of(codec, listening, ahead, waiting))
         last.counters = last.counters._replace(noise=noise)

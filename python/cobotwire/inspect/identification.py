@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from cobotwire import editions
 from cobotwire.client.opening import open_port
-from cobotwire.client.persisted_state import PortMemory
+from cobotwire.client.persisted_state import PersistedSession
 from cobotwire.inspect.cross_checks import doubts
 from cobotwire.inspect.evidence import (
     NO_REPLY,
@@ -132,7 +132,7 @@ def identify_on(
     Raises:
         LinkError: the transport is gone.
     """
-    memory, probes = PortMemory(transport), Probes(transport)
+    memory, probes = PersistedSession(transport), Probes(transport)
     left: list[PersistedState] = []
 
     def separate(format: FrameFormat) -> None:

@@ -1,4 +1,4 @@
-"""Forward and inverse kinematics: the end's pose for joint angles, and angles for a pose."""
+"""Forward and inverse kinematics: the flange's pose for joint angles, and angles for a pose."""
 
 from cobotwire.kinematics.descent import Effort
 from cobotwire.kinematics.forward import coords_of, flange

@@ -82,12 +82,12 @@ def _in_line(geometry: Geometry, target: Pose) -> tuple[float, float]:
 def _parallel(geometry: Geometry, seen: Pose, now: Sequence[float]) -> Iterator[tuple[float, ...]]:
     """Yield the second to the sixth angle of an arm with the axes of the 280 or the 320."""
     links = geometry.links
-    way = 1 if links[3].alpha > 0 else -1
+    sign = 1 if links[3].alpha > 0 else -1
     across = tuple(-axis[1] for axis in seen[:3])
-    for fifth, sixth in _wrists(across, way * now[4], now[5]):
-        turn, x, y = _fourth_frame(geometry, seen, fifth, sixth, way * links[4].d)
+    for fifth, sixth in _wrists(across, sign * now[4], now[5]):
+        turn, x, y = _fourth_frame(geometry, seen, fifth, sixth, sign * links[4].d)
         for second, third in _elbows(x, y, links[1].a, links[2].a, now[2]):
-            yield second, third, turn - second - third, way * fifth, sixth
+            yield second, third, turn - second - third, sign * fifth, sixth
 
 
 def _spherical(geometry: Geometry, seen: Pose, now: Sequence[float]) -> Iterator[tuple[float, ...]]:

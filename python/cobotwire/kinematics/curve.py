@@ -16,33 +16,33 @@ class Curve:
     """A cubic spline through points, one for each knot; knots are distances or times.
 
     With ``rests`` it begins and ends at rest: speed and acceleration are zero. Then its first and
-    last pieces are quintics. Otherwise its ends are straight.
+    last segments are quintics. Otherwise its ends are straight.
     """
 
     def __init__(self, knots: Sequence[float], points: Sequence[Point], *, rests: bool) -> None:
         """Take at least two points; the knots increase."""
         self._knots = list(knots)
-        axes = [_pieces(self._knots, axis, rests=rests) for axis in zip(*points)]
-        # The coefficients of each axis, by piece.
-        self._pieces = list(zip(*axes))
+        axes = [_segments(self._knots, axis, rests=rests) for axis in zip(*points)]
+        # The coefficients of each axis, by segment.
+        self._segments = list(zip(*axes))
         self.length = self._knots[-1]
 
     def at(self, knot: float, order: int = 0) -> Point:
         """Return the point at a distance or time, or a derivative there."""
-        piece = min(max(bisect_right(self._knots, knot) - 1, 0), len(self._pieces) - 1)
-        return self._at(piece, knot - self._knots[piece], order)
+        segment = min(max(bisect_right(self._knots, knot) - 1, 0), len(self._segments) - 1)
+        return self._at(segment, knot - self._knots[segment], order)
 
     def largest(self, order: int) -> list[Point]:
-        """Return the largest absolute value of a derivative for each axis, by piece."""
+        """Return the largest absolute value of a derivative for each axis, by segment."""
         found = []
-        for piece, (start, end) in enumerate(pairwise(self._knots)):
+        for segment, (start, end) in enumerate(pairwise(self._knots)):
             steps = ((end - start) * sample / SAMPLES for sample in range(SAMPLES + 1))
-            rows = [self._at(piece, along, order) for along in steps]
+            rows = [self._at(segment, along, order) for along in steps]
             found.append(tuple(max(map(abs, axis)) for axis in zip(*rows)))
         return found
 
-    def _at(self, piece: int, along: float, order: int) -> Point:
-        return tuple(_value(axis, along, order) for axis in self._pieces[piece])
+    def _at(self, segment: int, along: float, order: int) -> Point:
+        return tuple(_value(axis, along, order) for axis in self._segments[segment])
 
 
 def _value(polynomial: Sequence[float], x: float, order: int) -> float:
@@ -55,8 +55,8 @@ def _value(polynomial: Sequence[float], x: float, order: int) -> float:
     return total
 
 
-def _pieces(knots: list[float], values: Sequence[float], *, rests: bool) -> Matrix:
-    """Return the coefficients of each piece of one axis."""
+def _segments(knots: list[float], values: Sequence[float], *, rests: bool) -> Matrix:
+    """Return the coefficients of each segment of one axis."""
     steps = [b - a for a, b in pairwise(knots)]
     rises = [(b - a) / step for (a, b), step in zip(pairwise(values), steps)]
     speeds = _speeds(steps, rises, rests=rests)
@@ -79,18 +79,18 @@ def _quintic(
     step: float, value: float, rise: float, v: float, w: float, a: float, b: float
 ) -> list[float]:
     """Return the polynomial with a value, speeds v and w, and second derivatives a and b."""
-    # What the terms of power 3, 4 and 5 must add at the end of the step: to the value, to the
-    # speed and to the second derivative.
-    way = (rise - v - a * step / 2) * step
+    # What the terms of power 3, 4 and 5 must add by the end of the step: to the value, the speed
+    # and the second derivative.
+    distance = (rise - v - a * step / 2) * step
     speed = (w - v - a * step) * step
     bend = (b - a) * step * step
     return [
         value,
         v,
         a / 2,
-        (10 * way - 4 * speed + bend / 2) / step**3,
-        (-15 * way + 7 * speed - bend) / step**4,
-        (6 * way - 3 * speed + bend / 2) / step**5,
+        (10 * distance - 4 * speed + bend / 2) / step**3,
+        (-15 * distance + 7 * speed - bend) / step**4,
+        (6 * distance - 3 * speed + bend / 2) / step**5,
     ]
 
 

@@ -18,7 +18,7 @@ from cobotwire.kinematics.pose import Pose, Vector, cross
 # The most steps of one descent, and of all descents for one request. A step takes about 0.1 ms, and
 # a reply must not wait for a search.
 STEPS, STEPS_OF_A_REQUEST = 60, 80
-# The descent ends after PATIENCE steps in a row that do not cut the distance by share PROGRESS.
+# The descent ends after PATIENCE steps in a row that each cut the distance by less than PROGRESS.
 PROGRESS, PATIENCE = 0.02, 8
 # The damping of a step: at first, and the least, in square millimetres.
 DAMPING, LEAST_DAMPING = 10.0, 1e-8
@@ -54,7 +54,7 @@ def descend(
     """Return angles inside the limits, near ``start``, at which the flange is nearest to a target.
 
     ``radian`` is the number of millimetres that weigh as much as a turn by one radian. If the
-    ``effort`` comes to its end first, the angles are the nearest so far.
+    ``effort`` is used up first, they are the nearest angles so far.
     """
     angles, damping = clamped(start, limits), DAMPING
     here = frames(geometry, angles)
@@ -87,15 +87,15 @@ def _errors(here: Pose, target: Pose, radian: float) -> list[float]:
     turn = [0.0, 0.0, 0.0]
     for one, other in zip(here[:3], target[:3]):
         turn = [a + b for a, b in zip(turn, cross(one, other))]
-    way = [b - a for a, b in zip(here.origin, target.origin)]
+    shift = [b - a for a, b in zip(here.origin, target.origin)]
     sine = math.hypot(*turn) / 2
     cosine = (sum(_dot(one, other) for one, other in zip(here[:3], target[:3])) - 1) / 2
     angle = math.atan2(sine, cosine)
     scale = radian * (angle / (2 * sine) if sine > 1e-9 else 0.5)
     if sine <= 1e-9 and cosine < 0:
         # For half a turn the cross products are zero, so the axis is unknown: turn about x.
-        return [*way, *(math.pi * radian * part for part in here.x)]
-    return [*way, *(scale * part for part in turn)]
+        return [*shift, *(math.pi * radian * part for part in here.x)]
+    return [*shift, *(scale * part for part in turn)]
 
 
 def _columns(geometry: Geometry, here: Sequence[Pose], radian: float) -> list[list[float]]:

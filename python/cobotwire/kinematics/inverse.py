@@ -37,7 +37,7 @@ SOLUTIONS_A_STEP = 2
 # How many solutions may continue a path, before all are compared.
 CONTINUING = 4
 # A turn is weighted by the distance that it moves the ends of the three axes: 7.07 mm for a degree.
-# This is nearly the ratio of the two tolerances, so least squares come near to both alike.
+# This is nearly the ratio of the two tolerances, so least squares treat both alike.
 REFINING_RADIAN = math.degrees(1) * 5 * math.sqrt(2)
 
 
@@ -58,8 +58,8 @@ def nearest(
             time: the largest turn of a joint counts, then the sum of all turns. Without a closed
             form, it is the nearest of those that the search finds.
         limits: the lowest and the highest angle of each joint, in degrees.
-        largest_turn: solutions in which a joint turns further than this, in degrees, are of no
-            use; the search for them is left out. The first solution within it is taken.
+        largest_turn: for a point of a path, how far a joint should turn at most, in degrees. The
+            first solution within it is taken; if there is none, joints may turn further.
         effort: bounds the search; None: the effort for one request. What the search does not find
             counts as out of reach.
     """

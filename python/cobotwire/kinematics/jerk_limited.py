@@ -89,9 +89,9 @@ class InTime:
 
 
 class Excess(NamedTuple):
-    """How far a motion uses a bound: the largest ratio of any joint to its bound.
+    """How much of a bound a motion needs, for the joint that needs the largest share of it.
 
-    ``slower`` is how many times as long the motion would take to reach the bound exactly.
+    ``slower`` is how many times as long the motion would have to take to just reach the bound.
     """
 
     bound: str
@@ -119,8 +119,8 @@ def excesses(motion: Along | InTime, bounds: Bounds) -> list[Excess]:
     return found
 
 
-class Chase:
-    """Joints that run after a target that may change at each step, and stop at it."""
+class Tracker:
+    """Moves joints towards a target that may change at each step, and stops them there."""
 
     def __init__(self, start: Point, bounds: Bounds, step: float) -> None:
         """Rest at first; ``step`` is the time of a step in seconds."""
@@ -147,7 +147,7 @@ def paced(points: Sequence[Point], bounds: Bounds) -> Curve:
     """Return a curve through points on which a speed of 1 is nearly within the bounds everywhere.
 
     The speed is constant where possible: the fastest joint determines the time between points.
-    Around sharper bends they are made longer, until the joints can follow.
+    Near sharper bends more time is allowed, until the joints can follow.
     """
     steps = [
         max(map(truediv, (abs(b - a) for a, b in zip(one, two)), bounds.speed))
@@ -165,7 +165,7 @@ def paced(points: Sequence[Point], bounds: Bounds) -> Curve:
 
 
 def _needs(curve: Curve, order: int, bounds: Bounds) -> list[float]:
-    """Return how many times as long each piece must take for the sake of a derivative."""
+    """Return how many times as long each segment must take to keep a derivative in its bound."""
     most = bounds[order - 1]
     return [max(map(truediv, each, most)) ** (1 / order) for each in curve.largest(order)]
 

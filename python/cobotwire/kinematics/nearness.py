@@ -22,8 +22,8 @@ def misses(
     geometry: Geometry, angles: Angles, target: Pose, millimetres: float, degrees: float
 ) -> bool:
     """Return whether angles bring the flange further from a target than the tolerances."""
-    way, turn = flange(geometry, angles).distance(target)
-    return way > millimetres or turn > degrees
+    distance, turn = flange(geometry, angles).distance(target)
+    return distance > millimetres or turn > degrees
 
 
 def turns_between(angles: Sequence[float], present: Sequence[float]) -> tuple[float, float]:

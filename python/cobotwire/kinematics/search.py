@@ -37,8 +37,8 @@ def search(
     """Return angles inside the limits that bring the flange to ``target``; None: none were found.
 
     The search ends when ``effort`` is used up. It starts only at angles within ``largest_turn``
-    degrees of the present ones. This is for a point inside a motion, where joints cannot jump. What
-    it finds may be further away.
+    degrees of the present ones, since joints cannot jump inside a motion. A solution may be further
+    away.
 
     Of several solutions, the nearest to ``present`` is returned. If none is exact, angles that miss
     the target by less than the wire's rounding count as a solution.

@@ -24,8 +24,8 @@ UNTURNED = 1e-9
 
 def steps_between(start: Pose, end: Pose) -> int:
     """Return in how many steps a straight line is solved."""
-    way, turn = start.distance(end)
-    return max(math.ceil(way / STEP_MILLIMETRES), math.ceil(turn / STEP_DEGREES), 1)
+    distance, turn = start.distance(end)
+    return max(math.ceil(distance / STEP_MILLIMETRES), math.ceil(turn / STEP_DEGREES), 1)
 
 
 def angles_along(
@@ -53,7 +53,7 @@ def angles_along(
 def straight_line(start: Pose, end: Pose, steps: int) -> Iterator[Pose]:
     """Yield the poses after ``start``, up to ``end``, in even steps.
 
-    The orientation turns about one axis, by the shortest way.
+    The orientation turns about one axis, by the smallest angle.
     """
     turn = start.inverted().then(end)
     half, axis = _half_turn(turn)

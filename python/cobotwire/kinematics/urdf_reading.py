@@ -51,7 +51,7 @@ def read_urdf(data: bytes, joints: int, tip: str | None = None) -> tuple[Link, .
     ``tip`` is the link of the flange; None: the only link without another one after it.
 
     Raises:
-        UsageError: the content is too large or no URDF, or has no such chain.
+        UsageError: the content is too large, is not a URDF, or has no such chain.
     """
     chain = _chain(_root(data), tip)
     moving = [joint for joint in chain if joint.get("type") != "fixed"]
@@ -134,7 +134,7 @@ def _continue(axes: list[Axis], joint: Element, own: list[str]) -> None:
     axes[-1] = axes[-1]._replace(following=following.then(along))
     leader = name if mimic is None else mimic.get("joint")
     if leader not in own:
-        raise _wrong(f"joint {name!r} mimics {leader!r}, which is no joint before the flange")
+        raise _wrong(f"joint {name!r} mimics {leader!r}, which is not a joint before the flange")
     [share], [offset] = (
         _numbers(joint, "mimic", *words) for words in (("multiplier", "1"), ("offset", "0"))
     )

@@ -50,7 +50,7 @@ def check_one_moves(table: Table, given: int | str | None) -> None:
 def lacks_joints(table: Table, address: Address | None, command: Command) -> str:
     """Return why a device with fewer joints than its edition lacks a command; empty if it has it.
 
-    Rows with a value for each joint belong to the devices with all joints.
+    A command with a value for each joint needs a device with all joints.
     """
     if address is None or address.joints in (0, table.joints):
         return ""

@@ -89,7 +89,7 @@ class Moves(NamedTuple):
         by: the argument with the distance.
         until: ``limit`` if the motion continues until it is stopped.
         about: the argument with the axis.
-        keeps: ``position`` if the end turns on the spot.
+        keeps: ``position`` if the end of the arm turns in place.
         direction: the argument with the direction.
         speed: the argument with the speed.
         assumed: why no source states it.

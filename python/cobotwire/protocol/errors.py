@@ -71,7 +71,7 @@ class UsageError(CobotwireError, ValueError):
     def renamed(self, names: Mapping[str, str]) -> UsageError:
         """Return the error for an interface that has other names for some arguments.
 
-        ``names`` maps our names to these names. Names inside of a row (``coords.x``) stay.
+        ``names`` maps our names to these names. The name of an element, as in ``coords.x``, stays.
         """
         argument = _FIRST_NAME.sub(lambda found: names.get(found[0], found[0]), self.argument)
         usual = str(UsageError(self.argument, self.value, self.allowed))
@@ -107,7 +107,7 @@ class ProtocolError(CobotwireError):
         reason: a code for programs: a noise reason, ``bad-value``, ``trailing`` or ``bad-text``.
         offset: the index of the wrong byte in ``data``.
         data: the rejected bytes.
-        detail: what is wrong, without the place and the bytes.
+        detail: what is wrong, without the offset and the bytes.
     """
 
     def __init__(self, reason: str, offset: int, data: bytes, detail: str) -> None:
@@ -157,7 +157,7 @@ class LinkError(CobotwireError, OSError):
 
 
 WaitedFor = Literal["turn", "hold", "line", "reply"]
-# How the line of text begins that a simulated arm sends in place of a reply that it cannot make.
+# The start of the line of text that a simulated arm sends instead of a reply that it cannot make.
 SIMULATED = "simulated arm: "
 
 
@@ -173,8 +173,8 @@ class ReplyTimeout(CobotwireError, TimeoutError):
         waited_for: what the call waited for when the ``deadline`` of the client passed: ``turn``,
             ``hold``, ``line`` or ``reply``; empty if another timeout passed, of the reply or of
             the reading before a request.
-        refusal: why the arm, which is simulated, cannot reply; empty if it did not say so. It will
-            not reply if it is sent again.
+        refusal: why a simulated arm cannot reply, even if the request is sent again; empty if the
+            arm did not report that.
     """
 
     def __init__(
@@ -263,7 +263,7 @@ class ArmState(NamedTuple):
 
 
 def no_power(powered: int) -> str:
-    """Return in words that an arm has no power; ``powered`` is what it reports, which is false."""
+    """Return in words that an arm has no power; ``powered`` is the false value that it reports."""
     name = getattr(powered, "name", "") if powered != 0 else ""
     return f"no power: it reports {name}" if name else "no power"
 

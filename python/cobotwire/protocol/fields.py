@@ -27,7 +27,7 @@ class Case(NamedTuple):
 
 
 class Field(NamedTuple):
-    """One argument of a request or one part of a reply.
+    """One argument of a request, or one value of a reply.
 
     ``many`` fields are tuples with one element for each number. ``choices`` lists all legal raw
     values (``()``: every value between minimum and maximum); ``labels`` names them for people.
@@ -40,8 +40,8 @@ class Field(NamedTuple):
     A field of ``bytes`` or ``text`` has a number for each byte. ``encoding`` is the encoding of a
     text, and ``padding`` the byte after a text that is shorter than its field (-1: none). If
     ``each`` is not 0, the value is a tuple of elements of that many numbers: tuples, or texts.
-    ``sizes`` are the least and the most elements of a list whose number varies; a variant has one
-    of these numbers, and other variants have the others. A field that ``counts`` the elements of
+    ``sizes`` are the smallest and the largest length of a list whose length varies; each variant
+    has one of the lengths. A field that ``counts`` the elements of
     another one has the same ``sizes``; callers pass ``...`` for it. ``meanings`` describe ranges of
     raw values, each with its first and last; other values are legal too.
     """
@@ -165,7 +165,7 @@ class Field(NamedTuple):
         return bool(values[0]) if self.kind == "flag" and self.const is None else values[0]
 
     def meets(self, number: Number, other: Field, other_number: Number) -> bool:
-        """Return whether a raw value is legal both in a number of this field and in another's."""
+        """Return whether a raw value is legal in a number of this field and in one of another."""
         ends = ((self, number, other, other_number), (other, other_number, self, number))
         for one, here, two, there in ends:
             if choices := one.choices or here.choices:
@@ -234,14 +234,14 @@ class Variant(_VariantFields):
         """
         if self.size != other.size:
             return True
-        there = other.places()
+        others = other.by_offset()
         return any(
-            number.alike(there[place][1]) and not field.meets(number, *there[place])
-            for place, (field, number) in self.places().items()
-            if place in there
+            number.alike(others[offset][1]) and not field.meets(number, *others[offset])
+            for offset, (field, number) in self.by_offset().items()
+            if offset in others
         )
 
-    def places(self) -> dict[int, tuple[Field, Number]]:
+    def by_offset(self) -> dict[int, tuple[Field, Number]]:
         """Return the fields and numbers that no selector decides, by their offset."""
         found: dict[int, tuple[Field, Number]] = {}
         for index, field in enumerate(self.fields):

@@ -93,13 +93,13 @@ def _ranges(table: Table) -> list[Range]:
 
 
 def _names(table: Table, row: Role) -> list[str]:
-    """Return the names of the parts that one command moves together."""
+    """Return the names of the joints or coordinates that one command moves together."""
     variant = table.in_role(row).request[0]
     return [number.name for number in variant.fields[row_index(variant)].cases[0].numbers]
 
 
 class _Rule:
-    """The given ranges, and the names of the parts that they limit."""
+    """The given ranges, and the names of the joints or coordinates that they limit."""
 
     # Whether ranges that reach beyond the edition's are cut to these.
     _cuts = False
@@ -109,7 +109,7 @@ class _Rule:
         self._ranges = checked_ranges(what, ranges, len(names))
 
     def number(self, part: int, number: Number) -> Number:
-        """Return a number of a target with the limits of its part."""
+        """Return a number of a target with the limits of its joint or coordinate."""
         given = self._ranges[part]
         if given is None:
             return number
@@ -199,7 +199,7 @@ _ROWS: tuple[Role, ...] = ("joint targets", "coordinate targets")
 
 
 def _row(variant: Variant, rule: _Rule) -> Variant:
-    """Limit a variant in which one field holds the targets of all parts."""
+    """Limit a variant in which one field holds all targets."""
     at = row_index(variant)
     row = variant.fields[at]
     numbers = (rule.number(part, number) for part, number in enumerate(row.cases[0].numbers))
@@ -207,7 +207,7 @@ def _row(variant: Variant, rule: _Rule) -> Variant:
 
 
 def _single(variant: Variant, rule: _Rule) -> Variant:
-    """Limit a variant in which one field picks the part and another one is its target."""
+    """Limit a variant in which one field picks a joint or coordinate, and another is its target."""
     picker_at, at = picked(variant)
     picker, target = variant.fields[picker_at], variant.fields[at]
     cases = []
@@ -225,7 +225,7 @@ def _with(variant: Variant, at: int, field: Field) -> Variant:
 
 
 def _value_of(picker: Field, name: str, part: int) -> int:
-    """Return the raw value that picks a part: by its label, or else counted from 1."""
+    """Return the raw value that picks a joint or coordinate: by its label, or else its number."""
     labels = [label.lower() for label in picker.labels]
     return picker.choices[labels.index(name)] if name in labels else part + 1
 

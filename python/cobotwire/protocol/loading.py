@@ -40,7 +40,7 @@ from cobotwire.protocol.type_records import (
 
 VERSION = 3
 CARRIAGE_RETURN = b"\r"
-# The kinds of types that are more than one number or a row of numbers.
+# The kinds of types that are neither a number nor a tuple of numbers.
 SHAPED = ("bits", "bytes", "text", "list")
 
 

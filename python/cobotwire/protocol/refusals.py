@@ -8,7 +8,7 @@ from cobotwire.protocol.limits import Limits, is_speed
 from cobotwire.protocol.roles import moves_arm
 from cobotwire.protocol.table import Command, Table
 
-# The states that decide whether coordinates are of the end or a tool, from the base or the world.
+# The states that decide which point of the arm coordinates are about, and in which frame.
 _FRAMES = frozenset({"tool", "world", "reference_frame", "end_type"})
 
 
@@ -16,8 +16,8 @@ def refusals(table: Table, limits: Limits) -> dict[str, str]:
     """Return the commands that are not sent within ``limits``, each with the reason.
 
     These are persistent writes, because they can change what limits mean. With a workspace they are
-    also motions to an unknown place, and settings that change what coordinates mean. With a speed
-    they are also motions that take no percentage.
+    also motions to an unknown position, and settings that change what coordinates mean. With a
+    speed they are also motions that take no percentage.
     """
     found = {}
     for command in table.commands:

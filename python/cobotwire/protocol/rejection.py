@@ -1,7 +1,7 @@
 """Write the error texts of both codecs.
 
-A codec reports only the kind and the place of an error. This module alone writes the text, so both
-codecs have the same texts.
+A codec reports only the kind and the position of an error. This module alone writes the text, so
+both codecs have the same texts.
 """
 
 from __future__ import annotations

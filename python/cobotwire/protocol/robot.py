@@ -38,8 +38,8 @@ class Dynamics(NamedTuple):
         speed: degrees a second for each percent of speed.
         fastest: the highest speed of a joint, in degrees a second.
         acceleration: the highest acceleration, in degrees per second squared.
-        near_degrees: the distance from its target at which a joint has reached it.
-        near_millimetres: the distance from its target at which the end has reached it.
+        near_degrees: the distance at which a joint has reached its target.
+        near_millimetres: the distance at which the end of the arm has reached its target.
     """
 
     speed: float
@@ -88,7 +88,7 @@ class Encoders(NamedTuple):
         return self.sign(joint) * (reading - self.zero) * self.degrees
 
     def inside(self, joint: int, lowest: float, highest: float) -> tuple[float, float]:
-        """Return the lowest and highest angle on a tick within limits; low > high if none is."""
+        """Return the lowest and highest angle on a tick within limits; low > high: none."""
         ends = self.angle(joint, 0), self.angle(joint, self.highest)
         lowest, highest = max(lowest, min(ends)), min(highest, max(ends))
         step = self.degrees
@@ -124,7 +124,7 @@ class ErrorCodes(NamedTuple):
 
     Attributes:
         joint_limits: for each joint, the number for a target beyond its limit.
-        no_solution: no joint angles bring the end to the target.
+        no_solution: no joint angles bring the end of the arm to the target.
         no_straight_line: the joints cannot follow a straight line.
         stopped: a motion was stopped before its target; 0: it has no number.
         no_power: the arm has no power, or not every joint is held; 0: it has no number.
@@ -181,7 +181,7 @@ UNSTATED = Robot()
 
 
 def load_robot(edition: Record) -> Robot:
-    """Return the robot of the record of an edition in ``edition.json``."""
+    """Return the robot that the record of an edition in ``edition.json`` describes."""
     get = edition.get
     motion, encoders, gripper = get("motion"), get("encoders"), get("gripper")
     servos, codes = get("servos"), get("error_codes")

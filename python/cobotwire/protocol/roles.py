@@ -137,7 +137,7 @@ def gripper_request(table: Table, label: str, speed: int) -> Request[Any]:
     return command.request_type(**{state.name: raw, speed_name: speed})
 
 
-def place_role(label: str) -> Role:
+def position_role(label: str) -> Role:
     """Return the role of the query that reports the present angles or coordinates."""
     return "joints" if label == ANGLES else "coordinates"
 

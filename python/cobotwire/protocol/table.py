@@ -196,7 +196,7 @@ class Command(_CommandFields):
         return (bool(self.reply) and not self.ack and not self.event) or self.text is not None
 
     def refusal(self, fields: Mapping[str, Any]) -> tuple[str, str] | None:
-        """Return the name and the word of the status by which a reply reports that it failed.
+        """Return the name and the value of the status by which a reply reports a failure.
 
         Without ``accepted``, each field that is 0 reports it; constants and repeated arguments do
         not count. None: the reply reports success.

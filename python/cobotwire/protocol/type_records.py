@@ -96,7 +96,7 @@ def choices_of(type: Record) -> tuple[int, ...]:
 
 
 def _bits(record: Record) -> Number:
-    """Return a part of a word."""
+    """Return a number that is some bits of a word."""
     lists = {name: tuple(record[name]) for name in ("choices", "labels")}
     return Number(**{**record, **lists})
 

@@ -1,4 +1,4 @@
-"""Acknowledgements: which of the one-way requests that were sent has been acknowledged.
+"""Find out which of the one-way requests that were sent have been acknowledged.
 
 An acknowledgement carries the command's id, perhaps a constant and arguments of the request. If
 several requests with equal ids and arguments were sent and some acknowledgements are lost, it is
@@ -35,9 +35,9 @@ class ExpectedAck:
         sent_at: the second at which it was sent.
         until: the second after which it no longer counts.
         offset: where in the received stream it can begin at the earliest.
-        doubts: until when acknowledgements of other requests may come that look like this one;
-            soonest first.
-        certain: whether it has come, whichever requests the other acknowledgements belong to.
+        doubts: for each similar acknowledgement of another request, the second until which it may
+            come; soonest first.
+        certain: whether it has come for sure, whichever requests other acknowledgements belong to.
     """
 
     __slots__ = ("certain", "doubts", "offset", "request", "sent_at", "until")
@@ -59,7 +59,7 @@ class ExpectedAck:
         self.until = min(self.until, self.sent_at + seconds)
 
     def count(self, frame: Frame, began_at: float) -> None:
-        """Count an acknowledgement that looks like this; the first may belong to other requests."""
+        """Count a similar acknowledgement; the first ones may belong to other requests."""
         self.doubts = [until for until in self.doubts if until > began_at]
         if self.doubts:
             if self.request.replier != ANYBODY:
@@ -101,7 +101,7 @@ class _Received:
         self._messages: dict[str, DecodedMessage | None] = {}
 
     def of(self, request: EncodedRequest) -> DecodedMessage | None:
-        """Return the frame as the acknowledgement of a request; None: it cannot be that."""
+        """Return the frame as the acknowledgement of a request; None if it cannot be that."""
         if not can_come_from(self._address, request):
             return None
         name = request.command.name
@@ -161,7 +161,7 @@ class _CommandAcks:
             self.copied = sent[0]
 
     def take(self, received: _Received, began_at: float) -> None:
-        """Settle the oldest acknowledgement that a frame can be; count it for all that wait."""
+        """Settle the oldest acknowledgement that a frame can be; count it for waiting callers."""
         settled = self.oldest(received)
         if settled is not None and settled.request.replier != ANYBODY:
             # Several devices may acknowledge a broadcast: it stays until its time is over.
@@ -176,7 +176,7 @@ class _CommandAcks:
         return [each.until for each in others if not replies_differ(each.request, request)]
 
     def oldest(self, received: _Received) -> ExpectedAck | None:
-        """Return the oldest acknowledgement that a frame can be; None: it can be none."""
+        """Return the oldest acknowledgement that a frame can be; None if there is none."""
         return next((ack for ack in self.expected if received.of(ack.request)), None)
 
     def forget_expired(self, now: float) -> None:

@@ -56,7 +56,7 @@ class DeviceSession:
         return self._sort(self._framer.feed(data))
 
     def flush(self) -> list[DeviceEvent]:
-        """Give up what is unfinished, since the line has been idle; return what it is."""
+        """Give up an unfinished request, since the line is idle; return its bytes as events."""
         return self._sort(self._framer.flush())
 
     def encode_reply(

@@ -264,7 +264,7 @@ class Exchange:
             pending.written(now)
 
     def idle_seconds(self, now: float) -> float | None:
-        """Return for how long nothing is to be done unless bytes come; None: for ever."""
+        """Return for how long nothing is to be done unless bytes come; None: without limit."""
         soonest = self._acks.next_end if self._acks.waiting else inf
         waiting = self._waiting()
         if waiting is not None:

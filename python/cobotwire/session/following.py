@@ -17,7 +17,7 @@ from contextlib import suppress
 from typing import Any, NoReturn
 
 from cobotwire.kinematics import geometry_of
-from cobotwire.kinematics.coordinates import places_of
+from cobotwire.kinematics.coordinates import indices_of
 from cobotwire.kinematics.curve import Point
 from cobotwire.kinematics.jerk_limited import Bounds, load_ruckig
 from cobotwire.protocol.effects import fresh_mode
@@ -39,31 +39,31 @@ from cobotwire.session.paths import (
     Waypoint,
 )
 from cobotwire.session.request import EncodedRequest
-from cobotwire.session.setpoints import Live, OnLines, Path, Ways, evenly
+from cobotwire.session.setpoints import Interpolation, Live, OnLines, Path, evenly
 
 # Setpoints a second, if the line carries them.
 USUAL_RATE, HIGHEST_RATE = 50.0, 500.0
-# The share of a tick that may pass until a reply comes.
+# The largest share of a tick that a reply may take.
 BUSY_SHARE = 0.8
-# How often the joints are read meanwhile.
+# The seconds between two readings of the joints during the motion.
 FEEDBACK_SECONDS = 0.2
-# The number of queries before the motion; the fastest measures how long a reply takes.
-TRIALS = 3
+# The number of queries before the motion. The shortest of their times is the time of a reply.
+TIMED_QUERIES = 3
 # With fewer setpoints a second an arm stops at each.
 LEAST_RATE = 5.0
 # The longest stall of the process; after a longer one the rest of the path is given up.
 STALL_SECONDS = 0.5
 # An arm that stands still for this long at the end of the path does not continue by itself.
 STILL_SECONDS = 1.0
-LOOK_SECONDS = 0.1
-# The arm lags behind its setpoints, so it gets the highest speed of the setpoints of this duration.
+READING_SECONDS = 0.1
+# The arm lags behind its setpoints, so each is sent with the highest speed of the last second.
 LAG_SECONDS = 1.0
 # The limits of an arm whose edition states none: degrees a second for each percent of speed, and
 # degrees per second squared. A joint is at its full acceleration after JERK_SECONDS.
 UNSTATED_SPEED, UNSTATED_ACCELERATION, JERK_SECONDS = 1.0, 60.0, 0.1
-# Half of what the arm can do is left for catching up.
+# The path uses this share of the acceleration; the arm needs the rest to catch up.
 SHARE_OF_ACCELERATION = 0.5
-# The coordinates of the flange and those that the arm reports differ by more if it has a tool, or
+# If the arm reports its flange further than this from where its angles put it, it has a tool or
 # another frame of reference.
 FRAME_MILLIMETRES = 10.0
 
@@ -72,7 +72,7 @@ Steps = Generator[Step, Outcome, None]
 
 
 class Follow:
-    """One call of ``follow``: its arguments, its steps, and how it went.
+    """One call of ``follow``: its arguments, its steps and its report.
 
     Attributes:
         moving: whether a setpoint was sent, so that an error has to stop the arm.
@@ -121,7 +121,7 @@ class Follow:
         )
         self._lines = _on_lines(table) if coords else None
         self._target = table.in_role("coordinate targets") if coords else self._command
-        self._ways: Ways = self._lines or evenly
+        self._interpolate: Interpolation = self._lines or evenly
         self._source = path if isinstance(path, Source) else None
         self._waypoints = [] if isinstance(path, Source) else self._checked_path(path)
         self.moving = self.stopped = False
@@ -133,7 +133,7 @@ class Follow:
         self._setpoint: Point = ()
 
     def report(self, ended: Ended = "end") -> FollowReport:
-        """Return how it went."""
+        """Return the report on the motion so far."""
         sending = self._sent_at - self._began
         return FollowReport(
             ended,
@@ -173,17 +173,17 @@ class Follow:
 
     def _start(self) -> Generator[Step, Outcome, tuple[Point, float]]:
         """Read where the joints are, and how long a reply takes."""
-        took = []
-        for _ in range(TRIALS):
+        durations = []
+        for _ in range(TIMED_QUERIES):
             before = self._now
-            found = yield from self._ask(self._where)
-            took.append(self._now - before)
+            found = yield from self._query(self._where)
+            durations.append(self._now - before)
         start = tuple(map(float, found))
         if self._lines is not None:
             yield from self._check_frame(start, self._lines)
-        return start, min(took)
+        return start, min(durations)
 
-    def _ask(
+    def _query(
         self, request: Request[Any], longest: float = math.inf
     ) -> Generator[Step, Outcome, Any]:
         self._now, result = yield Query(request, longest)
@@ -194,19 +194,19 @@ class Follow:
         query = self._table.find_role("coordinates")
         if query is None:
             return
-        reported = yield from self._ask(query.request_type())
+        reported = yield from self._query(query.request_type())
         away = math.dist(lines.coords_at(start)[:3], reported[:3])
         if away > FRAME_MILLIMETRES:
             message = (
-                f"coords: the arm reports a place {away:.0f} mm from its flange, so it has a tool "
-                "or another frame of reference; straight lines are computed for the flange alone"
+                f"coords: the arm reports a position {away:.0f} mm from its flange, so it has a "
+                "tool or another frame of reference; straight lines are those of the flange"
             )
             raise UsageError("coords", message=message)
 
     def _plan(self, start: Point, rate: float) -> Path | Live:
         if self._source is not None:
-            return Live(start, self._ways, self._bounds, rate)
-        path = Path(start, self._waypoints, self._ways, self._bounds, rate)
+            return Live(start, self._interpolate, self._bounds, rate)
+        path = Path(start, self._waypoints, self._interpolate, self._bounds, rate)
         for tick in range(1, path.ticks + 1):
             try:
                 self._encoded(path.at(tick)[0], self._speed)
@@ -219,11 +219,11 @@ class Follow:
         """Let new targets replace old ones; keep the request that restores the mode."""
         setting, argument, query = self._fresh
         fresh, usual = (setting.request_type(**{argument: mode}) for mode in (1, 0))
-        if query is not None and (yield from self._ask(query.request_type())):
+        if query is not None and (yield from self._query(query.request_type())):
             return
         self.restore = self._encode(usual)
         self._now, _ = yield Send(self._encode(fresh))
-        if query is not None and not (yield from self._ask(query.request_type())):
+        if query is not None and not (yield from self._query(query.request_type())):
             message = f"the arm ignores {fresh.command}(): it would queue the targets of a path"
             raise UsageError("path", message=message)
 
@@ -231,15 +231,15 @@ class Follow:
         """Send the setpoints, each when its tick begins."""
         speeds: deque[float] = deque(maxlen=max(1, round(LAG_SECONDS / self._period)))
         every = max(1, round(FEEDBACK_SECONDS / self._period))
-        begun, tick = self._now, 0
-        self._heard = begun
+        began, tick = self._now, 0
+        self._received_at = began
         while True:
             self._take_targets(plan)
-            if plan.done and (self._source is None or self._source.over):
+            if plan.done and (self._source is None or self._source.exhausted):
                 return
-            self._now, _ = yield Pause(begun + (tick + 1) * self._period)
+            self._now, _ = yield Pause(began + (tick + 1) * self._period)
             self._check_stopped()
-            late = self._now - (begun + (tick + 1) * self._period)
+            late = self._now - (began + (tick + 1) * self._period)
             if late > STALL_SECONDS:
                 self._fail("stall", f"the program stalled for {late:.1f} s")
             passed = 1 + max(0, math.floor(late / self._period + 1e-6))
@@ -257,27 +257,27 @@ class Follow:
             self._now, _ = yield Send(request)
             self._sent, self._sent_at = self._sent + 1, self._now
             if tick % every == 0:
-                left = begun + (tick + 1) * self._period - self._now
+                left = began + (tick + 1) * self._period - self._now
                 if left > reply_seconds:
                     yield from self._compare(left)
 
     def _take_targets(self, plan: Path | Live) -> None:
         """Take the newest target of a live source."""
-        if self._source is None or self._source.over or isinstance(plan, Path):
+        if self._source is None or self._source.exhausted or isinstance(plan, Path):
             return
         targets = self._source.take()
         if targets:
             self._superseded += len(targets) - 1
-            self._heard = self._now
+            self._received_at = self._now
             plan.take(self._checked("target", targets[-1]), self._now)
-        elif not self._source.over and self._silence is not None:
-            silent = self._now - self._heard
+        elif not self._source.exhausted and self._silence is not None:
+            silent = self._now - self._received_at
             if silent >= self._silence:
                 self._fail("silence", f"no target came for {silent:.1f} s")
 
     def _compare(self, longest: float) -> Steps:
         """Read the joints; keep how far they are from their setpoint."""
-        found = yield from self._ask(self._where, longest)
+        found = yield from self._query(self._where, longest)
         if found is not None:
             away = max(abs(a - b) for a, b in zip(found, self._setpoint))
             self._deviation = max(away, self._deviation or 0.0)
@@ -289,10 +289,10 @@ class Follow:
     def _arrive(self, end: Point) -> Steps:
         """Wait until the joints are at the end of the path."""
         near = TOLERANCES["degree"]
-        begun, still, before = self._now, self._now, None
+        began, still, before = self._now, self._now, None
         while True:
             self._check_stopped()
-            found = yield from self._ask(self._where, max(self._timeout, LOOK_SECONDS))
+            found = yield from self._query(self._where, max(self._timeout, READING_SECONDS))
             if found is not None:
                 away = max(abs(a - b) for a, b in zip(found, end))
                 if away <= near:
@@ -301,9 +301,9 @@ class Follow:
                     still, before = self._now, found
                 if self._now - still >= STILL_SECONDS:
                     self._fail("short", f"the arm stands still {away:.1f} degrees short of the end")
-            if self._now - begun >= self._timeout:
+            if self._now - began >= self._timeout:
                 self._fail("short", f"the arm is not at the end after {self._timeout:g} s")
-            self._now, _ = yield Pause(self._now + LOOK_SECONDS)
+            self._now, _ = yield Pause(self._now + READING_SECONDS)
 
     def _fail(self, ended: Ended, why: str) -> NoReturn:
         raise FollowFailed(why, self.report(ended))
@@ -316,18 +316,20 @@ class Follow:
         found: list[tuple[Point, float | None]] = []
         before = -math.inf
         for number, each in enumerate(path):
-            given = each if isinstance(each, Waypoint) else Waypoint(each)
-            name, time = f"path[{number}]", given.time
+            waypoint = each if isinstance(each, Waypoint) else Waypoint(each)
+            name, time = f"path[{number}]", waypoint.time
             if time is not None:
                 number_right = isinstance(time, int | float) and not isinstance(time, bool)
                 if not number_right or not (before < time < math.inf and time >= 0):
-                    allowed = "seconds, 0 or more, and more than of the point before"
+                    allowed = "seconds, 0 or more, and later than the point before"
                     raise UsageError(f"{name}.time", time, allowed)
                 before = float(time)
             if found and (time is None) != (found[-1][1] is None):
-                message = "some points of the path have times, and others have none"
+                message = "some points of the path have times, and others do not"
                 raise UsageError("path", message=message)
-            found.append((self._checked(name, given.target), None if time is None else float(time)))
+            found.append(
+                (self._checked(name, waypoint.target), None if time is None else float(time))
+            )
         if not found:
             raise UsageError("path", path, "at least one target")
         return found
@@ -341,8 +343,7 @@ class Follow:
         row = self._target.request[0].fields[row_index(self._target.request[0])].name
         arguments: tuple[str, ...] = self._target.request_type.__match_args__
         names = [each for each in arguments if each != row]
-        # Coordinates also need a mode in some editions. Any allowed mode will do, since it is not
-        # sent.
+        # Some editions also need a mode. It is not sent, so any allowed one will do.
         fields = named_fields(self._target.request)
         others = [(*fields[each][0].choices, self._speed)[0] for each in names]
         try:
@@ -362,41 +363,41 @@ def _checked_rate(rate: float | None) -> float:
 
 
 def _on_lines(table: Table) -> OnLines:
-    """Return how coordinates become angles.
+    """Return the function that interpolates between coordinates on straight lines.
 
     Raises:
         UsageError: the geometry of the arm is not known.
     """
     geometry, variant = geometry_of(table), table.in_role("coordinate targets").request[0]
-    places = places_of(variant.fields[row_index(variant)].cases[0].numbers)
-    if geometry is None or places is None:
+    indices = indices_of(variant.fields[row_index(variant)].cases[0].numbers)
+    if geometry is None or indices is None:
         message = f"coords: {table.robot.why_no_geometry}; follow() needs it"
         raise UsageError("coords", message=message)
-    return OnLines(geometry, places, joint_limits(table))
+    return OnLines(geometry, indices, joint_limits(table))
 
 
-def _bounds(given: PathLimits, speed: float, acceleration: float, joints: int) -> Bounds:
+def _bounds(limits: PathLimits, speed: float, acceleration: float, joints: int) -> Bounds:
     """Return the bounds of each joint: the user's, or else what the arm can do."""
-    if not isinstance(given, PathLimits):
-        raise UsageError("limits", given, "PathLimits")
-    accelerations = _each("limits.acceleration", given.acceleration, acceleration, joints)
+    if not isinstance(limits, PathLimits):
+        raise UsageError("limits", limits, "PathLimits")
+    accelerations = _each("limits.acceleration", limits.acceleration, acceleration, joints)
     usual_jerk = tuple(each / JERK_SECONDS for each in accelerations)
-    velocities = _each("limits.velocity", given.velocity, speed, joints)
+    velocities = _each("limits.velocity", limits.velocity, speed, joints)
     for joint, velocity in enumerate(velocities):
         if velocity > speed:
             allowed = f"up to {speed:g} degrees a second, by the speed of the call and the edition"
             raise UsageError(f"limits.velocity[{joint}]", velocity, allowed)
-    return Bounds(velocities, accelerations, _each("limits.jerk", given.jerk, usual_jerk, joints))
+    return Bounds(velocities, accelerations, _each("limits.jerk", limits.jerk, usual_jerk, joints))
 
 
 def _each(
-    name: str, given: float | Sequence[float] | None, usual: float | Point, joints: int
+    name: str, chosen: float | Sequence[float] | None, usual: float | Point, joints: int
 ) -> Point:
     """Return a bound for each joint."""
-    value = usual if given is None else given
+    value = usual if chosen is None else chosen
     each: Point = ()
     with suppress(TypeError, ValueError):
         each = tuple(map(float, value)) if isinstance(value, Sequence) else (float(value),) * joints
     if len(each) != joints or not all(0 < one < math.inf for one in each):
-        raise UsageError(name, given, f"a number above 0, or {joints} of them")
+        raise UsageError(name, chosen, f"a number above 0, or {joints} of them")
     return each

@@ -99,7 +99,7 @@ def _has_constants(variant: Variant, data: bytes) -> bool:
     """Return whether data bytes can be this variant, as far as its constants show."""
     return variant.size == len(data) and all(
         field.allows(number, number.unpack(data, at))
-        for at, (field, number) in variant.places().items()
+        for at, (field, number) in variant.by_offset().items()
         if len(field.choices) == 1
     )
 

@@ -1,4 +1,4 @@
-"""When a motion is over: what to request, and when to give up; times are numbers.
+"""Find out whether a motion has ended: what to query, and when to give up; times are numbers.
 
 A generator yields the next step and receives its outcome. The blocking and the asyncio client only
 carry out the steps.
@@ -15,7 +15,7 @@ from cobotwire.protocol.addresses import NOBODY
 from cobotwire.protocol.errors import ArmState, MotionTimeout, RequestRefused, UsageError
 from cobotwire.protocol.messages import Event, Request
 from cobotwire.protocol.numbers import Number
-from cobotwire.protocol.roles import COORDS, kinds_of, place_role, reached_query, row_index
+from cobotwire.protocol.roles import COORDS, kinds_of, position_role, reached_query, row_index
 from cobotwire.protocol.table import Command, Role, Table
 from cobotwire.session.request import EncodedRequest
 
@@ -23,18 +23,18 @@ from cobotwire.session.request import EncodedRequest
 # these, and two repeats of a query whose reply is lost.
 MOST_QUERIES = 10
 # Near the end, the interval between two queries is this, divided by the number of queries that
-# MOST_QUERIES still allows in the last second.
+# MOST_QUERIES still allows in the same second.
 SPACING_SECONDS = 0.1
 # The position is read a second time after this time; each later interval is twice the one before.
 FIRST_SECONDS = 0.05
 # The longest time between two readings of the position. If the device reports the end of a motion,
 # the queries only make up for an event that was lost.
-LOOK_SECONDS, CONFIRM_SECONDS = 0.5, 1.0
+READING_SECONDS, CONFIRM_SECONDS = 0.5, 1.0
 # Near the end the position is read again after this time.
 AGAIN_SECONDS = 0.15
-# How long the event of the end is awaited before the arm is queried.
+# How long to wait for the event of the end before the arm is queried.
 EVENT_SECONDS = 0.15
-# An arm that nears its target by fewer tolerances a second may stand still and tremble.
+# An arm that approaches its target by fewer tolerances a second may stand still.
 SLOWEST = 2.0
 # An arm that stands still for this long does not continue by itself.
 STILL_SECONDS = 1.0
@@ -47,7 +47,7 @@ REPEAT_SECONDS = 0.1
 class Query(NamedTuple):
     """Send this request, and wait at most ``longest`` seconds for its reply.
 
-    If it is ``optional``, a reply that the edition does not allow counts as none.
+    If it is ``optional``, a reply that the edition does not allow counts as no reply.
     """
 
     request: Request[Any]
@@ -94,7 +94,7 @@ class Goal(NamedTuple):
 
     Attributes:
         target: the numbers of the target.
-        place: the role of the query that reports where the arm is, in the same numbers.
+        position: the role of the query that reports where the arm is, in the same numbers.
         query: reports whether the target is reached, or else where the arm is.
         decides: whether the arm reports by itself whether the target is reached.
         tolerances: how far each number may be from the target if the arm does not report this;
@@ -103,7 +103,7 @@ class Goal(NamedTuple):
     """
 
     target: tuple[float, ...]
-    place: Role
+    position: Role
     query: Request[Any]
     decides: bool
     tolerances: tuple[float, ...]
@@ -113,10 +113,10 @@ class Goal(NamedTuple):
         """Return whether the result of the query says that the target is reached."""
         return bool(result) if self.decides else self.distance(result) <= 1
 
-    def distance(self, place: Sequence[float]) -> float:
-        """Return how far a place is from the target: the farthest number, in its tolerances."""
-        parts = zip(self.target, place, self.tolerances, self.turns)
-        return max(_distance(wish, have, turns) / most for wish, have, most, turns in parts)
+    def distance(self, position: Sequence[float]) -> float:
+        """Return the largest distance of a number from its target, in tolerances."""
+        numbers = zip(self.target, position, self.tolerances, self.turns)
+        return max(_distance(wish, have, turns) / most for wish, have, most, turns in numbers)
 
 
 def _distance(one: float, other: float, turns: bool) -> float:
@@ -128,7 +128,7 @@ def goal_of(table: Table, target: Sequence[float], kind: int) -> Goal:
     """Return the goal of reaching a target; ``kind`` is one of the edition's ``TargetKind``.
 
     Raises:
-        UsageError: there is no such kind, the target has another number of parts, or the edition
+        UsageError: there is no such kind, the target has a wrong number of values, or the edition
             reports neither whether a target of this kind is reached nor where the arm is.
     """
     kinds = kinds_of(table)
@@ -136,20 +136,20 @@ def goal_of(table: Table, target: Sequence[float], kind: int) -> Goal:
     if label is None:
         allowed = ", ".join(f"{name} ({number})" for name, number in kinds.items())
         raise UsageError("kind", kind, allowed)
-    place, reached = place_role(label), reached_query(table)
+    position, reached = position_role(label), reached_query(table)
     decides = reached is not None and label in reached.kinds
-    where = table.find_role(place) if decides else table.in_role(place)
+    where = table.find_role(position) if decides else table.in_role(position)
     numbers = () if where is None else _numbers(where)
     if reached is not None and decides:
         query = reached.request(target, label)
     else:
         if len(target) != len(numbers):
             raise UsageError("len(target)", len(target), str(len(numbers)))
-        query = table.in_role(place).request_type()
+        query = table.in_role(position).request_type()
     tolerances = tuple(TOLERANCES.get(number.unit, OTHER_TOLERANCE) for number in numbers)
-    # A joint has ends; the orientation of the end has none.
+    # A joint has a limited range; the orientation of the flange has none.
     turns = tuple(label == COORDS and number.unit == "degree" for number in numbers)
-    return Goal(tuple(target), place, query, decides, tolerances, turns)
+    return Goal(tuple(target), position, query, decides, tolerances, turns)
 
 
 def _numbers(where: Command) -> tuple[Number, ...]:
@@ -167,13 +167,11 @@ def ack_seconds(request: EncodedRequest) -> float | None:
 def until_reached(table: Table, goal: Goal, limit: float, started: float) -> Steps:
     """Yield the steps of waiting until the arm is at a target.
 
-    Two readings of the position show when the arm will arrive. The position is queried rarely
-    until shortly before the arrival; then the arm is often queried whether it is there. What the
-    device itself sends about the end of a motion looks the same for an earlier motion, so a query
-    confirms it.
+    Two readings of the position show when the arm will arrive. Until shortly before that the
+    position is queried rarely; then the arm is queried often whether it is there. An event or
+    acknowledgement of the end may belong to an earlier motion, so a query confirms it.
 
-    A request without a reply is not an error: the arm is busy. A later one repeats it, until the
-    time is over.
+    A query without a reply is not an error: the arm is busy. It is repeated until the time is over.
 
     Raises:
         MotionTimeout: the target was not reached within ``limit`` seconds, or the arm has stood
@@ -192,31 +190,31 @@ class _Wait:
         self._now = started
         self._ended, self._moving = table.find_role("motion ended"), table.find_role("moving")
         # None: nothing reports where the arm is.
-        self._where = table.find_role(goal.place) if goal.tolerances else None
+        self._where = table.find_role(goal.position) if goal.tolerances else None
         # The time and the result of the last reading of the position.
         self._before: tuple[float, Any] | None = None
         self._still_since: float | None = None
         # When the arm may be there at the earliest, and when its position is read again.
-        self._due = self._look_at = started
+        self._due = self._read_at = started
         self._sent: deque[float] = deque()
 
     def steps(self) -> Steps:
         """Yield the steps of the wait."""
-        goal, heard = self._goal, False
+        goal, signed = self._goal, False
         while True:
-            near, found = heard or self._now >= self._due, None
+            near, found = signed or self._now >= self._due, None
             if near or not goal.decides:
-                found = yield from self._ask(goal.query, optional=False)
+                found = yield from self._query(goal.query, optional=False)
                 if found is not None and goal.is_met(found):
                     return
-            if not goal.decides or not near or self._now >= self._look_at:
-                yield from self._look(None if goal.decides else found, near)
+            if not goal.decides or not near or self._now >= self._read_at:
+                yield from self._predict(None if goal.decides else found, near)
             still = None if self._still_since is None else self._now - self._still_since
             if self._now >= self._ends or (still is not None and still >= STILL_SECONDS):
                 yield from self._give_up(standing=still is not None)
-            heard = yield from self._rest()
+            signed = yield from self._rest()
 
-    def _ask(
+    def _query(
         self, request: Request[Any], *, optional: bool = True
     ) -> Generator[Step, Outcome, Any]:
         """Yield a query as soon as it may be sent; return its result."""
@@ -230,39 +228,39 @@ class _Wait:
         self._sent.extend([sent, *again])
         return result
 
-    def _look(self, place: Any, near: bool) -> Generator[Step, Outcome, None]:
+    def _predict(self, position: Any, near: bool) -> Generator[Step, Outcome, None]:
         """Find out when the arm may be there, or else whether it stands still.
 
-        ``place`` is the position, None if the arm did not reply. If the query of the goal does not
-        report it, another query does. ``near`` tells whether it could be there.
+        ``position`` is None if the arm did not reply; if the query of the goal does not report it,
+        another query does. ``near`` tells whether the arm could be there.
         """
         if self._where is not None and self._goal.decides:
-            place = yield from self._ask(self._where.request_type())
-            if place is None and self._moving is not None:
-                # Perhaps this arm cannot say where it is.
+            position = yield from self._query(self._where.request_type())
+            if position is None and self._moving is not None:
+                # Perhaps this arm cannot report where it is.
                 self._where = None
-        before, self._before = self._before, None if place is None else (self._now, place)
-        self._look_at = self._now + AGAIN_SECONDS
-        if place is not None and before is None:
+        before, self._before = self._before, None if position is None else (self._now, position)
+        self._read_at = self._now + AGAIN_SECONDS
+        if position is not None and before is None:
             self._due = inf
             return
         self._due = self._now
-        if before is not None and place is not None:
-            left = self._goal.distance(place)
+        if before is not None and position is not None:
+            left = self._goal.distance(position)
             speed = (self._goal.distance(before[1]) - left) / max(self._now - before[0], 1e-6)
             if speed >= SLOWEST:
                 self._still_since = None
                 # The earliest time: the arm is at full speed, but may have to brake.
                 self._due += left / speed + (0.0 if self._ended is None else EVENT_SECONDS)
-                self._look_at = max(self._due, self._look_at)
+                self._read_at = max(self._due, self._read_at)
                 return
         if not near:
             # The arm may be at the target.
-            self._look_at = self._now
+            self._read_at = self._now
             return
-        is_moving = None if before is None or place is None else place != before[1]
+        is_moving = None if before is None or position is None else position != before[1]
         if self._moving is not None:
-            is_moving = yield from self._ask(self._moving.request_type())
+            is_moving = yield from self._query(self._moving.request_type())
         if is_moving is None or is_moving:
             self._still_since = None
         elif self._still_since is None:
@@ -277,7 +275,7 @@ class _Wait:
         if self._due > now:
             longest = CONFIRM_SECONDS
             if self._ended is None:
-                longest = min(LOOK_SECONDS, max(FIRST_SECONDS, now - self._started))
+                longest = min(READING_SECONDS, max(FIRST_SECONDS, now - self._started))
             until = max(until, min(self._due, now + longest))
         return (yield from self._listen(min(until, max(now, self._ends))))
 
@@ -311,7 +309,7 @@ class _Wait:
 
 def _state(table: Table, goal: Goal) -> Generator[Step, Outcome, ArmState]:
     """Yield queries for the reasons why the arm is not there; return the replies."""
-    roles: tuple[Role, ...] = (goal.place, "powered", "paused", "error")
+    roles: tuple[Role, ...] = (goal.position, "powered", "paused", "error")
     found: list[Any] = []
     for role in roles:
         command = table.find_role(role)
@@ -320,12 +318,12 @@ def _state(table: Table, goal: Goal) -> Generator[Step, Outcome, ArmState]:
         else:
             outcome = yield Query(command.request_type(), STATE_SECONDS, optional=True)
             found.append(outcome.result)
-    place, powered, paused, error = found
-    position = None if place is None else tuple(place)
+    position, powered, paused, error = found
+    position = None if position is None else tuple(position)
     return ArmState(position, powered, paused, error, error_meaning(table, error or 0))
 
 
 def error_meaning(table: Table, error: int) -> str:
-    """Return what the edition says about a number of its error register; empty if nothing."""
+    """Return the meaning of a number of the error register; empty if the edition states none."""
     command = table.find_role("error")
     return "" if command is None else command.reply[0].fields[-1].meaning(error)

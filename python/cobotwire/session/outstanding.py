@@ -45,7 +45,7 @@ class OutstandingReplies:
         self.replies = (*self.replies, *late_replies(pending, received))
 
     def settle(self, reply: OutstandingReply) -> None:
-        """Expect a reply no longer."""
+        """Stop expecting a reply."""
         self.replies = tuple(other for other in self.replies if other is not reply)
 
     def drop_expired(self, now: float) -> None:
@@ -58,7 +58,7 @@ class OutstandingReplies:
         return max(alike, default=None)
 
     def find(self, frame: Frame, now: float) -> OutstandingReply | None:
-        """Return the oldest outstanding reply that a frame can be; None: it can be none of them."""
+        """Return the oldest outstanding reply that a frame can be; None if there is none."""
         for reply in self.replies:
             if reply.until > now and can_reply_to(frame, reply.request):
                 return reply

@@ -51,7 +51,7 @@ class FollowReport(NamedTuple):
         superseded: targets of the source for which there was no setpoint before a newer one came.
         deviation: the largest distance of a joint from its setpoint in degrees, as far as the arm
             replied; None: it did not.
-        seconds: how long it took.
+        seconds: how long the motion took.
     """
 
     ended: Ended
@@ -83,9 +83,9 @@ class Send(NamedTuple):
 
 
 class Source:
-    """A live source of targets; ``over`` says whether no further target comes."""
+    """A live source of targets; ``exhausted`` says whether no further target comes."""
 
-    over = False
+    exhausted = False
 
     def take(self) -> list[Target]:
         """Return the targets that came since the last call; raise what the source raised."""

@@ -84,7 +84,7 @@ class Pending:
     Attributes:
         request: what is sent.
         done: whether it has ended; :meth:`result` then returns its outcome.
-        ends_by: when its caller waits no longer; inf: its caller has no deadline.
+        ends_by: the deadline of its caller; inf: there is none.
     """
 
     __slots__ = ("_error", "_fields", "_on_done", "_received", "done", "ends_by", "request")

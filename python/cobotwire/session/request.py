@@ -25,7 +25,7 @@ class EncodedRequest(NamedTuple):
     """A request as it goes over the line.
 
     ``arguments`` are the arguments that a reply repeats, with their values; empty if no reply
-    repeats any. ``text`` follows some requests outside the frame. ``replier`` is the address that
+    repeats any. ``text`` follows some frames. ``replier`` is the address that
     its reply must have, or who replies to a broadcast (ANYBODY, SOMEBODY, NOBODY); None if frames
     have no address. Without ``reply_has_id`` its reply is known only by address and size.
     """
@@ -55,7 +55,7 @@ class RequestEncoder:
     """Encodes requests to one address; what does not depend on the arguments is computed once."""
 
     def __init__(self, codec: Codec, address: Address | None = None) -> None:
-        """Take the address of every request; left out: the first one that the edition has."""
+        """Take the address of every request; by default the edition's first one, if it has any."""
         self._codec = codec
         self._to = address or find_address(codec.table, None)
         self._address = None if self._to is None else self._to.value

@@ -1,4 +1,4 @@
-"""What a stream yields: samples, and a report of how it went."""
+"""What a stream yields: samples, and a report on its periods."""
 
 from __future__ import annotations
 
@@ -102,7 +102,7 @@ class Sample:  # not a tuple: its keys are requests
 
 
 class StreamReport(NamedTuple):
-    """How a stream went so far. Every period has a sample, or is missed for one reason of three."""
+    """The periods of a stream so far: each has a sample, or is missed for one of three reasons."""
 
     rate: float
     """Periods a second: what was requested."""
@@ -113,7 +113,7 @@ class StreamReport(NamedTuple):
     overrun: int
     """Missed: the line or the process was still busy. The rate is more than they can do."""
     unread: int
-    """Missed: the consumer wanted no sample by then, so nothing was requested either."""
+    """Missed: the consumer requested no sample in time, so nothing was sent."""
 
     @property
     def missed(self) -> int:

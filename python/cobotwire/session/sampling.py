@@ -109,7 +109,7 @@ class Sampler:
         self._free = now
 
     def report(self, now: float) -> StreamReport:
-        """Return how it went until ``now``; nothing changes."""
+        """Return the report until ``now``; nothing changes."""
         overrun, unread = self._passed(now)
         return StreamReport(
             self._rate,

@@ -13,11 +13,11 @@ from collections.abc import Callable, Sequence
 from cobotwire.kinematics import Geometry, Pose, coords_of, flange
 from cobotwire.kinematics.coordinates import pose_with
 from cobotwire.kinematics.curve import Curve, Point
-from cobotwire.kinematics.jerk_limited import Along, Bounds, Chase, InTime, excesses, paced
+from cobotwire.kinematics.jerk_limited import Along, Bounds, InTime, Tracker, excesses, paced
 from cobotwire.kinematics.straight import angles_along, steps_between, straight_line
 from cobotwire.protocol.errors import UsageError
 
-# A waypoint at 0 s must be where the arm is, to within that many degrees.
+# A waypoint at 0 s may be at most this far from where the arm is.
 HERE_DEGREES = 1.0
 # Two points that are nearer than this are one point of a path.
 SAME_DEGREES = 1e-6
@@ -25,9 +25,9 @@ SAME_DEGREES = 1e-6
 SPREAD_SECONDS = 0.25
 
 
-# Takes start, target and the number of steps (0: as many as the path needs). Returns the angles
+# Takes start, target and the number of steps (0: as many as the line needs). Returns the angles
 # after each step; the last ones are the target. Raises UsageError if the joints cannot go there.
-Ways = Callable[[Point, Point, int], list[Point]]
+Interpolation = Callable[[Point, Point, int], list[Point]]
 
 
 def evenly(start: Point, target: Point, steps: int) -> list[Point]:
@@ -40,26 +40,26 @@ def evenly(start: Point, target: Point, steps: int) -> list[Point]:
 
 
 class OnLines:
-    """Targets are coordinates of the flange; it moves on straight lines."""
+    """Interpolates between coordinates of the flange on straight lines."""
 
     def __init__(
         self,
         geometry: Geometry,
-        places: Sequence[int],
+        indices: Sequence[int],
         limits: Sequence[tuple[float, float]],
     ) -> None:
-        """``places`` says which of the six coordinates a target has."""
-        self._geometry, self._places, self._limits = geometry, places, limits
+        """``indices`` are those of the coordinates that a target has, among all six."""
+        self._geometry, self._indices, self._limits = geometry, indices, limits
 
     def coords_at(self, angles: Point) -> Point:
-        """Return those coordinates of the flange that targets have."""
+        """Return the coordinates of the flange that a target has."""
         coords = coords_of(self._geometry, angles)
-        return tuple(coords[place] for place in self._places)
+        return tuple(coords[index] for index in self._indices)
 
     def __call__(self, start: Point, target: Point, steps: int) -> list[Point]:
-        """Return the angles on the way."""
+        """Return the angles after each step."""
         here = flange(self._geometry, start)
-        end: Pose = pose_with(target, self._places, here)
+        end: Pose = pose_with(target, self._indices, here)
         count = steps or steps_between(here, end)
         line = straight_line(here, end, count)
         found = angles_along(self._geometry, line, start, self._limits)
@@ -77,21 +77,21 @@ class Path:
         self,
         start: Point,
         waypoints: Sequence[tuple[Point, float | None]],
-        ways: Ways,
+        interpolate: Interpolation,
         bounds: Bounds,
         rate: float,
     ) -> None:
         """Plan the path from where the joints are.
 
         Raises:
-            UsageError: a waypoint cannot be reached, or not in its time.
+            UsageError: a waypoint cannot be reached, or not by its time.
         """
         self._rate, self._tick = rate, 0
         self._motion: Along | InTime | None = None
         timed = any(time is not None for _, time in waypoints)
         points, times = [start], [0.0]
         for number, (target, time) in enumerate(waypoints):
-            added = _named(number, ways, points[-1], target)
+            added = _named(number, interpolate, points[-1], target)
             if timed:
                 assert time is not None, "all waypoints have times, or none has"
                 if time <= times[-1]:
@@ -114,7 +114,7 @@ class Path:
 
     @property
     def done(self) -> bool:
-        """Whether the last setpoint was stepped to."""
+        """Whether the last setpoint was returned."""
         return self._tick >= self.ticks
 
     def at(self, tick: float) -> tuple[Point, float]:
@@ -130,53 +130,55 @@ class Path:
 
 
 class Live:
-    """The setpoints that follow the targets of a source. Each step is nearer to the newest target.
+    """The setpoints that follow the targets of a source; each is nearer to the newest target.
 
     A new target is approached over the time that the source takes from one to the next, so that
     joints do not stop at each.
     """
 
-    def __init__(self, start: Point, ways: Ways, bounds: Bounds, rate: float) -> None:
-        self._ways, self._rate = ways, rate
-        self._chase = Chase(start, bounds, 1 / rate)
+    def __init__(
+        self, start: Point, interpolate: Interpolation, bounds: Bounds, rate: float
+    ) -> None:
+        self._interpolate, self._rate = interpolate, rate
+        self._tracker = Tracker(start, bounds, 1 / rate)
         self._aim: Point = start
         self._ahead: deque[Point] = deque()
-        self._heard: float | None = None
+        self._received_at: float | None = None
         self.moves = False
 
     @property
     def end(self) -> Point:
-        """Where the joints go."""
+        """The newest target."""
         return self._ahead[-1] if self._ahead else self._aim
 
     @property
     def done(self) -> bool:
         """Whether the joints are at the newest target."""
-        return not self._ahead and self._chase.arrived
+        return not self._ahead and self._tracker.arrived
 
     def take(self, target: Point, now: float) -> None:
-        """Go to a new target from now on.
+        """Approach a new target from now on.
 
         Raises:
             UsageError: the joints cannot go there.
         """
-        gap = 0.0 if self._heard is None else min(now - self._heard, SPREAD_SECONDS)
-        self._heard, self.moves = now, True
+        gap = 0.0 if self._received_at is None else min(now - self._received_at, SPREAD_SECONDS)
+        self._received_at, self.moves = now, True
         ticks = max(1, round(gap * self._rate))
-        self._ahead = deque(self._ways(self._aim, target, ticks))
+        self._ahead = deque(self._interpolate(self._aim, target, ticks))
 
     def step(self, ticks: int) -> tuple[Point, float]:
         """Move on by some ticks; return the setpoint and the highest speed."""
         for _ in range(ticks):
             if self._ahead:
                 self._aim = self._ahead.popleft()
-            point, speed = self._chase.step(self._aim)
+            point, speed = self._tracker.step(self._aim)
         return point, speed
 
 
-def _named(number: int, ways: Ways, start: Point, target: Point) -> list[Point]:
+def _named(number: int, interpolate: Interpolation, start: Point, target: Point) -> list[Point]:
     try:
-        return ways(start, target, 0)
+        return interpolate(start, target, 0)
     except UsageError as error:
         raise UsageError(f"path[{number}]", message=f"path[{number}]: {error}") from None
 
@@ -202,8 +204,8 @@ def _in_time(points: list[Point], times: list[float], bounds: Bounds) -> InTime:
         if each.needed > each.allowed:
             message = (
                 f"the times of the path need {each.bound} {each.needed:.4g} {unit} of joint "
-                f"{each.joint + 1}; allowed: {each.allowed:g} {unit}; times {each.slower:.2f} x as "
-                "long would do"
+                f"{each.joint + 1}; allowed: {each.allowed:g} {unit}; make the times "
+                f"{each.slower:.2f} times as long"
             )
             raise UsageError("path", message=message)
     return motion

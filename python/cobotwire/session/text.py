@@ -45,8 +45,8 @@ def decode(variant: Text, data: bytes) -> dict[str, str]:
     """Return the fields of a text by name. They may contain spaces; a final line end is dropped.
 
     Raises:
-        ProtocolError: the text is not ASCII, starts or ends in another way, or holds a prefix more
-            than once, so that it has two meanings.
+        ProtocolError: the text is not ASCII, lacks its start or end, or holds a prefix more than
+            once, so that it has two meanings.
     """
     try:
         text = data.decode("ascii").rstrip("\r\n")

@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any, NamedTuple
 
-from cobotwire.kinematics.coordinates import places_of
+from cobotwire.kinematics.coordinates import indices_of
 from cobotwire.protocol.fields import Field
 from cobotwire.protocol.roles import ANGLES, as_reached_query
 from cobotwire.protocol.table import Command
@@ -59,7 +59,7 @@ class Reported(NamedTuple):
         Raises:
             Unanswerable: the arm has no geometry, or none for this field.
         """
-        known = self.which is not None or places_of(self.field.cases[0].numbers) is not None
+        known = self.which is not None or indices_of(self.field.cases[0].numbers) is not None
         if coords is None or not known:
             raise Unanswerable
         return self.one_of(coords)

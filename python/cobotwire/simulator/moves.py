@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from cobotwire.kinematics import Pose
-from cobotwire.kinematics.coordinates import places_of, pose_with
+from cobotwire.kinematics.coordinates import indices_of, pose_with
 from cobotwire.kinematics.pose import turned_about
 from cobotwire.kinematics.straight import STEP_DEGREES, STEP_MILLIMETRES
 from cobotwire.protocol.effects import Moves
@@ -159,14 +159,14 @@ def _move_end(
         return
     field = _argument(command, effect.to)
     assert field is not None, "the generator checks that the argument exists"
-    places = places_of(field.cases[0].numbers)
-    if places is None:
+    indices = indices_of(field.cases[0].numbers)
+    if indices is None:
         arm.remarks.append("rejected: the arm has no inverse kinematics for these coordinates")
         return
     row, straight = fields[field.name], _is_straight(arm, command, fields)
     # A full set of coordinates is the target as it is: the present pose, which is rounded, is not
     # needed, so reported coordinates that are sent back lead to the same place.
-    target = row if places == arm.coordinates else pose_with(row, places, end)
+    target = row if indices == arm.coordinates else pose_with(row, indices, end)
     go_to_coords(arm, target, speed, now, straight=straight)
 
 

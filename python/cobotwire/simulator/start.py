@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from cobotwire.kinematics.coordinates import ALL_SIX, places_of
+from cobotwire.kinematics.coordinates import ALL_SIX, indices_of
 from cobotwire.kinematics.ticks import Steps
 from cobotwire.protocol.table import Number, Table
 
@@ -12,7 +12,7 @@ def coordinates(table: Table) -> tuple[int, ...]:
     query = table.find_role("coordinates")
     if query is None or not query.reply:
         return ALL_SIX
-    return places_of(query.reply[0].fields[-1].cases[0].numbers) or ALL_SIX
+    return indices_of(query.reply[0].fields[-1].cases[0].numbers) or ALL_SIX
 
 
 def steps(table: Table) -> Steps:

@@ -18,8 +18,8 @@ from cobotwire.transport.waiting import has_room
 
 # A write fails when no byte of it was taken for this long.
 WRITE_TIMEOUT = 1.0
-# How often a write that waits is tried again.
-TRY_SECONDS = 0.02
+# The pause between attempts to write, in seconds.
+RETRY_SECONDS = 0.02
 # After at most this long the reading thread notices that the transport was closed.
 SLICE_SECONDS = 0.1
 
@@ -69,7 +69,7 @@ class PolledTransport:
             self._taken = taken
             self._progress_at = self._loop.time()
             self._loop.add_writer(self._descriptor, self._write_on)
-            self._try_later()
+            self._retry_later()
         self._unwritten.append((data, done))
         return False
 
@@ -101,18 +101,18 @@ class PolledTransport:
         if not self._unwritten:
             self._end_writing(None)
 
-    def _try_later(self) -> None:
+    def _retry_later(self) -> None:
         # A tty is reported as writable only when most of its buffer is free; it takes bytes before.
         if self._timer is not None:
             self._timer.cancel()
-        self._timer = self._loop.call_later(TRY_SECONDS, self._try)
+        self._timer = self._loop.call_later(RETRY_SECONDS, self._retry)
 
-    def _try(self) -> None:
+    def _retry(self) -> None:
         if self._unwritten:
             self._write_on()
         if self._unwritten:
             if self._loop.time() - self._progress_at < WRITE_TIMEOUT:
-                self._try_later()
+                self._retry_later()
             else:
                 detail = f"cannot be written: no byte was taken in {WRITE_TIMEOUT:.1f} s"
                 self._end_writing(LinkError(self._transport.url, detail))
@@ -233,7 +233,7 @@ class ThreadedTransport:
                 self._in_loop(done, None)
 
     def _link_error(self, error: Exception) -> LinkError:
-        """Return the error for callers, who would wait for ever if it ended the thread."""
+        """Return any error as a LinkError: if it ended the thread, callers would wait for ever."""
         if isinstance(error, LinkError):
             return error
         return LinkError(self._transport.url, f"raised {error!r}")

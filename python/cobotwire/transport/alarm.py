@@ -1,4 +1,4 @@
-"""A descriptor that becomes readable when another thread says so, to end a wait."""
+"""A descriptor that another thread makes readable, to end a wait."""
 
 from __future__ import annotations
 

@@ -29,7 +29,7 @@ def write_limit(size: int, baudrate: int) -> float:
 
 
 class DescriptorTransport(ABC):
-    """An :class:`OpenedTransport` over a descriptor; the kinds differ in the last methods."""
+    """An :class:`OpenedTransport` over a descriptor; subclasses implement the last methods."""
 
     kind = ""
     low_latency = False

@@ -47,7 +47,7 @@ class PollableTransport(Transport, Protocol):
         ...
 
     def write_some(self, data: bytes) -> int:
-        """Send what is taken at once; return how many bytes that was, perhaps 0.
+        """Send the bytes that are taken at once; return how many, perhaps 0.
 
         Raises:
             LinkError: the transport is gone.

@@ -60,7 +60,7 @@ class Tapped:
 
 
 class TappedTransport(Tapped):
-    """An :class:`OpenedTransport` around another one; its tap is that of :class:`Tapped`."""
+    """An :class:`OpenedTransport` around another one; see :class:`Tapped`."""
 
     def __init__(self, transport: OpenedTransport, tap: Tap) -> None:
         super().__init__(transport, tap)
@@ -100,12 +100,12 @@ class _BorrowedTransport(TappedTransport):
 def borrowed(transport: Transport) -> Transport:
     """Return a transport to the same peer; closing it leaves ``transport`` open.
 
-    So a client can be closed, and persist its outstanding replies, before another client uses the
-    transport.
+    A client on it can be closed, and so persist its outstanding replies, before another client uses
+    ``transport``.
     """
     if isinstance(transport, OpenedTransport):
-        return _BorrowedTransport(transport, _show_nobody)
-    return _Borrowed(transport, _show_nobody)
+        return _BorrowedTransport(transport, _ignore)
+    return _Borrowed(transport, _ignore)
 
 
 def tapped(transport: Transport, tap: Tap) -> Transport:
@@ -115,5 +115,5 @@ def tapped(transport: Transport, tap: Tap) -> Transport:
     return Tapped(transport, tap)
 
 
-def _show_nobody(direction: str, data: bytes, at: float) -> None:
+def _ignore(direction: str, data: bytes, at: float) -> None:
     pass

@@ -157,8 +157,8 @@ fn wrong_argument_and_exceeded_limit_are_refused_before_a_byte_is_sent() {
         (missing, "get_encoder() is missing its argument joint; it takes joint"),
         (limited.send_coords(place(300.0), 51, None), "speed is 51; allowed: a whole number 1..50 percent"),
         (limited.send_coords(place(50.0), 50, None), "coords.z is 50.0; allowed: a number 200.."),
-        (limited.send_angles(up, 50), "where the end would go is not known before"),
-        (limited.set_servo_calibration(1), "its effect stays, and limits.speed"),
+        (limited.send_angles(up, 50), "it is unknown where the end of the arm would go"),
+        (limited.set_servo_calibration(1), "its effect is permanent, and limits.speed"),
         (limited.set_tool_reference(home), "it changes what coordinates mean"),
     ];
     for (outcome, text) in refused {

@@ -102,7 +102,7 @@ def test_joints_stay_inside_the_workspace_and_the_gripper_moves_when_its_target_
     for _ in range(3):
         assert robot.send_action(DOWN | {"gripper.pos": 40.0}) == inside | {"gripper.pos": 40.0}
     assert bench.requests == ["set_gripper_value", "send_angles", "set_gripper_value"]
-    assert "would move the end to z -11.3 mm" in caplog.records[1].message
+    assert "would move the end of the arm to z -11.3 mm" in caplog.records[1].message
     assert len(caplog.records) == 2
     assert {type(value) for value in robot.get_observation().values()} == {float}
 

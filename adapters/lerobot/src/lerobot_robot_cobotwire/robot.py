@@ -96,7 +96,7 @@ class CobotwireRobot(ArmDevice, Robot):
     def send_action(self, action: dict[str, Any]) -> dict[str, Any]:
         """Send targets without waiting, clipped to the limits; return what was sent.
 
-        If the end would leave the workspace, the joints keep their last targets.
+        If the end of the arm would leave the workspace, the joints keep their last targets.
 
         Raises:
             UsageError: a target is missing, is not a finite number, or is for no joint.

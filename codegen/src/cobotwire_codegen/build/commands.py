@@ -155,8 +155,8 @@ def _command(
 # The sentences about each kind of version.
 FIRMWARE_WORDS = {
     "since": "It needs firmware {} or later",
-    "until": "It is gone since firmware {}",
-    "reply_since": "It is replied to since firmware {}",
+    "until": "Firmware {} removed it",
+    "reply_since": "It gets a reply since firmware {}",
 }
 
 

@@ -98,7 +98,7 @@ class ErrorCodes(Record):
     """The numbers that a simulated arm reports when it rejects a motion."""
 
     joint_limits = required(Numbers(), "For each joint, the number for a target beyond its limit.")
-    no_solution = required(Whole(1), "No joint angles bring the end to the target.")
+    no_solution = required(Whole(1), "No joint angles bring the end of the arm to the target.")
     no_straight_line = required(Whole(1), "The joints cannot follow a straight line.")
     stopped = optional(Whole(0), "A motion was stopped before its target. 0: it has no number.")
     no_power = optional(Whole(0), "The arm has no power, or not every joint is held. 0: no number.")

@@ -27,7 +27,7 @@ REPLIES = {
 ROLES = {
     "joint targets": "Moves all joints to a row of targets, at a speed.",
     "joint target": "Moves one joint: one argument selects it, another is its target.",
-    "coordinate targets": "Moves the end to a row of coordinates, at a speed.",
+    "coordinate targets": "Moves the end of the arm to coordinates, at a speed.",
     "coordinate target": "Moves along one axis: one argument selects it, another is its target.",
     "reached": "Reports whether the arm is at a target.",
     "moving": "Reports whether the arm is in motion.",
@@ -64,8 +64,8 @@ CONTROLS = {
 # The state that every arm has: the simulator computes it, so no edition declares it.
 BUILT_IN = {
     "angles": "The angles of all joints, or with `at` of one, in the field's unit.",
-    "coords": "The coordinates of the end, in the frame and for the end that are set.",
-    "base_coords": "The coordinates of the end in the frame of the base.",
+    "coords": "The coordinates of the end of the arm or its tool, in the frame that is set.",
+    "base_coords": "The coordinates of the end of the arm in the frame of the base.",
     "planned_angles": "The angles at which the present motion ends.",
     "planned_coords": "The coordinates at which the present motion ends, in the frame of the base.",
     "opening": "How far the gripper is open, in percent.",

@@ -1,4 +1,4 @@
-"""Describes the arguments of a method, in its order, and the combinations in which to give them."""
+"""Describes the arguments of a method, in its order, and their legal combinations."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Remembers what was derived from an object of the model."""
+"""Caches what was derived from an object of the model."""
 
 from __future__ import annotations
 

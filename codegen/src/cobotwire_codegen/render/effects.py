@@ -7,12 +7,17 @@ from collections.abc import Iterable, Iterator, Set
 from cobotwire_codegen.language.words import CONTROLS
 from cobotwire_codegen.model import Command, Edition, Effect
 
-_PARTS = {"joints": "all joints", "joint": "one joint", "end": "the end", "gripper": "the gripper"}
+_PARTS = {
+    "joints": "all joints",
+    "joint": "one joint",
+    "end": "the end of the arm",
+    "gripper": "the gripper",
+}
 # The built-in state. Other state is called by its name.
 _BUILT_IN = {
     "angles": "the angles of all joints",
-    "coords": "the coordinates of the end",
-    "base_coords": "the coordinates of the end in the frame of the base",
+    "coords": "the coordinates of the end of the arm",
+    "base_coords": "the coordinates of the end of the arm in the frame of the base",
     "planned_angles": "the angles at which the present motion ends",
     "planned_coords": "the coordinates at which the present motion ends",
     "opening": "the opening of the gripper",

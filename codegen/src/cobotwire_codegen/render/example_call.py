@@ -15,7 +15,7 @@ from cobotwire_codegen.render.markdown import text_vector
 from cobotwire_codegen.render.parameters import Parameter, parameters, results, returns
 from cobotwire_codegen.render.words import decimal
 
-# Texts with other characters need escapes, which are hard to read, so ``...`` replaces them.
+# Other texts need escapes, which are hard to read, so ``...`` replaces them.
 _PLAIN = re.compile(r"[\w .,:/-]*\Z", re.ASCII)
 _ANY_TEXT = '"..."'
 

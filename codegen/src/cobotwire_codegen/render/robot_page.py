@@ -67,7 +67,7 @@ def _speed(edition: Edition) -> str:
 
 
 def _seen(edition: Edition) -> Iterator[tuple[str, Dispute, str]]:
-    """Yield the facts about which a real arm is a source, with what it showed."""
+    """Yield the facts that have a real arm as a source, each with what the arm showed."""
     for thing in (*edition.commands, *edition.types, *edition.wires):
         for dispute in getattr(thing, "disputed", ()):
             shown = [_words(each) for each in dispute.evidence if _REAL_ARM.search(each.source)]
@@ -76,7 +76,7 @@ def _seen(edition: Edition) -> Iterator[tuple[str, Dispute, str]]:
 
 
 # What happened to a command with a version of the firmware.
-_CHANGES = {"since": "new", "until": "removed", "reply_since": "is replied to"}
+_CHANGES = {"since": "new", "until": "removed", "reply_since": "gets a reply"}
 
 
 def _history(edition: Edition) -> list[tuple[str, str, str, str]]:

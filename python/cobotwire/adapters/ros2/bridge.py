@@ -13,7 +13,7 @@ from cobotwire.adapters.ros2.motion import Motion
 from cobotwire.capture.export import ros_messages as ros
 from cobotwire.client.aio import AsyncClient
 from cobotwire.kinematics import Pose, flange, geometry_of
-from cobotwire.kinematics.coordinates import places_of, pose_with
+from cobotwire.kinematics.coordinates import indices_of, pose_with
 from cobotwire.protocol.errors import LinkError, UsageError
 from cobotwire.protocol.table import Command, Number, Role, Table
 
@@ -125,6 +125,6 @@ def _end_of(
     """
     query, geometry = table.find_role("coordinates"), geometry_of(table)
     if query is not None:
-        places = places_of(numbers_of(table, "coordinates"))
-        return None if places is None else (query, partial(pose_with, places=places, other=None))
+        indices = indices_of(numbers_of(table, "coordinates"))
+        return None if indices is None else (query, partial(pose_with, indices=indices, other=None))
     return None if geometry is None else (joints, partial(flange, geometry))

@@ -71,7 +71,7 @@ class Validator:
         return self.heading_of(rest) if len(rest) >= frame.head_size else "truncated"
 
     def _reject_part(self, part: FixedPart, rest: bytes) -> NoiseReason | None:
-        """Return why a part by itself is illegal; None if it is not, or has not come."""
+        """Return why a fixed part by itself is illegal; None if it is legal, or has not come."""
         frame, size = self.frame, len(rest)
         if part == "address":
             at = frame.address_at
@@ -82,9 +82,9 @@ class Validator:
             return "bad-length" if come and frame.read_length(rest) not in self._lengths else None
         if self.accept_unknown or frame.id_at + frame.id_number.width > size:
             return None
-        # After LEN, the two are validated together.
-        alone = frame.id_at < frame.length_at
-        known = not alone or any(index.has(frame.read_id(rest)) for index in self.indexes)
+        # If the id follows LEN, the two are validated together.
+        follows = frame.id_at > frame.length_at
+        known = follows or any(index.has(frame.read_id(rest)) for index in self.indexes)
         return None if known else "unknown-id"
 
     def messages(self, heading: Heading, of: Command | None = None) -> list[MessageVariant]:

@@ -18,7 +18,7 @@ class AsyncMyArm300(AsyncMovingClient):
 
     Create it with a port or URL, preferably in an ``async with`` block; see
     :class:`cobotwire.client.aio.AsyncClient` for the arguments and errors of opening. Its methods
-    are those of :class:`MyArm300`, whose class describes the edition and the errors.
+    are those of :class:`MyArm300`, which describes the edition and the errors.
     """
 
     table: ClassVar[Table] = TABLE

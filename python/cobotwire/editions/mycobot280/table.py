@@ -3,4 +3,4 @@
 
 from cobotwire.protocol.loading import load_table
 
-TABLE = load_table(__package__, checksum="2d00e898")
+TABLE = load_table(__package__, checksum="7617fc2c")

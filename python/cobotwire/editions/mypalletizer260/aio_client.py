@@ -18,7 +18,7 @@ class AsyncMyPalletizer260(AsyncMovingClient):
 
     Create it with a port or URL, preferably in an ``async with`` block; see
     :class:`cobotwire.client.aio.AsyncClient` for the arguments and errors of opening. Its methods
-    are those of :class:`MyPalletizer260`, whose class describes the edition and the errors.
+    are those of :class:`MyPalletizer260`, which describes the edition and the errors.
     """
 
     table: ClassVar[Table] = TABLE

@@ -18,7 +18,7 @@ class AsyncPro630(AsyncMovingClient):
 
     Create it with a port or URL, preferably in an ``async with`` block; see
     :class:`cobotwire.client.aio.AsyncClient` for the arguments and errors of opening. Its methods
-    are those of :class:`Pro630`, whose class describes the edition and the errors.
+    are those of :class:`Pro630`, which describes the edition and the errors.
     """
 
     table: ClassVar[Table] = TABLE

@@ -85,8 +85,8 @@ class JogCommands(Client):
         Stops a motion that jog_angle or jog_coord started. Use stop (0x29) instead. Newer firmware
         may ignore this request, and the arm then keeps moving. The same id with data is
         jog_increment_coord, a step along an axis; the length tells them apart. There is no reply
-        and no acknowledgement. It is gone since firmware 7.0 (an earlier version of the maker's
-        library: Atom 7.0 deletes jog_stop).
+        and no acknowledgement. Firmware 7.0 removed it (an earlier version of the maker's library:
+        Atom 7.0 deletes jog_stop).
 
         Safety: motion. Command id 0x34.
         """

@@ -97,7 +97,7 @@ class MotionCommands(Client):
         Stops the motion. The acknowledgement may be late or never come; check with is_moving before
         relying on it. It is not an emergency stop, since a frame can be lost in transit; keep a
         power switch within reach. It ends jogging too. Use it instead of jog_stop, which newer
-        firmware may ignore. It is replied to since firmware 7.0 (changelog of the maker's library:
+        firmware may ignore. It gets a reply since firmware 7.0 (changelog of the maker's library:
         stop has a return since Atom 7.0).
 
         Safety: motion. Command id 0x29.
