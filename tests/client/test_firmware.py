@@ -84,7 +84,7 @@ def test_page_of_a_robot_lists_changes_by_version_of_the_firmware() -> None:
     rows = [line.split(" | ")[:3] for line in section.partition("##")[0].splitlines()[6:]]
     assert rows[:4] == [
         ["| 7.0", "`jog_stop`", "removed"],
-        ["| 7.0", "`stop`", "is replied to"],
+        ["| 7.0", "`stop`", "gets a reply"],
         ["| 7.4", "`backup_servo_params`", "new"],
         ["| 7.4", "`restore_servo_params`", "new"],
     ]

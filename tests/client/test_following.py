@@ -60,7 +60,7 @@ def test_coordinates_of_a_tool_and_of_an_unknown_geometry_are_refused() -> None:
     with MyCobot280(clock.transport) as arm:
         arm.set_tool_reference([0, 0, 100, 0, 0, 0])
         arm.set_end_type(1)
-        with pytest.raises(UsageError, match="a place 100 mm from its flange, so it has a tool"):
+        with pytest.raises(UsageError, match="a position 100 mm from its flange"):
             arm.follow([arm.get_coords()], coords=True)
     mercury = importlib.import_module("cobotwire.editions.mercury_a1")
     clock = Watched(mercury.TABLE)

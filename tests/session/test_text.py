@@ -56,7 +56,7 @@ def test_text_that_is_not_printable_ascii_is_rejected() -> None:
         (b"ssid: caf\xc3\xa9 password: x", "not ASCII"),
         (b"SSID: a password: b", "does not start with 'ssid: '"),
         (b"ssid: a", "0 times"),
-        (b"", "starts with"),
+        (b"", "does not start with"),
     ],
 )
 def test_text_in_another_format_is_rejected(data: bytes, detail: str) -> None:

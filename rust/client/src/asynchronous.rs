@@ -49,11 +49,11 @@ impl Wake for Arrived {
     }
 }
 
-/// What waits for an item of a stream.
-type Coming<T> = Pin<Box<dyn Future<Output = Option<T>> + Send>>;
+/// The future of the next item of a stream.
+type NextItem<T> = Pin<Box<dyn Future<Output = Option<T>> + Send>>;
 
 client_methods!(
-    AsyncClient Coming tokio::time::sleep, [async] [Box::pin] [async move] [.await]
+    AsyncClient NextItem tokio::time::sleep, [async] [Box::pin] [async move] [.await]
 );
 
 impl AsyncClient {
@@ -85,7 +85,7 @@ impl AsyncClient {
 
     /// Close the stream. Nothing more is sent to the arm; other calls end with a `LinkError`.
     pub async fn close(&self) {
-        // If the stream was not flushed in time, nothing else can be done about that.
+        // If the stream was not flushed in time, nothing else can be done.
         let _ = self.connection().close();
         self.shared.turns.0.notify_waiters();
     }
@@ -105,17 +105,18 @@ impl AsyncClient {
         self.until(None, |session, _| session.take(call.id)).await
     }
 
-    /// Read and write for all until `done` returns something. It learns whether that time is over.
+    /// Read and write for all until `done` returns something. Its argument is whether `longest` is
+    /// over.
     async fn until<T>(
         &self,
         longest: Option<Duration>,
         mut done: impl FnMut(&mut Session, bool) -> Option<T>,
     ) -> T {
-        let begun = Instant::now();
+        let began = Instant::now();
         loop {
             // This comes before the poll of the stream, so that no arrival is overlooked.
             let arrived = self.shared.turns.0.notified();
-            let left = longest.map_or(LONGEST, |longest| longest.saturating_sub(begun.elapsed()));
+            let left = longest.map_or(LONGEST, |longest| longest.saturating_sub(began.elapsed()));
             let idle = {
                 let mut connection = self.connection();
                 let came = connection.step(Duration::ZERO);
@@ -128,7 +129,7 @@ impl AsyncClient {
             match idle {
                 Some(idle) => drop(tokio::time::timeout(idle, arrived).await),
                 None => {
-                    // The others must find out what was read for them.
+                    // Wake the others: what was read may be for them.
                     self.shared.turns.0.notify_waiters();
                     tokio::task::yield_now().await;
                 }
@@ -151,7 +152,7 @@ impl Drop for Call<'_> {
     }
 }
 
-impl<T> Stream for Received<Coming<T>> {
+impl<T> Stream for Received<NextItem<T>> {
     type Item = T;
 
     fn poll_next(self: Pin<&mut Self>, context: &mut Context<'_>) -> Poll<Option<T>> {
@@ -163,7 +164,7 @@ impl<T> Stream for Received<Coming<T>> {
     }
 }
 
-impl<T> Received<Coming<T>> {
+impl<T> Received<NextItem<T>> {
     /// Wait for the next sample or event. Samples end with an error, events when their time is over.
     pub async fn next(&mut self) -> Option<T> {
         poll_fn(|context| Pin::new(&mut *self).poll_next(context)).await

@@ -73,15 +73,16 @@ impl Client {
         self.until(None, |session, _| session.take(id))
     }
 
-    /// Read and write for all until `done` returns something. It learns whether that time is over.
+    /// Read and write for all until `done` returns something. Its argument is whether `longest` is
+    /// over.
     fn until<T>(
         &self,
         longest: Option<Duration>,
         mut done: impl FnMut(&mut Session, bool) -> Option<T>,
     ) -> T {
-        let (begun, mut connection) = (Instant::now(), self.connection());
+        let (began, mut connection) = (Instant::now(), self.connection());
         loop {
-            let left = longest.map_or(SLICE, |longest| longest.saturating_sub(begun.elapsed()));
+            let left = longest.map_or(SLICE, |longest| longest.saturating_sub(began.elapsed()));
             if let Some(found) = done(&mut connection.session, left.is_zero()) {
                 return found;
             }

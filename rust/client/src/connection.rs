@@ -38,7 +38,7 @@ pub(crate) struct Connection {
 }
 
 impl Connection {
-    /// Begin to drive an arm over a port; return the first handle.
+    /// Drive an arm over a port; return the first handle.
     pub fn open<T>(
         edition: Table,
         port: Box<dyn Port>,
@@ -155,7 +155,7 @@ impl Drop for Connection {
             return;
         };
         let mut stopped_by = move |until| {
-            // Nobody is left who could handle an error.
+            // No caller is left to handle an error.
             while !rest.is_empty() {
                 let size = match port.write_some(&rest) {
                     Ok(size) => size.min(rest.len()),

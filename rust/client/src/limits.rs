@@ -118,7 +118,7 @@ impl Limits {
         Ok(())
     }
 
-    /// Return why a command is not sent within these limits; `None`: it is.
+    /// Return why a command is not sent within these limits; `None`: it may be sent.
     pub(crate) fn refusal(&self, edition: &Edition, command: &Command) -> Option<String> {
         let (fast, far) = (self.speed.is_some(), self.workspace.is_some());
         if !fast && !far || matches!(&*command.role, "stop" | "halt") {

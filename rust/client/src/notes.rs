@@ -12,17 +12,18 @@ use crate::options::nanos;
 /// The entries of each kind that a note has at most.
 const MOST_ENTRIES: usize = 64;
 
-/// What was left on each port, and when; each time in it is from then on.
+/// What was left on each port, and when; its times count from then.
 static NOTES: Mutex<BTreeMap<String, (PersistedState, Instant)>> = Mutex::new(BTreeMap::new());
 
-/// The note of a port; `None`: nothing says which port it is, or the note was left.
+/// The name of a port, and when its session began. `None`: the port has no lasting name, or the
+/// note was left already.
 #[derive(Debug)]
 pub(crate) struct Note(Option<String>, Instant);
 
 impl Note {
-    /// Return the note of a port, and what was left there; its times are from now on.
+    /// Return the note of a port, and what was left there; its times count from now.
     pub fn of(url: Option<&str>) -> (Self, PersistedState) {
-        // The next pseudo-terminal of this name is another line.
+        // The next pseudo-terminal of this name leads to another device.
         let (name, now) = (
             url.filter(|url| !url.starts_with("/dev/pts/")),
             Instant::now(),

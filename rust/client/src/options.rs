@@ -12,8 +12,8 @@ use crate::{Error, Limits, Value};
 pub struct Options {
     /// How long the arm has to reply once a request is sent; default: as the edition says.
     pub timeout: Option<Duration>,
-    /// How long a call may take from its beginning, waiting for its turn included; default: any
-    /// time.
+    /// How long a call may take from its beginning, waiting for its turn included; default:
+    /// no limit.
     pub deadline: Option<Duration>,
     /// How often queries are sent within their timeout; its times are in nanoseconds.
     pub retry: RetryPolicy,
@@ -67,6 +67,6 @@ pub(crate) fn check_times(options: &Options) -> Result<(), Error> {
 }
 
 pub(crate) fn nanos(time: Duration) -> Nanos {
-    // Three hundred years are no limit.
+    // The largest time is 292 years, which limits nothing.
     time.as_nanos().min(u128::from(Nanos::MAX / 2)) as Nanos
 }

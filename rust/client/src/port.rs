@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use crate::Error;
 
-/// What host and port of a TCP port follow.
+/// The scheme before the host and port of a TCP port.
 pub(crate) const SOCKET: &str = "socket://";
 pub(crate) const CONNECT: Duration = Duration::from_secs(5);
 
@@ -54,7 +54,7 @@ impl Port for TcpStream {
 #[cfg(feature = "serial")]
 impl Port for Box<dyn serialport::SerialPort> {
     fn wait_at_most(&mut self, longest: Duration) -> io::Result<()> {
-        // On Windows, no time at all means any time.
+        // On Windows, a time of zero means no limit.
         let shortest = Duration::from_millis(u64::from(cfg!(windows)));
         Ok(self.set_timeout(longest.max(shortest))?)
     }

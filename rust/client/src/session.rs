@@ -16,7 +16,7 @@ use crate::{Error, OnDrop};
 const LONGEST_WRITE: Nanos = 1_000_000_000;
 /// A write that takes longer than this was held up by a full line.
 const SLOW_WRITE: Nanos = 5_000_000;
-/// After this time, a full line is tried again.
+/// The pause before the next attempt to write on a full line.
 const FULL: Nanos = 1_000_000;
 
 /// How many events wait for their consumer; if more come, the oldest is dropped.
@@ -81,7 +81,7 @@ pub struct Session {
 }
 
 impl Session {
-    /// Begin on a port with what an earlier session on it left.
+    /// Start a session, which respects what an earlier one left on its port.
     pub fn new(handle: &Handle, left: &PersistedState) -> Self {
         let mut exchange = Exchange::new(Arc::new(handle.edition.protocol.clone()));
         exchange.restore(left);

@@ -84,11 +84,11 @@ impl Polling {
 }
 
 /// Makes the methods of a client with the fields `handle` and `shared`, and with private methods
-/// `perform`, `until` and `connection`. The rest is what asynchronous ones have besides: `$coming`
-/// is what waits for an item.
+/// `perform`, `until` and `connection`. The rest are the words of asynchronous ones; `$next_item` is
+/// the type of the future of an item.
 macro_rules! client_methods {
     (
-        $client:ident $coming:ident $sleep:path,
+        $client:ident $next_item:ident $sleep:path,
         [$($async:tt)*] [$($pin:tt)*] [$($move:tt)*] [$($await:tt)*]
     ) => {
         impl std::fmt::Debug for $client {
@@ -145,13 +145,13 @@ macro_rules! client_methods {
                 &self,
                 request: R,
                 rate: f64,
-            ) -> Result<Received<$coming<Result<Sample<R::Reply>, Error>>>, Error> {
+            ) -> Result<Received<$next_item<Result<Sample<R::Reply>, Error>>>, Error> {
                 let mut client = self.clone();
                 client.handle.options.retry.attempts = 1;
                 let polling = Polling::new(&self.handle, self.handle.prepare(request)?, rate)?;
                 let polling = Arc::new(Mutex::new(polling));
                 let missed = { let polling = polling.clone(); move || lock(&polling).missed };
-                let next = move || -> $coming<_> {
+                let next = move || -> $next_item<_> {
                     let (client, polling) = (client.clone(), polling.clone());
                     $($pin)* ($($move)* { client.sample::<R>(&polling) $($await)* })
                 };
@@ -185,11 +185,11 @@ macro_rules! client_methods {
             pub fn events<E: DeviceEvent>(
                 &self,
                 timeout: Option<Duration>,
-            ) -> Result<Received<$coming<Result<E, Error>>>, Error> {
+            ) -> Result<Received<$next_item<Result<E, Error>>>, Error> {
                 let (client, command) = (self.clone(), self.handle.command(E::COMMAND)?);
                 let queue = self.connection().session.subscribe(command);
                 let missed = { let queue = queue.clone(); move || lock(&queue).lost };
-                let next = move || -> $coming<_> {
+                let next = move || -> $next_item<_> {
                     let (client, queue) = (client.clone(), queue.clone());
                     let next = move |session: &mut Session, is_over: bool| {
                         let event = lock(&queue).events.pop_front();

@@ -32,7 +32,7 @@ impl<'a> Record<'a> {
         Some(self.at(key)).filter(|value| !value.0.is_null())
     }
 
-    /// Return the value of a key. Only an option may be missing.
+    /// Return the value of a key; a missing key is an error unless `T` is an option.
     pub(crate) fn get<T: Deserialize<'a>>(self, key: &str) -> Outcome<T> {
         let read = T::deserialize(self.at(key).0);
         read.or_else(BadEdition::because).within(key, "")

@@ -201,7 +201,7 @@ pub(crate) type Outcome<T> = Result<T, BadEdition>;
 
 /// Says in an error where the mistake is.
 pub(crate) trait Within {
-    /// Put the name of a place before the sentence of an error.
+    /// Put where the mistake is before the sentence of an error.
     fn within(self, what: &str, name: &str) -> Self;
 }
 

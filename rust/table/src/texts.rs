@@ -235,7 +235,7 @@ impl Edition {
     }
 }
 
-/// Return the text of a request without an answer.
+/// Return the text of the error of a request without a reply.
 fn timeout(
     request: &str,
     (waited, attempts): (u64, usize),

@@ -1,11 +1,12 @@
-//! Acknowledgements: which of the one-way requests that were sent has been acknowledged.
+//! Finds out which of the one-way requests that were sent have been acknowledged.
 //!
 //! An acknowledgement carries the command's id, perhaps a constant and arguments of the request. If
 //! several requests with equal ids and arguments were sent and some acknowledgements are lost, it is
-//! unknown which request each belongs to. So a request counts as acknowledged once more
-//! acknowledgements have come than the other requests can still have caused. It may seem
-//! unacknowledged although it was, never the reverse, if each acknowledgement comes once and in
-//! time. An acknowledgement that was lost causes doubt only until it is too late to come.
+//! unknown which request each belongs to. So a request counts as acknowledged only when the number
+//! of received acknowledgements exceeds the number that the other requests can still have caused.
+//! An acknowledged request may seem unacknowledged. The reverse cannot happen, if each
+//! acknowledgement comes once and in time. A lost acknowledgement causes doubt only until its time
+//! is over.
 
 use alloc::collections::BTreeMap;
 use alloc::sync::Arc;
@@ -33,13 +34,13 @@ struct ExpectedAck {
     until: Nanos,
     /// Where in the received stream it can begin at the earliest.
     offset: u64,
-    /// Other acknowledgements that look like this one: until when each may come, soonest first.
+    /// For each similar acknowledgement of another request, until when it may come; soonest first.
     doubts: Vec<Nanos>,
     /// Whether it may still come, if each one belongs to the oldest request.
     expected: bool,
     /// Whether a caller waits for it; so it is doubted until it is certain.
     uncertain: bool,
-    /// Whether it has come, whichever requests the other ones belong to.
+    /// Whether it has come for sure, whichever requests the other ones belong to.
     certain: bool,
 }
 
@@ -49,8 +50,7 @@ impl ExpectedAck {
         self.doubts.sort_unstable();
     }
 
-    /// Count an acknowledgement that looks like this one. The first of them may belong to other
-    /// requests.
+    /// Count a similar acknowledgement; the first ones may belong to other requests.
     fn count(&mut self, frame: &SeenFrame, began_at: Nanos) {
         self.doubts.retain(|until| *until > began_at);
         if self.doubts.is_empty() {
@@ -125,7 +125,7 @@ impl CommandAcks {
         self.known.retain(|ack| ack.expected || ack.uncertain);
     }
 
-    /// Return until when each other expected acknowledgement that looks like this one may come.
+    /// Return until when each similar acknowledgement that is expected may come.
     fn doubts_of(&self, protocol: &Protocol, ack: &ExpectedAck) -> Vec<Nanos> {
         let alike = |other: &&ExpectedAck| {
             !Arc::ptr_eq(&other.request, &ack.request)
@@ -259,7 +259,7 @@ impl Acks {
         }
         // Learning may have shortened the wait for some acknowledgements, which then expired.
         acks.take(fits, frame, began_at);
-        // The acknowledgement may say that the arm did not do it.
+        // The acknowledgement may report that the arm did not carry out the request.
         let refused = Failure::refusal(protocol, &message);
         let own = |ack: &ExpectedAck, wait: &Pending| Arc::ptr_eq(&ack.request, &wait.request);
         let over = |wait: &mut Pending| acks.known.iter().any(|ack| ack.certain && own(ack, wait));

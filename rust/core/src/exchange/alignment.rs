@@ -2,7 +2,7 @@
 //!
 //! A write may end after a part of a frame. The peer's parser then waits for the rest, and takes the
 //! next request as that rest: both together can be a legal frame that nobody sent. So fill bytes are
-//! sent first. They end the frame that was begun, and make its check wrong, whatever LEN the parser
+//! sent first. They end the incomplete frame and make its check wrong, whatever LEN the parser
 //! accepts.
 //!
 //! Fill bytes cannot help if the part that was written contains a whole legal frame: a parser that
@@ -93,7 +93,7 @@ impl Exchange {
         self.alignment.held.clear();
     }
 
-    /// Note that of `align + request` only `written` bytes were taken; `None`: nobody knows. Return
+    /// Note that of `align + request` only `written` bytes were taken; `None`: the number is unknown. Return
     /// how many of these bytes belong to the request.
     pub fn cut(&mut self, align: &[u8], request: &[u8], written: Option<usize>) -> Option<usize> {
         let (own, protocol) = (&mut self.alignment, &*self.protocol);

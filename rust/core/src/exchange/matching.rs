@@ -38,8 +38,8 @@ impl Protocol {
     }
 
     /// Return whether a condition holds for the facts of a command.
-    pub(super) fn is(&self, command: usize, such: impl Fn(&Facts) -> bool) -> bool {
-        self.facts.get(command).is_some_and(such)
+    pub(super) fn is(&self, command: usize, holds: impl Fn(&Facts) -> bool) -> bool {
+        self.facts.get(command).is_some_and(holds)
     }
 
     /// Return the variants of a command's reply.

@@ -283,7 +283,7 @@ impl Exchange {
         }
     }
 
-    /// Return for how long nothing is to be done unless bytes come; `None`: without end.
+    /// Return for how long nothing is to be done unless bytes come; `None`: without limit.
     #[must_use]
     pub fn idle(&self, now: Nanos) -> Option<Nanos> {
         let waiting = self.waiting();

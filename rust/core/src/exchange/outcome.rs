@@ -25,7 +25,7 @@ pub struct Answer {
 }
 
 /// What a request waited for when its caller's deadline passed: its turn, the end of the time in
-/// which a late reply could pass for its own (hold), the line, which took no bytes, or its reply.
+/// which a late reply could be mistaken for its own (hold), a line that took no bytes, or its reply.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[allow(missing_docs)] // of fields, whose names say what they are
 pub enum WaitedFor {
@@ -49,10 +49,10 @@ pub struct Received {
 pub enum Failure {
     /// No reply came in time.
     Timeout {
-        /// How long it waited: since it was sent; since the call, if `waited_for` is there.
+        /// How long it waited: since it was sent, or with `waited_for` since the call.
         waited: Nanos,
-        /// How often it was sent. It was never sent, though its caller still waits, if the line
-        /// brings more than can be read, and a late reply may be among it.
+        /// How often it was sent. 0 without `waited_for`: the line brought more than can be read,
+        /// and a late reply may be among it.
         attempts: usize,
         /// What it waited for when its caller's deadline passed; `None`: it has not passed.
         waited_for: Option<WaitedFor>,
@@ -72,7 +72,7 @@ pub enum Failure {
         variant: VariantId,
         /// The index of the field that says so.
         field: usize,
-        /// Its value; the first part of a row.
+        /// Its value; of several numbers, the first.
         value: Value,
     },
     /// The transport failed.

@@ -41,8 +41,8 @@ pub enum RequestError<E> {
 }
 
 impl Request {
-    /// Validate and encode a request; `address` left out: to the first one of the frame format, if
-    /// it has addresses. Without `variant`, it is the first one that allows the values. `texts` are
+    /// Validate and encode a request. Without `address` it goes to the first one of the frame
+    /// format, if it has addresses. Without `variant` it is the first one that allows the values. `texts` are
     /// the fields of a text after the frame.
     ///
     /// # Errors
@@ -141,8 +141,8 @@ impl Protocol {
         known.find(|known| Some(known.value) == address)
     }
 
-    /// Return the joints of an address's device if they are too few for a command: rows with a value
-    /// for each joint belong to the devices with all joints.
+    /// Return the number of joints of an address's device if a command has a value for each joint of
+    /// the protocol, and the device has fewer.
     fn lacks_joints(&self, address: Option<u8>, command: &Command) -> Option<usize> {
         let joints = self.addressee(address)?.joints;
         let variants = command.request.iter().chain(&command.reply);

@@ -27,9 +27,9 @@ pub enum TextMistake {
     Start,
     /// It does not end with the suffix.
     End,
-    /// The prefix of this index stands in the rest of the text this many times, not once.
+    /// The prefix of this index occurs in the rest of the text this many times, not once.
     Prefix(usize, usize),
-    /// It is longer than the offset.
+    /// It is longer than allowed; the offset is the limit.
     TooLong,
 }
 
