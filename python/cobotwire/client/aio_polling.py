@@ -54,7 +54,7 @@ class AsyncPoller:
                 pending = await self._answered(poll, at)
                 if pending is None:
                     return None
-                fields, requested_at, replied_at = pending.answer()
+                fields, requested_at, replied_at = pending.timed_reply()
                 value = result_of(poll.request, fields)
                 readings.append(Reading(value, requested_at, replied_at))
         except (ReplyTimeout, ProtocolError) as error:
@@ -74,22 +74,22 @@ class AsyncPoller:
             None if the stream was closed by then.
         """
         self._poll, self._at, self._pending = poll, at, None
-        self._over = self._steps.loop.create_future()
+        self._finished = self._steps.loop.create_future()
         if at > time.monotonic():
             self._steps.timers.set(self._timed, at)
         else:
             self._send()
-        await self._over
+        await self._finished
         return self._pending
 
     def _send(self) -> None:
         """Send the request, unless the stream is closed."""
-        over = self._over
-        if over.done():
+        finished = self._finished
+        if finished.done():
             # The consumer was cancelled, but its task has not run yet.
             return
         if self._closed():
-            over.set_result(None)
+            finished.set_result(None)
             return
         _, encoded, policy, wait = self._poll
         ends_by = time.monotonic() + self._steps.deadline
@@ -99,8 +99,8 @@ class AsyncPoller:
             self._steps.start(pending)
         except Exception as error:
             # The consumer raises it, since nobody waits for a timer.
-            over.set_exception(error)
+            finished.set_exception(error)
 
     def _wake(self) -> None:
-        if not self._over.done():
-            self._over.set_result(None)
+        if not self._finished.done():
+            self._finished.set_result(None)

@@ -53,5 +53,5 @@ class Poller:
 
     def _reading(self, poll: Poll) -> Reading[Any]:
         pending = self._request(poll.encoded, poll.policy, poll.wait)
-        fields, requested_at, replied_at = pending.answer()
+        fields, requested_at, replied_at = pending.timed_reply()
         return Reading(result_of(poll.request, fields), requested_at, replied_at)

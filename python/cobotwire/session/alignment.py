@@ -84,11 +84,11 @@ class Alignment:
             self.hold(self.held + _all_parts(self._format, request))
             return None
         if written and written >= len(align):
-            begun = written - len(align)
+            sent = written - len(align)
             # Text may follow a frame. It is not the beginning of a frame.
             whole = _frame_size(self._format, request)
-            self.hold((Part(request, begun),) if 0 < begun < whole else ())
-            return begun
+            self.hold((Part(request, sent),) if 0 < sent < whole else ())
+            return sent
         if written and self._completes():
             [part] = self.held
             self.hold((Part(part.request, part.written + written),))
@@ -104,8 +104,8 @@ class Alignment:
             return
         longest = _longest(self._codec.table)
         width, order = self._format.length_number
-        begun = last[: self._format.length_at] + longest.to_bytes(width, order)
-        parts = Part(begun, len(begun)), *_all_parts(self._format, last)
+        head = last[: self._format.length_at] + longest.to_bytes(width, order)
+        parts = Part(head, len(head)), *_all_parts(self._format, last)
         self.hold(self.held + parts)
         self._last_request = b""
 

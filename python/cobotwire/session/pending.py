@@ -268,7 +268,7 @@ class PendingRequest(Pending):
         self.replied_at = now
         self.succeed(fields)
 
-    def answer(self) -> tuple[dict[str, Any], float, float]:
+    def timed_reply(self) -> tuple[dict[str, Any], float, float]:
         """Return the fields of the reply by name, when its request was sent, and when it was read.
 
         Raises:

@@ -25,8 +25,8 @@ def encode(variant: Text, values: Mapping[str, str]) -> bytes:
         value = values[name]
         if not isinstance(value, str) or not value.isascii() or not value.isprintable():
             raise UsageError(name, value, error_text("printable"))
-    pieces = (prefix + values[name] for prefix, name in zip(variant.prefixes, variant.fields))
-    data = ("".join(pieces) + variant.suffix).encode("ascii")
+    labelled = (prefix + values[name] for prefix, name in zip(variant.prefixes, variant.fields))
+    data = ("".join(labelled) + variant.suffix).encode("ascii")
     try:
         unambiguous = decode(variant, data) == {name: values[name] for name in variant.fields}
     except ProtocolError:

@@ -139,7 +139,7 @@ class PolledTransport:
             self._transport.close()
 
     def leave_to_parent(self) -> None:
-        """Leave the loop alone, whose epoll a forked child shares with its parent."""
+        """Count as closed, and do not touch the loop: a forked child shares its epoll."""
         self._closed = True
 
 
@@ -199,7 +199,7 @@ class ThreadedTransport:
             self._transport.close()
 
     def leave_to_parent(self) -> None:
-        """Leave the transport alone: its threads do not exist in a forked child."""
+        """Count as closed: the threads do not exist in a forked child."""
         self._closed = True
 
     def _read_on(self) -> None:

@@ -15,7 +15,7 @@ use crate::{Error, Options, Port};
 
 /// How long a stop may take when a client is dropped and the line is full.
 pub(crate) const LONGEST_STOP: Duration = Duration::from_secs(1);
-/// How long a full line is left alone.
+/// The pause before the next attempt to write on a full line.
 const PAUSE: Duration = Duration::from_micros(500);
 
 /// A connection that handles share, and what they need to take turns with it.
@@ -33,7 +33,7 @@ pub(crate) struct Connection {
     is_instant: bool,
     /// How long a dropped client may wait until the line takes a stop.
     patience: Duration,
-    begun: Instant,
+    began: Instant,
     note: Note,
 }
 
@@ -52,18 +52,18 @@ impl Connection {
             port: Some(port),
             is_instant: false,
             patience,
-            begun: Instant::now(),
+            began: Instant::now(),
             note,
         });
         Ok((handle, Arc::new(Shared { connection, turns })))
     }
 
     fn now(&self) -> Nanos {
-        nanos(self.begun.elapsed())
+        nanos(self.began.elapsed())
     }
 
     pub fn submit(&mut self, prepared: &Prepared, handle: &Handle, called: Instant) -> CallId {
-        let called_at = nanos(called.saturating_duration_since(self.begun));
+        let called_at = nanos(called.saturating_duration_since(self.began));
         let now = self.now();
         self.session.submit(prepared, handle, called_at, now)
     }

@@ -173,8 +173,8 @@ impl Session {
     /// End a request whose caller waits no longer. It is not sent, unless it has been begun.
     pub fn give_up(&mut self, id: CallId) {
         self.one_ways.retain(|other| *other != id);
-        let begun = |writing: &mut Writing| writing.id != id || writing.taken > 0;
-        self.writing.take_if(|writing| !begun(writing));
+        let has_begun = |writing: &mut Writing| writing.id != id || writing.taken > 0;
+        self.writing.take_if(|writing| !has_begun(writing));
         if let Some(ticket) = self.calls.remove(&id).and_then(|call| call.ticket) {
             self.exchange.give_up(ticket);
         }

@@ -59,11 +59,11 @@ impl Alignment {
         let format = protocol.table.frame();
         let rules = protocol.table.rules(Listening::To(Direction::Request));
         let (_, longest) = rules.legal().lengths().unwrap_or_default();
-        let mut begun = last.clone();
-        begun.resize(format.layout.length.end(), 0);
-        format.layout.length.write(&mut begun, longest);
+        let mut head = last.clone();
+        head.resize(format.layout.length.end(), 0);
+        format.layout.length.write(&mut head, longest);
         let mut parts = core::mem::take(&mut self.held);
-        parts.push(Part::new(&(&*begun).into(), begun.len()));
+        parts.push(Part::new(&(&*head).into(), head.len()));
         parts.extend(all_parts(format, &last));
         self.hold(protocol, parts);
     }
@@ -106,11 +106,11 @@ impl Exchange {
         if written == 0 {
             return Some(0);
         }
-        let begun = written.checked_sub(align.len());
-        if let Some(begun) = begun {
+        let sent = written.checked_sub(align.len());
+        if let Some(sent) = sent {
             // Text may follow a frame. It is not the beginning of a frame.
-            let within = (1..frame_size(format, request)).contains(&begun);
-            parts = Vec::from_iter(within.then(|| Part::new(&request.into(), begun)));
+            let within = (1..frame_size(format, request)).contains(&sent);
+            parts = Vec::from_iter(within.then(|| Part::new(&request.into(), sent)));
         } else if let [part] = parts.as_mut_slice()
             && own.align == part.split().1
         {
@@ -119,7 +119,7 @@ impl Exchange {
             return Some(0);
         }
         own.hold(protocol, parts);
-        Some(begun.unwrap_or_default())
+        Some(sent.unwrap_or_default())
     }
 }
 
@@ -166,7 +166,7 @@ fn frames(format: &FrameFormat, part: &[u8], fill: &[u8]) -> Vec<(usize, usize)>
     let (header, length) = (&format.header, format.layout.length);
     let after = fill.iter().cycle().take(length.end());
     let data: Vec<u8> = part.iter().chain(after).copied().collect();
-    let begun = (0..part.len()).filter(|start| {
+    let starts = (0..part.len()).filter(|start| {
         let rest = part.get(*start..).unwrap_or_default();
         header.starts_with(rest.get(..header.len()).unwrap_or(rest))
     });
@@ -175,7 +175,7 @@ fn frames(format: &FrameFormat, part: &[u8], fill: &[u8]) -> Vec<(usize, usize)>
         let size = format.layout.overhead + usize::from(read.unwrap_or_default());
         (start, start + size)
     };
-    begun.map(frame).collect()
+    starts.map(frame).collect()
 }
 
 /// Return whether fill bytes complete a frame that begins in the part.
