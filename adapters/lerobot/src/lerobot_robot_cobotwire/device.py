@@ -17,7 +17,7 @@ from lerobot_robot_cobotwire.interface import DeviceAlreadyConnectedError, Devic
 
 @dataclass(kw_only=True)
 class ArmConfig:
-    """Which arm there is, and at which port. LeRobot prints the comments as help."""
+    """The arm and its port. LeRobot prints the comments as help."""
 
     # The protocol of the arm, such as mycobot280; `cobotwire identify PORT` finds it out.
     edition: str
@@ -97,7 +97,7 @@ class ArmDevice:
             self._opened = opened.pop_all()
 
     def disconnect(self) -> None:
-        """Close everything. If an error is the reason, the arm is left as ``on_error`` says."""
+        """Close everything; after an error, ``on_error`` decides whether the arm is stopped."""
         _ = self.arm
         # LeRobot calls this in `finally`.
         error = sys.exception()

@@ -36,7 +36,7 @@ class Positions:
 
     Attributes:
         joints: the names of the joints, base first.
-        names: the names of all positions: no gripper, if the edition cannot read its opening.
+        names: the names of all positions; without the gripper if no command reads its opening.
     """
 
     def __init__(self, table: Table, gripper: bool) -> None:
@@ -65,7 +65,8 @@ class Targets:
         """Take the limits of the edition, narrowed by ``limits``.
 
         Raises:
-            UsageError: a limit is not allowed, or the edition has no geometry or gripper for it.
+            UsageError: a limit is not allowed, a workspace needs a geometry that the edition lacks,
+                or the edition cannot move a gripper.
         """
         if why := refusals(table, limits).get(table.in_role("joint targets").name):
             raise UsageError("workspace", limits.workspace, message=why)
@@ -82,7 +83,7 @@ class Targets:
         """Return the nearest targets within the limits.
 
         Raises:
-            UsageError: a target is missing, is not a finite number, or is for no joint.
+            UsageError: a target is missing, has an unknown name, or is not a finite number.
         """
         if {*action} != {*self.limits}:
             raise UsageError("the names of the action", list(action), ", ".join(self.limits))

@@ -23,7 +23,7 @@ from lerobot_robot_cobotwire.interface import (
 @RobotConfig.register_subclass("cobotwire")
 @dataclass(kw_only=True)
 class CobotwireRobotConfig(ArmConfig, RobotConfig):
-    """Which arm with motors there is, and what it may do."""
+    """An arm with motors, and its limits."""
 
     # The speed at which the arm follows targets, and the highest it may have, in percent.
     max_speed: int = 50
@@ -80,7 +80,7 @@ class CobotwireRobot(ArmDevice, Robot):
         """Let new targets replace the present one, where the edition has a mode for that."""
         check_ready(self.arm, "send_action", self.config.port)
         if command := find(self.table, "choose targets"):
-            getattr(self.arm, command.name)(1)  # in mode 0 it waits
+            getattr(self.arm, command.name)(1)  # in mode 0, targets are queued
         self._sent, self._is_inside = self.positions.read(self.arm), True
 
     def connect(self, calibrate: bool = True) -> None:
@@ -99,7 +99,7 @@ class CobotwireRobot(ArmDevice, Robot):
         If the end of the arm would leave the workspace, the joints keep their last targets.
 
         Raises:
-            UsageError: a target is missing, is not a finite number, or is for no joint.
+            UsageError: a target is missing, has an unknown name, or is not a finite number.
         """
         sent, speed = self._targets.clip(action), self.config.max_speed
         joints, gripper = self.positions.joints, self._targets.gripper

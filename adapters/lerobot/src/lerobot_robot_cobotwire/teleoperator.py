@@ -14,7 +14,7 @@ from lerobot_robot_cobotwire.interface import Teleoperator, TeleoperatorConfig
 @TeleoperatorConfig.register_subclass("cobotwire")
 @dataclass(kw_only=True)
 class CobotwireTeleoperatorConfig(ArmConfig, TeleoperatorConfig):
-    """Which arm a person moves."""
+    """An arm that a person moves."""
 
     # Whether to release the motors when the port is opened. The arm sinks: hold it.
     released: bool = False
@@ -41,7 +41,7 @@ class CobotwireTeleoperator(ArmDevice, Teleoperator):
         return {}
 
     def configure(self) -> None:
-        """Release the motors of an arm that replies, if the configuration says so."""
+        """Check that the arm replies, and release its motors if the configuration says so."""
         self.get_action()
         if self._release is not None:
             getattr(self.arm, self._release.name)()
