@@ -19,16 +19,17 @@ TITLES = {"device": "Devices", "client": "Clients", "codec": "Codecs"}
 ABOUT = """\
 *For people who read a report of `cobotwire conform`, or want to know what it tests.*
 
-[Conformance](../../conformance.md) describes the runs. The id of a test case on a command has both
-names: `reply-once/get_angles`. The number of its clause stays the same in later
-versions. A report states the version of the catalogue, and the digest of the
-code that checked. A requirement without a source comes from the spec of the command. A permission
-is needed besides that of the command."""
+[Conformance](../../conformance.md) describes the runs. A report names a test case and its command:
+`reply-once/get_angles`. The number of a clause stays the same in later versions. A report states
+the version of the catalogue, and the digest of the code that checked. A requirement without a
+source comes from the spec of the command. The permission of a group is needed in addition to that
+of the command."""
 OF_EDITION = """\
 *For people who test a device that speaks `{edition}`.*
 
-A row has the commands that are tested alike: by which groups of test cases, and with which
-permissions (`--allow`). [The catalogue](index.md) describes the groups and the test cases."""
+Each row lists commands that are tested in the same way, the groups of test cases, and the
+permissions that they need (`--allow`). [The catalogue](index.md) describes the groups and the test
+cases."""
 
 
 def pages() -> dict[str, str]:

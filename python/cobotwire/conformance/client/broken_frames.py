@@ -14,7 +14,7 @@ from cobotwire.conformance.hex_text import shown
 from cobotwire.protocol.table import Command, FrameFormat, Table
 from cobotwire.simulator.peer import IDLE_SECONDS
 
-# The number of bytes of a frame that are shown; most editions have no longer frame.
+# How many bytes of a frame are shown: in most editions, all.
 MOST = 40
 
 
@@ -74,7 +74,7 @@ def described(table: Table, noise: Noise) -> str:
 
 
 def _right_end(frame: FrameFormat, data: bytes) -> str:
-    """Return what must be at the place where LEN says that a frame ends, in words."""
+    """Describe how a frame must end, and after how many bytes by its LEN."""
     total = frame.read_length(data) + frame.overhead
     word = "the check" if frame.check else "the footer"
     right = frame.end(data[: total - frame.check_size])

@@ -27,19 +27,19 @@ from cobotwire.simulator.faults.kinds.messages import events_of
 # Longer than most clients wait, but shorter than the longest delay in the field notes.
 LATE_SECONDS = 0.6
 PAUSE_SECONDS = 0.05
-# A merged reply is sent with the next one.
+# A merged reply waits for the next one, however long that takes.
 A_DAY = 86400.0
 
-# A client that takes another message for its reply sends the next request earlier. The reply still
-# comes within the time that a client must wait.
+# A reply comes this long after a message that is not the reply: late enough to reveal a client that
+# accepts the message and sends its next request, and still in time for any other client.
 SOON_SECONDS = 0.02
 
 
 def _late(every: int, first: int) -> tuple[Fault, ...]:
-    """Return faults that delay replies; ``every`` or ``every + 1`` other replies lie in between.
+    """Return faults that delay replies, in turn the ``every + 1``-th and the ``every``-th next one.
 
-    A client may send its queries in a fixed order. With a fixed distance, the same query would
-    always be late, and the client would wait for that query when its late reply comes.
+    If the distance were fixed, and a client sent its queries in a fixed order, the late replies
+    would all be to the same query, and would come when the client waits for that query again.
     """
     if every == 1:
         return (Late(every=1, first=first, seconds=LATE_SECONDS),)

@@ -76,10 +76,10 @@ class Received:
 
 @dataclass(slots=True)
 class History:
-    """Everything that was received; ``powered`` is whether the arm has power.
+    """Everything that was received.
 
-    ``released`` is whether none of its joints is held, although it has power.
-    ``patience`` is in seconds: by the field notes, a reply that takes longer never comes.
+    ``powered`` is whether the arm has power, ``released`` whether it then holds no joint. After
+    ``patience`` seconds, by the field notes, a reply never comes.
     """
 
     codec: Codec
@@ -105,10 +105,10 @@ class History:
         return (e for e in self.since(start) if e.awaits_reply and e.replied_at is None)
 
     def unreplied(self, start: float, longest: float) -> Iterator[Received]:
-        """Yield the outstanding requests since ``start`` to which no late reply seems to belong.
+        """Yield the outstanding requests since ``start`` that a client knows to be outstanding.
 
-        The late reply to an earlier request with the same bytes, up to ``longest`` seconds before,
-        looks the same: a client must take it for the reply.
+        A late reply to an equal request, sent up to ``longest`` seconds before, looks like the
+        reply, so a client cannot know that its request is still outstanding.
         """
         replied = [e for e in self.since(start - longest) if e.replied_at is not None]
         for entry in self.outstanding(start):

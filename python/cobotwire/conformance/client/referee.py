@@ -156,14 +156,14 @@ class Referee:
             self.requests += 1
 
     def _powered_devices(self) -> dict[int | None, tuple[bool, bool]]:
-        """Return for each device whether it has power, and whether it then holds no joint."""
+        """Return for each device whether it has power, and whether it has, but holds no joint."""
         return {
             address: (state.powered, state.powered and not any(state.enabled))
             for address, state in self._arm.states.items()
         }
 
     def _power_of(self, now: Received) -> tuple[bool, bool]:
-        """Return whether a receiver of a request had power, and whether all joints were loose."""
+        """Return whether a receiver of a request had power, and whether no joint was held."""
         address = self._arm.table.frame.address(now.data) if now.is_frame else None
         powered, released = zip(*(self._power[each] for each in self._arm.receivers(address)))
         return any(powered), all(released)

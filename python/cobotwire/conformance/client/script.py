@@ -78,7 +78,7 @@ class Script:
         self._taken = b""
 
     def check(self, now: Received) -> Iterator[Observation]:
-        """Check a frame by the line that is due; anything else is not checked."""
+        """Check a frame, or a broken one, against the next line of the script."""
         if not now.is_frame:
             yield from self._broken(now)
             return
@@ -114,7 +114,7 @@ class Script:
         yield Observation(VARIANT, f"{line.place}: {sent}", line.command.name)
 
     def _is_meant(self, data: bytes) -> bool:
-        """Return whether a broken frame has the id of the next line, or everything but its id."""
+        """Return whether a broken frame has the id of the next line, or differs only in its id."""
         frame, right = self._codec.table.frame, self._frames[self._at]
         if len(data) < frame.head_size or not data.startswith(frame.header):
             return False
@@ -150,29 +150,29 @@ class Script:
 
 
 def differences(
-    codec: Codec, line: ScriptLine, right: bytes, given: bytes
+    codec: Codec, line: ScriptLine, right: bytes, sent: bytes
 ) -> list[tuple[TestCase, str]]:
-    """Return the test cases that a frame of the right command fails, each with all its values."""
-    frames = f"expected {shown(right)}, got {shown(given)}"
+    """Return the test cases that a frame of the right command fails, with the wrong values."""
+    frames = f"expected {shown(right)}, got {shown(sent)}"
     table = codec.table
-    meant, reached = table.frame.address(right), table.frame.address(given)
+    meant, reached = table.frame.address(right), table.frame.address(sent)
     if meant is not None and reached is not None and meant != reached:
         names = f"expected {address_name(table, meant)}, got {address_name(table, reached)}"
         return [(ADDRESS, f"address: {names}: {frames}")]
-    if len(right) != len(given):
+    if len(right) != len(sent):
         return [(VARIANT, frames)]
-    data, sent = codec.table.frame.data(right), codec.table.frame.data(given)
+    expected_data, sent_data = codec.table.frame.data(right), codec.table.frame.data(sent)
     wrong = [
-        _Wrong(place, place.bytes_of(data), place.bytes_of(sent))
+        _Wrong(place, place.bytes_of(expected_data), place.bytes_of(sent_data))
         for place in _places(codec, line, right)
-        if place.bytes_of(data) != place.bytes_of(sent)
+        if place.bytes_of(expected_data) != place.bytes_of(sent_data)
     ]
     if not wrong:
         return [(VALUE, frames)]
     values = "; ".join(map(str, wrong))
-    if all(each.given == each.right[::-1] for each in wrong):
+    if all(each.sent == each.right[::-1] for each in wrong):
         return [(BYTE_ORDER, f"{values}: with the bytes in reverse order")]
-    if len(wrong) > 1 and sorted(w.right for w in wrong) == sorted(w.given for w in wrong):
+    if len(wrong) > 1 and sorted(w.right for w in wrong) == sorted(w.sent for w in wrong):
         return [(ORDER, f"{values}: the right values in another order")]
     found: dict[TestCase, list[str]] = {}
     for each in wrong:
@@ -185,7 +185,7 @@ class _Wrong(NamedTuple):
 
     place: Place
     right: bytes
-    given: bytes
+    sent: bytes
 
     @property
     def case(self) -> TestCase:
@@ -194,11 +194,11 @@ class _Wrong(NamedTuple):
         # A number without unit and scale selects something: a joint, a pin, a mode.
         if not number.unit and not number.real:
             return VALUE
-        return _of_number(number.unpack(self.right), number.unpack(self.given), number.real)
+        return _of_number(number.unpack(self.right), number.unpack(self.sent), number.real)
 
     def __str__(self) -> str:
         number = self.place.number
-        expected, got = (_shown(self.place, number.unpack(raw)) for raw in (self.right, self.given))
+        expected, got = (_shown(self.place, number.unpack(raw)) for raw in (self.right, self.sent))
         return f"{self.place.name}: expected {expected}, got {got}"
 
 

@@ -1,4 +1,4 @@
-"""Test whether a codec, in any language, conforms to an edition, over its standard input."""
+"""Test whether a codec conforms to an edition: a program in any language, on standard input."""
 
 from cobotwire.conformance.codec.implementation import Implementation, NoAnswer, Program
 from cobotwire.conformance.codec.options import CodecOptions

@@ -41,10 +41,10 @@ def check(
 
 
 def _bytes(right: str, answer: Json) -> str:
-    given = answer.get("bytes")
-    if not isinstance(given, str):
+    got = answer.get("bytes")
+    if not isinstance(got, str):
         return f"expected {right}, but the answer was {_shown(answer)}"
-    plain = _digits(given)
+    plain = _digits(got)
     return "" if plain == right else f"expected {right}, got {plain}"
 
 
@@ -63,28 +63,28 @@ def _rejection(question: Question, answer: Json, can: Collection[str]) -> Iterat
     if "reasons" not in can or question.case is ENCODE_REJECTS:
         return
     expected = (right, question.expect["offset"])
-    given = (answer["error"], answer.get("offset"))
-    wrong = f"expected {expected[0]} at byte {expected[1]}, got {given[0]} at byte {given[1]}"
-    yield Observation(REJECTION_REASON, "" if given == expected else wrong)
+    got = (answer["error"], answer.get("offset"))
+    wrong = f"expected {expected[0]} at byte {expected[1]}, got {got[0]} at byte {got[1]}"
+    yield Observation(REJECTION_REASON, "" if got == expected else wrong)
 
 
 def _values(table: Table, question: Question, answer: Json) -> str:
-    right, given = question.expect, answer.get("fields")
-    if not isinstance(given, dict):
+    right, got = question.expect, answer.get("fields")
+    if not isinstance(got, dict):
         return f"expected {right['fields']}, but the answer was {_shown(answer)}"
     if answer.get("command") != right["command"]:
         return f"expected {right['command']}, decoded as {answer.get('command')}"
     # An echo only identifies the request; the codec may leave it out.
     needed = set(right["fields"]) - _echoes(table, right["command"])
-    if not needed <= set(given) <= set(right["fields"]):
-        return f"expected the fields {sorted(right['fields'])}, got {sorted(given)}"
+    if not needed <= set(got) <= set(right["fields"]):
+        return f"expected the fields {sorted(right['fields'])}, got {sorted(got)}"
     steps = _steps(table, right["command"], question.ask["direction"])
-    for name in _octets(table, right["command"]) & set(given):
-        if isinstance(given[name], str):
-            given = given | {name: _digits(given[name])}
+    for name in _octets(table, right["command"]) & set(got):
+        if isinstance(got[name], str):
+            got = got | {name: _digits(got[name])}
     for name, value in right["fields"].items():
-        if name in given and not _alike(value, given[name], steps.get(name, 1.0)):
-            return f"{name}: expected {value}, got {given[name]}"
+        if name in got and not _alike(value, got[name], steps.get(name, 1.0)):
+            return f"{name}: expected {value}, got {got[name]}"
     return ""
 
 
@@ -108,19 +108,19 @@ def _steps(table: Table, name: str, direction: Any) -> dict[str, float]:
     }
 
 
-def _alike(right: Any, given: Any, step: float) -> bool:
+def _alike(right: Any, got: Any, step: float) -> bool:
     if isinstance(right, list):
         return (
-            isinstance(given, list)
-            and len(right) == len(given)
-            and all(_alike(a, b, step) for a, b in zip(right, given))
+            isinstance(got, list)
+            and len(right) == len(got)
+            and all(_alike(a, b, step) for a, b in zip(right, got))
         )
     if isinstance(right, str):
         # Text, bytes, or a number that is not finite.
-        return isinstance(given, str) and right == given
+        return isinstance(got, str) and right == got
     try:
-        return isinstance(given, int | float) and abs(right - given) <= step / 10
-    # A whole number of more than 308 digits.
+        return isinstance(got, int | float) and abs(right - got) <= step / 10
+    # An integer that no float can hold.
     except OverflowError:
         return False
 
@@ -128,29 +128,29 @@ def _alike(right: Any, given: Any, step: float) -> bool:
 def _stream(
     right: Sequence[list[Json]], answer: Json, can: Collection[str]
 ) -> Iterator[Observation]:
-    given = answer.get("events")
-    if not _is_stream(given):
+    got = answer.get("events")
+    if not _is_stream(got):
         yield Observation(
             STREAM_FRAMES, f"expected lists of events, but the answer was {_shown(answer)}"
         )
         return
-    assert isinstance(given, list), "checked before"
-    yield Observation(STREAM_FRAMES, _differ(_frames(right), _frames(given)))
-    differ = (_differ(_frames([a]), _frames([b])) for a, b in zip(right, given))
+    assert isinstance(got, list), "checked before"
+    yield Observation(STREAM_FRAMES, _differ(_frames(right), _frames(got)))
+    differ = (_differ(_frames([a]), _frames([b])) for a, b in zip(right, got))
     late = next((f"chunk {at}: {detail}" for at, detail in enumerate(differ) if detail), "")
-    counts = f"{len(right)} chunks, but {len(given)} lists of events"
-    yield Observation(STREAM_CHUNKS, late if len(right) == len(given) else counts)
+    counts = f"{len(right)} chunks, but {len(got)} lists of events"
+    yield Observation(STREAM_CHUNKS, late if len(right) == len(got) else counts)
     if "noise" in can:
-        yield Observation(STREAM_NOISE, _differ(_noise(right, False), _noise(given, False)))
+        yield Observation(STREAM_NOISE, _differ(_noise(right, False), _noise(got, False)))
         if "reasons" in can:
-            yield Observation(NOISE_REASON, _differ(_noise(right, True), _noise(given, True)))
+            yield Observation(NOISE_REASON, _differ(_noise(right, True), _noise(got, True)))
 
 
-def _is_stream(given: Any) -> bool:
-    return isinstance(given, list) and all(
+def _is_stream(got: Any) -> bool:
+    return isinstance(got, list) and all(
         isinstance(chunk, list)
         and all(isinstance(e, dict) and isinstance(e.get("offset"), int) for e in chunk)
-        for chunk in given
+        for chunk in got
     )
 
 
@@ -164,7 +164,7 @@ def _frames(chunks: Sequence[list[Json]]) -> list[str]:
 
 
 def _noise(chunks: Sequence[list[Json]], reasons: bool) -> list[str]:
-    """Return the spans, joined where they touch, so that the cuts of a stream do not matter."""
+    """Return the spans, joined where they touch, so that the limits of chunks do not matter."""
     spans: list[tuple[int, str, str]] = []
     for event in (event for chunk in chunks for event in chunk if "noise" in event):
         data, at = str(event["noise"]).upper(), event["offset"]
@@ -177,15 +177,15 @@ def _noise(chunks: Sequence[list[Json]], reasons: bool) -> list[str]:
     return [f"{reason} {data} at {at}" for at, data, reason in spans]
 
 
-def _differ(right: list[str], given: list[str]) -> str:
+def _differ(right: list[str], got: list[str]) -> str:
     """Return the first difference of two lists, in words."""
-    if right == given:
+    if right == got:
         return ""
-    at = next((i for i, pair in enumerate(zip(right, given)) if pair[0] != pair[1]), None)
-    at = min(len(right), len(given)) if at is None else at
+    at = next((i for i, pair in enumerate(zip(right, got)) if pair[0] != pair[1]), None)
+    at = min(len(right), len(got)) if at is None else at
     wanted = right[at] if at < len(right) else "nothing more"
-    got = given[at] if at < len(given) else "nothing more"
-    return f"expected {wanted}, got {got}"
+    found = got[at] if at < len(got) else "nothing more"
+    return f"expected {wanted}, got {found}"
 
 
 def _shown(answer: Json) -> str:

@@ -29,7 +29,7 @@ class NoAnswer(CobotwireError):
     """The implementation crashed or ended, is silent, or does not speak the protocol.
 
     Attributes:
-        kind: ``crashed``, ``ended`` (without an error), ``silent`` or ``babbling``.
+        kind: ``crashed``, ``ended`` (without an error), ``silent`` or ``malformed``.
     """
 
     def __init__(self, kind: str, detail: str) -> None:
@@ -136,7 +136,7 @@ class Program:
                     raise NoAnswer("silent", f"no answer within {seconds:g} s")
                 self._output += data
                 if len(self._output) > LONGEST_LINE:
-                    raise NoAnswer("babbling", f"a line of more than {LONGEST_LINE} bytes")
+                    raise NoAnswer("malformed", f"a line of more than {LONGEST_LINE} bytes")
         except LinkError:
             raise self._gone(process) from None
         answer, _, self._output = self._output.partition(b"\n")
@@ -147,13 +147,15 @@ class Program:
             answer = json.loads(line)
             too_deep = _is_deeper(answer, DEEPEST)
         except ValueError:
-            raise NoAnswer("babbling", f"{line[:120]!r} is not JSON") from None
+            raise NoAnswer("malformed", f"{line[:120]!r} is not JSON") from None
         except RecursionError:
             too_deep = True
         if too_deep:
-            raise NoAnswer("babbling", f"{line[:120]!r}... is nested too deeply")
+            raise NoAnswer("malformed", f"{line[:120]!r}... is nested too deeply")
         if not isinstance(answer, dict) or answer.get("id") != self._count:
-            raise NoAnswer("babbling", f"{line[:120]!r} is not an answer to question {self._count}")
+            raise NoAnswer(
+                "malformed", f"{line[:120]!r} is not an answer to question {self._count}"
+            )
         return answer
 
     def _gone(self, process: subprocess.Popen[bytes]) -> NoAnswer:

@@ -17,7 +17,7 @@ from cobotwire.protocol.table import Table
 class CodecOptions(Options):
     """What a caller chooses for a run.
 
-    ``command`` runs the codec. ``only`` is a pattern of the questions that are asked.
+    ``command`` runs the codec. ``only`` is a pattern for the names of the questions to ask.
     """
 
     kind = "codec"

@@ -120,7 +120,7 @@ class Run:
         return self.report
 
     def _leave_out(self, questions: Iterable[Question]) -> None:
-        """Report the test cases of questions that were not asked as not run."""
+        """Report as not run the test cases of the questions that are left."""
         for case, command in {(each.case, each.command) for each in questions}:
             reason = f"{self.report.stopped}."
             self._tally.excuse(case, command, Cause.RUN_ENDED, reason)

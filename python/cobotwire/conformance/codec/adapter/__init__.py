@@ -1,4 +1,4 @@
-"""Implementations of the line protocol that come with cobotwire.
+"""The codecs that come with cobotwire, as programs that a run can test.
 
 python -m cobotwire.conformance.codec.adapter native|reference|pymycobot
 """

@@ -28,7 +28,7 @@ def codec_of(name: str, edition: str) -> Implementation:
 
 
 def main() -> None:
-    """Answer until the questions end; the greeting names the edition."""
+    """Answer each question; the first, ``hello``, names the edition."""
     codec: Implementation | None = None
     for line in sys.stdin:
         question = json.loads(line)

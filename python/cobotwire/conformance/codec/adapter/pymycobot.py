@@ -2,7 +2,7 @@
 
 It encodes requests, and decodes the reply to the request that it has just sent. It frames no
 streams, decodes no requests and encodes no replies. If it waits for more bytes, or sends a request
-again, it has rejected what came.
+again, it has rejected the bytes.
 """
 
 from __future__ import annotations
@@ -159,7 +159,7 @@ def _without_output(call: Any, arguments: list[Any]) -> Any:
 
 
 def _arguments(command: Command, fields: Json) -> list[Any]:
-    """Return values as its callers pass them: in order, as lists, integers where possible."""
+    """Return values as callers of the library pass them: in order, integers where possible."""
     variant = next(
         variant
         for variant in command.request
@@ -183,10 +183,10 @@ def _plain(value: Any) -> Any:
 
 
 def _by_name(variant: Variant, result: Any) -> Json:
-    """Return the library's result by our field names, without what it takes for an echo."""
+    """Return the library's result by our field names; it returns no echoes."""
     fields = [field for field in variant.fields if not field.echo]
     if len(fields) == 1:
-        return {fields[0].name: [result] if fields[0].many and _alone(result) else result}
+        return {fields[0].name: [result] if fields[0].many and _is_single(result) else result}
     flat = list(result) if isinstance(result, Iterable) else [result]
     named: Json = {}
     for field in fields:
@@ -196,5 +196,5 @@ def _by_name(variant: Variant, result: Any) -> Json:
     return named
 
 
-def _alone(result: Any) -> bool:
+def _is_single(result: Any) -> bool:
     return not isinstance(result, list | tuple)

@@ -15,7 +15,7 @@ from cobotwire.conformance.samples.raw import Sample, illegal_samples, ordinary,
 from cobotwire.conformance.suite import Group, TestCase
 from cobotwire.protocol.table import Command, Direction, Table, Variant
 
-# Derive samples, and physical values with the names of questions, from a variant.
+# Derive from a variant: samples; and physical values, each with a name for the question.
 SamplesOf = Callable[[Variant], Iterator[Sample]]
 ValuesOf = Callable[[Variant], Iterator[tuple[str, Json]]]
 
@@ -71,7 +71,7 @@ def ordinary_frame(table: Table, variant: CommandVariant, turn: int = 0) -> byte
 
 
 def _encoding(samples_of: SamplesOf, values_of: ValuesOf, codec: Codec) -> Iterator[Question]:
-    """Yield questions that encode samples, unless their bytes are no text, and other values."""
+    """Yield questions that encode samples, except illegal texts, and other values."""
     for variant in variants_of(codec.table):
         for sample in samples_of(variant.variant):
             with suppress(UnicodeDecodeError):

@@ -98,32 +98,32 @@ def encode_named(
             rejection = rejection or error
         if sized:
             break
-    given = ", ".join(sorted(fields)) or "none"
-    message = f"no variant of the {direction} of {command} has these fields: {given}"
+    passed = ", ".join(sorted(fields)) or "none"
+    message = f"no variant of the {direction} of {command} has these fields: {passed}"
     raise rejection or UsageError("fields", sorted(fields), message=message)
 
 
-def value_of(field: Field, given: Any) -> Any:
+def value_of(field: Field, value: Any) -> Any:
     """Return a JSON value as the codecs take it; any other value is returned unchanged."""
-    if field.kind == "flag" and given in (0, 1):
-        return bool(given)
-    if field.kind == "bytes" and isinstance(given, str):
+    if field.kind == "flag" and value in (0, 1):
+        return bool(value)
+    if field.kind == "bytes" and isinstance(value, str):
         with suppress(ValueError):
-            return bytes.fromhex(given)
+            return bytes.fromhex(value)
     if field.kind in ("bytes", "text"):
-        return given
-    if isinstance(given, list):
+        return value
+    if isinstance(value, list):
         return tuple(
-            value_of(field, part) if field.kind == "flag" else _number(part) for part in given
+            value_of(field, part) if field.kind == "flag" else _number(part) for part in value
         )
-    return _number(given)
+    return _number(value)
 
 
-def _number(given: Any) -> Any:
+def _number(value: Any) -> Any:
     """Return a number of JSON, which writes one that is not finite as text."""
-    if isinstance(given, list):
-        return tuple(map(_number, given))
-    return float(given) if given in ("nan", "inf", "-inf") else given
+    if isinstance(value, list):
+        return tuple(map(_number, value))
+    return float(value) if value in ("nan", "inf", "-inf") else value
 
 
 def plain_fields(message: DecodedMessage) -> dict[str, Any]:

@@ -40,7 +40,7 @@ NOISE_REASON = TestCase(
 )
 
 LISTENING: tuple[Listening, ...] = ("request", "reply", "both")
-# Pieces of these classes of the simulator's catalogue, the same in each run.
+# The classes of noise, from the simulator's catalogue; the bytes are the same in each run.
 NOISE_CLASSES = (
     "servo",
     "servo FE",
