@@ -83,7 +83,7 @@ def test_subjects_import_only_the_standard_library_and_each_other(folder: str) -
 @pytest.mark.parametrize(
     ("command", "text", "named"),
     [
-        ("get_angles", "expected LEN 0E; came 0F", True),
+        ("get_angles", "expected LEN 0E; received 0F", True),
         ("stop", "after get_angles: LEN is 0F", True),
         ("stop", "LEN is 0F", False),
         ("get_angles", "expected LEN 0E", False),

@@ -5,7 +5,7 @@
 
 For a codec, the names are those of questions. For a device and a client they are
 ``TEST-CASE/COMMAND``, or only the test case if it is about the whole line. The reason is required.
-Empty lines, and lines that begin with ``#``, do not count.
+Empty lines, and lines that begin with ``#``, are skipped.
 """
 
 from __future__ import annotations

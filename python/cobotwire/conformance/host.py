@@ -8,8 +8,8 @@ from dataclasses import dataclass, field
 
 from cobotwire.conformance.report import Host
 
-# Clocks that are disciplined by NTP differ by at most 500 millionths; reading them takes a moment.
-SHARE, MOMENT = 0.001, 0.1
+# Clocks that are disciplined by NTP differ by at most 500 millionths; reading both takes time.
+SHARE, READING = 0.001, 0.1
 
 
 def load() -> float:
@@ -37,7 +37,7 @@ class HostWatch:
 def clock_mistake(host: Host) -> str:
     """Return how the clocks differ; empty: they agree."""
     apart = host.wall_seconds - host.monotonic_seconds
-    if abs(apart) <= MOMENT + SHARE * host.monotonic_seconds:
+    if abs(apart) <= READING + SHARE * host.monotonic_seconds:
         return ""
     return (
         f"The clocks of the host disagree: during the run the wall clock went {apart:+.3f} s "

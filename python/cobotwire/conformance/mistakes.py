@@ -1,4 +1,4 @@
-"""Guess the kind of mistake from the right numbers of a row and those that came."""
+"""Guess the kind of mistake from the numbers that were expected and those received."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ ANOTHER_ORDER = "the right numbers in another order"
 
 
 class Pair(NamedTuple):
-    """A number that should have come, and the number that came.
+    """The right number, and the number that was received.
 
     ``near`` is the largest difference between two readings of the same quantity. ``number`` is how
     the number is sent; None: it was converted.
@@ -28,23 +28,23 @@ class Pair(NamedTuple):
 
     name: str
     right: float
-    came: float
+    received: float
     near: float
     number: Number | None = None
 
     @property
     def wrong(self) -> bool:
         """Whether the number is wrong."""
-        return not _close(self.came, self.right, self.near)
+        return not _close(self.received, self.right, self.near)
 
     @property
-    def turned(self) -> Pair:
+    def exchanged(self) -> Pair:
         """The pair with its two numbers exchanged."""
-        return self._replace(right=self.came, came=self.right)
+        return self._replace(right=self.received, received=self.right)
 
 
 def likely_mistake(pairs: Sequence[Pair]) -> str:
-    """Return the mistake that explains all wrong numbers of a row; empty if none does."""
+    """Return the mistake that explains all wrong numbers of a reply; empty if none does."""
     wrong = [pair for pair in pairs if pair.wrong]
     return next(_explanations(pairs, wrong), "") if wrong else ""
 
@@ -55,7 +55,7 @@ def _explanations(pairs: Sequence[Pair], wrong: Sequence[Pair]) -> Iterator[str]
         backwards = [pair.right for pair in pairs][::-1]
         if len(wrong) == 2:
             yield f"{names} are swapped"
-        elif all(_close(p.came, back, p.near) for p, back in zip(pairs, backwards)):
+        elif all(_close(p.received, back, p.near) for p, back in zip(pairs, backwards)):
             yield "the right numbers in reverse order"
     if len(wrong) > 2 and _is_one_behind(pairs):
         yield "each is the number that was right for the request before"
@@ -63,7 +63,7 @@ def _explanations(pairs: Sequence[Pair], wrong: Sequence[Pair]) -> Iterator[str]
         yield ANOTHER_ORDER
     if all(map(_has_bytes_swapped, wrong)):
         yield f"{names}: the right numbers with their bytes swapped"
-    if all(_close(pair.came, -pair.right, pair.near) for pair in wrong):
+    if all(_close(pair.received, -pair.right, pair.near) for pair in wrong):
         yield f"{names}: the right numbers with the other sign"
     for factor, words in FACTORS.items():
         if all(_is_times(pair, factor) for pair in wrong):
@@ -74,20 +74,23 @@ def _is_other_order(wrong: Sequence[Pair]) -> bool:
     """Return whether the wrong numbers are the right ones, each elsewhere."""
     if len(wrong) < 2:
         return False
-    came, right = sorted(p.came for p in wrong), sorted(p.right for p in wrong)
+    received, right = sorted(p.received for p in wrong), sorted(p.right for p in wrong)
     near = max(pair.near for pair in wrong)
-    return all(_close(a, b, near) for a, b in zip(came, right))
+    return all(_close(a, b, near) for a, b in zip(received, right))
 
 
 def _is_one_behind(pairs: Sequence[Pair]) -> bool:
-    """Return whether each number that came, except the first, was right in the pair before it."""
-    return all(_close(now.came, old.right, now.near) for old, now in pairwise(pairs))
+    """Return whether each received number, except the first, was right in the pair before it."""
+    return all(_close(now.received, old.right, now.near) for old, now in pairwise(pairs))
 
 
 def _is_times(pair: Pair, factor: float) -> bool:
-    """Return whether the number came multiplied, perhaps beyond what its bytes can hold."""
+    """Return whether the number was multiplied, perhaps beyond what its bytes can hold."""
     scaled = pair.right * factor
-    apart, most = pair.came - scaled, max(pair.near * min(factor, 1.0), abs(scaled) * NEAR_FACTOR)
+    apart, most = (
+        pair.received - scaled,
+        max(pair.near * min(factor, 1.0), abs(scaled) * NEAR_FACTOR),
+    )
     if pair.number is not None and pair.number.encoding == "integer" and not pair.number.bits:
         turn = abs(pair.number.physical(256**pair.number.width))
         apart -= round(apart / turn) * turn
@@ -101,7 +104,7 @@ def _has_bytes_swapped(pair: Pair) -> bool:
     if number is None or number.width < 2 or number.encoding == "float" or number.bits:
         return False
     swapped = number.pack(round(number.steps(pair.right)))[::-1]
-    return _close(pair.came, number.physical(number.unpack(swapped)), pair.near)
+    return _close(pair.received, number.physical(number.unpack(swapped)), pair.near)
 
 
 def _close(one: float, other: float, near: float) -> bool:

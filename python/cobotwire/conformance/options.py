@@ -39,13 +39,13 @@ class Options:
         """Return the options that a report keeps.
 
         Raises:
-            UsageError: an option is unknown or illegible.
+            UsageError: an option is unknown, or its text is not a value of it.
         """
         readers = {
             each.name: READERS.get(str(each.type).removesuffix(" | None"), str)
             for each in fields(cls)
         }
-        given: dict[str, Any] = {}
+        values: dict[str, Any] = {}
         for name, text in options.items():
             if name not in readers:
                 message = (
@@ -53,10 +53,10 @@ class Options:
                 )
                 raise UsageError("report", name, message=message)
             try:
-                given[name] = readers[name](text)
+                values[name] = readers[name](text)
             except (TypeError, ValueError) as error:
                 raise UsageError("report", message=f"its option {name}: {error}") from error
-        return cls(**given)
+        return cls(**values)
 
     def for_report(self) -> dict[str, str]:
         """Return the options that differ from their defaults."""

@@ -1,4 +1,4 @@
-"""Where the numbers of a message stand, and which of them apply."""
+"""Find the offset of each number in a message, and the numbers that its selectors choose."""
 
 from __future__ import annotations
 

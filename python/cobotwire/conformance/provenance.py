@@ -44,7 +44,7 @@ def identify(report: Report, edition: str, *, port: str = "") -> None:
 
 @cache
 def edition_digest(edition: str) -> str:
-    """Return the SHA-256 of an edition's table; empty if it is not stored as such."""
+    """Return the SHA-256 of an edition's table; empty if the table is not stored."""
     try:
         package = getattr(editions.load(edition), "__name__", "")
         return sha256(stored_file(package)[1]).hexdigest()

@@ -29,11 +29,11 @@ class Cause(StrEnum):
     NOT_PERMITTED = "not permitted"
     # Not run: the statement of the subject, or the options of the run, deselect the test case.
     NOT_SELECTED = "not selected"
-    # Not run: the run ended before.
+    # Not run: the run ended first.
     RUN_ENDED = "run ended"
     # Inconclusive: the subject lacks what the test case is about, or is in the wrong state.
     NOT_SUPPORTED = "not supported"
-    # Inconclusive: a state that lasts only for a while was over, or the host was late.
+    # Inconclusive: a state had ended before it could be observed, or the host was late.
     NOT_TIMED = "not timed"
     # Fail: repetitions of the same test case differ.
     UNSTABLE = "unstable"
@@ -70,7 +70,7 @@ class Result:
 
     ``command`` is empty if the test case is about the line as a whole. ``case`` is the id of the
     test case, ``source`` where the requirement is stated (``spec/commands/motion.yaml:12``),
-    ``reason`` a sentence that states what was expected and what came. ``further`` has the sentences
+    ``reason`` a sentence that states what was expected and received. ``further`` has the sentences
     of the next failures of the test case on the command; ``reason`` counts all. ``group`` is the
     group of test cases that was run; empty if the subject's groups are checked together. ``load``
     is the load of the host for each processor, if the verdict depends on time; 0: it does not, or

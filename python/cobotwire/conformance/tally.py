@@ -72,7 +72,7 @@ class Tally:
         return any(count.failed for count in self._counts.values())
 
     def expect(self, case: TestCase, command: str = "", otherwise: str = "") -> None:
-        """Report the test case even without observations; ``otherwise`` is the reason for that."""
+        """Report the test case even without observations; then ``otherwise`` is the reason."""
         count = self._count(case, command)
         count.otherwise = otherwise or count.otherwise
 

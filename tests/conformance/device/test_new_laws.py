@@ -50,7 +50,7 @@ def test_reply_of_another_address_fails_with_the_expected_address() -> None:
     )
     [frame] = [result for result in failed if result.case == "reply-frame"]
     assert "address 01 (LEFT)" in frame.reason
-    assert "came the frame FE FE 03" in frame.reason
+    assert "received the frame FE FE 03" in frame.reason
 
 
 def test_row_of_six_joints_from_the_waist_fails_also_if_all_parts_are_requested() -> None:
@@ -109,7 +109,7 @@ def test_message_names_what_a_query_reports_by_the_names_of_its_values() -> None
 
     options = {"wrap": lambda arm: Altered(arm, altered)}
     [result] = _failures(table, "recorded points", "set_drag_fifo", **options)
-    assert f"{query.name}: expected EMPTY, with 0 points; came FILLED" in result.reason
+    assert f"{query.name}: expected EMPTY, with 0 points; received FILLED" in result.reason
 
 
 def test_setting_fails_if_no_number_of_a_row_reports_it() -> None:

@@ -83,7 +83,7 @@ def failing(count: int) -> Report:
             "query-replied",
             f"get_{at}",
             Verdict.FAIL,
-            f"get_{at}(joint={at}, row=(1, (2, {at}))): expected a reply; came nothing",
+            f"get_{at}(joint={at}, row=(1, (2, {at}))): expected a reply; received nothing",
             (Exchange(0.5, "sent", bytes([at])),),
         )
         for at in range(count)

@@ -54,7 +54,7 @@ def test_command_declared_absent_that_replies_fails_the_statement() -> None:
     report = run("commands: {get_tof_distance: absent}")
     [failure] = report.failures
     assert (failure.case, failure.command) == ("declared-absent", "get_tof_distance")
-    assert "declared absent: expected no reply; came FE FE" in failure.reason
+    assert "declared absent: expected no reply; received FE FE" in failure.reason
     others = [r for r in report.results if r.command == "get_tof_distance" and r is not failure]
     assert {r.cause for r in others} == {Cause.NOT_SELECTED}
     assert outcomes(report, "get_angles") == {"pass", "not run (not permitted)"}

@@ -115,7 +115,7 @@ class Device:
     def await_start(self, seconds: float) -> bool:
         """Repeat a query until a device that has just been started replies; return whether it does.
 
-        Replies to the earlier queries are received, so that none is taken for another one.
+        The replies to all repetitions are received, so that none is taken for a later reply.
         """
         query = self.command("powered") or self.command("joints")
         if query is None:
@@ -138,7 +138,7 @@ class Device:
         return self.table.find_role(role)
 
     def request(self, request: Request[Any]) -> Response:
-        """Send a request and return what came; a query is repeated as often as the run allows."""
+        """Send a request, return the response; a query is repeated as often as the run allows."""
         encoded = self.requester.prepare(request)
         if encoded.command.text is not None:
             return self._request_text(encoded)
@@ -180,7 +180,7 @@ class Device:
         return response
 
     def note_change(self, response: Response) -> int:
-        """Note what came after a command that may be acknowledged; return how often it was sent."""
+        """Note the response to a change that may be acknowledged; return how often it was sent."""
         name = response.request.command.name
         self.noticed.acknowledged.setdefault(name, response)
         self.noticed.changes[name] += 1
@@ -228,9 +228,9 @@ class Device:
         return None if reply is None else any(reply.fields.values())
 
     def known(self, command: Command | None = None) -> Known:
-        """Return the arm's position as rows of numbers, by their units, for its calculations.
+        """Return the arm's angles and coordinates by their units, for queries that take a position.
 
-        A row is empty if no reply has it. For a ``command`` that takes no row, the result is empty.
+        A row is empty if no valid reply reports it. If ``command`` takes no row, nothing is read.
         """
         if command is not None and not any(f.many for v in command.request for f in v.fields):
             return {}
@@ -260,7 +260,7 @@ class Device:
         seconds: float,
         every: float,
     ) -> Reading:
-        """Repeat a reading until it is as wanted, or ``seconds`` are over; return the last one."""
+        """Repeat a reading until it is ``done`` or ``seconds`` have passed; return the last one."""
         until = self.connection.now + seconds
         while not done(reading := read()) and self.connection.now < until:
             self.rest(every)

@@ -1,8 +1,8 @@
 """The state that queries read, compared after each malformed request: nothing may change it.
 
 Reading everything each time would take minutes. So one value is read after each malformed request,
-in turns, and all values at the end. If one has changed, the requests since it was read last are
-sent again, one by one, to find the one that changes it.
+another one each time, and all values at the end. If one has changed, the requests since it was read
+last are sent again, one by one, to find the one that changes it.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ from cobotwire.conformance.hex_text import shown
 from cobotwire.protocol.messages import Reply, Request
 from cobotwire.protocol.table import Command, Table
 
-# How many other values are named.
+# How many other changed values a failure names.
 MOST_NAMES = 12
 # How often a run looks for the request that has changed something, which takes seconds.
 SEARCHES = 3
@@ -162,7 +162,7 @@ class KeptState:
         sent, spot.since = spot.since, []
         if now is None or now == spot.value:
             return ""
-        change = f"expected {spot} to stay {values_text(spot.value)}; came {values_text(now)}"
+        change = f"expected {spot} to stay {values_text(spot.value)}; received {values_text(now)}"
         cause = self._find(spot, sent) if self._searches < SEARCHES else None
         self._searches += 1
         self._set_again(spot)

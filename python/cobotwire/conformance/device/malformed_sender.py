@@ -16,7 +16,7 @@ from cobotwire.session.request import EncodedRequest
 RECOVERS = TestCase("recovers", "After a malformed request, the next good one is replied to.")
 KEPT = TestCase("state-kept", "A malformed request changes nothing that a query reads.")
 
-# How many lost values are named.
+# How many changed values a failure names.
 MOST_CHANGES = 4
 # Test cases with many values that are malformed in the same way.
 ONE_KIND = ("unknown-id", "out-of-range")
@@ -71,7 +71,7 @@ class MalformedSender:
         """Send it without a query after it, then the good request; return whether both pass."""
         response = self._send_alone(what, data)
         silent = not response.replies and not response.unexpected
-        self._probe.expect(case, silent, f"{what}: expected no reply; came {response.summary}")
+        self._probe.expect(case, silent, f"{what}: expected no reply; received {response.summary}")
         good = self._device.count(self._device.requester.send(self._good(data)))
         call = f"the good request {good.request.command.name} after {what}"
         expect_one_reply(self._probe, RECOVERS, good, call)
@@ -129,5 +129,5 @@ def expect_one_reply(probe: Probe, case: TestCase, response: Response, what: str
     deadline = response.request.command.deadline_ms
     late = response.late and bool(response.replies)
     took = f" after {1000 * response.replies[0].seconds:.0f} ms" if late else ""
-    reason = f"{what}: expected one legal reply within {deadline} ms; came "
+    reason = f"{what}: expected one legal reply within {deadline} ms; received "
     probe.expect(case, response.only_valid and not late, reason + response.summary + took)

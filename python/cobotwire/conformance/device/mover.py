@@ -105,7 +105,7 @@ class Mover:
             self.device.poll(reading, lambda moves: moves is False, LONGEST, POLL)
 
     def settle(self, read: Callable[[], object]) -> None:
-        """Wait until the arm is at rest and a reading stays the same: a gripper moves by itself."""
+        """Wait until the arm is at rest, and a reading stays the same: a gripper may still move."""
         self.wait()
         seen = [read()]
         self.rest(POLL)

@@ -59,11 +59,11 @@ class Permissions:
                 raise UsageError("max_speed", max_speed, "1 to 100 percent", message=needs)
             for joint, (low, high) in enumerate(ranges, 1):
                 if not -180 <= low < high <= 180:
-                    given = (workspace or {}).get(joint)
+                    span = (workspace or {}).get(joint)
                     place = f"workspace of joint {joint}"
                     wanted = "LOW..HIGH in degrees within -180..180"
-                    needs = f"motion needs the {place}, {wanted}" if given is None else ""
-                    raise UsageError(place, given, wanted, message=needs)
+                    needs = f"motion needs the {place}, {wanted}" if span is None else ""
+                    raise UsageError(place, span, wanted, message=needs)
         return cls(allowed, max_speed, ranges if "motion" in allowed else ())
 
     def missing(self, needed: frozenset[str]) -> str:

@@ -70,7 +70,7 @@ class Plan:
         return self._found.get(step.place, []) if step.place in self._complete() else []
 
     def _complete(self) -> set[tuple[str, str]]:
-        """Return the steps whose results count; not the last one that ran before an early end."""
+        """Return the steps with results that count: not the last one before an early end."""
         whole = [place for place, found in self._found.items() if not any(map(_was_not_run, found))]
         if not self._resume:
             return set()

@@ -54,7 +54,7 @@ class Probe:
         return self._command
 
     def expect(self, case: TestCase, holds: bool, reason: str) -> None:
-        """Observe whether a test case holds; ``reason`` says what was expected and what came.
+        """Observe whether a test case holds; ``reason`` says what was expected and received.
 
         Raises:
             EnoughFailures: it has failed so often that the body can end.
@@ -72,7 +72,7 @@ class Probe:
         """Observe whether a query reports a flag; by default, its name is the ``call``."""
         command, reported = self.device.table.command(query.command), self.device.is_set(query)
         expected = f"{call or command.name}: expected {flag_text(command, right)}{when}"
-        self.expect(case, reported is right, f"{expected}; came {flag_text(command, reported)}")
+        self.expect(case, reported is right, f"{expected}; received {flag_text(command, reported)}")
 
     def drop(self, case: TestCase) -> None:
         """Give no verdict on a test case that has no meaning for the command."""
@@ -83,7 +83,7 @@ class Probe:
         self._tally.note(case, self._name, text)
 
     def not_timed(self, case: TestCase, reason: str) -> None:
-        """Give no verdict on a test case, unless it has failed: the state was over too early."""
+        """Give no verdict on a test case, unless it has failed: it was not observed in time."""
         if (case, self._name) in self._tally:
             self._tally.excuse(case, self._name, Cause.NOT_TIMED, reason)
 
@@ -104,20 +104,23 @@ class Probe:
 
 # Exercises the test cases of a group on one command, or on the line as a whole.
 Body = Callable[[Probe], None]
-Row = TypeVar("Row")
-RowBody = Callable[[Probe, Row], None]
+Found = TypeVar("Found")
+FoundBody = Callable[[Probe, Found], None]
 
 
-def for_rows(
-    find: Callable[[Table, Command], Row | None], body: RowBody[Row]
+def for_found(
+    find: Callable[[Table, Command], Found | None], body: FoundBody[Found]
 ) -> tuple[Body, Selects]:
-    """Return a body, and the selector of its commands: those for which ``find`` returns a row."""
+    """Return a body, and the selector of its commands: those for which ``find`` finds something.
+
+    The body gets what was found.
+    """
 
     def run(probe: Probe) -> None:
-        row = find(probe.device.table, probe.command)
-        if row is None:
+        found = find(probe.device.table, probe.command)
+        if found is None:
             raise NotSupported("the device lacks a command without which this cannot be observed")
-        body(probe, row)
+        body(probe, found)
 
     return run, find
 

@@ -35,7 +35,7 @@ class Setting:
     ``pairs`` are the reply's fields with the arguments that they report. The query's arguments, if
     it has any, choose what is read, such as a joint; the setting has them too. If the query reports
     several numbers, ``part`` has the argument that names the one which is set, and ``place`` is its
-    index in the row, if they are a row.
+    index if one field holds them all.
     """
 
     command: Command
@@ -49,9 +49,9 @@ class Setting:
     @property
     def queries(self) -> list[Request[Any]]:
         """The queries of all that can be set: each joint, pin or register in turn."""
-        given = {field.name: field for field in self.variant.fields}
+        own = {field.name: field for field in self.variant.fields}
         fields = self.query_variant.fields
-        fields = tuple(f if f.const is not None else given[f.name] for f in fields)
+        fields = tuple(f if f.const is not None else own[f.name] for f in fields)
         # If an argument selects the part to store, only that part.
         part = {name: (raw,) for name, raw in self.part}
         return requests(self.query, Variant(fields), limits={**self._limits, **part})
@@ -93,7 +93,7 @@ class Setting:
     def _request(self, query: Request[Any], values: Mapping[str, Any], speed: int) -> Request[Any]:
         """Return the request that sets ``values`` of what ``query`` reads.
 
-        Its other arguments are speeds as given, and the values that do the least.
+        Of its other arguments, speeds are ``speed``, and the rest do the least.
         """
         speeds = {f.name: speed for f in self.variant.fields if _is_speed(f) and not f.many}
         return self.command.request_type.from_fields(
@@ -106,7 +106,7 @@ class Setting:
         reply: Reply[Any] | None,
         near: Mapping[str, float] | None = None,
     ) -> list[str]:
-        """Describe each part of a reply that is not as requested, with both values.
+        """Describe each number of a reply that is not as requested, with both values.
 
         ``near`` holds the tolerance by unit.
         """
@@ -258,7 +258,7 @@ def _parts(table: Table, command: Command) -> Iterator[Setting]:
 
 
 def _of_corner_sizes(variants: tuple[Variant, ...]) -> Iterator[Variant]:
-    """Yield the variants; of sizes that vary, only the least and the most elements."""
+    """Yield the variants; of a list of varying size, only the shortest and the longest."""
     for variant in variants:
         sized = [field for field in variant.fields if field.sizes and not field.counts]
         if all(field.dimensions[0] in (field.sizes or ()) for field in sized):
@@ -273,7 +273,7 @@ class Fixed(NamedTuple):
     value: int
 
     def for_part(self, part: Request[Any]) -> Request[Any]:
-        """Return the query of the part that a request names; of all, if it can name none."""
+        """Return the query about the joint that a request names; about all if it names none."""
         known = self.query.argument_names
         fields = {name: value for name, value in part.fields.items() if name in known}
         return self.query.request_type.from_fields(fields)

@@ -43,7 +43,7 @@ ENOUGH_SILENT = 4
 
 
 class Requester:
-    """Sends requests of one edition on one connection, and returns what came after each."""
+    """Sends requests of one edition on one connection, and returns the response to each."""
 
     def __init__(
         self,
@@ -177,7 +177,7 @@ class Requester:
         return Response(request, self._connection.now, others[-1] if others else None)
 
     def listen(self, response: Response, seconds: float) -> None:
-        """Listen until nothing has come for ``seconds``, and classify all that came."""
+        """Listen until nothing has come for ``seconds``, and classify all that was received."""
         end = self._connection.now + max(self._timing.grace, 4 * seconds)
         while self._connection.now < end and (data := self._connection.receive(seconds)):
             self._sort(response, self._framer.feed(data))
@@ -194,7 +194,7 @@ class Requester:
         return self._timing.linger if waited else self._timing.silence
 
     def _await_reply(self, response: Response, seconds: float) -> None:
-        """Listen until a reply has come or ``seconds`` are over.
+        """Listen until a reply has come or ``seconds`` have passed.
 
         If this process is delayed, a reply that waits to be read still counts as in time.
         """
@@ -238,8 +238,8 @@ class Requester:
         for event in events:
             if not isinstance(event, Frame):
                 continue
-            if (sent_alone := as_event(event, self._codec.table)) is not None:
-                self.events.append((self._connection.now, sent_alone))
+            if (unrequested := as_event(event, self._codec.table)) is not None:
+                self.events.append((self._connection.now, unrequested))
                 continue
             owner = self._owner(event, response)
             if owner is None:

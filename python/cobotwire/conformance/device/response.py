@@ -1,4 +1,4 @@
-"""What came after a request: replies, frames that were not requested, noise."""
+"""The response to a request: replies, frames that were not requested, noise."""
 
 from __future__ import annotations
 
@@ -101,7 +101,7 @@ class Response:
 
     @property
     def summary(self) -> str:
-        """What came, in words."""
+        """What was received, in words."""
         parts = [shown(reply.data) for reply in self.replies] + self.unexpected
         parts += [f"noise {shown(finding.data)}" for finding in self.noise]
         return "; ".join(parts) or "nothing"

@@ -1,4 +1,4 @@
-"""Whether two rows of angles are the same pose, as far as the rounding of the protocol shows."""
+"""Tell whether two sets of joint angles are the same pose, within the rounding of the protocol."""
 
 from __future__ import annotations
 
@@ -12,30 +12,30 @@ from cobotwire.kinematics.nearness import misses
 from cobotwire.protocol.table import Table
 from cobotwire.simulator.start import steps
 
-# The number of parts into which the path between two rows of angles is divided, and the most steps
-# that bring a part back to the pose.
-PARTS, STEPS = 32, 8
-# A part may be DETOUR times as long as in an even division, and any part FREE_PART degrees long.
-DETOUR, FREE_PART = 4.0, 1.0
+# The number of sections of the path between two sets of angles, and the most steps that bring the
+# end of a section back to the pose.
+SECTIONS, STEPS = 32, 8
+# A section may be DETOUR times as long as in an even division, and always FREE_SECTION degrees.
+DETOUR, FREE_SECTION = 4.0, 1.0
 NO_LIMIT = (-math.inf, math.inf)
 
 
 def is_same_pose(table: Table, one: Sequence[float], other: Sequence[float]) -> bool:
-    """Return whether two rows of angles may be the same pose.
+    """Return whether two sets of angles may be the same pose.
 
     With a straight elbow or wrist, joints turn far while the coordinates hardly change, and the
     rounding of the protocol hides where they are. So angles are the same if the joints can turn
-    from one row to the other while the end stays where it is, within the rounding. Another solution
+    from one set to the other while the end stays where it is, within the rounding. Another solution
     for the pose, with the elbow on the other side, is not the same: on the way the end would move.
 
-    Without the geometry, nothing is known of the pose.
+    Without the geometry of the arm, the result is False.
     """
     geometry = geometry_of(table)
     if geometry is None or len(one) != geometry.joints:
         return False
     here, near = flange(geometry, other), _rounding(table, geometry, other)
-    at, longest = tuple(other), max(FREE_PART, DETOUR * math.dist(one, other) / PARTS)
-    for left in range(PARTS, 0, -1):
+    at, longest = tuple(other), max(FREE_SECTION, DETOUR * math.dist(one, other) / SECTIONS)
+    for left in range(SECTIONS, 0, -1):
         there = tuple(angle + (goal - angle) / left for goal, angle in zip(one, at))
         if left > 1 and misses(geometry, there, here, *near):
             limits = [NO_LIMIT] * len(at)

@@ -43,8 +43,8 @@ def does(kind: type[Kind], **wanted: object) -> Callable[[Table, Command], Kind 
         effect = stated_effect(command)
         if not isinstance(effect, kind):
             return None
-        given = {name: getattr(effect, name) for name in wanted}
-        fits = (given[n] == v or (v is bool(given[n])) for n, v in wanted.items())
+        values = {name: getattr(effect, name) for name in wanted}
+        fits = (values[n] == v or (v is bool(values[n])) for n, v in wanted.items())
         return effect if all(fits) else None
 
     return found

@@ -30,9 +30,9 @@ from cobotwire.protocol.table import Command, Table
 
 # From this angle on, a joint shows a wrong scale, order or direction; in degrees.
 AWAY = 5.0
-# The words of a reason if nothing was received, or only the noise of a healthy line. A query after
-# that may have got its reply.
-SILENCE = ("came nothing", "came no valid reply", "came noise ")
+# The words of a reason if no valid reply was received, or only the noise of a healthy line; a
+# second query may still have had a reply.
+SILENCE = ("received nothing", "received no valid reply", "received noise ")
 
 Progress = Callable[[Step, int, int], None]
 
@@ -77,8 +77,7 @@ class Tester:
             address: the device's address, by number or name; left out: the edition's first one.
             statement: what the maker declares of the device; it selects test cases, and is tested.
             lacking: what the device itself states that it does not support: by command, the
-                reason. It may grow during the run. It is not a failure if such a command has no
-                reply.
+                reason. It may grow during the run. A command without a reply is then no failure.
 
         Raises:
             UsageError: the edition has no such address, or a request to it has no reply.
@@ -115,7 +114,7 @@ class Tester:
     def steps(self) -> Iterator[Step]:
         """Yield the steps in the order of a run."""
         for group in SUITE.groups:
-            if group.declared and not self._statement.given:
+            if group.declared and not self._statement.is_declared:
                 continue
             if group.selects is None:
                 yield Step(group, None)
@@ -304,7 +303,7 @@ class Tester:
         sent = sorted({r.command for r in ran if r.case in after} - tested)
         unread = [name for name in sent if not taken(self.table, self.table.command(name))]
         if unread:
-            text = f"Not tested: the effect of {', '.join(unread)}; only what comes after it."
+            text = f"Not tested: the effect of {', '.join(unread)}; only the response to it."
             self.report.untested = f"{self.report.untested} {text}".strip()
 
     def _read_version(self) -> None:

@@ -38,7 +38,7 @@ def to_html(report: Report) -> str:
     """Return a report as a page. It loads nothing, so that it can be mailed and archived."""
     title = f"{report.kind} conformance: {report.subject}"
     style, script = _file("page.css"), _file("page.js")
-    # Nothing but the page's own style and script has an effect, whatever a device has sent.
+    # Only the page's own style and script have an effect, whatever a device has sent.
     policy = f"default-src 'none'; style-src {_hash(style)}; script-src {_hash(script)}"
     head = element(
         "head",
@@ -94,8 +94,8 @@ def _options(report: Report) -> str:
 
 
 def _terms(facts: dict[str, str]) -> Element:
-    given = ((name, text) for name, text in facts.items() if text)
-    return element("dl", *(element(*pair) for n, t in given for pair in (("dt", n), ("dd", t))))
+    known = ((name, text) for name, text in facts.items() if text)
+    return element("dl", *(element(*pair) for n, t in known for pair in (("dt", n), ("dd", t))))
 
 
 def _banner(kind: str, text: str) -> Element:

@@ -64,9 +64,9 @@ def document_of(text: str) -> dict[str, Any]:
     try:
         data: dict[str, Any] = _checked(json.loads(text), dict)
         if data["format"] != FORMAT or data["version"] != VERSION:
-            given = f"{data['format']}, version {data['version']}"
-            message = f"the report is in the format {given}; needed: {FORMAT}, version {VERSION}"
-            raise UsageError("report", given, message=message)
+            found = f"{data['format']}, version {data['version']}"
+            message = f"the report is in the format {found}; needed: {FORMAT}, version {VERSION}"
+            raise UsageError("report", found, message=message)
         return data
     except WRONG as error:
         raise _unreadable(error) from error

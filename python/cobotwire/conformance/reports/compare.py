@@ -34,8 +34,8 @@ class Change:
 
 
 @dataclass(frozen=True, slots=True)
-class Slower:
-    """A query whose median reply time changed notably; seconds."""
+class ChangedTime:
+    """The median reply times to a query, in seconds, if they differ notably."""
 
     command: str
     before: float
@@ -47,7 +47,7 @@ class Comparison:
     """The differences between two reports."""
 
     changes: tuple[Change, ...]
-    times: tuple[Slower, ...]
+    times: tuple[ChangedTime, ...]
 
     @property
     def worse(self) -> bool:
@@ -94,7 +94,7 @@ def _kind(old: Result | None, new: Result | None) -> Kind:
     return "removed" if after is None else "other"
 
 
-def _times(before: Report, after: Report) -> list[Slower]:
+def _times(before: Report, after: Report) -> list[ChangedTime]:
     found = []
     for command, seconds in after.reply_seconds.items():
         earlier = before.reply_seconds.get(command, [])
@@ -102,5 +102,5 @@ def _times(before: Report, after: Report) -> list[Slower]:
             old, new = median(earlier), median(seconds)
             low, high = sorted((old, new))
             if high - low >= NOTABLE_SECONDS and high >= low * NOTABLE_RATIO:
-                found.append(Slower(command, old, new))
+                found.append(ChangedTime(command, old, new))
     return found

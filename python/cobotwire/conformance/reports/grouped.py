@@ -53,7 +53,7 @@ def title_of(command: str) -> str:
 
 
 def by_cause(results: Iterable[Result]) -> list[list[Result]]:
-    """Return results of the same test case with the same cause together, the most first."""
+    """Group the results of a test case that have the same cause; the largest group comes first."""
     found: dict[tuple[str, str, str], list[Result]] = {}
     for result in results:
         key = (result.case, result.outcome, _pattern(result))
@@ -67,7 +67,7 @@ def _pattern(result: Result) -> str:
     if result.command:
         text = text.replace(result.command, "COMMAND")
     text = ANSWER.sub(r"but the answer was \1", QUESTION.sub("", text))
-    # From the inside out: arguments may have rows, in parentheses of their own.
+    # From the inside out: arguments may be rows, which have parentheses of their own.
     while text != (text := ARGUMENTS.sub("", text)):
         pass
     for values in (BYTES, NUMBER):

@@ -13,7 +13,7 @@ from cobotwire.conformance.reports.grouped import columns, matrix, rows, title_o
 
 # The length, in characters, that long texts are shortened to.
 LONGEST = 200
-# The last exchanges that the page shows of what passed; the JSON report has more.
+# How many exchanges the page shows of what passed, the last ones; the JSON report has more.
 OF_PASSES = 3
 # How many further failures of a test case it describes.
 FURTHER = 3

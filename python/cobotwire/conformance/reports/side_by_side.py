@@ -1,4 +1,4 @@
-"""Show the reports of several implementations side by side: what each found at each place."""
+"""Show reports side by side: the outcome of each test case on each command, in each report."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ class Row(NamedTuple):
 
 
 def side_by_side(reports: Sequence[Report]) -> list[Row]:
-    """Return all places of the reports, in the order of the first report that has each.
+    """Return a row for each test case on a command, in the order of the first report that has it.
 
     Raises:
         UsageError: the reports are about different kinds of subjects.

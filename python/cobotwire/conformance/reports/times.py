@@ -11,7 +11,7 @@ from cobotwire.conformance.report import Report
 from cobotwire.conformance.reports.element import element
 
 ROW, LEFT, WIDTH, TOP = 20, 210, 620, 24
-# Shorter times look alike; a simulated arm in memory replies in no time at all.
+# Shorter times are drawn as this one; a simulated arm in memory replies in less.
 LEAST_MS = 0.01
 TICKS_MS = (0.01, 0.1, 1, 10, 100, 1000, 10_000)
 

@@ -19,7 +19,7 @@ _TEXTS = (("cobot 1", "pass-word 2"), ("A", "B8"))
 # The ordinary values of bytes, texts and lists that are set one after the other.
 _TURNS = (0, 7)
 # Fractions of the distance from zero to an end. All differ, and none is the double of another, so
-# that each part of a row is recognised.
+# that each number of a row is recognised.
 _SHARES = tuple(Fraction(share, 100) for share in (61, 37, 23, 83, 47, 13))
 # Samples 0 and 1 lie in between, 2 and 3 are the ends, and this one is a step beyond zero.
 _BEYOND = 4
@@ -31,12 +31,12 @@ def physical_values(variant: Variant, raw_values: RawValues) -> dict[str, Any]:
     Raises:
         UnicodeDecodeError: the bytes of a text are no text.
     """
-    given: dict[str, Any] = {}
+    found: dict[str, Any] = {}
     for field, row in zip(variant.fields, raw_values):
         case = variant.raw_case(field, raw_values) or field.cases[0]
         values = [number.physical(raw) for number, raw in zip(case.numbers, row)]
-        given[field.name] = field.present(values)
-    return given
+        found[field.name] = field.present(values)
+    return found
 
 
 def arguments(variant: Variant, raw_values: RawValues) -> dict[str, Any]:
@@ -108,7 +108,7 @@ def setting_values(
     """Return sets of values for fields of a variant that a query reads back.
 
     Args:
-        variant: the variant of the request; without the fields, texts are sent after it.
+        variant: the variant of the request; if it has no such fields, they are texts after it.
         present: by field, what is set now.
         numbers: returns the numbers of a field as they are sent and as they are reported.
     """
@@ -117,7 +117,7 @@ def setting_values(
         return [dict(zip(present, texts)) for texts in _TEXTS]
     if any(map(takes_whole, fields)):
         found = [physical_values(variant, ordinary(variant, turn=turn)) for turn in _TURNS]
-        return [{name: given[name] for name in present} for given in found]
+        return [{name: sample[name] for name in present} for sample in found]
     if len(fields) == 1 and fields[0].choices:
         return [{fields[0].name: value} for value in fields[0].choices]
     rows = [numbers(name) for name in present]
@@ -136,7 +136,7 @@ def takes_whole(field: Field) -> bool:
 def revealing(
     rows: Sequence[Sequence[Numbers]], present: Sequence[Sequence[Any]]
 ) -> list[list[Any]]:
-    """Return sets of values that change under a wrong scale, sign, width, order or place.
+    """Return sets of values that change under a wrong scale, sign, width, order or position.
 
     A single value keeps its present sign, except for one step beyond zero, so that a joint's
     lower limit stays below its upper one, and a joint at zero stays within its limits.

@@ -13,10 +13,10 @@ from typing import NamedTuple
 from cobotwire.conformance.places import Place, is_list, numbers_of, picks, places
 from cobotwire.protocol.table import Field, Number, Variant
 
-# By field and element.
+# The raw values of a variant, by field and element.
 RawValues = tuple[tuple[int, ...], ...]
-# A row of numbers that the arm itself reported, by the units of its parts; empty if its query has
-# no reply, so that the arm cannot calculate with such a row.
+# The rows of numbers that the arm itself reported, by the units of their numbers. A row is empty if
+# its query has no reply; then the arm cannot calculate with a row of these units.
 Known = Mapping[tuple[str, ...], tuple[float, ...]]
 # The raw values by argument that a run may send, where not all legal ones are harmless.
 Limits = Mapping[str, tuple[int, ...]]
@@ -172,7 +172,7 @@ def harmless_values(variant: Variant, known: Known, limits: Limits) -> list[RawV
 
 
 def units(numbers: tuple[Number, ...]) -> tuple[str, ...]:
-    """Return the units of a field's parts."""
+    """Return the units of a field's numbers."""
     return tuple(number.unit for number in numbers)
 
 

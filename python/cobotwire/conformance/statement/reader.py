@@ -49,15 +49,15 @@ def read_statement(text: str, table: Table, name: str = "statement") -> Statemen
     """Read a statement from text; messages call the file ``name``. See :func:`load_statement`."""
     root = parse(text, name, WHAT, StatementError)
     problems: list[tuple[Place, str]] = []
-    given = _mapping(root, "a statement", _rules(table), problems)
+    values = _mapping(root, "a statement", _rules(table), problems)
     for key in ("statement", "edition"):
         if isinstance(root.value, dict) and key not in root.value:
             problems.append((root.place, f"the key {key} is missing"))
     if problems:
         raise StatementError([f"{place}: {message}" for place, message in sorted(set(problems))])
-    del given["statement"]
-    ixit = given.pop("ixit", {})
-    return Statement(**given, deadlines=ixit.pop("deadlines", {}), ixit=ixit, text=text)
+    del values["statement"]
+    ixit = values.pop("ixit", {})
+    return Statement(**values, deadlines=ixit.pop("deadlines", {}), ixit=ixit, text=text)
 
 
 def _rules(table: Table) -> Rules:
@@ -96,20 +96,20 @@ def _mapping(
     if not isinstance(node.value, dict):
         problems.append((node.place, f"{what} is {_shown(node)}; allowed: a mapping"))
         return {}
-    given: dict[str, Any] = {}
+    values: dict[str, Any] = {}
     for key, inner in node.value.items():
         rule = rules.get(key)
         if rule is None:
             hint = did_you_mean(key, rules) or f"; known: {', '.join(rules)}"
             problems.append((node.keys[key], f"{what} has no key {key}{hint}"))
         elif isinstance(rule, Mapping):
-            given[key] = {} if inner.value is None else _mapping(inner, key, rule, problems)
+            values[key] = {} if inner.value is None else _mapping(inner, key, rule, problems)
         else:
             try:
-                given[key] = rule(inner.value)
+                values[key] = rule(inner.value)
             except ValueError as error:
                 problems.append((inner.place, f"{key} is {_shown(inner)}{error}"))
-    return given
+    return values
 
 
 def _exactly(right: int | str, value: Any) -> int | str:

@@ -71,7 +71,7 @@ class Support(StrEnum):
 
 
 class Acknowledgements(StrEnum):
-    """Which changes the device acknowledges, of those that it may."""
+    """Which changes the device acknowledges, of those that may be acknowledged."""
 
     ALL = "all"
     NONE = "none"
@@ -100,7 +100,7 @@ class Statement:
     text: str = ""
 
     @property
-    def given(self) -> bool:
+    def is_declared(self) -> bool:
         """Whether anything is declared."""
         return bool(self.edition)
 

@@ -10,7 +10,7 @@ from cobotwire.conformance.report import Exchange
 from cobotwire.protocol.effects import effect_of
 from cobotwire.protocol.table import Command, Field, Table
 
-# What can be stated about a command or a part of it.
+# What can be stated about a command, its request, its reply or a field.
 ASPECTS = {
     "present": "the firmware has the command",
     "deadline": "the reply comes in time",
@@ -35,7 +35,7 @@ MOST_BYTES = 300
 
 
 class Frames(NamedTuple):
-    """A request, and what came after it."""
+    """A request, and what was received after it."""
 
     sent: bytes
     received: bytes
@@ -77,7 +77,7 @@ class Facts(dict[str, Fact]):
         why: str,
         frames: Iterable[Frames] = (),
     ) -> None:
-        """Note what was found about a fact: a contradiction counts most, then a confirmation."""
+        """Note what was found about a fact; a contradiction replaces a confirmation."""
         name = self.name(*place)
         old = self.setdefault(name, Fact(name))
         if old.verdict == "not seen" or (verdict == "contradicted" and old.verdict == "confirmed"):
@@ -99,7 +99,7 @@ def _places(command: Command) -> Iterator[tuple[str, str, str]]:
     yield from ((command.name, "command", aspect) for aspect in of_command)
     yield from ((command.name, "reply", aspect) for aspect in of_reply)
     for part, variants in (("request", command.request), ("reply", command.reply)):
-        # A field counts as in the first variant that has it. The generator does the same.
+        # Of a field in several variants, that of the longest one counts, as in the generator.
         longest = sorted(variants, key=lambda variant: -len(variant.fields))
         fields = {field.name: field for variant in reversed(longest) for field in variant.fields}
         for field in fields.values():
@@ -127,7 +127,7 @@ def _aspects(field: Field) -> Iterator[str]:
 
 
 def frames_of(evidence: Iterable[Exchange]) -> list[Frames]:
-    """Return each request of the evidence with what came until the next one."""
+    """Return each request of the evidence with what was received until the next one."""
     found: list[Frames] = []
     for each in evidence:
         if each.direction == "sent":

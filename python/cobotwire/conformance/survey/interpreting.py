@@ -106,7 +106,7 @@ class Interpreter:
         return None
 
     def _has_other_id(self, command: Command, frames: Sequence[Frames]) -> bool:
-        """Return whether a whole frame came that has another id than the command's."""
+        """Return whether a whole frame with another id than the command's was received."""
         received = b"".join(frame.received for frame in frames)
         ids = ids_of(self._codec, "reply", received)
         return self._table.frame.reply_has_id and bool(ids - {command.id})

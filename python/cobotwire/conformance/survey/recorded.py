@@ -1,4 +1,4 @@
-"""A survey of a recording: what a program asks that cannot judge, and the arm that it recorded."""
+"""Survey a recording: the queries that a program has to record, and the recorded arm."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ def questions(table: Table) -> tuple[list[Request[Any]], dict[str, str]]:
 class RecordedTransport(MemoryTransport):
     """A transport to the arm of a recording, which replies as it did.
 
-    A request that was not recorded is not supported: that the arm is silent then shows nothing.
+    A request that was not recorded raises NotSupported: silence would prove nothing.
 
     Attributes:
         began: when the recording began.
@@ -49,10 +49,10 @@ class RecordedTransport(MemoryTransport):
     def __init__(self, packets: Sequence[Packet], codec: Codec) -> None:
         began_ns = min(packet.time_ns for packet in packets)
         self.began = datetime.fromtimestamp(began_ns / 1e9, UTC)
-        # A recording of the survey has the times of this one.
+        # If this survey is recorded, the new recording has the times of the old one.
         clock = SteppedClock((began_ns - time.time_ns() + time.monotonic_ns()) / 1e9)
         super().__init__(ReplayedArm(packets, codec, clock=clock), clock)
-        self._recorded = _judged(exchanges(packets), codec)
+        self._recorded = _conclusive(exchanges(packets), codec)
         self.missing = 0
 
     def write(self, data: bytes) -> None:
@@ -67,10 +67,10 @@ class RecordedTransport(MemoryTransport):
         super().write(data)
 
 
-def _judged(recorded: list[Exchange], codec: Codec) -> set[bytes]:
+def _conclusive(recorded: list[Exchange], codec: Codec) -> set[bytes]:
     """Return the requests whose replies, or silence, a recording shows.
 
-    It shows no silence of a request that it ends with, or whose reply came after the next request.
+    It does not show silence after its last request, or if the reply came after the next request.
     """
     while recorded and not recorded[-1].chunks:
         recorded.pop()

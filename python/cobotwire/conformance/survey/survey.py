@@ -91,10 +91,10 @@ class Survey:
         self.finished = False
         # The highest level of which anything ran: 1 queries, 2 also settings, 3 also motion.
         self.level = 1
-        # The options that were given, now or earlier, and that have not run to their end.
+        # The options, of this survey or the earlier one, that have not run to their end.
         before = (earlier or {}).get("left_out", ())
         options = {"--settings": settings, "--allow-motion": motion}
-        self.left_out = [name for name, given in options.items() if given or name in before]
+        self.left_out = [name for name, chosen in options.items() if chosen or name in before]
         # Why the arm was not moved, or not surveyed at all; empty: it was, or need not be.
         self.obstacle = ""
         # Whether the arm speaks another edition.
@@ -166,14 +166,14 @@ class Survey:
             finally:
                 self._conclude()
 
-    def _note_end(self, option: str, given: bool) -> None:
-        if given and not self._ended:
+    def _note_end(self, option: str, chosen: bool) -> None:
+        if chosen and not self._ended:
             self.left_out.remove(option)
 
     def _is_other_edition(self) -> bool:
-        """Return whether the arm speaks another edition, as far as this package has it.
+        """Return whether the arm speaks another edition of this package.
 
-        Then nothing is found out about the facts of this one.
+        Then a survey would show nothing about the facts of this edition.
         """
         if self.table.edition not in editions.names():
             return False
@@ -234,7 +234,7 @@ class Survey:
         self.mistakes = self._checks.mistakes(self._snapshots)
 
     def _read(self, probe: Probe, sent: Row = ()) -> None:
-        """Read all states that can be compared, and whose queries have replies."""
+        """Read all states that can be compared, of queries that have a reply."""
         replied, row = probe.device.noticed.reply_seconds, dict[Key, Row]()
         for source in sources(self.table):
             present = self.facts.name(source.query.name, "command", "present") in self._done
@@ -265,7 +265,7 @@ class Survey:
         if self._ended:
             return
         if self.mistakes:
-            self.obstacle = "no motion: the readings contradict the edition already"
+            self.obstacle = "no motion: the readings already contradict the edition"
             return
         around = self._around()
         if not around:

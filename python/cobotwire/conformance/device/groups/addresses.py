@@ -45,7 +45,7 @@ def _one_moves(probe: Probe) -> None:
 
 
 def _far_from(mover: Mover, places: Iterable[Pose]) -> Pose:
-    """Return the pose in which the first joint is farthest from all given poses."""
+    """Return the pose in which the first joint is farthest from all poses in ``places``."""
     poses, taken = map(mover.pose, range(len(POSES))), [place[0] for place in places]
     return max(poses, key=lambda pose: min(abs(pose[0] - angle) for angle in taken))
 

@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 
 from cobotwire.conformance.device.device import Device, NotSupported
 from cobotwire.conformance.device.mover import POSES, Mover, angle_tolerance
-from cobotwire.conformance.device.probe import Probe, for_rows
+from cobotwire.conformance.device.probe import Probe, for_found
 from cobotwire.conformance.device.requests import as_row, request_of
 from cobotwire.conformance.device.same_pose import is_same_pose
 from cobotwire.conformance.device.selection import does
@@ -23,7 +23,7 @@ AGREES = TestCase("agrees", "While the arm rests, queries of the same quantity a
 APART = {"millimetre": 1.0, "tick": 2.0}
 
 
-class _Part(NamedTuple):
+class _Reported(NamedTuple):
     """A number that a query reports, with its name for people."""
 
     name: str
@@ -51,7 +51,7 @@ def _agree(probe: Probe) -> None:
         theirs = _reading(probe, other.request_type())
         if probe.command.request[0].fields:
             theirs = theirs[: probe.device.table.joints]
-            queries = [request_of(probe.command, part) for part in range(1, len(theirs) + 1)]
+            queries = [request_of(probe.command, joint) for joint in range(1, len(theirs) + 1)]
             mine = [_matching(_reading(probe, q), [one]) for q, one in zip(queries, theirs)]
             pairs = [(found[0], one) for found, one in zip(mine, theirs) if found]
         else:
@@ -62,8 +62,8 @@ def _agree(probe: Probe) -> None:
             _compare(probe, other, pairs)
 
 
-def _reading(probe: Probe, query: Request[Any]) -> list[_Part]:
-    """Return the numbers of a query's reply, but not those that repeat its arguments.
+def _reading(probe: Probe, query: Request[Any]) -> list[_Reported]:
+    """Return the numbers of a query's reply, without those that repeat its arguments.
 
     A reply with values that are not allowed agrees with nothing.
 
@@ -81,14 +81,14 @@ def _reading(probe: Probe, query: Request[Any]) -> list[_Part]:
     fields = valid.decoded.fields
     of = f"({', '.join(map(str, query.values))})" if query.values else ""
     return [
-        _Part(place.name + of, place.number, as_row(fields[place.field.name])[place.element])
+        _Reported(place.name + of, place.number, as_row(fields[place.field.name])[place.element])
         for place in places(valid.decoded.variant)
         if not place.field.echo
     ]
 
 
-def _compare(probe: Probe, other: Command, pairs: list[tuple[_Part, _Part]]) -> None:
-    """Compare two readings, part by part, in the same unit and as if the first one were right."""
+def _compare(probe: Probe, other: Command, pairs: list[tuple[_Reported, _Reported]]) -> None:
+    """Compare two readings, number by number, in the same unit; the first one counts as right."""
     table, compared, wrong = probe.device.table, list[Pair](), list[str]()
     encoders, near = table.robot.encoders, {**APART, "degree": angle_tolerance(table) + 0.001}
     for one, two in pairs:
@@ -112,19 +112,19 @@ def _likely(mine: Command, other: Command, compared: list[Pair]) -> str:
     """Return the likely mistake of the other query, or else of this one."""
     guesses = [
         (mine, other, likely_mistake(compared)),
-        (other, mine, likely_mistake([pair.turned for pair in compared])),
+        (other, mine, likely_mistake([pair.exchanged for pair in compared])),
     ]
-    # These two guesses are the same whichever query is right, so they come last.
+    # No mistake, and another order, do not depend on which query is right: they come last.
     guesses.sort(key=lambda guess: guess[2] in ("", ANOTHER_ORDER))
     right, wrong, mistake = guesses[0]
     return f"; if {right.name} is right, {wrong.name} has {mistake}" if mistake else ""
 
 
-def _matching(mine: list[_Part], theirs: list[_Part]) -> list[_Part]:
-    """Return the part of a reading that is as long as the other, with the same units."""
-    units = [part.unit for part in theirs]
+def _matching(mine: list[_Reported], theirs: list[_Reported]) -> list[_Reported]:
+    """Return the numbers of a reading that have the same units as the other, in the same order."""
+    units = [each.unit for each in theirs]
     for at in range(len(mine) - len(units) + 1):
-        if [part.unit for part in mine[at : at + len(units)]] == units:
+        if [each.unit for each in mine[at : at + len(units)]] == units:
             return mine[at : at + len(units)]
     return mine if len(mine) == len(theirs) else []
 
@@ -138,26 +138,26 @@ COMPUTES = does(Computes)
 
 
 def _calculate(probe: Probe, computes: Computes) -> None:
-    """Calculate with the arm's position: the result must be the arm's position."""
+    """Have the arm calculate its angles from its coordinates, or the reverse, and compare."""
     device = probe.device
     mover = Mover(device) if device.permissions.workspace else None
     for which in range(len(POSES)) if mover else (0,):
         if mover:
             mover.go(mover.pose(which))
         known = {name: _position(device, role) for name, role in PLACES.items()}
-        given = {computes.source: known["coords" if computes.what == "angles" else "angles"]}
+        arguments = {computes.source: known["coords" if computes.what == "angles" else "angles"]}
         if computes.near:
-            given[computes.near] = known["angles"]
+            arguments[computes.near] = known["angles"]
         right = known[computes.what]
-        if not right or not all(given.values()):
+        if not right or not all(arguments.values()):
             raise NotSupported("no query reports where the arm is")
-        mine = _reading(probe, probe.command.request_type.from_fields(given))
+        mine = _reading(probe, probe.command.request_type.from_fields(arguments))
         wrong = [
-            f"{part.name} is {part.value} {part.unit}, but the arm is at {actual}"
-            for part, actual in zip(mine, right)
-            if abs(part.value - actual) > CALCULATED[part.unit]
+            f"{each.name} is {each.value} {each.unit}, but the arm is at {actual}"
+            for each, actual in zip(mine, right)
+            if abs(each.value - actual) > CALCULATED[each.unit]
         ]
-        values = [part.value for part in mine]
+        values = [each.value for each in mine]
         if wrong and computes.what == "angles" and is_same_pose(device.table, values, right):
             continue
         probe.expect(AGREES, not wrong, f"{probe.command.name}: {'; '.join(wrong)}")
@@ -181,7 +181,7 @@ AGREEMENT = Group(
 CALCULATION = Group(
     "calculation",
     (AGREES,),
-    *for_rows(COMPUTES, _calculate),
+    *for_found(COMPUTES, _calculate),
     sends=(
         "The calculation with the position that the arm reports, at several poses if motion "
         "is permitted."

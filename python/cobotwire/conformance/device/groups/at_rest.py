@@ -1,4 +1,4 @@
-"""What queries alone prove while the arm rests: scale and order of angles, coordinates, limits."""
+"""What queries prove while the arm rests: scale and order of angles, coordinates and limits."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from cobotwire.conformance.device.device import NotSupported
 from cobotwire.conformance.device.groups.motion import REACHED
-from cobotwire.conformance.device.probe import Probe, for_rows
+from cobotwire.conformance.device.probe import Probe, for_found
 from cobotwire.conformance.device.requests import request_of, units
 from cobotwire.conformance.device.selection import reported, reporters
 from cobotwire.conformance.mistakes import Pair, likely_mistake
@@ -19,9 +19,11 @@ from cobotwire.protocol.roles import ANGLES, COORDS, KINDS, as_reached_query
 from cobotwire.protocol.table import Command, Table
 
 GEOMETRY = TestCase(
-    "geometry", "The coordinates are those of the angles, by the links that the edition states."
+    "geometry", "The coordinates match the angles, by the links that the edition states."
 )
-LIMITS = TestCase("limits", "The joints' limits have the scale of those that the edition states.")
+LIMITS = TestCase(
+    "limits", "The joints' limits have the same scale as those that the edition states."
+)
 
 COORDINATES = (*3 * ("millimetre",), *3 * ("degree",))
 NEAR = {"millimetre": LINKS_APART, "degree": LINKS_TURNED}
@@ -84,7 +86,7 @@ def _angle(table: Table) -> Command | None:
 
 
 def _reached_by_one(probe: Probe) -> None:
-    """Send the present angle of the only joint, and another one."""
+    """Send the present angle of joint 1, and another angle."""
     angle = _angle(probe.device.table)
     assert angle is not None, "the group selects editions with it"
     here = probe.device.require(request_of(angle, 1)).result
@@ -95,7 +97,7 @@ def _reached_by_one(probe: Probe) -> None:
 
 
 def _reached(probe: Probe) -> None:
-    """Send the present position, and others that differ in one part each."""
+    """Send the present position, and others that differ in one joint or axis."""
     if not any(field.many for field in probe.command.request[0].fields):
         _reached_by_one(probe)
         return
@@ -141,7 +143,7 @@ def _short(numbers: Sequence[float]) -> str:
 GEOMETRIES = Group(
     "geometry",
     (GEOMETRY,),
-    *for_rows(_stated_geometry, _geometry),
+    *for_found(_stated_geometry, _geometry),
     sends="The queries of the joints, the coordinates and the frames.",
     subject="the query of the coordinates, if the edition states the links of the arm",
 )
@@ -150,7 +152,7 @@ REACHED_AT_REST = Group(
     (REACHED,),
     _reached,
     _is_reached_query,
-    sends="The query with the present position, and with positions that differ in one part each.",
+    sends="The query with the present position, and with others that differ in one joint or axis.",
     subject="the query whether the arm is in a position",
 )
 JOINT_LIMITS = Group(

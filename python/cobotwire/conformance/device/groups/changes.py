@@ -1,4 +1,4 @@
-"""What comes after a request that changes something: nothing, an acknowledgement, or its reply."""
+"""The response to a request that changes something: none, an acknowledgement, or its reply."""
 
 from __future__ import annotations
 
@@ -43,15 +43,15 @@ REPLIED = TestCase(
 )
 ALIKE = TestCase(
     "acknowledgements-alike",
-    "An arm that acknowledges some commands acknowledges all that it may.",
+    "An arm that acknowledges one change acknowledges every change that may be acknowledged.",
 )
-# The test cases for what comes after any change.
+# The test cases for the response to any change.
 AFTER_CHANGE = (SILENT, ACKNOWLEDGED)
 AFTER_CHANGE_OR_REPLY = (*AFTER_CHANGE, REPLIED)
 
 
 def request_change(probe: Probe, request: Request[Any]) -> Response:
-    """Send a request that changes something, and check what comes."""
+    """Send a request that changes something, and check the response."""
     response = probe.device.request(request)
     command = response.request.command
     call = probe.device.requester.describe(response.request)
@@ -61,14 +61,14 @@ def request_change(probe: Probe, request: Request[Any]) -> Response:
         _check_acknowledgement(probe, response, call)
     else:
         silent = not response.replies and not response.unexpected
-        probe.expect(SILENT, silent, f"{call}: expected silence; came {response.summary}")
+        probe.expect(SILENT, silent, f"{call}: expected silence; received {response.summary}")
     return response
 
 
 def _check_reply(probe: Probe, response: Response, call: str) -> None:
     device, deadline = probe.device, response.request.command.deadline_ms
     device.requester.listen(response, device.timing.silence)
-    reason = f"{call}: expected one legal reply; came {response.summary}"
+    reason = f"{call}: expected one legal reply; received {response.summary}"
     probe.expect(REPLIED, response.only_valid, reason)
     if response.replies:
         took = 1000 * response.replies[0].seconds
@@ -86,7 +86,9 @@ def _check_acknowledgement(probe: Probe, response: Response, call: str) -> None:
         reply.message is not None and all(v == DONE for v in reply.message.fields.values())
         for reply in response.replies
     )
-    reason = f"{call}: expected at most one acknowledgement, of value 1; came {response.summary}"
+    reason = (
+        f"{call}: expected at most one acknowledgement, of value 1; received {response.summary}"
+    )
     probe.expect(ACKNOWLEDGED, at_most_one and done, reason)
 
 

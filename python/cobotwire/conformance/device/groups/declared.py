@@ -33,7 +33,7 @@ def _shows(table: Table, command: Command) -> bool:
 
 
 def _absent(probe: Probe) -> None:
-    """Send the command; a setting with the value that it has already."""
+    """Send the command, a setting with its present value, and expect no reply."""
     command, device = probe.command, probe.device
     shared = [
         other.name
@@ -45,12 +45,12 @@ def _absent(probe: Probe) -> None:
     request = harmless(command)[0] if command.safety == "query" else _present(probe)
     # Not counted as a query without a reply: silence is right here.
     response = device.requester.send(device.requester.prepare(request))
-    reason = f"{command.name} is declared absent: expected no reply; came {response.summary}"
+    reason = f"{command.name} is declared absent: expected no reply; received {response.summary}"
     probe.expect(ABSENT, not response.replies, reason)
 
 
 def _present(probe: Probe) -> Request[Any]:
-    """Return the request that sets what is set already.
+    """Return the request that sets the present value again.
 
     Raises:
         NotSupported: it cannot be read, or cannot be sent.
@@ -77,9 +77,9 @@ def _facts(probe: Probe) -> None:
     if declared is Acknowledgements.UNKNOWN:
         probe.drop(ACKNOWLEDGEMENTS)
     for name, response in device.noticed.acknowledged.items():
-        came = bool(response.replies)
-        right = came is (declared is Acknowledgements.ALL)
-        was = "was acknowledged" if came else "was not acknowledged"
+        acknowledged = bool(response.replies)
+        right = acknowledged is (declared is Acknowledgements.ALL)
+        was = "was acknowledged" if acknowledged else "was not acknowledged"
         reason = f"{declared} changes are acknowledged, as declared; but {name} {was}"
         probe.expect(ACKNOWLEDGEMENTS, right, reason)
 
@@ -89,7 +89,7 @@ DECLARED_ABSENT = Group(
     (ABSENT,),
     _absent,
     _shows,
-    sends="The query; of a setting, the value that it has.",
+    sends="The query, or the setting with its present value.",
     subject="each command that the statement declares absent, if a reply would show it",
     declared=True,
 )

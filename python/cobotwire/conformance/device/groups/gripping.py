@@ -16,7 +16,7 @@ from cobotwire.conformance.device.groups.motion import (
     is_replayed,
 )
 from cobotwire.conformance.device.mover import Mover, Pose
-from cobotwire.conformance.device.probe import Probe, for_rows
+from cobotwire.conformance.device.probe import Probe, for_found
 from cobotwire.conformance.device.read_back import settings_of
 from cobotwire.conformance.device.requests import as_row
 from cobotwire.conformance.device.selection import does, reporter, reporters
@@ -30,7 +30,7 @@ SLOW = 20
 
 
 def _moving(table: Table, command: Command) -> Command | None:
-    """Return the query without the role that also reports whether the gripper moves."""
+    """Return the query without the role ``moving`` that reports whether the gripper moves."""
     motion = does(Moves)(table, command)
     if motion is None or not is_replayed(table, command):
         return None
@@ -94,20 +94,22 @@ def _open_and_close(probe: Probe, cases: Cases) -> None:
         mover.settle(lambda: probe.device.read(position))
         wide[label] = probe.device.require(position).result
     wider = wide["open"] > wide["closed"]
-    probe.expect(ARRIVES, wider, f"{probe.command.name}: expected open to be wider; came {wide}")
+    probe.expect(
+        ARRIVES, wider, f"{probe.command.name}: expected open to be wider; received {wide}"
+    )
 
 
 GRIPPER_MOVES = Group(
     "gripper moves",
     (MOVING,),
-    *for_rows(_moving, _reports_moving),
+    *for_found(_moving, _reports_moving),
     sends="Two positions of the gripper; whether it moves is read on the way and at the end.",
     subject="each motion of a gripper that a query reports as moving",
 )
 GRIPPER_OPENS = Group(
     "gripper opens",
     (ARRIVES, *AFTER_CHANGE),
-    *for_rows(opens, _open_and_close),
+    *for_found(opens, _open_and_close),
     sends="Open and close, twice; the opening is read after each.",
     subject="each command that opens and closes a gripper",
 )

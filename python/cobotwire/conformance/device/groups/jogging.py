@@ -10,7 +10,7 @@ from cobotwire.conformance.device.device import NotSupported
 from cobotwire.conformance.device.groups.changes import AFTER_CHANGE, request_change
 from cobotwire.conformance.device.groups.motion import ARRIVES, STOPS, UNDER_WAY, resume
 from cobotwire.conformance.device.mover import POLL, POSES, Mover
-from cobotwire.conformance.device.probe import Probe, for_rows
+from cobotwire.conformance.device.probe import Probe, for_found
 from cobotwire.conformance.device.selection import does, first
 from cobotwire.conformance.suite import Group
 from cobotwire.protocol.effects import Does, Moves
@@ -33,8 +33,8 @@ HALTS = does(Does, what="halt", at=False)
 class _Parts:
     """The joints or axes that a command moves one by one, and the query that reports them.
 
-    ``places`` has the index of each part's number in the query's row, by the argument that names
-    the part. None: the end turns in place, which changes no single number.
+    ``places`` has, for each value of the argument that names a joint or axis, the index of its
+    number in the query's reply. None: the end turns in place, which changes no single number.
     """
 
     def __init__(self, probe: Probe, motion: Moves) -> None:
@@ -51,7 +51,7 @@ class _Parts:
             found = [names.index(label) if label in names else None for label in labels]
             self.places = dict(zip(self.part.choices, found))
         else:
-            # A waist has other joints, which the query does not report.
+            # The argument may also name joints of a waist, which the query does not report.
             joint = self.part.cases[0].numbers[0]
             every = self.part.choices or range(joint.minimum, joint.maximum + 1)
             self.places = {at: at - 1 for at in every if at <= probe.device.table.joints}
@@ -61,28 +61,28 @@ class _Parts:
         return tuple(self.probe.device.require(self.query).result)
 
     def apart(self, one: Sequence[float], other: Sequence[float], often: float = 1.0) -> list[int]:
-        """Return where two positions differ by more than may stray, or a multiple of it."""
+        """Return where two positions differ by more than ``often`` times the value in STRAYS."""
         every = enumerate(zip(one, other, self.numbers))
         return [at for at, (a, b, n) in every if abs(a - b) > often * STRAYS[n.unit]]
 
     def request(self, part: int, speed: int, **others: float) -> Request[Any]:
-        """Return the request that moves a part."""
+        """Return the request that moves a joint or axis."""
         speeds = {self.motion.speed: speed} if self.motion.speed else {}
         fields = {self.part.name: part, **speeds, **others}
         return self.probe.command.request_type.from_fields(fields)
 
     def call(self, part: int) -> str:
-        """Return the call for a part, for people."""
+        """Return the call for a joint or axis, for people."""
         return f"{self.probe.command.name}({self.part.name}={part}"
 
     def expect_motion(self, moved: bool, detail: str = "") -> None:
-        """Expect that anything has moved."""
+        """Expect that something has moved."""
         reason = f"{self.probe.command.name}: the arm did not move from any of {len(POSES)} poses"
         self.probe.expect(ARRIVES, moved, reason + detail)
 
 
 def _nearby(probe: Probe, motion: Moves) -> None:
-    """Move each part a short distance up and down.
+    """Move each joint or axis a short distance up and down.
 
     An arm may reject targets that it cannot reach. If it does not move in a direction from any
     pose, that direction is out of reach. An arm that moves in no direction fails.
@@ -98,7 +98,7 @@ def _nearby(probe: Probe, motion: Moves) -> None:
 
 
 def _stays(parts: _Parts, part: int, at: int, sign: int) -> str | None:
-    """Move a part one way, from pose to pose, until it moves.
+    """Move a joint or axis in one direction, from pose to pose, until it moves.
 
     Return what was sent and received if the arm never moves; None: it moves.
     """
@@ -132,7 +132,7 @@ def _stays(parts: _Parts, part: int, at: int, sign: int) -> str | None:
 
 
 def _jogs(probe: Probe, motion: Moves) -> None:
-    """Jog each part both ways and stop; as with steps, some may be out of reach."""
+    """Jog in both directions, and stop; as with steps, some directions may be out of reach."""
     parts, went = _Parts(probe, motion), False
     for part, at in parts.places.items():
         ways = parts.way.choices if parts.way else ()
@@ -149,7 +149,7 @@ def _jogs(probe: Probe, motion: Moves) -> None:
 
 
 def _jog(parts: _Parts, part: int, at: int | None, direction: int) -> list[float]:
-    """Jog a part in a direction, from pose to pose, until it moves.
+    """Jog a joint or axis in a direction, from pose to pose, until it moves.
 
     Return by how much each joint or axis has moved; empty: nothing has.
     """
@@ -166,7 +166,7 @@ def _jog(parts: _Parts, part: int, at: int | None, direction: int) -> list[float
         if parts.apart(before, after):
             device.note_motion(which)
             moved = [now - then for now, then in zip(after, before)]
-            wrong = _not_so(parts, at, direction, moved)
+            wrong = _unmet(parts, at, direction, moved)
             reason = f"{parts.call(part)}, {direction}): expected {wrong}; it moved by "
             probe.expect(ARRIVES, not wrong, reason + ", ".join(f"{by:.2f}" for by in moved))
             return moved
@@ -176,7 +176,7 @@ def _jog(parts: _Parts, part: int, at: int | None, direction: int) -> list[float
 def _stopped(parts: _Parts, seconds: float) -> Sequence[float]:
     """Stop, and return where the arm is then; expect that it stays there.
 
-    In ``seconds`` it would move on by more than what is allowed to stray.
+    Without the stop it would move on in ``seconds``, by more than the value in STRAYS.
     """
     probe, mover = parts.probe, parts.mover
     ending, stop = first(probe.device.table, HALTS), probe.device.command("stop")
@@ -195,7 +195,7 @@ def _stopped(parts: _Parts, seconds: float) -> Sequence[float]:
     return stopped
 
 
-def _not_so(parts: _Parts, at: int | None, direction: int, moved: Sequence[float]) -> str:
+def _unmet(parts: _Parts, at: int | None, direction: int, moved: Sequence[float]) -> str:
     """Describe the motion that was expected; empty if it happened."""
     far, numbers = parts.apart(moved, [0.0] * len(moved)), parts.numbers
     if at is None:
@@ -214,21 +214,21 @@ def _not_so(parts: _Parts, at: int | None, direction: int, moved: Sequence[float
 COORDINATES = Group(
     "single coordinates",
     (ARRIVES, *AFTER_CHANGE),
-    *for_rows(TO_COORDINATE, _nearby),
+    *for_found(TO_COORDINATE, _nearby),
     sends="A target a short distance up and down along or about each axis.",
     subject="the command that moves the end to one coordinate",
 )
 STEPS = Group(
     "steps",
     (ARRIVES, *AFTER_CHANGE),
-    *for_rows(STEPPING, _nearby),
+    *for_found(STEPPING, _nearby),
     sends="A step up and down for each joint or axis.",
     subject="each motion by a distance",
 )
 JOGS = Group(
     "jogs",
     (ARRIVES, STOPS, *AFTER_CHANGE),
-    *for_rows(JOGGING, _jogs),
+    *for_found(JOGGING, _jogs),
     sends="A short jog in both directions for each joint or axis, and a stop.",
     subject="each motion in a direction",
 )

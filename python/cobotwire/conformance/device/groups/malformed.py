@@ -18,7 +18,7 @@ from cobotwire.conformance.device.malformed_sender import (
     MalformedSender,
     expect_one_reply,
 )
-from cobotwire.conformance.device.probe import Probe, for_rows
+from cobotwire.conformance.device.probe import Probe, for_found
 from cobotwire.conformance.hex_text import shown
 from cobotwire.conformance.places import Place, places
 from cobotwire.conformance.suite import Group, TestCase
@@ -26,8 +26,7 @@ from cobotwire.protocol.table import Command, FrameFormat, Table, Variant
 from cobotwire.session.request import EncodedRequest
 from cobotwire.simulator.faults.noise import NOISE
 
-# How often a request is sent in pieces, and the longest pause of the host as a multiple of the
-# planned one.
+# How often a request is sent in pieces, and how many times the planned pause a pause may last.
 ATTEMPTS, LATE = 3, 2
 MALFORMED = frozenset({"malformed"})
 # Classes of the simulator's catalogue: packets of the servo bus, text, and bytes of a header.
@@ -123,11 +122,11 @@ def forbidden(place: Place) -> list[int]:
 def _crowded(probe: Probe) -> None:
     """Send legal requests in pieces, several at once, and after noise.
 
-    Noise comes last: a device that is confused by it may have lost what comes next.
+    Noise is sent last, because a device may lose the requests after it.
     """
     device, request = probe.device, _sample(probe)
     if not device.noticed.reply_seconds.get(probe.command.name) and not _is_replied_to(probe):
-        raise NotSupported("it has no reply when it is sent alone either")
+        raise NotSupported("the query has no reply, even when nothing else is sent")
     _in_pieces(probe, request)
     _together(probe, request)
     sender = MalformedSender(probe, request)
@@ -157,7 +156,7 @@ def _in_pieces(probe: Probe, request: EncodedRequest) -> None:
         for at in range(len(frame) - 1):
             piece, pause = frame[at : at + 1], device.timing.pause
             half = device.requester.send_bytes(request, piece, "a piece", pause)
-            probe.expect(PIECES, not half.replies, f"half a request: came {half.summary}")
+            probe.expect(PIECES, not half.replies, f"half a request: received {half.summary}")
         response = device.requester.send_instead(request, frame[-1:], "the last piece")
         times = [each.at for each in device.connection.since(start) if each.direction == "sent"]
         pauses = [1000 * (after - before) for before, after in pairwise(times)]
@@ -182,7 +181,7 @@ def _together(probe: Probe, request: EncodedRequest) -> None:
             device.requester.listen(response, deadline)
         legal = [reply for reply in response.replies if response.accepts(reply)]
         complete = len(legal) == len(response.replies) == count and not response.unexpected
-        reason = f"{what}: expected {count} replies; came {response.summary}"
+        reason = f"{what}: expected {count} replies; received {response.summary}"
         probe.expect(TOGETHER, complete, reason)
 
 
@@ -213,12 +212,12 @@ def _ordered(probe: Probe, other: Command) -> None:
         if not response.replies or not response.others:
             deadline = max(mine.command.deadline_ms, theirs.command.deadline_ms) / 1000
             device.requester.listen(response, deadline)
-        came = device.connection.received_since(start)
+        received = device.connection.received_since(start)
         right = [each.command.id for each in pair]
         frames = [reply.data for reply in response.replies] + [f.data for f in response.others]
-        frames.sort(key=came.find)
+        frames.sort(key=received.find)
         ids = [device.table.frame.read_id(frame) for frame in frames]
-        reason = f"{names} in one write: expected a reply to each, in this order; came "
+        reason = f"{names} in one write: expected a reply to each, in this order; received "
         reason += "; ".join(map(shown, frames)) or "nothing"
         if ids == right[::-1]:
             reason += ": in the other order"
@@ -287,7 +286,7 @@ CROWDED = Group(
 ORDERED = Group(
     "requests of two commands",
     (IN_ORDER,),
-    *for_rows(_other, _ordered),
+    *for_found(_other, _ordered),
     MALFORMED,
     sends="The query and another one in one write, in both orders.",
     subject="each query with a framed reply that has an id",

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 
 from cobotwire.conformance.device.groups.changes import AFTER_CHANGE, request_change
 from cobotwire.conformance.device.mover import Mover, Pose, off_by
-from cobotwire.conformance.device.probe import Probe, for_rows
+from cobotwire.conformance.device.probe import Probe, for_found
 from cobotwire.conformance.device.read_back import (
     Setting,
     Spot,
@@ -98,7 +98,7 @@ def _replays(probe: Probe) -> None:
     for number, motion in enumerate(motions):
         for query in motion.queries:
             targets = _targets(mover, motion, query, first[query], second[query])
-            # Two targets suffice to check a further variant; the first variant is sent with all.
+            # The first variant is sent with all targets; two suffice for each other variant.
             for target in targets if number == 0 else targets[:2]:
                 _replay(probe, mover, motion, query, target)
 
@@ -133,8 +133,7 @@ def resume(probe: Probe) -> None:
 class Motion(NamedTuple):
     """A motion that has just been requested: the query of the position, the start and the target.
 
-    ``place`` returns None if the reply is not legal; ``near`` is how far from a place its readings
-    may be.
+    ``place`` returns None if the reply is not legal; ``near`` is the tolerance of its readings.
     """
 
     place: Callable[[], Pose | None]
@@ -146,8 +145,8 @@ class Motion(NamedTuple):
 def expect_on_the_way(probe: Probe, query: Command | None, motion: Motion) -> bool:
     """Expect a query, if the edition has it, to report motion; return whether that was observed.
 
-    A reply counts if the places that are read before and after it are neither the start nor the
-    target. So the verdict does not depend on how late the host is, or how fast the arm.
+    A reply counts if the positions that are read before and after it are neither the start nor the
+    target. So the verdict depends neither on the speed of the arm nor on delays of the host.
     """
     device, missed, reported = probe.device, False, None
     left_at: float | None = None
@@ -167,7 +166,7 @@ def expect_on_the_way(probe: Probe, query: Command | None, motion: Motion) -> bo
         device.connection.clock.sleep(LOOK)
     if missed and query is not None:
         expected = f"{query.name}: expected {flag_text(query, True)} on the way"
-        probe.expect(MOVING, False, f"{expected}; came {flag_text(query, reported)}")
+        probe.expect(MOVING, False, f"{expected}; received {flag_text(query, reported)}")
     return missed or query is None
 
 
@@ -234,7 +233,7 @@ POSES = Group(
     _to_poses,
     has_role("joint targets"),
     sends=(
-        "Two poses inside the workspace, in turns; the arm's state on the way and at the end "
+        "Two poses inside the workspace, alternately; the arm's state on the way and at the end "
         "is read."
     ),
     subject="the command that moves all joints",
@@ -260,7 +259,7 @@ REPLAYS = Group(
 LIMITS_KEPT = Group(
     "limits kept",
     (KEEPS,),
-    *for_rows(_limit, _keeps),
+    *for_found(_limit, _keeps),
     frozenset({"motion"}),
     sends="A limit near the first and the last joint, and a motion beyond it; then the old limit.",
     subject="each command that sets a limit of the joints which a query reads",

@@ -77,7 +77,7 @@ def _interpolate(probe: Probe) -> None:
             old = setting.again(setting.queries[0], device.require(setting.queries[0]))
             needed = {"setting"} if old != mode else set()
         if missing := device.permissions.missing(frozenset(needed)):
-            raise NotSupported(f"the mode may not be {name}; to set it needs {missing}")
+            raise NotSupported(f"the mode may not be {name}; setting it needs {missing}")
         if needed:
             device.restore_after_body[command.name] = partial(device.request, old)
             device.request(mode)
@@ -103,8 +103,8 @@ def _expect_end(
         probe.device.request(stop.request_type())
     readings, events = _readings(mover), list(requester.events)
     call = f"{stop.name if stop else probe.command.name}: expected one {event.name}"
-    came = ", ".join(f"{_status(each)} at {at:.3f} s" for at, each in events) or "none"
-    probe.expect(ENDS, len(events) == 1, f"{call} at the end of the motion; came {came}")
+    reported = ", ".join(f"{_status(each)} at {at:.3f} s" for at, each in events) or "none"
+    probe.expect(ENDS, len(events) == 1, f"{call} at the end of the motion; received {reported}")
     for at, each in events[:1]:
         later = [reading for reading in readings if reading.sent_at > at]
         moved = off_by(later[0].pose, later[-1].pose, mover.tolerance, "ends at") if later else []
@@ -112,7 +112,7 @@ def _expect_end(
         probe.expect(ENDS, not moved, f"{reason}: {'; '.join(moved)}")
         right = _is_right(probe, each, stopped=stop is not None)
         way = "for a motion that was stopped" if stop else "for a motion to its target"
-        probe.expect(ENDS, right, f"{call} {way}; came {_status(each)}")
+        probe.expect(ENDS, right, f"{call} {way}; received {_status(each)}")
 
 
 def _readings(mover: Mover) -> list[_Reading]:
@@ -139,7 +139,7 @@ def _is_right(probe: Probe, event: EventReceived, *, stopped: bool) -> bool:
         return event.command.refusal(event.message.fields) is None
     if codes is None or not codes.stopped:
         return True
-    # A motion may be stopped in several ways; the words about each begin alike.
+    # A motion may be stopped in several ways, each with a status; their meanings begin alike.
     value, meaning = event.message.fields[field.name], field.meaning(codes.stopped)
     alike = bool(meaning) and field.meaning(value).startswith(meaning)
     return value == codes.stopped or alike
@@ -150,6 +150,6 @@ MOTION_ENDS = Group(
     (ENDS,),
     _ends,
     _is_reported,
-    sends="Two motions to their targets, and one that is stopped; the angles all the time.",
+    sends="Two motions to their targets, and one that is stopped; the angles are read throughout.",
     subject="the command that moves all joints, if an event reports the end of a motion",
 )

@@ -21,7 +21,7 @@ from cobotwire.conformance.device.groups.motion import (
 )
 from cobotwire.conformance.device.groups.switching import EFFECT
 from cobotwire.conformance.device.mover import POLL, Mover, Pose, off_by
-from cobotwire.conformance.device.probe import Probe, for_rows
+from cobotwire.conformance.device.probe import Probe, for_found
 from cobotwire.conformance.device.requests import request_of
 from cobotwire.conformance.device.selection import does, first, has_role, stored
 from cobotwire.conformance.suite import Group, TestCase
@@ -160,7 +160,7 @@ def _faster(probe: Probe) -> None:
         probe.not_timed(FASTER, f"The angles were read too seldom: {reason}.")
 
 
-class _Left(NamedTuple):
+class _Departure(NamedTuple):
     """How far a joint has moved, in degrees, and the least and most seconds since its command."""
 
     way: float
@@ -168,29 +168,29 @@ class _Left(NamedTuple):
     most: float
 
 
-def _left(
+def _departure(
     mover: Mover, joint: int, start: float, far: float, began: float, every: float
-) -> _Left | None:
+) -> _Departure | None:
     """Read the angle of a joint until it is ``far`` from its start; None: it does not move."""
     clock, least = mover.device.connection, 0.0
     while least < LONGEST:
         sent_at, way = clock.now - began, mover.angles()[joint] - start
         if abs(way) >= far:
-            return _Left(way, least, clock.now - began)
+            return _Departure(way, least, clock.now - began)
         least = sent_at
         mover.rest(every)
     return None
 
 
-def _seconds(mover: Mover, start: Pose, target: Pose, speed: int) -> _Left:
+def _seconds(mover: Mover, start: Pose, target: Pose, speed: int) -> _Departure:
     """Return when the joint with the largest angle to cover has covered half of it."""
     ways = [abs(b - a) for a, b in zip(start, target)]
     joint, began = ways.index(max(ways)), mover.device.connection.now
     mover.device.request(mover.to(target, speed))
-    left = _left(mover, joint, start[joint], TIMED * ways[joint], began, SOON)
-    if left is None:
+    departure = _departure(mover, joint, start[joint], TIMED * ways[joint], began, SOON)
+    if departure is None:
         raise NotSupported(f"the arm did not move in {LONGEST:g} s")
-    return left
+    return departure
 
 
 class _Speeds(NamedTuple):
@@ -263,7 +263,7 @@ def _expect_on_the_way(
     wrong = [
         f"joint {at + 1}: {abs(found[at]):.3g}, but it turned {turned[at]:.3g} degrees in a second"
         for at in moved
-        # Still on its way.
+        # Joints that have nearly arrived are left out.
         if turned[at] * took >= LEAST and abs(after[at] - target[at]) > mover.tolerance
         if not turned[at] / APART <= abs(found[at]) <= APART * turned[at]
     ]
@@ -305,13 +305,13 @@ def _next_target(probe: Probe) -> None:
         first, then = (requester.prepare(mover.to(target, speed)) for target in (up, down))
         note = f"{requester.describe(first)}, {requester.describe(then)}"
         sent_at = requester.send_instead(first, first.frame + then.frame, note).sent_at
-        left = _left(mover, 0, pose[0], SHOWN, sent_at, POLL)
+        departure = _departure(mover, 0, pose[0], SHOWN, sent_at, POLL)
         mover.wait()
         reason = f"{label}: expected joint 1 to go {'up' if label == QUEUED else 'down'} first"
-        if left is not None and left.most - left.least > UNSEEN:
+        if departure is not None and departure.most - departure.least > UNSEEN:
             probe.not_timed(EFFECT, f"The angles were read too seldom. {reason}.")
         else:
-            went_up = left is not None and left.way > 0
+            went_up = departure is not None and departure.way > 0
             probe.expect(EFFECT, went_up is (label == QUEUED), reason)
 
 
@@ -326,7 +326,7 @@ STOPPING = Group(
 PAUSING = Group(
     "pauses",
     (PAUSES, ARRIVES, *AFTER_CHANGE),
-    *for_rows(_resuming, _pause),
+    *for_found(_resuming, _pause),
     sends="A slow motion, the pause on its way, and the command that resumes.",
     subject="the command that pauses, if another one resumes",
 )
@@ -341,7 +341,7 @@ SPEEDS = Group(
 REPORTED_SPEEDS = Group(
     "reported speeds",
     (REPORTED,),
-    *for_rows(_speeds, _reported),
+    *for_found(_speeds, _reported),
     frozenset({"motion"}),
     sends="The query on the way of three slow motions of some of the joints, and at rest.",
     subject="each query of the joints' speeds, if the edition says how large their unit is",

@@ -59,7 +59,7 @@ def is_query(table: Table, command: Command) -> bool:
 
 
 def _query(probe: Probe) -> None:
-    """Request with each set of arguments, and with the last one again."""
+    """Send the query with each set of arguments, and the last request again."""
     command, every = probe.command, _every(probe)
     for query in every:
         first = probe.device.request(query)
@@ -68,7 +68,7 @@ def _query(probe: Probe) -> None:
     _check(probe, again)
     if _has_nuls(first) and _has_nuls(again):
         noisy = all(_has_nuls(probe.device.request(every[-1])) for _ in range(NOISY))
-        reason = f"{command.name}: expected the reply alone; each time came {again.summary}"
+        reason = f"{command.name}: expected only the reply; each time received {again.summary}"
         probe.expect(ONCE, not noisy, reason)
     if first.valid is not None and again.valid is not None:
         expect_repetition(probe, probe.command, first.valid, again.valid)
@@ -77,7 +77,7 @@ def _query(probe: Probe) -> None:
 
 
 def _has_nuls(response: Response) -> bool:
-    """Return whether NULs came with a reply: on a noisy line that happens now and then."""
+    """Return whether a reply came with NULs, as happens now and then on a noisy line."""
     return any(isinstance(finding, Nuls) for finding in response.noise)
 
 
@@ -88,7 +88,7 @@ def _every(probe: Probe) -> list[Request[Any]]:
         NotSupported: it takes a position that the device does not report.
     """
     known = probe.device.known(probe.command)
-    every = [query for query in requests_of(probe.command, known) if _has_part(probe, query)]
+    every = [query for query in requests_of(probe.command, known) if _has_joint(probe, query)]
     if not every:
         raise NotSupported(UNKNOWN_ROW)
     return every
@@ -109,7 +109,7 @@ def is_framed_query(table: Table, command: Command) -> bool:
 
 
 def _is_powered_query(table: Table, command: Command) -> bool:
-    """Return whether a command only reads, of a device with power to switch."""
+    """Return whether a command is a framed query, and another command switches the power."""
     switchable = any(other.safety == "power" for other in table.commands)
     return switchable and is_framed_query(table, command)
 
@@ -147,7 +147,7 @@ def sample_of(device: Device, command: Command) -> Request[Any]:
     return found[0]
 
 
-def _has_part(probe: Probe, query: Request[Any]) -> bool:
+def _has_joint(probe: Probe, query: Request[Any]) -> bool:
     """Return whether the device has the joint that a query names: some have fewer joints."""
     device = probe.device
     fewer = device.joints < device.table.joints
@@ -159,10 +159,10 @@ def _check(probe: Probe, response: Response) -> None:
     call = probe.device.requester.describe(response.request)
     for damaged in response.damaged:
         expected = _expected_frame(probe.device.table, response)
-        probe.expect(FRAME, False, f"{call}: {expected}; came {shown(damaged.data)}")
+        probe.expect(FRAME, False, f"{call}: {expected}; received {shown(damaged.data)}")
     if response.unexpected and not response.replies and not response.damaged and command.reply:
         expected = _expected_frame(probe.device.table, response)
-        probe.expect(FRAME, False, f"{call}: {expected}; came {response.summary}")
+        probe.expect(FRAME, False, f"{call}: {expected}; received {response.summary}")
     for reply in response.replies:
         probe.expect(FRAME, True, "")
         error = reply.error
@@ -171,7 +171,9 @@ def _check(probe: Probe, response: Response) -> None:
         probe.expect(ECHO, echoed, _wrong_echo(call, response, reply))
     if response.replies:
         once = len(response.replies) == 1 and not response.unexpected
-        probe.expect(ONCE, once, f"{call}: expected one reply and no more; came {response.summary}")
+        probe.expect(
+            ONCE, once, f"{call}: expected one reply and no more; received {response.summary}"
+        )
     deadline = command.deadline_ms
     in_time = bool(response.replies) and not response.late
     probe.expect(REPLIED, in_time, _late(call, response, deadline))
@@ -196,16 +198,16 @@ def _expected_address(table: Table, response: Response) -> str:
 
 
 def _wrong_echo(call: str, response: Response, reply: ReceivedReply) -> str:
-    came = reply.decoded.fields if reply.decoded else {}
-    sent = {name: v for name, v in response.request.arguments.items() if name in came}
-    return f"{call}: expected the echo of {sent}; came {came}"
+    received = reply.decoded.fields if reply.decoded else {}
+    sent = {name: v for name, v in response.request.arguments.items() if name in received}
+    return f"{call}: expected the echo of {sent}; received {received}"
 
 
 def _late(call: str, response: Response, deadline: int) -> str:
-    came = f"came {response.summary}"
+    received = f"received {response.summary}"
     if response.replies:
-        came = f"the reply came after {1000 * response.replies[0].seconds:.0f} ms"
-    return f"{call}: expected a reply within {deadline} ms; {came}"
+        received = f"the reply came after {1000 * response.replies[0].seconds:.0f} ms"
+    return f"{call}: expected a reply within {deadline} ms; {received}"
 
 
 def expect_repetition(
@@ -213,18 +215,18 @@ def expect_repetition(
 ) -> None:
     """Compare the replies to two equal requests, one right after the other."""
     if first.decoded is None or again.decoded is None:
-        reason = f"{query.name}: expected the same text again; came {first.message}, then "
+        reason = f"{query.name}: expected the same text again; received {first.message}, then "
         probe.expect(REPEATS, first.message == again.message, f"{reason}{again.message}")
         return
     old, new = first.decoded.fields, again.decoded.fields
-    reason = f"{query.name}: expected the same variant of reply; came {old}, then {new}"
+    reason = f"{query.name}: expected the same variant of reply; received {old}, then {new}"
     probe.expect(REPEATS, old.keys() == new.keys(), reason)
     for field in again.decoded.variant.fields:
         if field.name not in old:
             continue
         before, after = old[field.name], new[field.name]
         what = f"{query.name}: {field.name}"
-        reason = f"{what}: expected the same again; came {before}, then {after}"
+        reason = f"{what}: expected the same again; received {before}, then {after}"
         probe.expect(REPEATS, _alike(field, before, after), reason)
 
 

@@ -1,4 +1,4 @@
-"""Values that are listed one by one: they are counted, and read in the order of recording.
+"""Lists to which values are appended: the values are counted, and read in their order.
 
 Reading a value removes it. Nothing moves. If no query counts a list, the test empties it first, and
 its old values may be lost.
@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 
 from cobotwire.conformance.device.device import Device, NotSupported
 from cobotwire.conformance.device.groups.changes import AFTER_CHANGE_OR_REPLY, request_change
-from cobotwire.conformance.device.probe import Probe, for_rows
+from cobotwire.conformance.device.probe import Probe, for_found
 from cobotwire.conformance.device.read_back import EXACT
 from cobotwire.conformance.device.requests import as_row, gentle_values, revealing
 from cobotwire.conformance.device.selection import does, first
@@ -39,22 +39,22 @@ class _List(NamedTuple):
     """The commands of a list: what appends, what takes the first point, and what reports on it."""
 
     add: Command
-    given: Field
+    argument: Field
     take: Command | None
     counter: Command | None
     empty: Command | None
 
     def request(self, point: tuple[float, ...]) -> Any:
         """Return the request that appends a point."""
-        value = point if self.given.many else point[0]
-        given = gentle_values(self.add.request[0]) | {self.given.name: value}
-        return self.add.request_type.from_fields(given)
+        value = point if self.argument.many else point[0]
+        arguments = gentle_values(self.add.request[0]) | {self.argument.name: value}
+        return self.add.request_type.from_fields(arguments)
 
     @property
     def points(self) -> list[tuple[float, ...]]:
-        """Points that differ in each part."""
-        shown = self.given if self.take is None else self.take.reply[0].fields[-1]
-        pairs = list(zip(self.given.cases[0].numbers, shown.cases[0].numbers))
+        """Points that differ in each number."""
+        shown = self.argument if self.take is None else self.take.reply[0].fields[-1]
+        pairs = list(zip(self.argument.cases[0].numbers, shown.cases[0].numbers))
         rows = revealing([pairs], [(0,) * len(pairs)])
         return [tuple(as_row(row[0])) for row in rows[:ADDED]]
 
@@ -66,10 +66,12 @@ def _list(table: Table, state: str) -> _List | None:
     appends = None if add is None else does(Lists)(table, add)
     if add is None or appends is None:
         return None
-    given = named_fields(add.request)[appends.append][0]
+    argument = named_fields(add.request)[appends.append][0]
     ends = take is not None and does(Lists, empty="zeros")(table, take)
     shown = counter or ends or (empty and take is None)
-    return _List(add, given, take, counter, empty) if shown and not takes_whole(given) else None
+    return (
+        _List(add, argument, take, counter, empty) if shown and not takes_whole(argument) else None
+    )
 
 
 def _of(**wanted: object) -> Callable[[Table, Command], _List | None]:
@@ -108,9 +110,10 @@ def _in_order(probe: Probe, points: _List) -> None:
     if take is None:
         return
     for number, point in enumerate(points.points, 1):
-        came = _take(probe, take)
-        same = all(abs(one - other) <= EXACT for one, other in zip(point, came))
-        reason = f"{take.name}: expected {point}, which was added as number {number}; came {came}"
+        received = _take(probe, take)
+        same = all(abs(one - other) <= EXACT for one, other in zip(point, received))
+        reason = f"{take.name}: expected {point}, which was added as number {number}"
+        reason += f"; received {received}"
         probe.expect(IN_ORDER, same, reason)
         _expect_count(probe, points, len(points.points) - number)
 
@@ -139,8 +142,10 @@ def _expect_count(probe: Probe, points: _List, count: int, case: TestCase = IN_O
     """Expect the number of points, and the report whether there are any."""
     device = probe.device
     if points.counter is not None:
-        came = _count(device, points)
-        probe.expect(case, came == count, f"{points.counter.name}: expected {count}; came {came}")
+        received = _count(device, points)
+        probe.expect(
+            case, received == count, f"{points.counter.name}: expected {count}; received {received}"
+        )
     if points.empty is not None:
         filled, when = points.empty.request_type(), f", with {count} points"
         right = (count == 0) == bool(empty_value(points.empty.reply[0].fields[-1]))
@@ -172,30 +177,30 @@ def _clear(probe: Probe, points: _List) -> None:
     request_change(probe, probe.command.request_type())
     _expect_count(probe, points, 0, CLEARED)
     if points.take is not None:
-        came = _take(probe, points.take)
-        reason = f"{points.take.name}: expected zeros from an empty list; came {came}"
-        probe.expect(CLEARED, not any(came), reason)
+        received = _take(probe, points.take)
+        reason = f"{points.take.name}: expected zeros from an empty list; received {received}"
+        probe.expect(CLEARED, not any(received), reason)
 
 
 RECORDED = Group(
     "recorded points",
     (IN_ORDER, *AFTER_CHANGE_OR_REPLY),
-    *for_rows(_counted, _in_order),
-    sends="Points that differ in each part, one by one; the number of points; each point.",
+    *for_found(_counted, _in_order),
+    sends="Points that differ in each number, one by one; the number of points; each point.",
     subject="the command that adds a point, if another one reads it and one counts them",
 )
 UNCOUNTED = Group(
     "listed values",
     (IN_ORDER, *AFTER_CHANGE_OR_REPLY),
-    *for_rows(_uncounted, _in_order),
+    *for_found(_uncounted, _in_order),
     frozenset({"irreversible"}),
-    sends="Values that differ in each part, one by one; then what reads or reports them.",
-    subject="each command that appends to a list which others only read or only report on",
+    sends="Values that differ in each number, one by one; then what reads or counts them.",
+    subject="each other command that appends to a list, if another one reads or reports it",
 )
 CLEARS = Group(
     "cleared lists",
     (CLEARED, *AFTER_CHANGE_OR_REPLY),
-    *for_rows(cleared, _clear),
+    *for_found(cleared, _clear),
     frozenset({"irreversible"}),
     sends="A value that is added, the command, and what reads or reports on the list.",
     subject="each command that clears a list, if values can be added and read or counted",

@@ -11,7 +11,7 @@ from functools import partial
 from typing import NamedTuple
 
 from cobotwire.conformance.device.device import NotSupported
-from cobotwire.conformance.device.probe import Probe, for_rows
+from cobotwire.conformance.device.probe import Probe, for_found
 from cobotwire.conformance.device.read_back import Setting, restorable_spot, settings_of
 from cobotwire.conformance.device.requests import request_of
 from cobotwire.conformance.device.selection import first, stored
@@ -20,14 +20,14 @@ from cobotwire.protocol.table import Command, Table
 
 SHIFTS = TestCase(
     "reference-shifts",
-    "A reference shifts the coordinates by its own length, and each axis in its own direction.",
+    "A reference shifts the coordinates by its length, along its axis.",
 )
 
 Vector = tuple[float, float, float]
 # How far the reference is set from zero, and by how much the shift may be wrong, in millimetres.
 SHIFT, NEAR = 40.0, 2.0
 AXES = "xyz"
-# For each reference: the setting that makes the coordinates show it, if it has its second value.
+# For each reference: the state whose second choice makes the coordinates include it.
 CHOSEN_BY = {"tool": "end_type", "world": "reference_frame"}
 
 
@@ -107,7 +107,7 @@ def _short(vector: Vector) -> str:
 REFERENCES = Group(
     "references",
     (SHIFTS,),
-    *for_rows(_reference, _shifts),
+    *for_found(_reference, _shifts),
     sends="A reference of 40 mm along each axis; the coordinates are read with and without it.",
     subject="each setting that takes coordinates, if another one makes the arm use it",
 )

@@ -22,7 +22,7 @@ from cobotwire.conformance.device.groups.malformed import (
     wrong_values,
 )
 from cobotwire.conformance.device.malformed_sender import KEPT
-from cobotwire.conformance.device.probe import Probe, for_rows
+from cobotwire.conformance.device.probe import Probe, for_found
 from cobotwire.conformance.device.read_back import Spot, read_spot, restorable_spot, settings_of
 from cobotwire.conformance.device.requests import arguments_of, values_text
 from cobotwire.conformance.device.selection import reported, reporters
@@ -54,8 +54,8 @@ def _set_and_read(probe: Probe) -> None:
     """Back up, set several values for each joint, pin or register, read all, restore."""
     device, may_lose = probe.device, "irreversible" in probe.device.permissions.classes
     settings = settings_of(device.table, probe.command)
-    # The parts of one row are tested together as neighbours. Variants set the same value, so that
-    # each is tested by itself.
+    # Settings of the numbers that one query reports are tested together, as neighbours. Variants
+    # set the same value, so each is tested by itself.
     sets = [settings] if settings[0].part else [[setting] for setting in settings]
     for together in sets:
         spots = [
@@ -75,7 +75,7 @@ def _set_and_read(probe: Probe) -> None:
 
 
 def _set(probe: Probe, wanted: Request[Any]) -> bool:
-    """Set a value; return whether a reply that is due reports failure."""
+    """Set a value; return whether its reply reports a failure."""
     valid = request_change(probe, wanted).valid
     if valid is None or valid.decoded is None:
         return False
@@ -118,7 +118,7 @@ def _forbidden(probe: Probe) -> None:
     device = probe.device
     for setting in settings_of(device.table, probe.command):
         if setting.place:
-            # The first part represents the others.
+            # The first number represents the others.
             continue
         spot = restorable_spot(device, setting, setting.queries[0])
         device.restore_after_body[probe.command.name] = partial(device.request, spot.old)
@@ -139,8 +139,8 @@ def _send_wrong_values(probe: Probe, spot: Spot, present: Request[Any]) -> None:
         after = device.request(spot.query)
         # A late reply comes after the query.
         silent = not (response.replies or response.unexpected or after.others)
-        came = response.summary if response.replies or response.unexpected else after.summary
-        probe.expect(OUT_OF_RANGE, silent, f"{what}: expected no reply; came {came}")
+        received = response.summary if response.replies or response.unexpected else after.summary
+        probe.expect(OUT_OF_RANGE, silent, f"{what}: expected no reply; received {received}")
         reply = after.valid and after.valid.message
         wrong = spot.setting.differences(present, reply)
         reason = f"{probe.command.name} with {what} ({shown(data)}) must change nothing"
@@ -209,7 +209,7 @@ def _set_among(probe: Probe, query: Command) -> None:
         value = number.physical(raw)
         request_change(probe, _to(command, value))
         shown = device.require(query.request_type()).fields
-        reason = f"{command.name}({value:g}): expected {query.name} to report it; came {shown}"
+        reason = f"{command.name}({value:g}): expected {query.name} to report it; received {shown}"
         probe.expect(AMONG, value in shown.values(), reason)
 
 
@@ -223,8 +223,8 @@ SETTINGS = Group(
     _set_and_read,
     _is_setting,
     sends=(
-        "For each joint, pin or register: both ends, both signs, a different number for each "
-        "part; then the value before."
+        "For each joint, pin or register: both ends, both signs, and a set of numbers that all "
+        "differ; then the value before."
     ),
     subject="each setting that a query reads back",
 )
@@ -243,9 +243,9 @@ FORBIDDEN_SETTINGS = Group(
 SHOWN_AMONG = Group(
     "set among others",
     (AMONG, *AFTER_CHANGE),
-    *for_rows(is_shown, _set_among),
+    *for_found(is_shown, _set_among),
     sends="Two values, and the query after each.",
-    subject="each setting whose query reports several numbers, without saying which one is set",
+    subject="each setting, if its query reports several numbers and not which one is set",
 )
 COUPLING = Group(
     "settings among each other",

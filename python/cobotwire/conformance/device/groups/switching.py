@@ -1,4 +1,4 @@
-"""Commands with a fixed effect, such as power on: the query reports it, for the right part."""
+"""Commands with a fixed effect, such as power on: the query reports it, for the right joint."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from cobotwire.conformance.device.groups.queries import (
 )
 from cobotwire.conformance.device.groups.settings import NEIGHBOURS
 from cobotwire.conformance.device.mover import Mover, give_power
-from cobotwire.conformance.device.probe import Probe, for_rows
+from cobotwire.conformance.device.probe import Probe, for_found
 from cobotwire.conformance.device.read_back import (
     Fixed,
     fixed_effect,
@@ -46,7 +46,7 @@ def _reports_done(command: Command) -> bool:
 
 DONE = TestCase(
     "acknowledged-done",
-    "What an acknowledgement reports as done is what the query reports at once.",
+    "When the acknowledgement reports that it is done, the query reports the new state at once.",
     applies=_reports_done,
 )
 EFFECT = TestCase("effect", "The query reports the state that the command has set.")
@@ -57,7 +57,7 @@ POLL = 0.05
 
 
 def _switch_of(table: Table, command: Command) -> Fixed | None:
-    """Return a command's fixed effect that can be reverted; None if it concerns only one part."""
+    """Return a command's fixed effect that can be reverted; None if it concerns only one joint."""
     fixed, part = fixed_effect(table, command), _part_of(table, command)
     of_one = fixed and part and part.query.name == fixed.query.name
     return None if command.safety == "persistent write" or of_one else fixed
@@ -82,13 +82,13 @@ def _switch(probe: Probe, fixed: Fixed) -> None:
     value = _read(device, fixed, reading)
     if acknowledged:
         reason = f"{command.name} is acknowledged as done: expected {query.name} to report {wanted}"
-        probe.expect(DONE, value == wanted, f"{reason} at once; came {value}")
+        probe.expect(DONE, value == wanted, f"{reason} at once; received {value}")
     else:
         probe.drop(DONE)
     if value != wanted:
         reads = partial(_read, device, fixed, reading)
-        value = device.poll(reads, lambda came: came == wanted, SHOWS, POLL)
-    reason = f"{command.name}: expected {query.name} to report {wanted}; came {value}"
+        value = device.poll(reads, lambda read: read == wanted, SHOWS, POLL)
+    reason = f"{command.name}: expected {query.name} to report {wanted}; received {value}"
     probe.expect(EFFECT, value == wanted, reason)
     if command.safety != "power" or wanted:
         probe.drop(REPEATS)
@@ -102,7 +102,7 @@ def _expect(
     """Expect a query to report a state after a call."""
     value = fixed.read(probe.device, query)
     reason = f"after {call}: expected {query.command}({arguments_of(query)}) to report {right}"
-    probe.expect(case, value == right, f"{reason}; came {value}")
+    probe.expect(case, value == right, f"{reason}; received {value}")
 
 
 def _expect_steady_replies(probe: Probe) -> None:
@@ -116,8 +116,8 @@ def _expect_steady_replies(probe: Probe) -> None:
 
 def _send(probe: Probe, command: Command) -> bool:
     """Send a command for each joint that it accepts; return whether each is acknowledged."""
-    came = [bool(request_change(probe, request).replies) for request in harmless(command)]
-    return command.ack and all(came)
+    acknowledged = [bool(request_change(probe, request).replies) for request in harmless(command)]
+    return command.ack and all(acknowledged)
 
 
 def _read(device: Device, fixed: Fixed, query: Request[Any]) -> int | None:
@@ -126,11 +126,11 @@ def _read(device: Device, fixed: Fixed, query: Request[Any]) -> int | None:
 
 
 def _part_of(table: Table, command: Command) -> Fixed | None:
-    """Return the query that reports what a command gives one part, and the value."""
+    """Return the query that reports the state that a command sets for one joint, and the value."""
     effect = stated_effect(command)
     if isinstance(effect, Sets) and effect.at and command.safety == "power":
         for state, value in effect.values.items():
-            # An assumed query is used too: without it nothing would show which part a command
+            # An assumed query is used too: without it nothing would show which joint a command
             # switches.
             for found in reporters(table, state, assumed=True):
                 if found.at == effect.at and len(harmless(command)) > 1:
@@ -139,7 +139,7 @@ def _part_of(table: Table, command: Command) -> Fixed | None:
 
 
 def _switch_each(probe: Probe, fixed: Fixed) -> None:
-    """Set the opposite state for all parts, then the command's own for each part in turn."""
+    """Set the opposite state for all joints, then the command's own for each joint in turn."""
     device, parts, wanted = probe.device, harmless(probe.command), fixed.value
     every = fixed_effect(device.table, probe.command)
     give_power(device)
@@ -158,7 +158,7 @@ def _switch_each(probe: Probe, fixed: Fixed) -> None:
 
 
 def _counterpart(probe: Probe, fixed: Fixed) -> Command:
-    """Return the command that gives one part a value which a query reports."""
+    """Return the command that sets the value of one joint which a query reports."""
     for command in probe.device.table.commands:
         if _part_of(probe.device.table, command) == fixed:
             return command
@@ -176,7 +176,7 @@ def _calibration(table: Table, command: Command) -> Fixed | None:
 
 
 def _calibrate(probe: Probe, fixed: Fixed) -> None:
-    """Calibrate each part in turn, at a pose that is not zero; the other parts stay."""
+    """Calibrate away from zero: each joint that the command can name, while the others stay."""
     device, query = probe.device, fixed.query
     if not probe.command.request[-1].fields:
         probe.drop(NEIGHBOURS)
@@ -213,9 +213,9 @@ def choices(table: Table, command: Command) -> list[tuple[Request[Any], Fixed]]:
     effect = stated_effect(command)
     if not isinstance(effect, Cases) or command.safety not in ("setting", "persistent write"):
         return []
-    given = gentle_values(command.request[0])
+    arguments = gentle_values(command.request[0])
     return [
-        (command.request_type.from_fields(given | {effect.selector: raw}), fixed)
+        (command.request_type.from_fields(arguments | {effect.selector: raw}), fixed)
         for raw, case in effect.cases.items()
         if isinstance(case, Sets)
         for state, value in case.values.items()
@@ -249,7 +249,7 @@ def _choose(probe: Probe, rows: list[tuple[Request[Any], Fixed]]) -> None:
 SWITCHES = Group(
     "switches",
     (EFFECT, DONE, *AFTER_CHANGE_OR_REPLY, REPEATS),
-    *for_rows(_switch_of, _switch),
+    *for_found(_switch_of, _switch),
     sends=(
         "The command that sets the opposite state, then the command itself, then the one "
         "that restores the state. Without power, each query without arguments, twice."
@@ -259,22 +259,22 @@ SWITCHES = Group(
 CHOICES = Group(
     "choices",
     (EFFECT, *AFTER_CHANGE_OR_REPLY),
-    *for_rows(choices, _choose),
+    *for_found(choices, _choose),
     sends="The command with each choice in turn, twice; after each, the query that reports it.",
     subject="each setting with an argument that chooses a fixed effect which a query reports",
 )
 HOLDING = Group(
-    "single parts",
+    "switched joints",
     (EFFECT, NEIGHBOURS, *AFTER_CHANGE),
-    *for_rows(_part_of, _switch_each),
-    sends="The opposite state for all parts, then the command for each part in turn.",
-    subject="each command that switches one part, if a query reports the state of each",
+    *for_found(_part_of, _switch_each),
+    sends="The opposite state for all joints, then the command for each joint in turn.",
+    subject="each command that switches one joint, if a query reports the state of each",
 )
 CALIBRATION = Group(
     "calibrations",
     (EFFECT, NEIGHBOURS, *AFTER_CHANGE_OR_REPLY),
-    *for_rows(_calibration, _calibrate),
+    *for_found(_calibration, _calibrate),
     frozenset({"irreversible"}),
-    sends="The calibration for each part, at a pose that is not zero.",
-    subject="each permanent command that gives a position a fixed number",
+    sends="The calibration, at a pose that is not zero: for each joint that it can name.",
+    subject="each command that permanently gives the present position a fixed number",
 )

@@ -1,4 +1,4 @@
-"""Commands that no query reads back: only what comes after them is checked."""
+"""Commands that no query reads back: only the response is checked."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def _is_unread(table: Table, command: Command) -> bool:
 
 
 def _send_unread(probe: Probe) -> None:
-    """Send the command once, with the mildest arguments, and check what comes."""
+    """Send the command once, with the arguments that change the least, and check the response."""
     power = probe.command.safety == "power"
     if power:
         give_power(probe.device)
@@ -43,7 +43,7 @@ def _send_unread(probe: Probe) -> None:
 
 
 def _send_colours(probe: Probe) -> None:
-    """Send colours that differ in each part, the darkest last, and check what comes."""
+    """Send colours that differ in red, green and blue, the darkest last; check the responses."""
     variant = probe.command.request[0]
     for turn in (0, 7):
         values = physical_values(variant, ordinary(variant, turn=turn))
@@ -65,6 +65,6 @@ LIGHTS = Group(
     AFTER_CHANGE_OR_REPLY,
     _send_colours,
     has_role("light"),
-    sends="Colours that differ in each part, the darkest last.",
+    sends="Colours that differ in red, green and blue, the darkest last.",
     subject="each command with the role light",
 )
