@@ -1,4 +1,4 @@
-"""Diagnose noise: take the events of a framer, return the same frames and findings."""
+"""Diagnose noise: take the events of a framer, return its frames, and findings for its noise."""
 
 from __future__ import annotations
 

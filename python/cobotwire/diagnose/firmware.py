@@ -63,7 +63,7 @@ class CommandError(Finding):
 
     @property
     def ordinary(self) -> bool:
-        """Return True: the arm works on after it."""
+        """Return True: the arm continues to work."""
         return True
 
     def describe(self) -> str:

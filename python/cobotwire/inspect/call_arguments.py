@@ -18,56 +18,56 @@ _FLAGS |= {"false": False, "no": False, "off": False, "0": False}
 def parse(command: Command, words: Sequence[str]) -> dict[str, Any]:
     """Return the arguments by name; words come in the order of the method or as ``name=value``.
 
-    A list is a word with commas, or as many words as it has numbers. The given names choose the
-    variant of the request. Arguments with a default may be left out. The text that follows a
-    request is an argument like the fields.
+    A list is a word with commas, or as many words as it has numbers. The names choose the variant
+    of the request. Arguments with a default may be left out. The text that follows a request is an
+    argument like the fields.
 
     Raises:
-        UsageError: an argument is missing, unknown, given twice, or not a value of its field.
+        UsageError: an argument is missing, unknown, repeated, or not a value of its field.
     """
     text = command.request_text.fields if command.request_text else ()
-    given = _by_name(command.name, _sizes(command), words)
+    arguments = _by_name(command.name, _sizes(command), words)
     for name in text:
-        if name not in given:
+        if name not in arguments:
             raise _misfit(command.name, _sizes(command), name, f"is missing its argument {name}")
     try:
-        fields = {field.name: field for field in _variant(command, given).fields}
+        fields = {field.name: field for field in _variant(command, arguments).fields}
     except UsageError:
         if problem := _miscounted(_sizes(command), words):
             raise _misfit(command.name, _sizes(command), "argument", problem) from None
         raise
     return {
         name: word if name in text else parse_value(fields[name], word)
-        for name, word in given.items()
+        for name, word in arguments.items()
     }
 
 
-def request_values(command: Command, given: Mapping[str, Any]) -> tuple[Any, ...]:
+def request_values(command: Command, arguments: Mapping[str, Any]) -> tuple[Any, ...]:
     """Return the values of the request's frame: the arguments, defaults and constants."""
     return tuple(
         ...
         if field.counts
-        else given[field.name]
-        if field.name in given
+        else arguments[field.name]
+        if field.name in arguments
         else field.physical(field.default or (field.const or 0,))
-        for field in _variant(command, given).fields
+        for field in _variant(command, arguments).fields
     )
 
 
-def variant_of(command: Command, given: Mapping[str, Any]) -> int | None:
-    """Return the index of the variant of a request that the given arguments choose.
+def variant_of(command: Command, arguments: Mapping[str, Any]) -> int | None:
+    """Return the index of the variant of a request that the arguments choose.
 
     None: the variant has a field of varying size, so the codec chooses by the size of the value.
     """
-    variant = _variant(command, given)
+    variant = _variant(command, arguments)
     if any(field.sizes for field in variant.fields):
         return None
     return command.request.index(variant)
 
 
-def _variant(command: Command, given: Mapping[str, Any]) -> Variant:
+def _variant(command: Command, arguments: Mapping[str, Any]) -> Variant:
     text = command.request_text.fields if command.request_text else ()
-    fields = [name for name in command.argument_names if name in given and name not in text]
+    fields = [name for name in command.argument_names if name in arguments and name not in text]
     rows = tuple(variant.row for variant in command.request)
     try:
         chosen = choose(command.name, rows, fields)
@@ -91,18 +91,18 @@ def parse_method(
         for each in parameters
     }
     name = method.__name__
-    given = _by_name(name, takes, words)
+    arguments = _by_name(name, takes, words)
     for each in parameters:
-        if each.default is Parameter.empty and each.name not in given:
+        if each.default is Parameter.empty and each.name not in arguments:
             problem = _miscounted(takes, words) or f"is missing its argument {each.name}"
             raise _misfit(name, takes, each.name, problem)
-    return {each: _typed(each, types[each], word) for each, word in given.items()}
+    return {each: _typed(each, types[each], word) for each, word in arguments.items()}
 
 
 def _sizes(command: Command) -> dict[str, int]:
     """Return how many words each argument can be: as many as a list of a fixed size has numbers.
 
-    0 is for an argument that is given only by its name.
+    0: the argument has to be named.
     """
     fields = [field for variant in command.request for field in variant.fields]
     lists = {f.name: len(f.cases[0].numbers) for f in fields if f.many and not (f.sizes or f.each)}
@@ -110,23 +110,23 @@ def _sizes(command: Command) -> dict[str, int]:
 
 
 def _by_name(call: str, sizes: Mapping[str, int], words: Sequence[str]) -> dict[str, str]:
-    given: dict[str, str] = {}
+    arguments: dict[str, str] = {}
     for word in words:
         name, equals, value = word.partition("=")
         if equals and name not in sizes:
             raise _misfit(call, sizes, "argument", f"has no argument for {word!r}")
-        if equals and name in given:
+        if equals and name in arguments:
             raise UsageError(name, word, message=f"{call}() got its argument {name} twice")
         if equals:
-            given[name] = value
-    free = [name for name, size in sizes.items() if size and name not in given]
+            arguments[name] = value
+    free = [name for name, size in sizes.items() if size and name not in arguments]
     rest = [word for word in words if "=" not in word]
     if len(rest) > len(free):
         rest = _gather(rest, [sizes[name] for name in free])
     if len(rest) > len(free):
         problem = _miscounted(sizes, words) or f"has no argument for {rest[len(free)]!r}"
         raise _misfit(call, sizes, "argument", problem)
-    return dict(zip(free, rest)) | given
+    return dict(zip(free, rest)) | arguments
 
 
 def _gather(words: list[str], sizes: Sequence[int]) -> list[str]:
@@ -139,7 +139,7 @@ def _gather(words: list[str], sizes: Sequence[int]) -> list[str]:
 
 
 def _miscounted(sizes: Mapping[str, int], words: Sequence[str]) -> str:
-    """Return how many numbers a call with a row takes; empty if something else is wrong."""
+    """Return how many numbers a call takes, if their count is wrong; empty otherwise."""
     named = {word.partition("=")[0] for word in words if "=" in word}
     free = {name: size for name, size in sizes.items() if size and name not in named}
     plain = [word.strip("[](), ") for word in words if "=" not in word]

@@ -1,6 +1,6 @@
 """Find the mistake that explains contradictory readings, and the mistakes that they exclude.
 
-A hypothesis is a mistake of the edition, such as tenths taken for hundredths, with what corrects
+A hypothesis is a mistake of the edition, such as tenths taken for hundredths, and the correction of
 the readings. It explains them if all relations of the corrected readings hold. If the relations
 hold for the edition as it is, and each hypothesis about an aspect breaks one, that aspect is
 confirmed.
@@ -75,7 +75,7 @@ def hypotheses(numbers: Sequence[Number]) -> Iterator[Hypothesis]:
 
 
 def doubts(table: Table, results: Mapping[str, Any]) -> list[str]:
-    """Return the mistakes that explain the results of a few queries, by name, of an arm at rest.
+    """Return the mistakes that explain what an arm at rest replied; ``results`` are by query.
 
     If no mistake explains them, the result is empty: the arm may use another reference frame.
     """
@@ -130,8 +130,8 @@ class CrossChecks:
                 rows = [_corrected(row, subject, hypothesis) for row in rows]
         for relation in self._broken(rows, self._relations):
             row = next(row for row in snapshots if relation.fails(row))
-            came = (f"{'.'.join(key)} is {_short(row[key])}" for key in relation.keys)
-            text = f"{'; '.join(came)}"
+            readings = (f"{'.'.join(key)} is {_short(row[key])}" for key in relation.keys)
+            text = f"{'; '.join(readings)}"
             found.append(Mistake(relation.aspect, relation.keys, text, (relation,)))
         return found
 
@@ -211,7 +211,7 @@ class CrossChecks:
     ) -> Mistake:
         """Name the mistake.
 
-        If several explanations are equally good, say that it is open which is right.
+        If several explanations are equally good, name all of them.
         """
         found = [([key for key in subject if key in read], h) for subject, h in best]
         texts = [h.text for _, h in found]

@@ -150,7 +150,7 @@ class Doctor:
         self._silent = 0
 
     def _check_edition(self) -> None:
-        """Report an arm that speaks another edition: most of its replies are legal in this one."""
+        """Report an arm that speaks another edition; most of its replies are legal in both."""
         own, other = other_edition(self._arm, self._table, self._transport, timeout=EDITION_SECONDS)
         if other is not None:
             text = (

@@ -123,7 +123,7 @@ class Candidates:
     def __init__(self, names: Iterable[str]) -> None:
         self.proven = list(names)
         self.likely = list(self.proven)
-        self._asked: set[int] = set()
+        self._sent: set[int] = set()
 
     def keep(self, names: Iterable[str]) -> None:
         """Rule out every other edition."""
@@ -152,7 +152,7 @@ class Candidates:
             (command.role != "version", abs(len(having) - wanted), name, command)
             for name in self.likely
             for command in bare_queries(_table(name))
-            if command.id not in self._asked
+            if command.id not in self._sent
             and len(having := _having(command.id, among)) < len(among)
         ]
         if not found:
@@ -161,8 +161,8 @@ class Candidates:
         return name, command
 
     def note(self, command: Command, replied: bool) -> None:
-        """Take a query into account that was sent."""
-        self._asked.add(command.id)
+        """Note that a query was sent, and whether a reply came."""
+        self._sent.add(command.id)
         having = _having(command.id, self.proven)
         if replied:
             self.proven = having
@@ -190,7 +190,7 @@ class JointLimit(NamedTuple):
 
 
 def limits_apart(names: list[str]) -> Iterator[JointLimit]:
-    """Return the queries for limits that differ between editions, the most telling first."""
+    """Return the queries for limits that differ between editions, those that differ most first."""
     found = []
     for end, query in enumerate(LIMIT_QUERIES):
         rows = {name: target_ranges(_table(name)) for name in names}

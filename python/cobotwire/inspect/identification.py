@@ -97,14 +97,14 @@ def other_edition(
     if own.replied:
         return own, None
     found, against = Candidates(names), None
-    for evidence in _narrowed(partial(_asked, transport, timeout), found):
+    for evidence in _narrowed(partial(_send, transport, timeout), found):
         if against is None and table.edition not in found.proven:
             against = evidence
     return own, against and against._replace(edition=" or ".join(found.proven))
 
 
 def _narrowed(ask: Ask, found: Candidates) -> Iterator[Evidence]:
-    """Send one query after another, until one edition is left, or no query tells them apart."""
+    """Send one query after another, until one edition is left, or no query distinguishes them."""
     yield from _row_evidence(ask, found)
     query = found.next_query()
     while query is not None and not found.known:
@@ -141,7 +141,7 @@ def identify_on(
         probes.separate(format)
 
     try:
-        ask = partial(_asked, probes.transport, timeout)
+        ask = partial(_send, probes.transport, timeout)
         return identify_by(ask, separate, among)._replace(url=transport.url)
     finally:
         memory.leave(merged([*left, memory.recall()]))
@@ -150,7 +150,7 @@ def identify_on(
 def identify_by(
     ask: Ask, separate: Callable[[FrameFormat], object], among: Sequence[str] = ()
 ) -> Identification:
-    """Find out the edition by a function that sends queries; what it raises ends this.
+    """Find out the edition by a function that sends queries; its errors are raised.
 
     ``separate`` is called with another frame format before the first query that has it.
     """
@@ -172,9 +172,9 @@ def identify_by(
 
 
 def _first_queries(names: list[str]) -> Iterator[tuple[str, Command]]:
-    """Yield an edition, and a query for which every arm that knows it has a reply.
+    """Yield an edition, and a query to which every arm that knows it replies.
 
-    It is the query of the power; for arms without motors, the query of the version.
+    It is the query of the power or, for arms without motors, that of the version.
     """
     tables = {name: editions.load(name).TABLE for name in names}
     for role in ("powered", "version"):
@@ -186,17 +186,19 @@ def _first_queries(names: list[str]) -> Iterator[tuple[str, Command]]:
 
 
 def _identified(ask: Ask, found: Candidates, evidence: list[Evidence]) -> Identification:
-    """Find out which of the editions with the same frames the arm that replied speaks."""
+    """Find out which edition an arm speaks, of those with the frames that it replied to."""
     first = editions.load(found.proven[0]).TABLE
     evidence += _narrowed(ask, found)
     edition, firmware = found.known, ""
     version = editions.load(edition or first.edition).TABLE.find_role("version")
-    asked = {each.query: each for each in evidence}
-    if version is not None and version.name in asked and asked[version.name].replied:
-        firmware = str(asked[version.name].result)
+    by_query = {each.query: each for each in evidence}
+    if version is not None and version.name in by_query and by_query[version.name].replied:
+        firmware = str(by_query[version.name].result)
     elif version is not None and edition:
         reply = ask(edition, version)
-        evidence.insert(-1, reply._replace(shows="it does not tell the editions in question apart"))
+        evidence.insert(
+            -1, reply._replace(shows="it does not distinguish the editions in question")
+        )
         firmware = str(reply.result) if reply.replied else ""
     if not edition:
         limits = list(_limit_evidence(ask, found.proven))
@@ -231,7 +233,7 @@ def _limit_evidence(ask: Ask, names: list[str]) -> Iterator[Evidence]:
             return
 
 
-def _asked(
+def _send(
     transport: Transport, timeout: float | None, name: str, command: Command, *arguments: int
 ) -> Evidence:
     with closing(editions.load(name).CLIENT(borrowed(transport), timeout=timeout)) as client:
@@ -267,7 +269,7 @@ def _doubts(found: Identification, transport: Transport, timeout: float | None) 
     results = {evidence.query: evidence.result for evidence in found.evidence}
     for command in filter(None, map(table.find_role, PLACE)):
         if results.get(command.name) is None:
-            evidence = _asked(transport, timeout, found.edition, command)
+            evidence = _send(transport, timeout, found.edition, command)
             results[command.name] = evidence.result
     return doubts(table, results)
 

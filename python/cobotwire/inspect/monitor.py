@@ -22,7 +22,7 @@ from cobotwire.session import Traffic, UnexpectedFrame
 # The rate is computed over this many samples, the most recent ones.
 WINDOW = 10
 FASTEST = 1000.0
-# Older values are not shown as the present ones.
+# Older values are not shown.
 FRESH_SECONDS = 2.0
 ROLES: tuple[Role, ...] = ("joints", "coordinates")
 

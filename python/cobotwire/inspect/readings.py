@@ -70,9 +70,9 @@ class Relation(NamedTuple):
 
     ``holds`` takes the rows of the ``keys``, then those of ``conditions``, whose readings it does
     not test. ``independent`` is whether the readings differ in kind; then it also finds a mistake
-    that all readings of one kind share. ``aspect`` is what is wrong if the relation does not hold
-    and no known mistake explains why. A relation that is not ``exact`` gives only a range, which
-    finds no wrong sign and no wrong order.
+    that all readings of one kind share. If the relation does not hold and no known mistake
+    explains why, ``aspect`` is contradicted. A relation that is not ``exact`` gives only a range,
+    which finds no wrong sign and no wrong order.
     """
 
     keys: tuple[Key, ...]

@@ -177,8 +177,8 @@ class ServoBusReader:
         if register is None:
             return Instruction(name)
         if count != len(data) and data:
-            # For each servo its id and its bytes. A spec cannot state a list of groups whose size
-            # another field holds.
+            # The data has, for each servo, its id and its bytes. No spec can state a list of groups
+            # if another field holds their size.
             servos = tuple(data[:: count + 1])
         return Instruction(name, register, self.register_name(register) or None, count, servos)
 

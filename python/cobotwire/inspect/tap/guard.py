@@ -1,4 +1,4 @@
-"""Decide what of a program's bytes may reach an arm that must not move."""
+"""Decide which bytes of a program may reach an arm that must not move."""
 
 from __future__ import annotations
 
@@ -19,9 +19,9 @@ class Decision(NamedTuple):
 class Guard:
     """Passes whole requests that only read, or that stop the arm; holds back all other bytes.
 
-    If several commands share an id, a request passes only if every command that it can be is one of
-    these. Bytes that are no request of the edition are held back, because the arm may parse them
-    differently.
+    If several commands share an id, a request passes only if each of those that it can be only
+    reads, or stops the arm. Bytes that are no request of the edition are held back, because the arm
+    may parse them differently.
     """
 
     def __init__(self, codec: Codec) -> None:

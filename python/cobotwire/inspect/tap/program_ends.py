@@ -15,8 +15,8 @@ class PtyEnd:
 
     Attributes:
         url: what to open.
-        descriptor: ready when the program sent something; None while no program has it open.
-        arrivals: ready when programs come; None where the system does not say.
+        descriptor: readable when the program has sent something; None while no program has it open.
+        arrivals: readable when a program opens it; None where the system does not report that.
     """
 
     def __init__(self) -> None:

@@ -32,7 +32,7 @@ class Watching:
         on_packet: Callable[[Packet], None],
         on_other: Callable[[Copy], None],
     ) -> None:
-        """Read ``copies``; ``on_other`` gets copies that are not of the arm's line."""
+        """Read ``copies``; ``on_other`` gets those that are not traffic of the arm."""
         self._pipe, self._recording = copies, recording
         self._on_packet, self._on_other = on_packet, on_other
         self._sides = {
@@ -41,7 +41,7 @@ class Watching:
         }
         self._reader = CopyReader()
         self._epoch_ns = time.time_ns() - time.monotonic_ns()
-        self._dropped, self._told = 0, False
+        self._dropped, self._reported = 0, False
 
     def run(self, between: Callable[[], None]) -> None:
         """Watch until the forwarder ends; call ``between`` from time to time.
@@ -71,8 +71,8 @@ class Watching:
         if self._recording is not None:
             # Without new bytes the recording writes an incomplete frame after a pause.
             self._recording.record("sent", b"", now)
-            if self._recording.failure and not self._told:
-                self._told = True
+            if self._recording.failure and not self._reported:
+                self._reported = True
                 text = f"the recording ends here: {self._recording.failure}"
                 self._on_other(Copy("note", now, text.encode()))
         return True
