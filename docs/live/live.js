@@ -259,7 +259,7 @@ export class Live extends Session {
     clearTimeout(this.silence);
     this.silence = setTimeout(() => {
       this.release();
-      this.refuse("the arm was stopped: the page did not say that the button is held");
+      this.refuse("the arm was stopped: the page no longer reported that the button is held");
     }, SILENCE_MS);
   }
 

@@ -127,7 +127,7 @@ def test_line_is_filtered_searched_paused_and_explained(opened: Page) -> None:
     # The page shows the second filter in its next frame.
     opened.until(f"{ROWS}.every((row) => row.children[1].textContent === '←')")
     opened.click("#pause")
-    opened.until("document.getElementById('line-count').textContent.includes('more came')")
+    opened.until("document.getElementById('line-count').textContent.includes('more received')")
     # What came before the pause may be drawn in the next frame.
     opened.get(
         "new Promise((go) => requestAnimationFrame(() => requestAnimationFrame(() => go(1))))"

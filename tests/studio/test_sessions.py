@@ -143,7 +143,7 @@ def test_page_offers_what_a_workspace_allows_and_the_server_refuses_the_rest() -
         ):
             with pytest.raises(UsageError, match=error):
                 send(command, **given)
-        assert "did not say that the button is held" in asyncio.run(hold())[0]
+        assert "no longer reported that the button is held" in asyncio.run(hold())[0]
         assert isinstance(stage.session, LiveSession)
         assert isinstance(stage.session.line, ArmLine)
         sent = [frame[3] for frame in _sent(stage.session.line)]

@@ -15,8 +15,8 @@ from uvicorn.protocols.http.h11_impl import H11Protocol
 from cobotwire.studio.connections import Connection, Connections
 from cobotwire.studio.gate import SCOPE_STATE
 
-# How many connections the system keeps until they are accepted. If a connection finds no place
-# there, its next attempt comes a second later.
+# How many connections the system keeps until they are accepted. If there are more, a client tries
+# again after a second.
 QUEUE = 4096
 # The period of the search for connections that have waited too long.
 SWEEP_SECONDS = 1.0

@@ -15,8 +15,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from ipaddress import ip_address
 
-# The subprotocol of the WebSocket. The token follows as a second one: a browser lets a page set no
-# header there.
+# The subprotocol of the WebSocket. The token follows as a second one, because a page cannot set the
+# headers of a WebSocket.
 PROTOCOL = "cobotwire-studio"
 TOKEN_PROTOCOL = "token."  # noqa: S105  (the prefix before a token)
 HEADERS = {
@@ -89,12 +89,12 @@ class Access:
 
     def knows(self, headers: Mapping[str, str]) -> bool:
         """Return whether a request carries the token."""
-        _, _, given = headers.get("authorization", "").partition("Bearer ")
+        _, _, token = headers.get("authorization", "").partition("Bearer ")
         for protocol in headers.get("sec-websocket-protocol", "").split(","):
             if protocol.strip().startswith(TOKEN_PROTOCOL):
-                given = protocol.strip().removeprefix(TOKEN_PROTOCOL)
+                token = protocol.strip().removeprefix(TOKEN_PROTOCOL)
         # In constant time, so that the time of a refusal tells nothing about the token.
-        return hmac.compare_digest(given.encode(), self.token.encode())
+        return hmac.compare_digest(token.encode(), self.token.encode())
 
 
 def _is_ip(text: str) -> bool:

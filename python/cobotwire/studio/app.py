@@ -102,36 +102,36 @@ class _Api:
         return JSONResponse(self._stage.explainer.explain(entry))
 
     async def preview(self, request: Request) -> Response:
-        given = await _body(request)
+        body = await _body(request)
         preparer = self._stage.preparer
-        command = preparer.command(given.get("command"))
-        arguments = preparer.arguments(command, given.get("arguments"))
+        command = preparer.command(body.get("command"))
+        arguments = preparer.arguments(command, body.get("arguments"))
         encoded = preparer.encoded(command, arguments)
         return JSONResponse(self._stage.explainer.frame(encoded.frame + encoded.text))
 
     async def send(self, request: Request) -> Response:
-        given = await _body(request)
+        body = await _body(request)
         result = await self._stage.send(
             _page(request),
-            given.get("command"),
-            given.get("arguments"),
-            force=given.get("force") is True,
+            body.get("command"),
+            body.get("arguments"),
+            force=body.get("force") is True,
         )
         return JSONResponse({"result": result})
 
     async def control(self, request: Request) -> Response:
-        given = await _body(request)
-        self._stage.set_control(_page(request), given.get("take") is True)
+        body = await _body(request)
+        self._stage.set_control(_page(request), body.get("take") is True)
         return JSONResponse({})
 
     async def motion(self, request: Request) -> Response:
-        given = await _body(request)
-        self._stage.set_motion(_page(request), given.get("on") is True)
+        body = await _body(request)
+        self._stage.set_motion(_page(request), body.get("on") is True)
         return JSONResponse({})
 
     async def scenario(self, request: Request) -> Response:
-        given = await _body(request)
-        self._stage.choose_scenario(_page(request), given.get("name"))
+        body = await _body(request)
+        self._stage.choose_scenario(_page(request), body.get("name"))
         return JSONResponse({})
 
     async def stop(self, request: Request) -> Response:
@@ -162,9 +162,9 @@ async def _body(request: Request) -> dict[str, Any]:
         UsageError: it is something else.
     """
     try:
-        given = json.loads(await request.body())
+        body = json.loads(await request.body())
     except (ValueError, RecursionError):
-        given = None
-    if not isinstance(given, dict):
+        body = None
+    if not isinstance(body, dict):
         raise UsageError("body", message="the request does not hold a JSON object")
-    return given
+    return body

@@ -24,12 +24,12 @@ POLLED: tuple[Role, ...] = ("joints", "coordinates")
 UNANSWERED, PAUSE_SECONDS = 2, 60.0
 # A port that disappeared is opened again at most this often.
 REOPEN_SECONDS = 1.0
-# Traffic that the server has not taken yet; beyond that the oldest is lost, and counted.
+# How many items of traffic wait for the server; then the oldest is dropped, and counted.
 QUEUED = 20_000
 
 
 class PortOptions(NamedTuple):
-    """How the port is opened; None: as the edition says, or without a recording."""
+    """How the port is opened; None: the value of the edition, or no recording."""
 
     url: str
     baudrate: int | None = None
@@ -111,8 +111,8 @@ class ArmLine:
     ) -> Any:
         """Send a command and return its result; check first whether the arm obeys a motion.
 
-        Nothing but a query follows a stop that was sent in the meantime: a motion may have waited
-        for a thread, or for the arm.
+        If the arm was stopped in the meantime, only a query is sent: a motion may have waited for a
+        thread, or for the arm.
 
         Args:
             command: what to send.
@@ -145,7 +145,7 @@ class ArmLine:
         return result
 
     def stop(self) -> None:
-        """Send the edition's stop at once, before all requests that wait.
+        """Send the edition's stop at once, before any request that waits.
 
         Raises:
             UsageError: the edition has no stop.
@@ -175,14 +175,14 @@ class ArmLine:
         due = time.monotonic() + (1 / self._rate if self._polled else 0.1)
         for poll in tuple(self._polled):
             if poll.due <= time.monotonic():
-                self._ask(poll)
+                self._query(poll)
         self._arm.listen(max(0.0, due - time.monotonic()))
 
-    def _ask(self, poll: _Poll) -> None:
+    def _query(self, poll: _Poll) -> None:
         try:
             getattr(self._arm, poll.command.name)()
         except (ReplyTimeout, ProtocolError) as error:
-            # Pages see on the line what came instead.
+            # Pages show what was received instead.
             if isinstance(error, ReplyTimeout) and error.refusal:
                 self._polled.remove(poll)
                 return

@@ -1,4 +1,4 @@
-"""The commands behind the controls of the page, found by the effects that an edition states."""
+"""Find the command of each control of the page, by the effects that an edition states."""
 
 from __future__ import annotations
 

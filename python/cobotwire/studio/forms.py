@@ -90,7 +90,7 @@ def elements(numbers: Sequence[Number]) -> list[Form]:
 
 
 def _in_radians(element: Form) -> Form:
-    """Return a number as callers give it, if the wire has degrees."""
+    """Return the element of a number that callers pass in radians, and the wire has in degrees."""
     # Rounded towards zero, so that the ends are allowed.
     low, high = (math.trunc(math.radians(element[end]) * 1e4) / 1e4 for end in ("low", "high"))
     return element | {"unit": "radians", "low": low, "high": high, "step": "any"}

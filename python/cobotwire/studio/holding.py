@@ -58,7 +58,9 @@ class Holding:
             left = self._silence.left(time.monotonic())
             if left <= 0:
                 self.release()
-                self._refuse("the arm was stopped: the page did not say that the button is held")
+                self._refuse(
+                    "the arm was stopped: the page no longer reported that the button is held"
+                )
                 return
             await asyncio.sleep(left)
 

@@ -1,7 +1,7 @@
 """Decide which page may send which commands.
 
-One page at a time may send. It may always send queries. Other commands need two permissions: that
-of the command line and that of the switch in the page.
+One page at a time may send. It may always send queries. Other commands need --allow-motion on the
+command line, and the motion switch of the page.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ class Control:
 
     Attributes:
         page: the page that may send; empty: none.
-        motion: whether the switch of that page is on.
+        motion: whether the motion switch of that page is on.
         motion_permitted: whether the command line permits motion.
     """
 
@@ -59,7 +59,7 @@ class Control:
         return True
 
     def switch_motion(self, page: str, on: bool) -> None:
-        """Turn the switch of the page that may send.
+        """Turn the motion switch of the page that may send.
 
         Raises:
             NotPermitted: another page may send, or the command line does not permit motion.
@@ -118,18 +118,18 @@ class Preparer:
             raise UsageError("command", name, message=message)
         return command
 
-    def arguments(self, command: Command, given: object) -> dict[str, Any]:
+    def arguments(self, command: Command, texts: object) -> dict[str, Any]:
         """Return the arguments of a command from the texts of a form; empty ones are left out.
 
         Raises:
             UsageError: an argument is missing or unknown, or its text is not a value of it.
         """
-        if not isinstance(given, Mapping):
-            raise UsageError("arguments", given, "texts by the name of the argument")
-        for name, text in given.items():
+        if not isinstance(texts, Mapping):
+            raise UsageError("arguments", texts, "texts by the name of the argument")
+        for name, text in texts.items():
             if not isinstance(text, str) or not text.isprintable():
                 raise UsageError(str(name), text, "a text that can be printed")
-        return parse(command, [f"{name}={text}" for name, text in given.items() if text])
+        return parse(command, [f"{name}={text}" for name, text in texts.items() if text])
 
     def encoded(self, command: Command, arguments: Mapping[str, Any]) -> EncodedRequest:
         """Return the request as it would be sent.

@@ -53,7 +53,7 @@ class Options(NamedTuple):
         host, port: where the server listens; port 0: any that is free.
         allow_motion: whether pages may send anything but queries.
         open_browser: whether to open the page.
-        limits: what the arm's client keeps within.
+        limits: the limits that the arm's client enforces.
         silence: seconds after which a motion that a page holds is stopped if the page is silent.
         geometry, tip: the URDF whose arm is drawn and simulated, and the link of its flange.
     """

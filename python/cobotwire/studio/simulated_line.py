@@ -1,4 +1,4 @@
-"""The simulated arm that is shown without a port, and the fault scenario that it is under."""
+"""The simulated arm that is shown without a port, and its fault scenario."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a server shows: a live session or a recording; and what its pages do to it."""
+"""What a server shows, a live session or a recording, and what its pages request."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ from cobotwire.studio.sending import Control, NotPermitted, Preparer
 from cobotwire.studio.simulated_line import SimulatedLine, scenarios
 from cobotwire.studio.viewers import Viewer
 
-# A page says at least this often that it still holds a button. It sends ten times a second.
+# A page must report at least this often that it still holds a button; it does so every 0.1 s.
 LONGEST_SILENCE_SECONDS = 0.5
 # Requests of pages that wait for replies at a time.
 SENDERS = 4
@@ -131,7 +131,7 @@ class Stage:
         self._show()
 
     def set_motion(self, page: str, on: bool) -> None:
-        """Turn the switch of a page.
+        """Turn the motion switch of a page.
 
         Raises:
             NotPermitted: it may not.
@@ -154,7 +154,7 @@ class Stage:
         self.simulated.choose(name)
         self._show()
 
-    async def send(self, page: str, name: object, given: object, *, force: bool) -> Any:
+    async def send(self, page: str, name: object, texts: object, *, force: bool) -> Any:
         """Send a command for a page; return its result as JSON values.
 
         Raises:
@@ -164,7 +164,7 @@ class Stage:
         line = self._line()
         command = self.preparer.command(name)
         self.control.check(page, command)
-        arguments = self.preparer.arguments(command, given)
+        arguments = self.preparer.arguments(command, texts)
         # A wrong value is reported before the check that the arm obeys.
         self.preparer.encoded(command, arguments)
         permit = partial(self.control.check, page, command)

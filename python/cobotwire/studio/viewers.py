@@ -11,7 +11,7 @@ from typing import Any
 
 from cobotwire.studio.describing import Described
 
-# What waits for a page. A page that stalls for longer misses the oldest, and says how many.
+# What waits for a page. A page that stalls for longer misses the oldest, and shows how many.
 QUEUED_ENTRIES = 4000
 QUEUED_SAMPLES = 8000
 # Updates are collected for this long, so that a page draws about twenty times a second at most.
@@ -60,7 +60,7 @@ class Viewer:
         self.show(cleared=True)
 
     async def batches(self) -> AsyncIterator[str]:
-        """Yield what is new, as JSON; the caller may take as long as it likes over each."""
+        """Yield what is new, as JSON, when the caller has processed the previous batch."""
         while True:
             await self._news.wait()
             self._news.clear()

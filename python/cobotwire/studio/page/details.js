@@ -13,7 +13,7 @@ export class Details {
     this.wanted = number;
     try {
       const found = await this.source.explain(number);
-      // The explanation of a later choice may have come first.
+      // A later request may have been answered first.
       if (this.wanted === number) this.place.replaceChildren(...explanation(found));
     } catch (error) {
       if (this.wanted === number) this.place.replaceChildren(el("p", {}, error.message));
@@ -40,7 +40,7 @@ function title(found) {
   return found.hex ? `${what}, ${found.direction} at ${when}` : `${what} at ${when}`;
 }
 
-// The bytes in a row; each part has a colour that its row in the table has, too.
+// The bytes side by side, each part in the colour of its row in the table.
 function strip(parts) {
   const cells = parts
     .filter((part) => part.hex)

@@ -39,7 +39,7 @@ export function clock(seconds, decimals = 0) {
   return hours ? `${hours}:${String(minutes).padStart(2, "0")}:${rest}` : `${minutes}:${rest}`;
 }
 
-// Run a function once before the next frame is drawn, however often it is wanted.
+// Return a function that runs `draw` once before the next frame, however often it is called.
 export function oncePerFrame(draw) {
   let wanted = false;
   return () => {

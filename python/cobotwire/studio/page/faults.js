@@ -30,7 +30,7 @@ export class Faults {
     byId("about").textContent = `${about ?? NO_FAULTS}${now}`;
   }
 
-  // Show the scenario that runs. What the user chooses meanwhile stays chosen.
+  // Show the scenario that runs. While it stays the same, the choice of the user is kept.
   run(name) {
     if (name === this.running) return;
     this.running = name;

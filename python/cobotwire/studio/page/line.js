@@ -174,7 +174,7 @@ export class Line {
 
   count() {
     const parts = [`${this.shown.length} rows of ${this.entries.length} entries`];
-    if (this.paused) parts.push(`paused, ${this.paused.length} more came`);
+    if (this.paused) parts.push(`paused, ${this.paused.length} more received`);
     if (this.lost) parts.push(`${this.lost} were left out, because this page was too slow`);
     byId("line-count").textContent = parts.join("; ");
   }

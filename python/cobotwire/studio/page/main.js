@@ -18,7 +18,7 @@ const OLD_SECONDS = 2;
 const STATUS_MS = 4000;
 const USES_SPACE = "a, button, input, select, textarea, [role=listbox]";
 
-// What the parts need to know of each other.
+// What several parts of the page use.
 const state = { mine: false, taken: false, motion: false, motionPermitted: false, lost: false, problem: "" };
 let parts = null;
 let stops = 0;
@@ -161,7 +161,7 @@ function showControl({ page, motion }) {
   byId("motion").disabled = !state.mine || !state.motionPermitted;
   byId("begin").disabled = !state.mine;
   permit();
-  // A simulated arm may be moved from the start, by the first page that opens.
+  // The first page that opens may move a simulated arm at once.
   if (wasFree && state.simulated && !state.offered) {
     state.offered = true;
     source.control(true).then(() => source.allowMotion(true)).catch(() => (state.offered = false));
@@ -188,7 +188,7 @@ function wireControls() {
     const taller = document.body.classList.toggle("taller");
     byId("taller").textContent = taller ? "Lower" : "Taller";
   });
-  // Capture the event, so that no focused element keeps a stop from the arm.
+  // Capture the event, so that no focused element can prevent a stop.
   document.addEventListener("keydown", stopKey, true);
   setInterval(showAge, 500);
 }

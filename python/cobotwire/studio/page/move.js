@@ -7,7 +7,7 @@ import { refusal } from "./permission.js";
 const KEEP_MS = 100;
 // While a slider is dragged the arm follows with at most five motions a second.
 const FOLLOW_MS = 200;
-// A joint that is nearer to its limit is marked.
+// A joint is marked if it is nearer than this to its limit.
 const NEAR_DEGREES = 5;
 
 export class Move {
@@ -44,8 +44,8 @@ export class Move {
       const { joints, targetJoints } = this.state;
       // A command without an argument for the joint takes the targets of all joints.
       const to = control.arguments.at ? value : (targetJoints ?? joints).with(at, value).join(",");
-      const given = { ...place(control), [control.arguments.to]: String(to), ...this.speed(control) };
-      return () => this.source.send(control.command, given);
+      const values = { ...place(control), [control.arguments.to]: String(to), ...this.speed(control) };
+      return () => this.source.send(control.command, values);
     };
     return new Axis(name, range?.unit || unit, low, high, {
       limited: target === "joint" && Boolean(limit),
@@ -58,9 +58,9 @@ export class Move {
         jogging && this.state.robot.stop
           ? (forward, by) => {
               const direction = forward ? this.controls.forward : this.controls.backward;
-              const given = { ...place(jogging), [jogging.arguments.direction]: String(direction) };
+              const values = { ...place(jogging), [jogging.arguments.direction]: String(direction) };
               this.say("");
-              this.hold.start(by, jogging.command, { ...given, ...this.speed(jogging) });
+              this.hold.start(by, jogging.command, { ...values, ...this.speed(jogging) });
             }
           : null,
       release: (by) => this.hold.end(by),
@@ -120,8 +120,8 @@ export class Move {
     simple("close", controls.gripper, opening(() => range.low));
     byId("gripper-label").hidden = byId("gripper-of").hidden = !controls.gripper;
     byId("gripper").addEventListener("change", () => {
-      const given = opening(() => byId("gripper").value)(controls.gripper);
-      this.send(() => this.source.send(controls.gripper.command, given));
+      const chosen = opening(() => byId("gripper").value)(controls.gripper);
+      this.send(() => this.source.send(controls.gripper.command, chosen));
     });
     byId("light-label").hidden = !controls.light;
     byId("light").addEventListener("change", () => {

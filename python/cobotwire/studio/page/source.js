@@ -7,10 +7,10 @@ const KEY = "cobotwire-studio-token";
 const AGAIN_MS = 1000;
 
 function token() {
-  const given = new URLSearchParams(location.hash.slice(1)).get("token");
-  if (given) {
-    sessionStorage.setItem(KEY, given);
-    // The address bar must not show it, nor the history keep it.
+  const shown = new URLSearchParams(location.hash.slice(1)).get("token");
+  if (shown) {
+    sessionStorage.setItem(KEY, shown);
+    // Neither the address bar nor the history may keep it.
     history.replaceState(null, "", location.pathname);
   }
   return sessionStorage.getItem(KEY) ?? "";
@@ -82,7 +82,7 @@ export class Source {
     return (await this.post("/api/send", { command, arguments: values, force })).result;
   }
 
-  // Let this page send, or no longer; turn its switch; begin a fault scenario; stop the arm.
+  // Take or release the control; below: turn the motion switch, begin a fault scenario, stop the arm.
   control(take) {
     return this.post("/api/control", { take });
   }
