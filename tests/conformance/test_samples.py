@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import pytest
 
 from cobotwire import editions
-from cobotwire.conformance.places import Place, is_list, picks, places
+from cobotwire.conformance.located import LocatedNumber, is_list, located_numbers, picks
 from cobotwire.conformance.samples import illegal_samples, plainest, samples
 from cobotwire.conformance.samples.raw import RawValues, harmless_values
 from cobotwire.protocol.table import Table, Variant
@@ -18,9 +18,9 @@ def _variants(table: Table) -> Iterator[Variant]:
         yield from (*command.request, *command.reply)
 
 
-def _ends(place: Place) -> set[int]:
-    choices = place.field.choices or place.number.choices
-    return set(choices) or {place.number.minimum, place.number.maximum}
+def _ends(located: LocatedNumber) -> set[int]:
+    choices = located.field.choices or located.number.choices
+    return set(choices) or {located.number.minimum, located.number.maximum}
 
 
 def _is_legal(variant: Variant, raw_values: RawValues) -> bool:
@@ -37,10 +37,10 @@ def test_samples_are_legal_and_hold_the_ends_or_the_list_of_each_number(edition:
         found = [sample.raw_values for sample in samples(variant)]
         assert all(_is_legal(variant, each) for each in found)
         picked = next(picks(variant))
-        for place in places(variant, picked):
-            if place.index not in picked and not is_list(place.field):
-                raw = {each[place.index][place.element] for each in found}
-                assert _ends(place) <= raw, place.name
+        for located in located_numbers(variant, picked):
+            if located.index not in picked and not is_list(located.field):
+                raw = {each[located.index][located.element] for each in found}
+                assert _ends(located) <= raw, located.name
 
 
 @pytest.mark.parametrize("edition", editions.names())
@@ -58,7 +58,7 @@ def test_harmless_values_are_legal_and_hold_the_ends_or_the_list_of_each_number(
         found = harmless_values(variant, {}, {})
         assert all(_is_legal(variant, each) for each in [*found, plainest(variant)])
         picked = next(picks(variant))
-        for place in places(variant, picked):
-            if place.index not in picked and not place.field.many:
-                raw = {each[place.index][0] for each in found}
-                assert _ends(place) <= raw, place.name
+        for located in located_numbers(variant, picked):
+            if located.index not in picked and not located.field.many:
+                raw = {each[located.index][0] for each in found}
+                assert _ends(located) <= raw, located.name

@@ -137,7 +137,7 @@ class Report:
     """The results of a run, in the order in which they were found.
 
     ``finished`` is False until the run has reached its end; ``stopped`` says why it ended before.
-    ``untested`` says what the run could not show, and which permission would.
+    ``untested`` says what the run could not show, and which permission would show it.
     ``options`` are those of the command line, without the subject: a run is repeated with them, in
     the order of the results. ``statement`` is the text of the subject's implementation conformance
     statement. ``catalogue`` is the version of the catalogue of test cases; the digests are those of

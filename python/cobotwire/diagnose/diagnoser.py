@@ -43,7 +43,7 @@ class Diagnoser:
         # The number of bytes at the start of the residue at which nothing can be recognised,
         # whichever bytes follow.
         self._plain = 0
-        # Matches the places of the residue at which something may be recognised.
+        # Matches where something may be recognised in the residue.
         self._interesting = re.compile(b"|".join(each.starts for each in self._recognisers))
         self._by_first_byte = [self._starting_with(bytes([byte])) for byte in range(256)]
 
@@ -134,19 +134,19 @@ class Diagnoser:
             self._plain = 1
         end, final = self._residue.segment_end(start)
         limit = min(end, start + garbage.PIECE_LIMIT)
-        place = start + self._plain
-        while (place := self._place(place, limit)) < limit:
-            verdict = self._recognise(place, after_text=False)
+        offset = start + self._plain
+        while (offset := self._next_offset(offset, limit)) < limit:
+            verdict = self._recognise(offset, after_text=False)
             if verdict is not None:
-                self._plain = place - start
-                return None if isinstance(verdict, Wait) else self._unknown(start, place)
-            place += 1
+                self._plain = offset - start
+                return None if isinstance(verdict, Wait) else self._unknown(start, offset)
+            offset += 1
         self._plain = limit - start
         cut = self._plain == garbage.PIECE_LIMIT
         return self._unknown(start, limit) if cut or final else None
 
-    def _place(self, start: int, limit: int) -> int:
-        """Return the first place at which something may be recognised, or ``limit`` or more."""
+    def _next_offset(self, start: int, limit: int) -> int:
+        """Return the first offset at which something may be recognised, or ``limit`` or more."""
         # The match may reach beyond the limit; the recogniser looks at all bytes.
         found = self._interesting.search(self._residue.data, start, limit)
         return found.start() if found else limit

@@ -1,4 +1,4 @@
-"""Define what a finding is: noise that belongs together, with its place, facts and description."""
+"""Define what a finding is: noise that belongs together, with its offset, facts and description."""
 
 from __future__ import annotations
 

@@ -144,7 +144,7 @@ class Frames(FrameStarts):
         data, spans, reason = residue.data[at:end], residue.spans(at, end), residue.reason(at)
         if self._other_framer is not None and _is_frame(self._other_framer, data):
             return self.opposite(spans, reason)
-        # Replies without an id are listed in any case.
+        # In a direction without ids, every id counts as listed.
         id = self._format.read_id(data)
         if any(index.has(id) for d, index in self._indexes.items() if d != self._other):
             return None

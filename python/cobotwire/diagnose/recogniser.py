@@ -10,7 +10,7 @@ from cobotwire.diagnose.residue import Residue, Verdict
 class Recogniser:
     r"""Recognises one or more classes of noise. Each stream has its own recognisers.
 
-    ``starts`` is a regular expression for the places at which :meth:`recognise` may find something.
+    ``starts`` is a regular expression for the offsets where :meth:`recognise` may find something.
     Where more bytes could complete a start, it also matches at the end of the bytes (``\Z``).
     """
 

@@ -34,7 +34,7 @@ class Residue:
         self.data = b""
         # Whether no later byte can belong to ``data``.
         self.closed = False
-        # Whether the place to recognise comes directly after text.
+        # Whether the bytes to recognise come directly after text.
         self.after_text = False
         self._marks: list[int] = []
         self._starts: list[int] = []
@@ -70,7 +70,7 @@ class Residue:
         return len(self.data), self.closed
 
     def line_end(self, at: int) -> int | Wait:
-        """Return the place after the line end at ``at``; ``at`` itself if there is no line end."""
+        """Return the offset after the line end at ``at``; ``at`` itself if there is no line end."""
         limit, final = self.segment_end(at)
         found = _LINE_END.match(self.data, at, limit)
         end = found.end() if found else at

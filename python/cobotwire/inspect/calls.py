@@ -121,7 +121,7 @@ def _motion(edition: Edition, name: str, words: Sequence[str], address: int | st
     waits = "timeout" in takes and arguments.get("wait", True)
     moves = "wait" in takes or "timeout" not in takes
     if moves:
-        # A simulated arm finds out whether the arguments are allowed.
+        # A simulated arm checks whether the arguments are allowed.
         transport = MemoryTransport(SimulatedArm(edition.TABLE), SteppedClock())
         at_once = {"wait": False} if "wait" in takes else {}
         with edition.CLIENT(transport, address=address) as simulated:

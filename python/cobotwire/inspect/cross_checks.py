@@ -27,7 +27,7 @@ MOST = 6
 
 
 class Hypothesis(NamedTuple):
-    """A mistake about an aspect of a reading; ``correct`` turns a reading into what is meant."""
+    """A mistake about an aspect of a reading; ``correct`` corrects a reading."""
 
     aspect: str
     text: str
@@ -50,7 +50,7 @@ def hypotheses(numbers: Sequence[Number]) -> Iterator[Hypothesis]:
         for factor in FACTORS:
             yield Hypothesis("scale", _scale_text(numbers[0], factor), _times(1 / factor))
     if {number.unit for number in numbers} == {"degree"}:
-        text = "the readings are the expected in radians, not degrees"
+        text = "the readings are the expected values in radians, not in degrees"
         yield Hypothesis("unit", text, _times(180 / pi))
     if any(number.minimum < 0 and number.unit != "tick" for number in numbers):
         for at in range(joints):
@@ -67,7 +67,7 @@ def hypotheses(numbers: Sequence[Number]) -> Iterator[Hypothesis]:
         text = "the row is in reverse order"
         yield Hypothesis("order", text, _ordered(orders[::-1]))
         for by, side in ((1, "later"), (-1, "earlier")):
-            text = f"each number of the row stands one place {side} than stated"
+            text = f"each number of the row stands one position {side} than stated"
             yield Hypothesis("order", text, _ordered([(i + by) % joints for i in orders]))
     if any(n.width > 1 and n.encoding == "integer" and not n.bits for n in numbers):
         text = "the bytes of each number are in the other order (endianness)"
@@ -236,7 +236,7 @@ def _short(row: Row) -> str:
 
 
 def _scale_text(number: Number, factor: float) -> str:
-    text = f"the readings are {factor:g} x the expected"
+    text = f"the readings are {factor:g} x the expected values"
     stated = number.divide / number.multiply
     sent = stated * factor
     names = [FRACTIONS.get(round(each)) for each in (sent, stated)]

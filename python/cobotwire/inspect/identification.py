@@ -56,7 +56,7 @@ class Identification(NamedTuple):
         candidates: the editions that the replies allow; empty without a reply.
         firmware: the version of the firmware, such as ``7.3``; empty if the arm does not report it.
         evidence: the queries in the order in which they were sent.
-        baudrate: the bits a second at which they were sent last; 0 if the transport was open.
+        baudrate: the baud rate of the last queries; 0 if the caller opened the transport.
         doubts: the mistakes of the edition that explain what the arm reports.
     """
 
@@ -87,7 +87,7 @@ def other_edition(
     Raises:
         LinkError: the transport is gone.
     """
-    # An edition with other frames is excluded, so the device is not sent its frames.
+    # Editions with other frames are left out, so that the device is not sent such frames.
     names = with_same_frames(newest_first(), table)
     others = [editions.load(name).TABLE for name in names if name != table.edition]
     command = own_query(table, others)
@@ -209,7 +209,7 @@ def _identified(ask: Ask, found: Candidates, evidence: list[Evidence]) -> Identi
 
 
 def _row_evidence(ask: Ask, found: Candidates) -> Iterator[Evidence]:
-    """Read the row of angles with one number of joints after another, until one fits."""
+    """Read the angles, for one number of joints after another, until one fits."""
     for count in joint_counts(found.proven):
         reply = ask(count.edition, count.command)
         joints = editions.load(count.edition).TABLE.joints

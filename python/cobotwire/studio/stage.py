@@ -28,7 +28,7 @@ from cobotwire.studio.viewers import Viewer
 
 # A page must report at least this often that it still holds a button; it does so every 0.1 s.
 LONGEST_SILENCE_SECONDS = 0.5
-# Requests of pages that wait for replies at a time.
+# How many requests of pages may wait for replies at a time.
 SENDERS = 4
 
 

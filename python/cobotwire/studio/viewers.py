@@ -43,7 +43,7 @@ class Viewer:
         self._news.set()
 
     def push_past(self, entries: Iterable[str], samples: Iterable[str]) -> None:
-        """Add what happened before the page opened, or before the place that it jumped to."""
+        """Add what happened before the page opened, or before the time that it jumped to."""
         self._entries.extend(entries)
         self._samples.extend(samples)
         self._news.set()

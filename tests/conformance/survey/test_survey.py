@@ -96,7 +96,7 @@ def test_wrong_scale_of_all_angles_shows_by_encoders_after_the_first_motion() ->
 
 def test_arm_that_goes_further_than_sent_is_stopped() -> None:
     survey = survey_of("mycobot280", in_tenths("send_angles"), motion=True)
-    assert "the arm went further" in survey.obstacle
+    assert "the arm went much further than" in survey.obstacle
     [why] = [why for why in survey.contradicted if "send_angles/command/effect" in why]
     assert "was stopped" in why
 

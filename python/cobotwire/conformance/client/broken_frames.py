@@ -14,7 +14,7 @@ from cobotwire.conformance.hex_text import shown
 from cobotwire.protocol.table import Command, FrameFormat, Table
 from cobotwire.simulator.peer import IDLE_SECONDS
 
-# How many bytes of a frame are shown: in most editions, all.
+# Longer frames are shown in part; most editions have none.
 MOST = 40
 
 

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 from cobotwire.codec.interface import Codec
 from cobotwire.conformance.client.history import Received
 from cobotwire.conformance.hex_text import shown
-from cobotwire.conformance.places import Place, places
+from cobotwire.conformance.located import LocatedNumber, located_numbers
 from cobotwire.conformance.suite import Group, TestCase
 from cobotwire.conformance.tally import Observation
 from cobotwire.protocol.addresses import address_name
@@ -163,9 +163,9 @@ def differences(
         return [(VARIANT, frames)]
     expected_data, sent_data = codec.table.frame.data(right), codec.table.frame.data(sent)
     wrong = [
-        _Wrong(place, place.bytes_of(expected_data), place.bytes_of(sent_data))
-        for place in _places(codec, line, right)
-        if place.bytes_of(expected_data) != place.bytes_of(sent_data)
+        _Wrong(located, located.bytes_of(expected_data), located.bytes_of(sent_data))
+        for located in _numbers(codec, line, right)
+        if located.bytes_of(expected_data) != located.bytes_of(sent_data)
     ]
     if not wrong:
         return [(VALUE, frames)]
@@ -183,23 +183,25 @@ def differences(
 class _Wrong(NamedTuple):
     """A number that was sent with a wrong value."""
 
-    place: Place
+    located: LocatedNumber
     right: bytes
     sent: bytes
 
     @property
     def case(self) -> TestCase:
         """The test case that names the mistake."""
-        number = self.place.number
+        number = self.located.number
         # A number without unit and scale selects something: a joint, a pin, a mode.
         if not number.unit and not number.real:
             return VALUE
         return _of_number(number.unpack(self.right), number.unpack(self.sent), number.real)
 
     def __str__(self) -> str:
-        number = self.place.number
-        expected, got = (_shown(self.place, number.unpack(raw)) for raw in (self.right, self.sent))
-        return f"{self.place.name}: expected {expected}, got {got}"
+        number = self.located.number
+        expected, got = (
+            _shown(self.located, number.unpack(raw)) for raw in (self.right, self.sent)
+        )
+        return f"{self.located.name}: expected {expected}, got {got}"
 
 
 def _of_number(expected: int, got: int, rounds: bool) -> TestCase:
@@ -215,12 +217,12 @@ def _of_number(expected: int, got: int, rounds: bool) -> TestCase:
     return VALUE
 
 
-def _places(codec: Codec, line: ScriptLine, frame: bytes) -> Iterator[Place]:
+def _numbers(codec: Codec, line: ScriptLine, frame: bytes) -> Iterator[LocatedNumber]:
     """Yield every number of the right frame of a line."""
     variant = codec.decode("request", frame, of=line.command.name).variant
     rows = variant.unpack(codec.table.frame.data(frame))
-    return places(variant, {index: row[0] for index, row in enumerate(rows)})
+    return located_numbers(variant, {index: row[0] for index, row in enumerate(rows)})
 
 
-def _shown(place: Place, raw: int) -> str:
-    return f"{place.number.physical(raw):g} {place.number.units}".rstrip()
+def _shown(located: LocatedNumber, raw: int) -> str:
+    return f"{located.number.physical(raw):g} {located.number.units}".rstrip()

@@ -16,10 +16,10 @@ from typing import Any
 from cobotwire.conformance.device.device import Device
 from cobotwire.conformance.device.mover import give_power
 from cobotwire.conformance.device.read_back import (
+    SavedValue,
     Setting,
-    Spot,
     fixed_effect,
-    read_spot,
+    saved_value,
     settings_of,
 )
 from cobotwire.conformance.device.requests import arguments_of, gentle, values_text
@@ -74,7 +74,7 @@ class KeptState:
         self._searches = 0
         if "power" in device.permissions.classes:
             give_power(device)
-        self._spots = [spot for query in _queries(device.table) for spot in self._read(query)]
+        self._values = [kept for query in _queries(device.table) for kept in self._read(query)]
         self._turn = 0
         # Whether the device finds the next frame after a malformed request without a pause, as far
         # as is known; and the kinds of malformed requests that were sent with pauses.
@@ -90,11 +90,11 @@ class KeptState:
 
     def next_query(self, other_than: int) -> Request[Any] | None:
         """Return the next query to compare, if any, with an id other than ``other_than``."""
-        for _ in self._spots:
-            query = self._spots[self._turn].query
+        for _ in self._values:
+            query = self._values[self._turn].query
             if self._device.table.command(query.command).id != other_than:
                 return query
-            self._turn = (self._turn + 1) % len(self._spots)
+            self._turn = (self._turn + 1) % len(self._values)
         return None
 
     def check(self, sent: Malformed, reply: Reply[Any] | None = None) -> str:
@@ -102,94 +102,94 @@ class KeptState:
 
         ``reply`` is that to :meth:`next_query`; left out: the query is sent.
         """
-        for spot in self._spots:
-            spot.since.append(sent)
-        if not self._spots:
+        for kept in self._values:
+            kept.since.append(sent)
+        if not self._values:
             return ""
-        spot = self._spots[self._turn]
-        self._turn = (self._turn + 1) % len(self._spots)
-        changed = self._compare(spot, reply)
-        return changed and changed + self._also_changed(spot)
+        kept = self._values[self._turn]
+        self._turn = (self._turn + 1) % len(self._values)
+        changed = self._compare(kept, reply)
+        return changed and changed + self._also_changed(kept)
 
     def _also_changed(self, known: _Kept) -> str:
         """Compare the other values, which may have changed with the known one; name them."""
         names = []
-        for spot in self._spots:
-            if spot is known:
+        for kept in self._values:
+            if kept is known:
                 continue
-            now = self._device.read(spot.query)
-            if now is not None and now != spot.value:
-                names.append(str(spot))
-                self._set_again(spot)
-            spot.since = []
+            now = self._device.read(kept.query)
+            if now is not None and now != kept.value:
+                names.append(str(kept))
+                self._set_again(kept)
+            kept.since = []
         return f"; also changed: {', '.join(names[:MOST_NAMES])}" if names else ""
 
     def check_all(self) -> Iterator[str]:
         """Compare all values; yield what has changed."""
-        for spot in self._spots:
-            changed = self._compare(spot)
+        for kept in self._values:
+            changed = self._compare(kept)
             if changed:
                 yield changed
 
     def _read(self, queries: list[tuple[Setting | None, Request[Any]]]) -> Iterator[_Kept]:
         for setting, query in queries:
-            spot = read_spot(self._device, setting, query) if setting else None
-            if setting is not None and spot is None:
+            saved = saved_value(self._device, setting, query) if setting else None
+            if setting is not None and saved is None:
                 continue
-            mark = None if spot is None else self._mark(spot)
-            value = spot.before if spot and mark is None else self._device.read(query)
+            mark = None if saved is None else self._mark(saved)
+            value = saved.before if saved and mark is None else self._device.read(query)
             if value is not None:
                 yield _Kept(query, value, mark)
 
-    def _mark(self, spot: Spot) -> Request[Any] | None:
+    def _mark(self, saved: SavedValue) -> Request[Any] | None:
         """Change a value that the run may set; return the request that changed it."""
-        command = spot.setting.command
+        command = saved.setting.command
         if command.safety != "setting" or "setting" not in self._device.permissions.classes:
             return None
-        if spot.obstacle or not spot.others:
+        if saved.obstacle or not saved.others:
             return None
-        name = str(spot)
-        self._device.restore_at_end[name] = partial(self._device.request, spot.old)
+        name = str(saved)
+        self._device.restore_at_end[name] = partial(self._device.request, saved.old)
         self._marked.append(name)
         # The device may return to the plainest value instead of its default.
         plain = gentle(command)
-        mark = next((each for each in spot.others if each != plain), spot.others[0])
+        mark = next((each for each in saved.others if each != plain), saved.others[0])
         self._device.request(mark)
         return mark
 
-    def _compare(self, spot: _Kept, reply: Reply[Any] | None = None) -> str:
-        now = reply or self._device.read(spot.query)
-        sent, spot.since = spot.since, []
-        if now is None or now == spot.value:
+    def _compare(self, kept: _Kept, reply: Reply[Any] | None = None) -> str:
+        now = reply or self._device.read(kept.query)
+        sent, kept.since = kept.since, []
+        if now is None or now == kept.value:
             return ""
-        change = f"expected {spot} to stay {values_text(spot.value)}; received {values_text(now)}"
-        cause = self._find(spot, sent) if self._searches < SEARCHES else None
+        change = f"expected {kept} to stay {values_text(kept.value)}; received {values_text(now)}"
+        cause = self._find(kept, sent) if self._searches < SEARCHES else None
         self._searches += 1
-        self._set_again(spot)
+        self._set_again(kept)
         if cause is not None:
             return f"after {cause}: {change}"
         return f"after one of {len(sent)} requests, from {sent[0]} to {sent[-1]}: {change}"
 
-    def _find(self, spot: _Kept, sent: list[Malformed]) -> Malformed | None:
+    def _find(self, kept: _Kept, sent: list[Malformed]) -> Malformed | None:
         """Send requests again, the last one first, until one changes the value."""
         for each in reversed(sent):
-            if not self._set_again(spot):
+            if not self._set_again(kept):
                 return sent[-1] if len(sent) == 1 else None
             each.again()
-            if self._device.read(spot.query) != spot.value:
+            if self._device.read(kept.query) != kept.value:
                 return each
         return None
 
-    def _set_again(self, spot: _Kept) -> bool:
+    def _set_again(self, kept: _Kept) -> bool:
         """Set a value again as the run has set it; return whether the device reports that value."""
-        if spot.set is not None:
-            self._device.request(spot.set)
-        now = self._device.read(spot.query)
-        if now == spot.value:
+        if kept.set is not None:
+            self._device.request(kept.set)
+        now = self._device.read(kept.query)
+        if now == kept.value:
             return True
-        if now is not None and spot.set is None:
+        if now is not None and kept.set is None:
             # The change is reported once: later values are compared with the new one.
-            spot.value = now
+            kept.value = now
         return False
 
 

@@ -148,8 +148,8 @@ class Mover:
         again = self.angles() if wrong else pose
         if wrong and not off_by(again, wanted, self.tolerance):
             return [
-                f"the reply of {self.joints.name} is stale: at rest, it reported first {pose}, and "
-                f"when it was sent again {again}, which is where the arm was sent"
+                f"the reply of {self.joints.name} is stale: at rest it reported first {pose}, and "
+                f"then {again}, the target"
             ]
         return wrong
 

@@ -54,7 +54,7 @@ class Plan:
         for result in earlier.results if earlier else ():
             self._found.setdefault((result.group, result.command), []).append(result)
         if earlier is not None and (earlier.kind != "device" or any(not g for g, _ in self._found)):
-            message = "this is not the report of a run on a device, or of an earlier release"
+            message = "this is not the report of a run on a device, or an earlier release wrote it"
             raise UsageError("report", message=message)
         self._resume = resume
 

@@ -15,8 +15,8 @@ from cobotwire.conformance.device.requests import (
     requests,
 )
 from cobotwire.conformance.device.selection import reporter, reporters, stated_effect
+from cobotwire.conformance.located import numbers_of
 from cobotwire.conformance.mistakes import Pair, likely_mistake
-from cobotwire.conformance.places import numbers_of
 from cobotwire.conformance.samples.physical import setting_values, takes_whole
 from cobotwire.conformance.samples.raw import Limits
 from cobotwire.protocol.effects import Cases, Stores
@@ -52,7 +52,7 @@ class Setting:
         own = {field.name: field for field in self.variant.fields}
         fields = self.query_variant.fields
         fields = tuple(f if f.const is not None else own[f.name] for f in fields)
-        # If an argument selects the part to store, only that part.
+        # If an argument selects what is stored, only that.
         part = {name: (raw,) for name, raw in self.part}
         return requests(self.query, Variant(fields), limits={**self._limits, **part})
 
@@ -152,7 +152,7 @@ class Setting:
 
 
 @dataclass(frozen=True, slots=True)
-class Spot:
+class SavedValue:
     """The value that a query read, and the request that sets it again.
 
     ``obstacle`` says why that request cannot be sent; empty: it can.
@@ -186,29 +186,29 @@ class Spot:
         return [sample for sample in reversed(self.samples) if sample != self.old]
 
 
-def read_spot(device: Device, setting: Setting, query: Request[Any]) -> Spot | None:
+def saved_value(device: Device, setting: Setting, query: Request[Any]) -> SavedValue | None:
     """Read one joint, pin or register; None if no valid reply comes."""
     before = device.read(query)
     if before is None:
         return None
     old = setting.again(query, before)
-    return Spot(setting, query, before, old, device.cannot_send(old))
+    return SavedValue(setting, query, before, old, device.cannot_send(old))
 
 
-def restorable_spot(
+def restorable_value(
     device: Device, setting: Setting, query: Request[Any], *, or_lost: bool = False
-) -> Spot:
+) -> SavedValue:
     """Read one joint, pin or register that can be restored; with ``or_lost`` it need not be.
 
     Raises:
         NotSupported: no valid reply comes, or the value cannot be set again.
     """
-    spot = read_spot(device, setting, query)
-    if spot is None:
+    saved = saved_value(device, setting, query)
+    if saved is None:
         raise NotSupported(f"{query.command} reports nothing, so nothing can be read back")
-    if spot.obstacle and not or_lost:
-        raise NotSupported(f"the present value could not be set again: {spot.obstacle}")
-    return spot
+    if saved.obstacle and not or_lost:
+        raise NotSupported(f"the present value could not be set again: {saved.obstacle}")
+    return saved
 
 
 def settings_of(table: Table, command: Command) -> list[Setting]:

@@ -254,7 +254,7 @@ class Tester:
         return [self._cut_short(result) for result in found] if self._ended else found
 
     def _excused(self, result: Result) -> Result:
-        """Turn a failure by silence into not supported, if the device may lack the command."""
+        """Report silence as not supported, not as a failure, if the device may lack the command."""
         if result.verdict is not Verdict.FAIL:
             return result
         stated = self._lacking.get(result.command, "") if is_silence(result) else ""

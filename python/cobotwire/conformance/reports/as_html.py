@@ -143,13 +143,13 @@ def _cause(results: Sequence[Result], purpose: str) -> Element:
     mark = class_of(first)
     sign = element("b", f"{sign_of(first)} {first.case}{count}", class_=mark)
     head = element("p", sign, f" {purpose}")
-    places = [element("li", link_to(r.command), f" {shortened(r.reason)}") for r in results]
-    if len(places) <= UNFOLDED:
-        return element("section", head, element("ul", *places), class_=mark)
+    items = [element("li", link_to(r.command), f" {shortened(r.reason)}") for r in results]
+    if len(items) <= UNFOLDED:
+        return element("section", head, element("ul", *items), class_=mark)
     commands = list(dict.fromkeys(result.command for result in results))[1:]
-    names = element("summary", f"and {len(places) - 1} more: {_names(commands)}")
-    rest = element("details", names, element("ul", *places[1:]))
-    return element("section", head, element("ul", places[0]), rest, class_=mark)
+    names = element("summary", f"and {len(items) - 1} more: {_names(commands)}")
+    rest = element("details", names, element("ul", *items[1:]))
+    return element("section", head, element("ul", items[0]), rest, class_=mark)
 
 
 def _names(commands: Sequence[str]) -> str:

@@ -7,7 +7,7 @@ from statistics import median
 from typing import Literal
 
 from cobotwire.conformance.report import Report, Result, Verdict
-from cobotwire.conformance.reports.grouped import Place, matrix
+from cobotwire.conformance.reports.grouped import CellKey, matrix
 from cobotwire.protocol.errors import UsageError
 
 Kind = Literal["worse", "better", "other", "added", "removed"]
@@ -65,19 +65,19 @@ def compare(before: Report, after: Report) -> Comparison:
         message = f"reports of two kinds, {before.kind} and {after.kind}, cannot be compared"
         raise UsageError("kind", message=message)
     old, new = matrix(before), matrix(after)
-    places = dict.fromkeys([*new, *old])
-    found = (_change(place, old.get(place), new.get(place)) for place in places)
+    keys = dict.fromkeys([*new, *old])
+    found = (_change(key, old.get(key), new.get(key)) for key in keys)
     return Comparison(tuple(filter(None, found)), tuple(_times(before, after)))
 
 
-def _change(place: Place, old: Result | None, new: Result | None) -> Change | None:
+def _change(key: CellKey, old: Result | None, new: Result | None) -> Change | None:
     before = None if old is None else old.outcome
     after = None if new is None else new.outcome
     if before == after:
         return None
     shown = new or old
-    assert shown is not None, "a place has a result in one of the two"
-    return Change(_kind(old, new), *place, before, after, shown.reason)
+    assert shown is not None, "a test case on a command has a result in one of the two"
+    return Change(_kind(old, new), *key, before, after, shown.reason)
 
 
 def _kind(old: Result | None, new: Result | None) -> Kind:

@@ -20,29 +20,29 @@ QUESTION = re.compile(r"^\S+/\S+: ")
 ANSWER = re.compile(r"but the answer was (\S+) .*")
 
 # The command, which is empty for the line as a whole, and the test case.
-Place = tuple[str, str]
+CellKey = tuple[str, str]
 
 
-def matrix(report: Report) -> dict[Place, Result]:
+def matrix(report: Report) -> dict[CellKey, Result]:
     """Return the gravest result by command and test case, in the order in which they were tested.
 
     Of several results with the same verdict, it has the first.
     """
-    found: dict[Place, Result] = {}
+    found: dict[CellKey, Result] = {}
     for result in report.results:
-        place = (result.command, result.case)
-        before = found.setdefault(place, result)
+        key = (result.command, result.case)
+        before = found.setdefault(key, result)
         if GRAVEST.index(result.verdict) < GRAVEST.index(before.verdict):
-            found[place] = result
+            found[key] = result
     return found
 
 
-def rows(cells: Iterable[Place]) -> list[str]:
+def rows(cells: Iterable[CellKey]) -> list[str]:
     """Return the commands of a matrix; the line comes last."""
     return sorted(dict.fromkeys(command for command, _ in cells), key=lambda name: name == "")
 
 
-def columns(cells: Iterable[Place]) -> list[str]:
+def columns(cells: Iterable[CellKey]) -> list[str]:
     """Return the test cases of a matrix."""
     return list(dict.fromkeys(case for _, case in cells))
 

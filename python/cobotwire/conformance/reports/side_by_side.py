@@ -41,7 +41,7 @@ def side_by_side(reports: Sequence[Report]) -> list[Row]:
         Row(
             clauses.get(case), case, command, tuple(_outcome(m.get((command, case))) for m in found)
         )
-        for command, case in dict.fromkeys(place for cells in found for place in cells)
+        for command, case in dict.fromkeys(key for cells in found for key in cells)
     ]
 
 

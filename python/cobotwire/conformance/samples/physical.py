@@ -7,7 +7,7 @@ from fractions import Fraction
 from math import ceil, floor, isfinite
 from typing import Any
 
-from cobotwire.conformance.places import is_list
+from cobotwire.conformance.located import is_list
 from cobotwire.conformance.samples.raw import RawValues, ordinary
 from cobotwire.protocol.table import Field, Number, Variant
 
@@ -29,7 +29,7 @@ def physical_values(variant: Variant, raw_values: RawValues) -> dict[str, Any]:
     """Return the physical values by field name, as messages take them.
 
     Raises:
-        UnicodeDecodeError: the bytes of a text are no text.
+        UnicodeDecodeError: the bytes of a text are not legal.
     """
     found: dict[str, Any] = {}
     for field, row in zip(variant.fields, raw_values):
@@ -49,7 +49,7 @@ def named_values(variant: Variant, raw_values: RawValues) -> dict[str, Any]:
     """Return the physical values by field name, as JSON values.
 
     Raises:
-        UnicodeDecodeError: the bytes of a text are no text.
+        UnicodeDecodeError: the bytes of a text are not legal.
     """
     values = physical_values(variant, raw_values)
     return {name: plain(value) for name, value in values.items()}

@@ -10,7 +10,7 @@ from collections.abc import Iterator, Mapping
 from itertools import count
 from typing import NamedTuple
 
-from cobotwire.conformance.places import Place, is_list, numbers_of, picks, places
+from cobotwire.conformance.located import LocatedNumber, is_list, located_numbers, numbers_of, picks
 from cobotwire.protocol.table import Field, Number, Variant
 
 # The raw values of a variant, by field and element.
@@ -127,10 +127,11 @@ def samples(variant: Variant) -> Iterator[Sample]:
             Sample(f"{name}ordinary-again", ordinary(variant, picked, turn=7)),
             Sample(f"{name}defaults", _with_defaults(variant, base)),
         ]
-        for place in _varied(variant, picked):
-            if place.index not in picked:
+        for located in _varied(variant, picked):
+            if located.index not in picked:
                 found += [
-                    _with(base, place, raw, name) for raw in corners(place.field, place.number)
+                    _with(base, located, raw, name)
+                    for raw in corners(located.field, located.number)
                 ]
         for sample in found:
             if sample.raw_values not in seen:
@@ -142,13 +143,13 @@ def illegal_samples(variant: Variant) -> Iterator[Sample]:
     """Yield ordinary samples with one raw value that fits the wire but is illegal in its field."""
     for picked in picks(variant):
         name, base = _prefix(variant, picked), ordinary(variant, picked)
-        for place in _varied(variant, picked):
-            for raw in beyond(place.field, place.number):
-                yield _with(base, place, raw, name)
+        for located in _varied(variant, picked):
+            for raw in beyond(located.field, located.number):
+                yield _with(base, located, raw, name)
 
 
 def harmless_values(variant: Variant, known: Known, limits: Limits) -> list[RawValues]:
-    """Return values that a device may be sent: each field in turn takes a few; the rest stay.
+    """Return values that a device may be sent: a few for each field in turn, while the rest stay.
 
     Values with a row that the arm cannot report are left out.
     """
@@ -189,19 +190,19 @@ def _few_rows(field: Field, numbers: tuple[Number, ...], known: Known) -> list[t
     return [tuple(v if v in n.choices else nearest(field, n, v) for n, v in zip(numbers, raw))]
 
 
-def _varied(variant: Variant, picked: Mapping[int, int]) -> Iterator[Place]:
+def _varied(variant: Variant, picked: Mapping[int, int]) -> Iterator[LocatedNumber]:
     """Yield the numbers that take corner values.
 
     For bytes, texts and groups these are the first and the last element; for a varying size, the
     smallest and the largest size. The others are read in the same way.
     """
-    for place in places(variant, picked):
-        field, [size, *_] = place.field, place.field.dimensions or (1,)
+    for located in located_numbers(variant, picked):
+        field, [size, *_] = located.field, located.field.dimensions or (1,)
         each = field.each or 1
         if field.sizes and not field.counts and size not in field.sizes:
             continue
-        if not is_list(field) or not each <= place.element < (size - 1) * each:
-            yield place
+        if not is_list(field) or not each <= located.element < (size - 1) * each:
+            yield located
 
 
 def _with_defaults(variant: Variant, base: RawValues) -> RawValues:
@@ -211,8 +212,10 @@ def _with_defaults(variant: Variant, base: RawValues) -> RawValues:
     )
 
 
-def _with(base: RawValues, place: Place, raw: int, prefix: str) -> Sample:
-    return Sample(f"{prefix}{place.name}={raw}", with_one(base, place.index, place.element, raw))
+def _with(base: RawValues, located: LocatedNumber, raw: int, prefix: str) -> Sample:
+    return Sample(
+        f"{prefix}{located.name}={raw}", with_one(base, located.index, located.element, raw)
+    )
 
 
 def _prefix(variant: Variant, picked: Mapping[int, int]) -> str:

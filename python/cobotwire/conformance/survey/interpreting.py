@@ -84,7 +84,7 @@ class Interpreter:
                 why = f"It was replied to, but not each time: {result.reason}"
                 return self._note(command.name, part, aspect, "confirmed", why, frames)
             elif words := _words(frames):
-                why = f"The device says instead of a reply: {words}"
+                why = f"Instead of a reply, the device sends: {words}"
                 self.questions.append(f"{command.name}: {why}")
                 return self._note(command.name, part, "present", "not seen", why, frames)
             else:

@@ -308,8 +308,8 @@ class Survey:
                 stop = device.command("stop")
                 if stop is not None:
                     device.request(stop.request_type())
-                self.obstacle = f"no further motion: sent to move joint {at + 1} by {by:g} degree"
-                self.obstacle += ", the arm went further"
+                self.obstacle = "no further motion: the arm went much further than the requested "
+                self.obstacle += f"{by:g} degree of joint {at + 1}"
                 why = f"Sent from {start} to {target}, the arm was at {here}, and was stopped."
                 place = mover.targets.name, "command", "effect"
                 self.facts.note(place, "contradicted", why)

@@ -115,7 +115,7 @@ def _panels(series: Series) -> list[Panel]:
 
 
 def _lines(axes: Axes, track: Track, names: Mapping[int, str], gaps: bool) -> None:
-    """Draw the numbers of a track that have names, by their places in a row."""
+    """Draw the numbers of a track that have names, by their index in a row."""
     times, rows = track.with_gaps() if gaps else (track.at, track.rows)
     for index, (at, name) in enumerate(names.items()):
         values = [row[at] for row in rows]

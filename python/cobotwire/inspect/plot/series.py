@@ -24,7 +24,7 @@ GAP_INTERVALS, GAP_SECONDS = 4, 1.0
 
 @dataclass
 class Track:
-    """The replies to one query: their places on the axis, and the numbers of each.
+    """The replies to one query: their positions on the axis, and the numbers of each.
 
     ``names`` and ``units`` belong to the numbers, as the edition has them.
     """
@@ -56,8 +56,8 @@ class Series:
         axis: ``seconds`` since the first packet, or ``bytes`` for a stream without times.
         end: the end of the axis.
         tracks: joints in degrees, coordinates in millimetres and degrees; may be empty.
-        frames: the place of each frame that was not sent: received, or of unknown direction.
-        noise: the place and the size in bytes of each span of noise that was not sent.
+        frames: the position of each frame that was not sent: received, or of unknown direction.
+        noise: the position and the size in bytes of each span of noise that was not sent.
         start_ns: the time of the first packet, in nanoseconds since 1970; 0 without times.
         reply_times: the times between requests and replies; None without times or directions.
     """

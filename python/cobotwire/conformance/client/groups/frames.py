@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping
 from cobotwire.codec.interface import Codec, NoiseReason
 from cobotwire.conformance.client.broken_frames import described, meant
 from cobotwire.conformance.client.history import History, Received
-from cobotwire.conformance.places import places
+from cobotwire.conformance.located import located_numbers
 from cobotwire.conformance.suite import Group, TestCase
 from cobotwire.conformance.tally import Observation
 from cobotwire.protocol.errors import ProtocolError
@@ -135,9 +135,9 @@ def _field_at(table: Table, data: bytes, offset: int) -> Field | None:
     size = len(frame.data(data))
     for command in table.commands:
         for variant in command.request if command.id == frame.read_id(data) else ():
-            for place in places(variant) if variant.size == size else ():
-                if 0 <= offset - frame.data_at - place.start < place.number.width:
-                    return place.field
+            for located in located_numbers(variant) if variant.size == size else ():
+                if 0 <= offset - frame.data_at - located.start < located.number.width:
+                    return located.field
     return None
 
 

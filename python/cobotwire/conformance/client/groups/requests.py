@@ -1,6 +1,6 @@
 """A client sends one request at a time, each change once, and no motion to an arm without power.
 
-It repeats a query only after its reply could have come.
+It does not repeat a query while the reply may still come.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ AWAITED = TestCase(
 )
 GIVEN_TIME = TestCase(
     "reply-given-time",
-    "A request is not repeated before its reply can have come.",
+    "A request is not repeated while its reply may still come.",
     NOTES,
     timed=True,
 )

@@ -1,4 +1,4 @@
-"""The maker's library pymycobot, unmodified, as an implementation: MyCobot280 on our port.
+"""The maker's library pymycobot, unmodified, as a codec under test: MyCobot280 on our port.
 
 It encodes requests, and decodes the reply to the request that it has just sent. It frames no
 streams, decodes no requests and encodes no replies. If it waits for more bytes, or sends a request

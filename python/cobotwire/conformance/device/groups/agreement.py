@@ -10,8 +10,8 @@ from cobotwire.conformance.device.probe import Probe, for_found
 from cobotwire.conformance.device.requests import as_row, request_of
 from cobotwire.conformance.device.same_pose import is_same_pose
 from cobotwire.conformance.device.selection import does
+from cobotwire.conformance.located import located_numbers
 from cobotwire.conformance.mistakes import ANOTHER_ORDER, Pair, likely_mistake
-from cobotwire.conformance.places import places
 from cobotwire.conformance.suite import Group, TestCase
 from cobotwire.protocol.effects import Computes
 from cobotwire.protocol.messages import Request
@@ -81,9 +81,11 @@ def _reading(probe: Probe, query: Request[Any]) -> list[_Reported]:
     fields = valid.decoded.fields
     of = f"({', '.join(map(str, query.values))})" if query.values else ""
     return [
-        _Reported(place.name + of, place.number, as_row(fields[place.field.name])[place.element])
-        for place in places(valid.decoded.variant)
-        if not place.field.echo
+        _Reported(
+            located.name + of, located.number, as_row(fields[located.field.name])[located.element]
+        )
+        for located in located_numbers(valid.decoded.variant)
+        if not located.field.echo
     ]
 
 

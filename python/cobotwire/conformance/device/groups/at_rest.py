@@ -71,7 +71,7 @@ def _geometry(probe: Probe, geometry: Geometry) -> None:
 
 
 def _is_reached_query(table: Table, command: Command) -> bool:
-    """Return whether a command is a query whether the arm has reached a position or an angle."""
+    """Return whether a query reports that the arm has reached a position or an angle."""
     one = not any(field.many for field in command.request[0].fields)
     single = one and "reached" in reported(command) and _angle(table) is not None
     return command.role == "reached" or single

@@ -6,7 +6,7 @@ from typing import Any
 
 from cobotwire.conformance.device.device import NotSupported
 from cobotwire.conformance.device.probe import Probe
-from cobotwire.conformance.device.read_back import read_spot, settings_of
+from cobotwire.conformance.device.read_back import saved_value, settings_of
 from cobotwire.conformance.device.requests import harmless
 from cobotwire.conformance.statement import Acknowledgements
 from cobotwire.conformance.suite import Group, TestCase
@@ -57,9 +57,9 @@ def _present(probe: Probe) -> Request[Any]:
     """
     for setting in settings_of(probe.device.table, probe.command):
         for query in setting.queries:
-            spot = read_spot(probe.device, setting, query)
-            if spot is not None and not spot.obstacle:
-                return spot.old
+            saved = saved_value(probe.device, setting, query)
+            if saved is not None and not saved.obstacle:
+                return saved.old
     raise NotSupported("no value is known that would change nothing")
 
 

@@ -22,7 +22,7 @@ DISTANCES = {"degree": 4.0, "millimetre": 8.0}
 STRAYS = {"degree": 0.6, "millimetre": 2.5}
 # Slow enough to be stopped near the start, in percent of the highest speed.
 SLOW = 20
-# A jog is stopped when it has moved something by this multiple of its value in STRAYS.
+# A jog is stopped when a joint or axis has moved by this multiple of its value in STRAYS.
 SHOWS = 3.0
 
 STEPPING, JOGGING = does(Moves, by=True), does(Moves, until="limit")
@@ -207,7 +207,7 @@ def _unmet(parts: _Parts, at: int | None, direction: int, moved: Sequence[float]
     ways = dict(zip(parts.way.labels, parts.way.choices)) if parts.way else {}
     forward = ways.get("FORWARD") == direction
     if "FORWARD" in ways and (moved[at] > 0) is not forward:
-        return f"{numbers[at].name} to {'grow' if forward else 'fall'}"
+        return f"{numbers[at].name} to {'increase' if forward else 'decrease'}"
     return ""
 
 

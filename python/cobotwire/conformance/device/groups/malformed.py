@@ -20,13 +20,13 @@ from cobotwire.conformance.device.malformed_sender import (
 )
 from cobotwire.conformance.device.probe import Probe, for_found
 from cobotwire.conformance.hex_text import shown
-from cobotwire.conformance.places import Place, places
+from cobotwire.conformance.located import LocatedNumber, located_numbers
 from cobotwire.conformance.suite import Group, TestCase
 from cobotwire.protocol.table import Command, FrameFormat, Table, Variant
 from cobotwire.session.request import EncodedRequest
 from cobotwire.simulator.faults.noise import NOISE
 
-# How often a request is sent in pieces, and how many times the planned pause a pause may last.
+# How often a request is sent in pieces at most, and the factor by which a pause may be too long.
 ATTEMPTS, LATE = 3, 2
 MALFORMED = frozenset({"malformed"})
 # Classes of the simulator's catalogue: packets of the servo bus, text, and bytes of a header.
@@ -81,7 +81,9 @@ def _damages(frame: FrameFormat, data: bytes) -> Iterator[tuple[TestCase, str, b
 
 def _can_be_out_of_range(table: Table, command: Command) -> bool:
     """Return whether bytes can express arguments that the edition does not allow."""
-    return is_framed_query(table, command) and any(map(forbidden, places(command.request[0])))
+    return is_framed_query(table, command) and any(
+        map(forbidden, located_numbers(command.request[0]))
+    )
 
 
 def _out_of_range(probe: Probe) -> None:
@@ -102,21 +104,21 @@ def wrong_values(table: Table, variant: Variant, data: bytes) -> Iterator[tuple[
     """
     frame, rest = table.frame, table.frame.data(data)
     id, address = frame.read_id(data), frame.address(data)
-    for place in places(variant):
-        at, width, listed = place.start, place.number.width, bool(place.field.choices)
-        for value in forbidden(place):
-            wrong = rest[:at] + value.to_bytes(width, place.number.order) + rest[at + width :]
-            yield f"{place.name} = {value}", listed, frame.enclose(id, wrong, address)
+    for located in located_numbers(variant):
+        at, width, listed = located.start, located.number.width, bool(located.field.choices)
+        for value in forbidden(located):
+            wrong = rest[:at] + value.to_bytes(width, located.number.order) + rest[at + width :]
+            yield f"{located.name} = {value}", listed, frame.enclose(id, wrong, address)
 
 
-def forbidden(place: Place) -> list[int]:
+def forbidden(located: LocatedNumber) -> list[int]:
     """Return unsigned values that are illegal, whichever way the firmware reads their sign."""
-    choices, number = place.field.choices, place.number
+    choices, number = located.field.choices, located.number
     if number.minimum < 0:
         return []
     top = 256**number.width
     near = {number.minimum - 1, number.maximum + 1, top - 1, *(choice + 1 for choice in choices)}
-    return sorted(v for v in near if 0 <= v < top and not place.field.allows(number, v))
+    return sorted(v for v in near if 0 <= v < top and not located.field.allows(number, v))
 
 
 def _crowded(probe: Probe) -> None:
@@ -156,7 +158,7 @@ def _in_pieces(probe: Probe, request: EncodedRequest) -> None:
         for at in range(len(frame) - 1):
             piece, pause = frame[at : at + 1], device.timing.pause
             half = device.requester.send_bytes(request, piece, "a piece", pause)
-            probe.expect(PIECES, not half.replies, f"half a request: received {half.summary}")
+            probe.expect(PIECES, not half.replies, f"after half a request: received {half.summary}")
         response = device.requester.send_instead(request, frame[-1:], "the last piece")
         times = [each.at for each in device.connection.since(start) if each.direction == "sent"]
         pauses = [1000 * (after - before) for before, after in pairwise(times)]

@@ -10,9 +10,9 @@ from cobotwire.conformance.device.groups.changes import AFTER_CHANGE, request_ch
 from cobotwire.conformance.device.mover import Mover, Pose, off_by
 from cobotwire.conformance.device.probe import Probe, for_found
 from cobotwire.conformance.device.read_back import (
+    SavedValue,
     Setting,
-    Spot,
-    restorable_spot,
+    restorable_value,
     settings_of,
 )
 from cobotwire.conformance.device.requests import flag_text, request_of
@@ -203,18 +203,18 @@ def _keeps(probe: Probe, setting: Setting) -> None:
     for query in (setting.queries[0], setting.queries[-1]):
         at = int(query.values[0]) - 1
         if at < len(probe.device.permissions.workspace):
-            _beyond(probe, restorable_spot(probe.device, setting, query), at)
+            _beyond(probe, restorable_value(probe.device, setting, query), at)
 
 
-def _beyond(probe: Probe, spot: Spot, at: int) -> None:
+def _beyond(probe: Probe, saved: SavedValue, at: int) -> None:
     mover, device = Mover(probe.device), probe.device
     mover.go(mover.pose(POSE))
     here, (low, high) = mover.angles(), device.permissions.workspace[at]
     way = (high - low) * (-1 if "lowest" in stored(probe.command) else 1)
     limit, target = round(here[at] + LIMIT * way), here[at] + TARGET * way
-    [(_, argument)] = spot.setting.pairs
-    device.restore_after_body[probe.command.name] = partial(device.request, spot.old)
-    fields = {**spot.old.fields, argument: limit}
+    [(_, argument)] = saved.setting.pairs
+    device.restore_after_body[probe.command.name] = partial(device.request, saved.old)
+    fields = {**saved.old.fields, argument: limit}
     request_change(probe, probe.command.request_type.from_fields(fields))
     device.request(mover.to((*here[:at], round(target, 2), *here[at + 1 :])))
     mover.wait()
@@ -224,7 +224,7 @@ def _beyond(probe: Probe, spot: Spot, at: int) -> None:
         f"{target:.1f}, the joint went {beyond:.1f} degrees beyond the limit"
     )
     probe.expect(KEEPS, beyond <= BEYOND, reason)
-    device.request(spot.old)
+    device.request(saved.old)
 
 
 POSES = Group(

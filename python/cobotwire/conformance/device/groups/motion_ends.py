@@ -19,14 +19,14 @@ from cobotwire.session.events import EventReceived
 
 ENDS = TestCase(
     "motion-ended",
-    "The end of a motion is reported once, when the arm is at rest, with how the motion ended.",
+    "The end of a motion is reported once, when the arm is at rest, with the right status.",
 )
 
 # In percent of the highest speed, so that the arm can be observed on its way.
 SLOW = 20
 # Seconds between two readings of the angles, and seconds without a change until the arm is at rest.
 PERIOD, RESTS = 0.01, 0.7
-# The name of the mode in which motions are interpolated: the end of others is not reported.
+# The name of the mode in which motions are interpolated: the end of other motions is not reported.
 INTERPOLATED = ("INTERPOLATION", "QUEUE")
 # The field of the query that reports whether the arm reports ends.
 SWITCH = "motion_ends"

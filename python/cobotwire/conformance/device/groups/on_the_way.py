@@ -109,7 +109,7 @@ def _stays_on_the_way(probe: Probe, mover: Mover, case: TestCase) -> bool:
 
 
 def _resuming(table: Table, command: Command) -> Command | None:
-    """Return what resumes, if a command pauses and a query reports that."""
+    """Return the command that resumes, if a command pauses and a query reports the pause."""
     pauses = does(Does, what="pause")(table, command)
     known = table.find_role("paused") is not None
     return first(table, does(Does, what="resume")) if pauses and known else None
@@ -343,7 +343,7 @@ REPORTED_SPEEDS = Group(
     (REPORTED,),
     *for_found(_speeds, _reported),
     frozenset({"motion"}),
-    sends="The query on the way of three slow motions of some of the joints, and at rest.",
+    sends="The query during three slow motions of some of the joints, and at rest.",
     subject="each query of the joints' speeds, if the edition says how large their unit is",
 )
 NEXT_TARGET = Group(
@@ -352,6 +352,6 @@ NEXT_TARGET = Group(
     _next_target,
     _chooses_mode,
     frozenset({"motion", "irreversible"}),
-    sends="In each mode: joint 1 up, and at once down.",
+    sends="In each mode, two targets in one write: joint 1 up, and joint 1 down.",
     subject="the setting that chooses what happens to a target when the next one comes",
 )

@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 from cobotwire.conformance.device.device import NotSupported
 from cobotwire.conformance.device.probe import Probe, for_found
-from cobotwire.conformance.device.read_back import Setting, restorable_spot, settings_of
+from cobotwire.conformance.device.read_back import Setting, restorable_value, settings_of
 from cobotwire.conformance.device.requests import request_of
 from cobotwire.conformance.device.selection import first, stored
 from cobotwire.conformance.suite import Group, TestCase
@@ -52,7 +52,7 @@ def _shifts(probe: Probe, reference: _Reference) -> None:
     """Set the reference along each axis, and compare the coordinates with and without it."""
     device, chooser = probe.device, reference.chooser
     for setting in reference:
-        old = restorable_spot(device, setting, setting.queries[0]).old
+        old = restorable_value(device, setting, setting.queries[0]).old
         device.restore_after_body[setting.command.name] = partial(device.request, old)
     choices = chooser.variant.fields[0].choices
     shifts = [_shift(probe, chooser.command, choices, axis) for axis in range(3)]

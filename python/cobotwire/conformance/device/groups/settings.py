@@ -23,11 +23,16 @@ from cobotwire.conformance.device.groups.malformed import (
 )
 from cobotwire.conformance.device.malformed_sender import KEPT
 from cobotwire.conformance.device.probe import Probe, for_found
-from cobotwire.conformance.device.read_back import Spot, read_spot, restorable_spot, settings_of
+from cobotwire.conformance.device.read_back import (
+    SavedValue,
+    restorable_value,
+    saved_value,
+    settings_of,
+)
 from cobotwire.conformance.device.requests import arguments_of, values_text
 from cobotwire.conformance.device.selection import reported, reporters
 from cobotwire.conformance.hex_text import shown
-from cobotwire.conformance.places import places
+from cobotwire.conformance.located import located_numbers
 from cobotwire.conformance.suite import Group, TestCase
 from cobotwire.protocol.effects import Stores, effect_of
 from cobotwire.protocol.messages import Request
@@ -46,7 +51,7 @@ SHARES = (0.3, 0.7)
 
 
 def _is_setting(table: Table, command: Command) -> bool:
-    """Return whether a query reads a setting back, and its own arguments restore it."""
+    """Return whether a query reads a setting back, so that the setting can be restored."""
     return command.safety not in ("query", "motion") and bool(settings_of(table, command))
 
 
@@ -58,20 +63,20 @@ def _set_and_read(probe: Probe) -> None:
     # set the same value, so each is tested by itself.
     sets = [settings] if settings[0].part else [[setting] for setting in settings]
     for together in sets:
-        spots = [
-            restorable_spot(device, setting, query, or_lost=may_lose)
+        all_saved = [
+            restorable_value(device, setting, query, or_lost=may_lose)
             for setting in together
             for query in setting.queries
         ]
-        if len(spots) == 1:
+        if len(all_saved) == 1:
             probe.drop(NEIGHBOURS)
         restore = device.restore_after_body
-        for spot in spots:
-            if not spot.obstacle:
-                restore[str(spot)] = partial(_set, probe, spot.old)
-        for spot in spots:
-            _try(probe, spot, spots)
-            restore.pop(str(spot), None)
+        for saved in all_saved:
+            if not saved.obstacle:
+                restore[str(saved)] = partial(_set, probe, saved.old)
+        for saved in all_saved:
+            _try(probe, saved, all_saved)
+            restore.pop(str(saved), None)
 
 
 def _set(probe: Probe, wanted: Request[Any]) -> bool:
@@ -83,30 +88,33 @@ def _set(probe: Probe, wanted: Request[Any]) -> bool:
     return any(not getattr(valid.message, name) for name in flags)
 
 
-def _try(probe: Probe, spot: Spot, spots: list[Spot]) -> None:
-    for index, wanted in enumerate(spot.samples):
+def _try(probe: Probe, saved: SavedValue, all_saved: list[SavedValue]) -> None:
+    for index, wanted in enumerate(saved.samples):
         failed = _set(probe, wanted)
-        _expect(probe, READ_BACK, spot, wanted)
-        reason = f"{spot} reports failure, but {wanted} is read back"
+        _expect(probe, READ_BACK, saved, wanted)
+        reason = f"{saved} reports failure, but {wanted} is read back"
         probe.expect(REPLIED, not failed, reason)
-        for other in spots if index == 0 else ():
+        for other in all_saved if index == 0 else ():
             # A setting that could not be restored no longer has its old value.
-            if other.index != spot.index and not other.obstacle:
-                _expect(probe, NEIGHBOURS, other, other.old, f"after {spot}: ")
-    if not spot.obstacle:
-        _set(probe, spot.old)
-        _expect(probe, RESTORED, spot, spot.old)
+            if other.index != saved.index and not other.obstacle:
+                _expect(probe, NEIGHBOURS, other, other.old, f"after {saved}: ")
+    if not saved.obstacle:
+        _set(probe, saved.old)
+        _expect(probe, RESTORED, saved, saved.old)
 
 
-def _expect(probe: Probe, case: TestCase, spot: Spot, wanted: Request[Any], when: str = "") -> None:
-    wrong = spot.setting.differences(wanted, probe.device.read(spot.query))
-    probe.expect(case, not wrong, f"{when}{spot}, {'; '.join(wrong)}")
+def _expect(
+    probe: Probe, case: TestCase, saved: SavedValue, wanted: Request[Any], when: str = ""
+) -> None:
+    wrong = saved.setting.differences(wanted, probe.device.read(saved.query))
+    probe.expect(case, not wrong, f"{when}{saved}, {'; '.join(wrong)}")
 
 
 def _takes_forbidden_values(table: Table, command: Command) -> bool:
     """Return whether a setting that a query reads back can be sent a value that is not allowed."""
     return command.safety == "setting" and any(
-        any(map(forbidden, places(setting.variant))) for setting in settings_of(table, command)
+        any(map(forbidden, located_numbers(setting.variant)))
+        for setting in settings_of(table, command)
     )
 
 
@@ -120,29 +128,29 @@ def _forbidden(probe: Probe) -> None:
         if setting.place:
             # The first number represents the others.
             continue
-        spot = restorable_spot(device, setting, setting.queries[0])
-        device.restore_after_body[probe.command.name] = partial(device.request, spot.old)
-        for present in spot.samples[:2]:
-            _send_wrong_values(probe, spot, present)
-        device.request(spot.old)
+        saved = restorable_value(device, setting, setting.queries[0])
+        device.restore_after_body[probe.command.name] = partial(device.request, saved.old)
+        for present in saved.samples[:2]:
+            _send_wrong_values(probe, saved, present)
+        device.request(saved.old)
 
 
-def _send_wrong_values(probe: Probe, spot: Spot, present: Request[Any]) -> None:
+def _send_wrong_values(probe: Probe, saved: SavedValue, present: Request[Any]) -> None:
     device = probe.device
     device.request(present)
     encoded = device.requester.prepare(present)
-    for what, listed, data in wrong_values(device.table, spot.setting.variant, encoded.frame):
+    for what, listed, data in wrong_values(device.table, saved.setting.variant, encoded.frame):
         # Another constant may mean another command.
         if device.requester.is_legal(data):
             continue
         response = device.requester.send_bytes(encoded, data, what, device.timing.silence)
-        after = device.request(spot.query)
+        after = device.request(saved.query)
         # A late reply comes after the query.
         silent = not (response.replies or response.unexpected or after.others)
         received = response.summary if response.replies or response.unexpected else after.summary
         probe.expect(OUT_OF_RANGE, silent, f"{what}: expected no reply; received {received}")
         reply = after.valid and after.valid.message
-        wrong = spot.setting.differences(present, reply)
+        wrong = saved.setting.differences(present, reply)
         reason = f"{probe.command.name} with {what} ({shown(data)}) must change nothing"
         # A number beyond its range may be taken for the nearest legal one.
         limited = reply is not None and not listed
@@ -154,34 +162,34 @@ def _send_wrong_values(probe: Probe, spot: Spot, present: Request[Any]) -> None:
 def _others_stay(probe: Probe) -> None:
     """Give each setting a value that is not its default; change one after the other."""
     device = probe.device
-    spots: dict[str, Spot] = {}
+    all_saved: dict[str, SavedValue] = {}
     for command in device.table.commands:
         # One of two settings that the same query reads is enough.
         settings = settings_of(device.table, command) if command.safety == "setting" else []
         for setting in settings[:1]:
-            spot = read_spot(device, setting, setting.queries[0])
-            if spot is not None and not spot.obstacle and spot.others:
-                spots.setdefault(spot.query.command, spot)
-    if len(spots) < 2:
+            saved = saved_value(device, setting, setting.queries[0])
+            if saved is not None and not saved.obstacle and saved.others:
+                all_saved.setdefault(saved.query.command, saved)
+    if len(all_saved) < 2:
         raise NotSupported("fewer than two settings can be read back")
-    for name, spot in spots.items():
-        device.restore_after_body[name] = partial(device.request, spot.old)
-        device.request(spot.others[0])
-    before = {name: device.read(spot.query) for name, spot in spots.items()}
-    for name, spot in spots.items():
-        second = [*spot.others, spot.old][1]
+    for name, saved in all_saved.items():
+        device.restore_after_body[name] = partial(device.request, saved.old)
+        device.request(saved.others[0])
+    before = {name: device.read(saved.query) for name, saved in all_saved.items()}
+    for name, saved in all_saved.items():
+        second = [*saved.others, saved.old][1]
         device.request(second)
         changed = [
             f"{other.query.command}({arguments_of(other.query)}) from "
             f"{values_text(before[each])} to {values_text(now)}"
-            for each, other in spots.items()
+            for each, other in all_saved.items()
             if each != name and before[each] is not None
             if (now := device.read(other.query)) != before[each]
         ]
         call = f"{second.command}({arguments_of(second)})"
         probe.expect(OTHERS, not changed, f"{call} also changes {'; '.join(changed)}")
         # Set again everything that has changed.
-        for each in spots.values() if changed else (spot,):
+        for each in all_saved.values() if changed else (saved,):
             device.request(each.others[0])
 
 
@@ -245,7 +253,7 @@ SHOWN_AMONG = Group(
     (AMONG, *AFTER_CHANGE),
     *for_found(is_shown, _set_among),
     sends="Two values, and the query after each.",
-    subject="each setting, if its query reports several numbers and not which one is set",
+    subject="each setting, if its query reports several numbers, and it is unknown which is set",
 )
 COUPLING = Group(
     "settings among each other",

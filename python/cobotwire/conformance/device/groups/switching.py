@@ -46,7 +46,7 @@ def _reports_done(command: Command) -> bool:
 
 DONE = TestCase(
     "acknowledged-done",
-    "When the acknowledgement reports that it is done, the query reports the new state at once.",
+    "When a command is acknowledged as done, the query reports the new state at once.",
     applies=_reports_done,
 )
 EFFECT = TestCase("effect", "The query reports the state that the command has set.")

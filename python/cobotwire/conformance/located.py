@@ -10,7 +10,7 @@ from cobotwire.protocol.table import Field, Number, Variant
 
 
 @dataclass(frozen=True, slots=True)
-class Place:
+class LocatedNumber:
     """One number of a variant: its field, the field's index, its own index in the field's row.
 
     ``start`` is the offset of its first byte in the data bytes.
@@ -38,16 +38,18 @@ class Place:
         return data[self.start : self.start + self.number.width]
 
 
-def places(variant: Variant, picked: Mapping[int, int] | None = None) -> Iterator[Place]:
+def located_numbers(
+    variant: Variant, picked: Mapping[int, int] | None = None
+) -> Iterator[LocatedNumber]:
     """Yield every number of a variant, while its selectors hold the raw values in ``picked``.
 
-    Without ``picked``, fields read as their first case.
+    Without ``picked``, each field has its first case.
     """
     start = 0
     for index, field in enumerate(variant.fields):
         numbers = field.cases[0].numbers if picked is None else numbers_of(field, picked)
         for element, number in enumerate(numbers):
-            yield Place(field, number, index, element, start)
+            yield LocatedNumber(field, number, index, element, start)
             start += number.step
 
 
