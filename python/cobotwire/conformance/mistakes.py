@@ -87,10 +87,8 @@ def _is_one_behind(pairs: Sequence[Pair]) -> bool:
 def _is_times(pair: Pair, factor: float) -> bool:
     """Return whether the number was multiplied, perhaps beyond what its bytes can hold."""
     scaled = pair.right * factor
-    apart, most = (
-        pair.received - scaled,
-        max(pair.near * min(factor, 1.0), abs(scaled) * NEAR_FACTOR),
-    )
+    apart = pair.received - scaled
+    most = max(pair.near * min(factor, 1.0), abs(scaled) * NEAR_FACTOR)
     if pair.number is not None and pair.number.encoding == "integer" and not pair.number.bits:
         turn = abs(pair.number.physical(256**pair.number.width))
         apart -= round(apart / turn) * turn

@@ -72,7 +72,7 @@ class Panic(Finding):
 
 
 def recognise_panic(residue: Residue, at: int, start: int) -> Verdict:
-    """Recognise the dump at ``start``, after the line ends from ``at`` on.
+    """Recognise the dump at ``start``; only line ends precede it from ``at`` on.
 
     It ends after ``Rebooting...``, before the next panic, at the end of the text or at the limit.
     """

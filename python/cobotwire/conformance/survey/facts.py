@@ -62,7 +62,7 @@ class Facts(dict[str, Fact]):
 
     def __init__(self, table: Table) -> None:
         self._edition = table.edition
-        names = (self.name(*place) for command in table.commands for place in _places(command))
+        names = (self.name(*key) for command in table.commands for key in _stated(command))
         super().__init__((name, Fact(name)) for name in names)
 
     def name(self, command: str, part: str, aspect: str) -> str:
@@ -72,13 +72,13 @@ class Facts(dict[str, Fact]):
 
     def note(
         self,
-        place: tuple[str, str, str],
+        key: tuple[str, str, str],
         verdict: Found,
         why: str,
         frames: Iterable[Frames] = (),
     ) -> None:
         """Note what was found about a fact; a contradiction replaces a confirmation."""
-        name = self.name(*place)
+        name = self.name(*key)
         old = self.setdefault(name, Fact(name))
         if old.verdict == "not seen" or (verdict == "contradicted" and old.verdict == "confirmed"):
             self[name] = Fact(name, verdict, why, tuple(frames)[:MOST_FRAMES])
@@ -88,7 +88,7 @@ class Facts(dict[str, Fact]):
         return [fact for fact in self.values() if fact.verdict == verdict]
 
 
-def _places(command: Command) -> Iterator[tuple[str, str, str]]:
+def _stated(command: Command) -> Iterator[tuple[str, str, str]]:
     """Yield what the edition states of a command, as far as an arm can show it."""
     if command.event:
         return

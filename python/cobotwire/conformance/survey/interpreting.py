@@ -34,7 +34,7 @@ SHOWN = {
     "agrees": (("reply", "agreement"),),
 }
 # The test cases that depend on the reported position of the arm.
-BY_PLACE = ("reached", "arrives", "stops", "moving", "agrees")
+BY_POSITION = ("reached", "arrives", "stops", "moving", "agrees")
 # Text of at least this length instead of a reply counts as an error message of the device.
 WORDS = 8
 # A reason lists at most this many relations that do not hold.
@@ -59,19 +59,19 @@ class Interpreter:
         # Observations that decide no fact, but that a person should read.
         self.questions: list[str] = []
 
-    def add_results(self, results: Sequence[Result], *, place_known: bool) -> None:
+    def add_results(self, results: Sequence[Result], *, position_known: bool) -> None:
         """Add what the verdicts show.
 
-        ``place_known`` is whether the position that the arm reports is right. Otherwise verdicts
+        ``position_known`` is whether the position that the arm reports is right. Otherwise verdicts
         that depend on it are left out.
         """
         for result in results:
             frames = frames_of(result.evidence)
-            by_place = result.case in BY_PLACE and not place_known
-            if result.verdict is Verdict.PASS and not by_place:
+            by_position = result.case in BY_POSITION and not position_known
+            if result.verdict is Verdict.PASS and not by_position:
                 for part, aspect in SHOWN.get(result.case, ()):
                     self._note(result.command, part, aspect, "confirmed", result.reason, frames)
-            elif result.verdict is Verdict.FAIL and not by_place:
+            elif result.verdict is Verdict.FAIL and not by_position:
                 self._add_failure(result, frames)
 
     def _add_failure(self, result: Result, frames: list[Frames]) -> None:
@@ -94,7 +94,7 @@ class Interpreter:
                     self._silent[command.name] = own
                 return None
         elif command.name not in self._device.noticed.reply_seconds and is_silence(result):
-            return None  # The verdict on ``query-replied`` says it.
+            return None  # ``query-replied`` reports it.
         elif result.case == "reply-frame":
             aspect = "id" if self._has_other_id(command, frames) else "length"
         elif result.case == "reply-fields":

@@ -311,8 +311,8 @@ class Survey:
                 self.obstacle = "no further motion: the arm went much further than the requested "
                 self.obstacle += f"{by:g} degree of joint {at + 1}"
                 why = f"Sent from {start} to {target}, the arm was at {here}, and was stopped."
-                place = mover.targets.name, "command", "effect"
-                self.facts.note(place, "contradicted", why)
+                key = mover.targets.name, "command", "effect"
+                self.facts.note(key, "contradicted", why)
                 return
             moving = device.command("moving")
             rest = moving is None or device.is_set(moving.request_type()) is not True
@@ -334,8 +334,8 @@ class Survey:
         self.mistakes = self._interpreter.add_readings(
             self._checks, self._snapshots, self._evidence
         )
-        place_known = not any(_is_place(self.table, mistake) for mistake in self.mistakes)
-        self._interpreter.add_results(self._results, place_known=place_known)
+        position_known = not any(_is_place(self.table, mistake) for mistake in self.mistakes)
+        self._interpreter.add_results(self._results, position_known=position_known)
         self._interpreter.add_silence(f" {firmware}" if firmware else "")
         self._interpreter.add_acknowledgements()
 

@@ -107,7 +107,7 @@ class Forwarder:
         if self._descriptor in ready or self._descriptor in writable:
             self._exchange_with_arm()
         if program.arrivals in ready:
-            self._greet(*program.arrive())
+            self._note_program(*program.arrive())
         if self._guard and pending and time.monotonic() >= self._give_up_at:
             self._decide(self._guard.flush())
         return True
@@ -122,7 +122,7 @@ class Forwarder:
                 self._decide(self._guard.feed(data))
             self._write_to_arm()
         elif data is not None:
-            self._greet("the program closed the port", new=True)
+            self._note_program("the program closed the port", new=True)
         self._write_to_program()
 
     def _exchange_with_arm(self) -> None:
@@ -153,8 +153,8 @@ class Forwarder:
             else:
                 self._copies.put("held", decision.data, time.monotonic())
 
-    def _greet(self, happened: str, new: bool) -> None:
-        """Discard what the last program left: unread replies, and half a request."""
+    def _note_program(self, happened: str, new: bool) -> None:
+        """Note what happened; discard the unread replies and half a request of an old program."""
         if new:
             self._to_program.clear()
             self._decide(self._guard.flush() if self._guard else ())

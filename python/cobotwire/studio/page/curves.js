@@ -69,7 +69,7 @@ export class Curves {
     if (!this.dirty || document.hidden) return;
     this.dirty = false;
     const span = Number(byId("window").value);
-    // All of a recording is as wide as the recording, however much of it was played.
+    // The window "all" is as wide as the whole recording, however much of it was played.
     for (const chart of this.charts) chart.draw(this.now, span, this.seconds ?? this.now);
   }
 

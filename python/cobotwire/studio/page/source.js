@@ -82,15 +82,17 @@ export class Source {
     return (await this.post("/api/send", { command, arguments: values, force })).result;
   }
 
-  // Take or release the control; below: turn the motion switch, begin a fault scenario, stop the arm.
+  // Take the control for this page, or release it.
   control(take) {
     return this.post("/api/control", { take });
   }
 
+  // Turn the motion switch.
   allowMotion(on) {
     return this.post("/api/motion", { on });
   }
 
+  // Begin a fault scenario.
   scenario(name) {
     return this.post("/api/scenario", { name });
   }

@@ -26,7 +26,7 @@ from cobotwire.protocol.table import Command, FrameFormat, Table, Variant
 from cobotwire.session.request import EncodedRequest
 from cobotwire.simulator.faults.noise import NOISE
 
-# How often a request is sent in pieces at most, and the factor by which a pause may be too long.
+# A request is sent in pieces up to ATTEMPTS times, until no pause exceeds LATE times the plan.
 ATTEMPTS, LATE = 3, 2
 MALFORMED = frozenset({"malformed"})
 # Classes of the simulator's catalogue: packets of the servo bus, text, and bytes of a header.
