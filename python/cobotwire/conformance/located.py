@@ -54,7 +54,7 @@ def located_numbers(
 
 
 def is_list(field: Field) -> bool:
-    """Return whether a field is bytes, text, a list of groups, or a list whose size varies."""
+    """Return whether a field is bytes, text, a list of groups, or a list of varying size."""
     varies = field.sizes is not None and not field.counts
     return field.many and (field.kind in ("bytes", "text") or bool(field.each) or varies)
 

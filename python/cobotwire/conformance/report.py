@@ -171,7 +171,7 @@ class Report:
 
     @property
     def failures(self) -> list[Result]:
-        """The results whose verdict is fail."""
+        """The results with the verdict fail."""
         return [result for result in self.results if result.verdict is Verdict.FAIL]
 
     @property

@@ -33,7 +33,7 @@ class Done(NamedTuple):
 
 
 class Call(NamedTuple):
-    """A call whose arguments are valid; ``send`` takes the client and seconds for the reply."""
+    """A call with valid arguments; ``send`` takes the client and the seconds for the reply."""
 
     name: str
     starts_motion: bool

@@ -68,8 +68,8 @@ class Source(NamedTuple):
 class Relation(NamedTuple):
     """A relation that readings have if the edition is right.
 
-    ``holds`` takes the rows of the ``keys``, then those of ``conditions``, whose readings it does
-    not test. ``independent`` is whether the readings differ in kind; then it also finds a mistake
+    ``holds`` takes the rows of the ``keys``, then those of ``conditions``, which it does not
+    test. ``independent`` is whether the readings differ in kind; then it also finds a mistake
     that all readings of one kind share. If the relation does not hold and no known mistake
     explains why, ``aspect`` is contradicted. A relation that is not ``exact`` gives only a range,
     which finds no wrong sign and no wrong order.

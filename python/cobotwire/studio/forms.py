@@ -60,7 +60,7 @@ def _argument(command: Command, field: Field, optional: bool, radians: bool) -> 
         "choices": _choices(field),
     }
     if field.each or field.sizes:
-        # A list whose length varies is written in one box.
+        # A list of varying length is written in one box.
         form |= {"elements": [], "list": True, "rows": bool(field.each)}
     if field.kind in ("bytes", "text"):
         form["size"] = field.size

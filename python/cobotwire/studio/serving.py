@@ -55,7 +55,7 @@ class Options(NamedTuple):
         open_browser: whether to open the page.
         limits: the limits that the arm's client enforces.
         silence: seconds after which a motion that a page holds is stopped if the page is silent.
-        geometry, tip: the URDF whose arm is drawn and simulated, and the link of its flange.
+        geometry, tip: a URDF, of the arm to draw and simulate, and the link of its flange.
     """
 
     source: str | None

@@ -49,8 +49,8 @@ class Stage:
         """Show a session.
 
         ``limits`` are those of the client; ``silence`` is the time after which a held motion ends,
-        in seconds. The page draws the arm of the table ``drawn``, whose geometry may be a user's;
-        no check uses it.
+        in seconds. The page draws the arm of the table ``drawn``, which may have a user's
+        geometry; no check uses it.
         """
         self._drawn = drawn or edition.TABLE
         self.table, self.session, self.control = edition.TABLE, session, control

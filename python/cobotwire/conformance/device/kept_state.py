@@ -98,7 +98,7 @@ class KeptState:
         return None
 
     def check(self, sent: Malformed, reply: Reply[Any] | None = None) -> str:
-        """Compare the value whose turn it is; return what has changed, empty if nothing has.
+        """Compare the next value in turn; return what has changed, empty if nothing has.
 
         ``reply`` is that to :meth:`next_query`; left out: the query is sent.
         """

@@ -58,7 +58,7 @@ class Setting:
 
     @property
     def _limits(self) -> Limits:
-        """The limits of the arguments whose legal numbers are not all harmless."""
+        """The limits of the arguments with legal numbers that may do harm."""
         return limits_of(self.command, self.variant)
 
     def again(self, query: Request[Any], reply: Reply[Any], speed: int = 1) -> Request[Any]:

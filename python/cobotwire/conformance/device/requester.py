@@ -63,7 +63,7 @@ class Requester:
         self._descriptions: dict[tuple[str, bytes], str] = {}
         # The last two requests, of different commands, that had a reply.
         self._replied: list[EncodedRequest] = []
-        # The one-way requests whose acknowledgement may still come, oldest first.
+        # The one-way requests that may still be acknowledged, oldest first.
         self._unacknowledged: list[Response] = []
         # What the device has sent without a request, each with when it was received.
         self.events: list[tuple[float, EventReceived]] = []

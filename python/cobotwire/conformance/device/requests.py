@@ -63,7 +63,7 @@ def requests(
 
 
 def limits_of(command: Command, variant: Variant) -> Limits:
-    """Return the limits of the arguments of a variant whose legal numbers are not all harmless."""
+    """Return the limits of the arguments of a variant with legal numbers that may do harm."""
     names = {field.name for field in variant.fields}
     for samples in command.samples:
         if {name for name, _ in samples} <= names:

@@ -20,7 +20,7 @@ ENOUGH = 3
 
 @dataclass(frozen=True, slots=True)
 class Change:
-    """A test case whose outcome differs on a command; None: the report has no result for it.
+    """A test case with another outcome on a command; None: the report has no result for it.
 
     ``worse``: it fails now and did not, or it passed and no longer does.
     """

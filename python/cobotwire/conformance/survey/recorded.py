@@ -68,9 +68,9 @@ class RecordedTransport(MemoryTransport):
 
 
 def _conclusive(recorded: list[Exchange], codec: Codec) -> set[bytes]:
-    """Return the requests whose replies, or silence, a recording shows.
+    """Return the requests for which a recording shows the reply, or that there was none.
 
-    It does not show silence after its last request, or if the reply came after the next request.
+    Silence proves nothing after the last request, or if the reply came after the next request.
     """
     while recorded and not recorded[-1].chunks:
         recorded.pop()

@@ -134,7 +134,7 @@ class Chart {
   }
 
   draw(now, span, end) {
-    // An arm whose geometry is not known may report no coordinates.
+    // An arm of unknown geometry may report no coordinates.
     this.figure.hidden = this.key === "c" && !this.series.length;
     this.build();
     if (!this.plot) return;

@@ -204,7 +204,7 @@ class Rows {
     row[entry.d === "sent" ? "sent" : "received"] += 1;
   }
 
-  // Drop the rows whose last entry is older than a number.
+  // Drop the rows with a last entry before a number.
   drop(first) {
     this.list = this.list.filter((row) => row.entry.n >= first);
   }

@@ -69,7 +69,7 @@ def _waiting(history: History, now: Received) -> Iterator[Observation]:
 
 
 def _late_replies(history: History, now: Received) -> Iterator[Observation]:
-    """Check a request whose reply could be the late reply to another request."""
+    """Check a request if a late reply to another request could be taken for its reply."""
     if not now.awaits_reply:
         return
     complaint = ""
