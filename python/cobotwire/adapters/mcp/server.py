@@ -139,7 +139,7 @@ class ArmServer:
             task.cancel()
             raise
 
-    async def _send(self, name: str, given: dict[str, Any]) -> dict[str, Any]:
+    async def _send(self, name: str, arguments: dict[str, Any]) -> dict[str, Any]:
         spec = self._tools.get(name)
         if spec is None:
             raise UsageError("name", name, message=self._unknown(name))
@@ -149,7 +149,7 @@ class ArmServer:
             if self._dead_man is not None:
                 self._dead_man.rest()
             return spec.result(None)
-        positional, named = spec.arguments(given)
+        positional, named = spec.arguments(arguments)
         self._note_message(spec.command.starts_motion)
         return spec.result(await getattr(self._arm, name)(*positional, **named))
 

@@ -22,7 +22,7 @@ BASIC: tuple[Role, ...] = (
     *("joints", "coordinates", "moving", "powered", "paused", "error", "version"),
     *("gripper", "light"),
 )
-# The motions of clients that return when the arm is there.
+# The methods of clients that return when the arm has arrived, and the roles of what they send.
 WAITED: dict[str, Role] = {
     "move_angles": "joint targets",
     "move_coords": "coordinate targets",
@@ -46,13 +46,13 @@ class ToolSpec(NamedTuple):
     command: Command
     hints: dict[str, bool]
 
-    def arguments(self, given: Mapping[str, Any]) -> tuple[list[Any], dict[str, Any]]:
+    def arguments(self, values: Mapping[str, Any]) -> tuple[list[Any], dict[str, Any]]:
         """Return the arguments of the client's method.
 
         Raises:
             UsageError: an argument is missing, unknown, or not a value of its field.
         """
-        words = [f"{name}={_word(name, value)}" for name, value in given.items()]
+        words = [f"{name}={_word(name, value)}" for name, value in values.items()]
         parsed = parse(self.command, words)
         if self.name not in WAITED:
             return [], parsed
@@ -151,7 +151,7 @@ def _property(form: Form) -> dict[str, Any]:
 
 
 def _numbers(elements: list[Form]) -> dict[str, Any]:
-    """Return the schema of one of several numbers; their common range is the widest."""
+    """Return one schema for several numbers; its range includes those of all."""
     whole = all(each["step"] == 1 for each in elements)
     found: dict[str, Any] = {"type": "integer" if whole and elements else "number"}
     ends = [each[end] for end in ("low", "high") for each in elements]

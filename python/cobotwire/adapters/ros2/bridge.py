@@ -99,13 +99,13 @@ class Bridge:
             await asyncio.sleep(due - time.monotonic())
 
     async def _publish(self) -> None:
-        angles = await self._diagnostics.ask(self._joints)
+        angles = await self._diagnostics.query(self._joints)
         if angles is not None:
             self._state(ros.joint_state(time.time_ns(), self._numbers, angles))
         if self._end is None:
             return
         query, pose_of = self._end
-        values = angles if query is self._joints else await self._diagnostics.ask(query)
+        values = angles if query is self._joints else await self._diagnostics.query(query)
         if values is not None:
             self._transform(ros.transform(time.time_ns(), pose_of(values)))
 

@@ -39,7 +39,7 @@ _TYPES = {each: getattr(types, each) for each in ("byte", "int32", "uint32", "fl
 
 
 class Network(NamedTuple):
-    """Where participants find ours: in words, and as Cyclone DDS's configuration."""
+    """Where other participants find ours: in words, and as a configuration of Cyclone DDS."""
 
     name: str
     configuration: str
@@ -69,8 +69,8 @@ def network(interface: str | None, environment: Mapping[str, str] = os.environ) 
         name, config, local = "this computer", _ON_THIS_COMPUTER, True
     else:
         name, config, local = "the default network", "", False
-    given = environment.get("CYCLONEDDS_URI", "")
-    return Network(name, f"<CycloneDDS><Domain>{config}</Domain></CycloneDDS>,{given}", local)
+    user = environment.get("CYCLONEDDS_URI", "")
+    return Network(name, f"<CycloneDDS><Domain>{config}</Domain></CycloneDDS>,{user}", local)
 
 
 class Participant:
@@ -92,7 +92,7 @@ class Participant:
             ) from error
 
     def publisher(self, topic: str, kind: str, depth: int = DEPTH) -> Callable[[Message], None]:
-        """Return what publishes a message; DDS keeps ``depth`` of them for slow readers."""
+        """Return a function that publishes messages; DDS keeps ``depth`` for slow readers."""
         writer = DataWriter(self._participant, *self._topic(topic, kind, depth))
 
         def publish(message: Message) -> None:
@@ -104,7 +104,7 @@ class Participant:
         return publish
 
     def reader(self, topic: str, kind: str) -> Reader:
-        """Return what receives a topic."""
+        """Return a reader of the messages of a topic."""
         return Reader(DataReader(self._participant, *self._topic(topic, kind, DEPTH)))
 
     def _topic(self, topic: str, kind: str, depth: int) -> tuple[Topic[Any], Qos]:

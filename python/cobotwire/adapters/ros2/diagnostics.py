@@ -43,7 +43,7 @@ class Diagnostics:
         self._parts[part] = {**named, "hardware_id": self._url, "values": pairs}
         self._publish({"header": header(time.time_ns()), "status": [*self._parts.values()]})
 
-    async def ask(self, command: Command) -> Any:
+    async def query(self, command: Command) -> Any:
         """Return the result of a query; None if it is not due, or the arm does not reply.
 
         Raises:
@@ -66,8 +66,8 @@ class Diagnostics:
     async def problems(self) -> str:
         """Return why the arm would not obey a motion; empty if its replies name no reason."""
         table = self._arm.table
-        asked = [(role, query) for role in ROLES if (query := table.find_role(role)) is not None]
-        states = {role: await self.ask(query) for role, query in asked}
+        queries = [(role, query) for role in ROLES if (query := table.find_role(role)) is not None]
+        states = {role: await self.query(query) for role, query in queries}
         self._values |= states
         if states and set(states.values()) == {None}:
             return "the arm does not reply"
@@ -79,7 +79,7 @@ class Diagnostics:
         if self._servos:
             query = self._servos.pop(0)
             self._servos.append(query)
-            reply = await self.ask(query)
+            reply = await self.query(query)
             self._values[query.name] = " ".join(map(str, reply)) if reply else "no reply"
         self.note("arm", ERROR if found else OK, found or "obeys motions", self._values)
         traffic = self._traffic

@@ -1,4 +1,4 @@
-"""Move an arm along the trajectories that come on a topic."""
+"""Move an arm along the trajectories that are published on a topic."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from cobotwire.protocol.errors import CobotwireError, UsageError
 from cobotwire.protocol.table import Number
 from cobotwire.session.paths import Waypoint
 
-LOOK_SECONDS = 0.02
+PERIOD_SECONDS = 0.02
 # More would keep the program busy: it plans the motion as a whole.
 MOST_POINTS, LONGEST_SECONDS = 1000, 600
 
@@ -47,8 +47,8 @@ def waypoints_of(message: Any, joints: Sequence[Number]) -> list[Waypoint]:
             raise UsageError(f"points[{number}].positions", tuple(point.positions), allowed)
         if (seconds := _seconds(point.time_from_start)) > LONGEST_SECONDS:
             raise UsageError(f"points[{number}].time", seconds, f"up to {LONGEST_SECONDS} s")
-        given = dict(zip(names, point.positions))
-        found.append(Waypoint([given[each.name] / unit_in_ros(each) for each in joints], seconds))
+        by_name = dict(zip(names, point.positions))
+        found.append(Waypoint([by_name[each.name] / unit_in_ros(each) for each in joints], seconds))
     return found
 
 
@@ -81,7 +81,7 @@ class Motion:
         try:
             while True:
                 for message, sender in self._reader.take():
-                    await self._stop("another trajectory came")
+                    await self._stop("a newer trajectory was received")
                     self._sender = sender
                     self._silence.alive(time.monotonic())
                     self._following = asyncio.create_task(self._follow(message))
@@ -89,7 +89,7 @@ class Motion:
                     self._silence.alive(time.monotonic())
                 elif self._silence.left(time.monotonic()) <= 0:
                     await self._stop("its sender is gone")
-                await asyncio.sleep(LOOK_SECONDS)
+                await asyncio.sleep(PERIOD_SECONDS)
         finally:
             await self._stop("the program ends")
 
@@ -118,5 +118,5 @@ class Motion:
             note("motion", ERROR, f"failed: {error}")
 
 
-def _seconds(moment: Any) -> float:
-    return float(moment.sec + moment.nanosec / 1_000_000_000)
+def _seconds(stamp: Any) -> float:
+    return float(stamp.sec + stamp.nanosec / 1_000_000_000)

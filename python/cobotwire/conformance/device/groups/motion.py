@@ -37,7 +37,7 @@ NEAR = {"millimetre": 1.5, "tick": 1.0, "percent": 1.0}
 UNDER_WAY = 0.1
 ARRIVED = "The arm had arrived before it could be observed on the way."
 # The period and the duration of the queries whether the arm moves, in seconds.
-LOOK, OBSERVED = 0.01, 2.0
+PERIOD, OBSERVED = 0.01, 2.0
 # Where the limit and the target are, as shares of the joint's range in the workspace; and how far
 # beyond the limit a joint may come to rest, in degrees.
 LIMIT, TARGET, BEYOND = 0.04, 0.10, 1.0
@@ -163,7 +163,7 @@ def expect_on_the_way(probe: Probe, query: Command | None, motion: Motion) -> bo
             return True
         else:
             missed = missed or sent_at - left_at >= UNDER_WAY
-        device.connection.clock.sleep(LOOK)
+        device.connection.clock.sleep(PERIOD)
     if missed and query is not None:
         expected = f"{query.name}: expected {flag_text(query, True)} on the way"
         probe.expect(MOVING, False, f"{expected}; received {flag_text(query, reported)}")
