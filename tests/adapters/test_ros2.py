@@ -183,7 +183,7 @@ async def test_motion_under_way_is_stopped_once(how: str) -> None:
             del other
         else:
             writer.write(trajectory())
-            await here.report("motion", "stopped: another trajectory came")
+            await here.report("motion", "stopped: a newer trajectory was received")
         stopped = here.sent.index(STOP)
         await asyncio.sleep(0.1)
         assert here.sent.count(STOP) == 1
