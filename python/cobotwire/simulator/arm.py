@@ -64,7 +64,7 @@ class SimulatedArm:
         on_note: Callable[[Note], None] | None = None,
         behaviours: Mapping[str, Behaviour] | None = None,
     ) -> None:
-        """Create an arm as its edition states it at the start; else with every joint at zero.
+        """Create an arm in the start state of its edition: by default every joint is at zero.
 
         Args:
             table: the edition that the arm speaks.
@@ -149,9 +149,10 @@ class SimulatedArm:
         """Lead the arm by hand whenever no joint is held; if no joint is held now, begin at once.
 
         Args:
-            points: for each point, the seconds since the release, and the joints' angles. From
-                where they are, the joints turn evenly to the first, then to the next. They stay at
-                the last point, and stop as soon as a joint is held. Empty: nobody leads the arm.
+            points: for each point, the seconds since the release, and the joints' angles. The
+                joints turn at constant speed from where they are to the first point, then to the
+                next. They stay at the last point, and stop as soon as a joint is held. Empty:
+                nobody leads the arm.
             address: which of several devices is led; None: the first.
 
         Raises:
@@ -232,7 +233,7 @@ class SimulatedArm:
         behaviour = self._behaviours.get(command.name) or self._own(command)
         elsewhere = self._is_elsewhere(fields)
         if elsewhere:
-            # The arm has no such joint: what is set is only kept.
+            # The arm has no such joint: values for it are stored and have no other effect.
             behaviour, state.at_once = None, command.starts_motion
         try:
             if behaviour is not None:

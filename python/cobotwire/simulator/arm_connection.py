@@ -22,7 +22,7 @@ EventListener = Callable[[DeviceEvent, bytes], None]
 """Takes an event of a connection and the bytes of the reply; empty: there is no reply."""
 
 
-# What a command gives its reply.
+# What performing a command returns for the reply.
 Done = Reply[Any] | Sized | Mapping[str, Any] | None
 
 
@@ -150,8 +150,8 @@ class ArmConnection:
             if command.safety == "query":
                 self._arm.note(command, f"no reply: {why}")
                 return refusal(why)
-            # The request is acknowledged, as everything that the arm rejects. A text before the
-            # acknowledgement would keep the maker's library from reading it.
+            # A rejected request is acknowledged, too. No text is sent: the maker's library could
+            # not read an acknowledgement after it.
             self._arm.note(command, f"rejected: {why}")
             return self._encode_reply(command, given, None, address)
         return self._encode_reply(command, given, reply, address)
@@ -182,7 +182,7 @@ class ArmConnection:
             return self._session.encode_reply(command.name, nearest, address)
 
     def _encode_sized(self, command: Command, sized: Sized, address: int | None) -> bytes:
-        """Return the bytes of a reply in the variant that has as many data bytes."""
+        """Return the bytes of a reply in the variant with its number of data bytes."""
         [variant] = [i for i, each in enumerate(command.reply) if each.size == sized.size]
         encode, values = self._arm.codec.encode, sized.reply.values
         return encode(command.name, "reply", values, variant=variant, address=address)

@@ -13,7 +13,7 @@ from cobotwire.protocol.table import Command
 from cobotwire.simulator.replies import Unanswerable
 from cobotwire.simulator.state import ArmState
 
-# Turns a minute of one degree a second.
+# One degree per second, in turns per minute.
 TURNS_A_MINUTE = 60 / 360
 
 
@@ -118,9 +118,9 @@ def _reached(shown: Reported) -> bool:
     end = arm.end(standing)
     if end is None or len(target) != len(arm.coordinates):
         raise Unanswerable
-    way, turn = end.distance(arm.pose_of(target, standing))
+    distance, turn = end.distance(arm.pose_of(target, standing))
     # Each joint rests up to half a tick from the angle that the target requires.
-    return way <= millimetres and turn <= degrees + arm.joints * arm.tick_degrees / 2
+    return distance <= millimetres and turn <= degrees + arm.joints * arm.tick_degrees / 2
 
 
 def _held(shown: Reported) -> Any:
@@ -160,7 +160,7 @@ READERS: dict[str, Callable[[Reported], Any]] = {
 
 
 def _hold(arm: ArmState, now: float, value: Any, joint: int | None) -> None:
-    # A number above all joints means every joint, but the next one is the gripper's servo.
+    # The number after the last joint is the gripper's servo; higher numbers mean every joint.
     if joint in (0, arm.joints + 1):
         return
     every = joint is None or joint > arm.joints
@@ -237,7 +237,7 @@ def after_writing(arm: ArmState, now: float, given: Mapping[str, Any], *, led: b
 def _obey_limits(arm: ArmState, now: float) -> None:
     """End a motion that would lead a joint beyond its new limits."""
     angles = arm.angles
-    points = [angles.position(now), angles.stop_at(now), *angles.ways(now)]
+    points = [angles.position(now), angles.stop_at(now), *angles.points_ahead(now)]
     for turns, (low, high) in zip(zip(*points), arm.limits()):
         if len(set(turns)) == 1 or all(low <= angle <= high for angle in turns):
             continue

@@ -37,10 +37,10 @@ from cobotwire.simulator.replies import Unanswerable
 from cobotwire.simulator.state import ArmState
 from cobotwire.simulator.targets import is_there, solve
 
-# No source says how many values a list holds at most; their number is a byte.
+# No source states the maximum length of a list; its length is sent in one byte.
 MOST_VALUES = 255
 
-# This number of a joint stands for all joints.
+# This joint number means all joints.
 EVERY_JOINT = 254
 
 # The state that starts with the values of the edition's `servos`.
@@ -289,7 +289,8 @@ def _computes(requested: Requested, effect: Computes) -> dict[str, Any]:
     near = tuple(requested.fields[effect.near]) if effect.near else arm.standing(requested.now)
     if is_there(arm, given, near):
         return {name: near}
-    # No source defines the reply without a solution: the angles near it, and an error.
+    # No source defines the reply if there is no solution. It has the angles ``near``, and the arm
+    # has an error.
     found = solve(arm, arm.pose_of(given, near), near, Effort())
     return {name: near if found is None else found}
 

@@ -17,7 +17,7 @@ from cobotwire.simulator.state import ArmState
 
 # How often an arm checks whether another thread has emitted an event, in seconds.
 POLL_SECONDS = 0.1
-# A client that reads nothing loses the oldest events.
+# Events that are kept for slow clients; a client that reads nothing loses the oldest.
 KEPT = 1000
 
 

@@ -9,8 +9,8 @@ from cobotwire.protocol.table import Command, Table
 from cobotwire.simulator.replies import completed
 from cobotwire.simulator.state import ArmState
 
-# How often it is checked whether a moving arm has come to rest, in seconds.
-LOOK_SECONDS = 0.01
+# The interval, in seconds, at which a moving arm is checked for having stopped.
+CHECK_SECONDS = 0.01
 
 
 class MotionEnds:
@@ -28,7 +28,7 @@ class MotionEnds:
         self._codec, self._clock, self._states = codec, clock, states
         self._gives_reasons = self._event is not None and self._event.accepted == (0,)
         self._watched: set[int | None] = set()
-        # How motions ended that did not reach their target, by the address of the device.
+        # The status of motions that did not reach their target, by the address of the device.
         self._failed: dict[int | None, int] = {}
 
     def watch(self, command: Command, address: int | None) -> None:
@@ -53,7 +53,7 @@ class MotionEnds:
     @property
     def wait(self) -> float | None:
         """Seconds until :meth:`due` may have something to report; None: no device is watched."""
-        return LOOK_SECONDS if self._watched else None
+        return CHECK_SECONDS if self._watched else None
 
     def due(self) -> bytes:
         """Return the events of the motions that have ended by now."""

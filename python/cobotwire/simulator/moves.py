@@ -164,8 +164,8 @@ def _move_end(
         arm.remarks.append("rejected: the arm has no inverse kinematics for these coordinates")
         return
     row, straight = fields[field.name], _is_straight(arm, command, fields)
-    # A full set of coordinates is the target as it is: the present pose, which is rounded, is not
-    # needed, so reported coordinates that are sent back lead to the same place.
+    # A full set of coordinates needs nothing of the present pose, which is rounded. So reported
+    # coordinates that are sent back lead to the same place.
     target = row if indices == arm.coordinates else pose_with(row, indices, end)
     go_to_coords(arm, target, speed, now, straight=straight)
 
@@ -189,7 +189,7 @@ def _is_straight(arm: ArmState, command: Command, fields: Fields) -> bool:
 def _jog_end(
     arm: ArmState, now: float, effect: Moves, axis: int, speed: int, *, forward: bool
 ) -> None:
-    """Move the end along or about an axis until it is stopped, or nothing is in reach."""
+    """Move the end along or about an axis until it is stopped, or cannot reach further."""
     if effect.keeps:
 
         def way(here: Pose, far: float) -> Pose:

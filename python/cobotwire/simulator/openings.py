@@ -15,7 +15,7 @@ READ_SIZE = 4096
 
 
 class Openings:
-    """Reports which of opening and closing happened to a device, in their order."""
+    """Reports each opening and closing of a device, in order."""
 
     def __init__(self, path: str) -> None:
         """Watch ``path``.

@@ -26,7 +26,7 @@ class Pty:
 
     Attributes:
         master: the server's end, which never blocks.
-        openings: reports when programs open and close the port; None where the system does not.
+        openings: reports when programs open and close the port; None if the system cannot.
     """
 
     def __init__(self) -> None:
@@ -47,7 +47,8 @@ class Pty:
         self.openings: Openings | None = None
         with suppress(OSError):
             self.openings = Openings(self.url)
-            # While this process has the slave open, nothing reports that the last client closed it.
+            # While this process has the slave open, the system does not report that the last client
+            # closed it.
             os.close(self._held.pop())
 
     @property

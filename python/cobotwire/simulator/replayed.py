@@ -34,10 +34,10 @@ class Exchange(NamedTuple):
 class ReplayedArm:
     """Replies from a capture, with the recorded delays; a peer.
 
-    A request is searched for from the present position of the recording on, then from its
-    beginning; the position moves to it. So a program that repeats its requests gets the same
-    replies again, and a repeated request gets its replies in their order. The reply to a request is
-    everything that arrived before the next one: late replies, noise, pauses within a frame.
+    A request is searched for from the present position of the recording to its end, then from its
+    beginning. The position moves to the match: a program that runs again gets the same replies, and
+    a repeated request gets its replies in order. The reply to a request is everything that arrived
+    before the next one: late replies, noise, pauses within a frame.
     """
 
     def __init__(

@@ -21,8 +21,8 @@ class Unanswerable(Exception):
 def refusal(why: str) -> bytes:
     """Return the line that is sent in place of a reply: clients quote it in their errors.
 
-    It is text as firmware prints it, so every client passes over it. Details follow after a colon;
-    they are left to the notes.
+    Clients skip it, as they skip text that firmware prints. The details of ``why``, after a colon,
+    are left out; the arm's notes have them.
     """
     return f"{SIMULATED}{why.partition(':')[0]}\r\n".encode("ascii", "replace")
 
@@ -40,7 +40,7 @@ def completed(
         request: the fields of the request.
         result: the fields of the reply that the behaviour states.
         usual: the value of all other fields; None: 1 for acknowledgements and for flags
-            of commands that are no queries, else 0.
+            of commands that are not queries, else 0.
     """
     if command.text is not None:
         return {name: result.get(name, "") for name in command.text.fields}

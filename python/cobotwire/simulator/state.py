@@ -29,9 +29,9 @@ UNSTATED_GRIPPER = Gripper(1.0, 0, 100)
 NEAR_DEGREES, NEAR_MILLIMETRES = 0.1, 5.0
 HALF_TURN = 180.0
 NO_POSE = (0.0,) * 6
-# A gripper is at full speed from the beginning, in percent a square second.
+# In percent per square second; so high that a gripper is at full speed at once.
 OPENING_ACCELERATION = 10_000.0
-# No source says how often a point is recorded; their number is a word.
+# No source states how often points are recorded; their number is sent in two bytes.
 RECORD_EVERY_SECONDS = 0.1
 MOST_POINTS = 32767
 
@@ -95,7 +95,7 @@ class ArmState:
         self.maximum = [HALF_TURN] * self.joints
 
     # The declared state that motion and kinematics use. A state that the edition does not declare
-    # has the value without an effect.
+    # has the value that changes nothing.
     @property
     def queues(self) -> bool:
         """Whether a new target waits for the end of the present motion."""

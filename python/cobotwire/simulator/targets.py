@@ -16,7 +16,8 @@ from cobotwire.kinematics.straight import angles_along, steps_between, straight_
 from cobotwire.simulator.replies import Unanswerable
 from cobotwire.simulator.state import ArmState
 
-# This many steps of three degrees are a full turn; of seven millimetres, they exceed any reach.
+# Enough for a full turn in steps of three degrees, and beyond any reach in steps of seven
+# millimetres.
 JOG_STEPS = 121
 
 # Reported numbers that differ by less are the same: it is far below the wire's steps.
@@ -151,7 +152,7 @@ def go_to_coords(
 def jog(
     arm: ArmState, way: Callable[[Pose, float], Pose], step: float, speed: int, now: float
 ) -> bool:
-    """Move the end until it is stopped, a joint is at its limit, or nothing is in reach.
+    """Move the end until it is stopped, a joint is at its limit, or the end cannot reach further.
 
     Args:
         arm: the arm.
@@ -210,7 +211,7 @@ def _ended(effort: Effort) -> str:
 
 
 def _follow(arm: ArmState, ends: Iterable[Pose], start: Point, effort: Effort) -> list[Point]:
-    """Return the angles along a way, as far as the joints can follow."""
+    """Return the angles along a path, as far as the joints can follow."""
     assert arm.geometry is not None, "the caller has checked this"
     return angles_along(arm.geometry, map(arm.flange_for, ends), start, arm.limits(), effort)
 

@@ -111,7 +111,7 @@ class TcpServer(Server):
             self._connect(endpoint, self._new_peer())
 
     def _descriptors_are_free(self) -> bool:
-        """Return whether there are descriptors for a client, and for what a reply imports."""
+        """Return whether descriptors are left for a client and for the imports of a reply."""
         free: list[socket.socket] = []
         try:
             with suppress(OSError):

@@ -1,4 +1,4 @@
-"""Recording a motion that is done by hand."""
+"""Record a motion that is led by hand."""
 
 from __future__ import annotations
 

@@ -14,7 +14,7 @@ from cobotwire.simulator.behaviour.registry import Behaviours, Unanswerable, fam
 from cobotwire.simulator.state import ArmState
 from cobotwire.simulator.targets import go_to_encoders
 
-# The speed of a motion whose request has a duration, or a speed for each servo, in percent.
+# In percent: the speed if a request states a duration, or a speed for each servo.
 USUAL_SPEED = 50
 
 LIMBS = family("mybuddy", Behaviours())
@@ -26,7 +26,7 @@ def set_encoders(arm: ArmState, now: float, request: m.SetEncoders) -> None:
     if request.speeds is not None:
         speed = USUAL_SPEED if any(request.speeds) else 0
     else:
-        assert request.speed is not None, "a request has one of both"
+        assert request.speed is not None, "a request states a speed or speeds"
         speed = request.speed
     go_to_encoders(arm, dict(enumerate(request.encoders)), speed, now)
 

@@ -32,7 +32,7 @@ def get_error_information(
 
 @MERCURY.behaviour(m.SetSolutionAngles)
 def set_solution_angles(arm: ArmState, now: float, request: m.SetSolutionAngles) -> None:
-    """Remember the deflection; to move the joints, the lengths of the links would be needed."""
+    """Store the deflection. The joints do not move: no source states the lengths of the links."""
     if may_move(arm, request.speed):
         arm.kept["solution_angle"], arm.at_once = request.angle, True
 

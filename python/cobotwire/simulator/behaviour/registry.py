@@ -111,7 +111,7 @@ behaviour, query = BEHAVIOURS.behaviour, BEHAVIOURS.query
 
 # Behaviours of editions that differ from the 280, by the name of the edition; they come first.
 _FAMILIES: dict[str, Behaviours] = {}
-# The module of this package that registers them.
+# The module of this package that registers the behaviours of an edition.
 HOMES = {"mercury_a1": "mercury", "mybuddy": "limbs"}
 
 
@@ -124,8 +124,7 @@ def family(edition: str, behaviours: Behaviours) -> Behaviours:
 def own(table: Table, command: Command) -> Behaviour | None:
     """Return the behaviour of cobotwire for a command; None if there is none.
 
-    A command that only shares the name has other arguments; this behaviour would not understand
-    them.
+    A command with the same name but other fields has none: the behaviour does not know them.
     """
     lineage = (table.edition, *table.bases)
     for home in filter(None, map(HOMES.get, lineage)):

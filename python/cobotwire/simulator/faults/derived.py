@@ -33,9 +33,9 @@ class _Where(NamedTuple):
 def derived(packets: Iterable[Packet], codec: Codec, name: str = "derived") -> Scenario:
     """Return the faults of a recording: late and lost replies, pauses within them, noise.
 
-    They are applied to the n-th request of an id as they were recorded for the n-th request of that
-    id. The contents of replies are not kept: a damaged reply counts as noise and as lost. Requests
-    that the edition does not have are left out.
+    A fault at the n-th recorded request of an id is applied to the n-th request of that id. The
+    contents of replies are not kept: a damaged reply counts as noise and as lost. Requests that the
+    edition does not have are left out.
 
     Args:
         packets: those of one line, in any order.

@@ -114,8 +114,8 @@ class Fault:
     kind: ClassVar[str] = ""
     # Whether the fault does something only where there is a reply.
     wants_reply: ClassVar[bool] = True
-    # Whether the fault is applied to every piece of malformed input, or of a text.
-    goes_on: ClassVar[bool] = False
+    # Whether the fault is also applied to the rest of malformed input, or of a request's text.
+    continues: ClassVar[bool] = False
 
     commands: tuple[str | int, ...] = ruled(Several(command), ())
     only: Only = ruled(one_of(ONLY), "requests")

@@ -162,8 +162,8 @@ class FaultyPeer:
     def _continued(self, data: bytes) -> Chosen:
         """Return what is applied to the rest of malformed input, or to the text of a request."""
         rest = Request(self._clock() - self._began, data, None, None)
-        going_on = (one for one, _ in self._begun if one.fault.goes_on)
-        return [(one, self._context(one, rest)) for one in going_on]
+        continuing = (one for one, _ in self._begun if one.fault.continues)
+        return [(one, self._context(one, rest)) for one in continuing]
 
     def _context(self, chooser: Chooser, request: Request) -> Context:
         return Context(request, chooser.random, self._connection, self._codec.table, self._replies)

@@ -111,7 +111,7 @@ class NoiseClass(NamedTuple):
     """One class of noise.
 
     Attributes:
-        draw: returns one piece; its draws come from the generator of random numbers.
+        draw: returns one piece, drawn with a generator of random numbers.
         weight: how often the class is drawn for a mixture, relative to others; 0: only if it is
             named.
         before_frames: whether it occurs only before frames, not at any place.

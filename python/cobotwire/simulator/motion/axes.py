@@ -54,7 +54,7 @@ class Axes:
             return self._waiting[-1].points[-1]
         return self._rest if leg is None else leg.end
 
-    def ways(self, now: float) -> list[Point]:
+    def points_ahead(self, now: float) -> list[Point]:
         """Return the points that the axes will pass, in this motion and the waiting ones."""
         leg = self._at(now)
         points = [point for plan in self._waiting for point in plan.points]

@@ -33,9 +33,9 @@ class Plan:
 
 
 class Route:
-    """From standstill to standstill, along points that are close to each other.
+    """A motion along points that are close to each other, from standstill to standstill.
 
-    In each step, the axis with the longest way has the speed and acceleration of the route. On a
+    In each step, the axis that moves farthest has the speed and acceleration of the route. On a
     bent route, half of the acceleration is reserved for the bends, so that no axis exceeds it.
     """
 
@@ -98,7 +98,7 @@ class Route:
 
 
 class Turn:
-    """From full speed to another target: each axis on its own, all of them arriving together."""
+    """A change to another target during a motion: each axis on its own, all arrive together."""
 
     def __init__(self, start: Point, speed: Point, target: Point, rate: float, most: float) -> None:
         self._start, self._rate = start, rate

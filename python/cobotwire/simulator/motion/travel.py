@@ -9,10 +9,10 @@ BISECTIONS = 60
 
 
 class Travel:
-    """Changes from ``speed`` to a cruising speed, then brakes: ``way`` in ``duration`` seconds.
+    """Covers ``way`` in ``duration`` seconds: changes to a cruising speed, then brakes.
 
-    It speeds up and slows down at ``acceleration``. :func:`quickest` and :func:`lasting` find the
-    cruising speed.
+    It begins at ``speed``, and speeds up and slows down at ``acceleration``. :func:`quickest` and
+    :func:`lasting` find the cruising speed.
     """
 
     def __init__(

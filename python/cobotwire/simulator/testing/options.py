@@ -56,8 +56,8 @@ class ArmOptions:
         """
         if not isinstance(self.scenario, str):
             return self.scenario
-        beside = self.folder / self.scenario
-        return find(str(beside) if beside.is_file() else self.scenario, table)
+        in_folder = self.folder / self.scenario
+        return find(str(in_folder) if in_folder.is_file() else self.scenario, table)
 
 
 def combined(

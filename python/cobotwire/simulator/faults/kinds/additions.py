@@ -177,7 +177,7 @@ class Echo(Fault):
     """
 
     wants_reply = False
-    goes_on = True
+    continues = True
 
     seconds: float = ruled(SECONDS, 0.0)
 
