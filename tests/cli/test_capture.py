@@ -111,7 +111,7 @@ def test_merge_warns_about_a_port_that_is_recorded_twice(arm: Path) -> None:
     done = capture("merge", arm, arm, "-o", arm.with_name("out.pcapng"))
     assert done.returncode == 0
     assert "8 packets\n" in done.stderr
-    assert "overlap on /dev/ttyACM0: bytes may be there twice" in done.stderr
+    assert "overlap on /dev/ttyACM0: the output may hold bytes twice" in done.stderr
 
 
 def test_repair_reports_what_is_lost(arm: Path) -> None:

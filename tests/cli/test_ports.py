@@ -39,8 +39,8 @@ def test_exit_code_is_1_without_a_likely_port(monkeypatch: pytest.MonkeyPatch) -
     code, output = run(monkeypatch, [])
     assert code == 1
     assert "this computer has no serial port" in output
-    assert "no arm is found: `cobotwire ports --fix` says" in output
-    assert run(monkeypatch, [], "--fix")[1].startswith("needed    no arm is found: check that it")
+    assert "no arm was found: `cobotwire ports --fix` says" in output
+    assert run(monkeypatch, [], "--fix")[1].startswith("needed    no arm was found: check that it")
 
 
 def test_fix_prints_the_steps_for_this_system_and_changes_nothing(

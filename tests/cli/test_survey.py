@@ -78,7 +78,7 @@ def test_survey_at_a_network_port_is_of_a_real_arm_only_if_the_owner_states_it(
     path, stated = tmp_path / "survey.zip", tmp_path / "stated.zip"
     with TcpServer(SimulatedArm(TABLE).connect) as server:
         done = cobotwire("survey", server.url, "-o", path)
-        assert "state it with --real-arm" in done.stderr
+        assert "add --real-arm" in done.stderr
         # What was not stated before the facts were recorded cannot be stated of them afterwards.
         done = cobotwire("survey", server.url, "--real-arm", "--continue", "-o", path)
         assert "not seen; of a simulated arm" in done.stdout
@@ -123,7 +123,7 @@ def test_survey_continues_an_interrupted_one(path: Path) -> None:
     assert "is the survey of another device: continue it without --address" in other.stderr
 
 
-def test_recording_is_judged_by_the_requests_that_it_has(path: Path, tmp_path: Path) -> None:
+def test_recording_is_evaluated_by_the_requests_that_it_has(path: Path, tmp_path: Path) -> None:
     recording = tmp_path / "recording.pcapng"
     whole, traffic = read_survey(path)
     recording.write_bytes(traffic)
@@ -131,10 +131,10 @@ def test_recording_is_judged_by_the_requests_that_it_has(path: Path, tmp_path: P
     assert cobotwire("capture", "cut", recording, "--to", "0.2", "-o", half).returncode == 0
     found = {}
     for source in (recording, half):
-        judged = tmp_path / f"{source.stem}.zip"
-        done = cobotwire("survey", "--from", source, "-o", judged)
+        evaluated = tmp_path / f"{source.stem}.zip"
+        done = cobotwire("survey", "--from", source, "-o", evaluated)
         assert done.returncode == 0, done.stdout + done.stderr
-        found[source], _ = read_survey(judged)
+        found[source], _ = read_survey(evaluated)
     assert found[recording]["facts"] == whole["facts"]
     assert found[recording]["finished"] is True
     assert found[recording]["simulated"] is True
@@ -145,7 +145,7 @@ def test_recording_is_judged_by_the_requests_that_it_has(path: Path, tmp_path: P
     assert 20 < len(decided) < sum(f["verdict"] == "confirmed" for f in whole["facts"])
     assert found[half]["finished"] is False
     done = cobotwire("survey", "--from", recording, "--settings", "-o", tmp_path / "no.zip")
-    assert (done.returncode, "queries only" in done.stderr) == (2, True)
+    assert (done.returncode, "--from evaluates a recording" in done.stderr) == (2, True)
     received = tmp_path / "received.pcapng"
     tap = Recording(received, None)
     tap.record("received", b"\0", 0.0)
@@ -270,7 +270,7 @@ def test_any_key_stops_the_motion_and_the_file_holds_what_was_found(tmp_path: Pa
         Terminal("survey", server.url, *words, columns=80, lines=24) as terminal,
     ):
         terminal.until(lambda: "supported?[y/N]" in terminal.text())
-        assert "anditsinks" in terminal.text()
+        assert "thenitsinks" in terminal.text()
         terminal.press(b"y\n")
         terminal.until(lambda: "firstmotions" in terminal.text())
         terminal.press(b"x")

@@ -12,7 +12,7 @@ from cobotwire.cli.shared.exit_codes import EPILOG, exit_on_errors, signals_as_i
 from cobotwire.cli.shared.lazy_group import LazyGroup
 from cobotwire.studio.extras import CURVES
 
-# In the order of --help, each with its text there: --help imports no verb.
+# The verbs with their texts, in the order of --help, which imports none of them.
 VERBS = {
     "demo": "Drive a simulated arm; check every reply.",
     "ports": "List serial ports, likely ones first.",

@@ -33,7 +33,7 @@ from cobotwire.protocol.json_values import as_json_value
     "--timeout", type=float, help="Seconds to wait for the reply [default: the command's]."
 )
 @click.option(
-    "--force", is_flag=True, help="Send a motion without asking whether the arm will obey it."
+    "--force", is_flag=True, help="Send a motion without checking whether the arm will obey it."
 )
 @click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")
 @uses_edition
@@ -65,18 +65,18 @@ def call(
     `cobotwire commands NAME` shows the arguments of a command.
 
     NAME can also be a motion of the client, such as go_home or move_angles: it waits until the arm
-    is there, at most for timeout=SECONDS, and prints where that is. Ctrl-C stops the arm:
+    has arrived, for at most timeout=SECONDS, and prints its position. Ctrl-C stops the arm:
 
     \b
       cobotwire call /dev/ttyACM0 go_home 30
       cobotwire call /dev/ttyACM0 move_angles 0,20,0,0,0,0 speed=30 timeout=20
 
-    Standard output is the result. Without one, a line on standard error says whether the arm
-    acknowledged the request.
+    The result is printed to standard output. If there is none, a line on standard error says
+    whether the arm acknowledged the request.
 
     Before a motion that has arguments, the arm's power, pause and error register are queried. If
     it would not obey, the motion is not sent; --force sends it. After the motion the error register
-    is read again, since the arm does not say that it rejects a motion.
+    is read again, since no reply reports a rejected motion.
     """  # noqa: D301  (click keeps the lines of a paragraph that starts with the character \b)
     if name is None:
         message = (

@@ -9,9 +9,9 @@ from cobotwire.cli.shared.lazy_group import LazyGroup
 
 VERBS = {
     "info": "Show times, messages, rates, gaps and noise.",
-    "cut": "Write a part of a recording: a time, some commands.",
+    "cut": "Write part of a recording: a time range, some commands.",
     "merge": "Write several recordings into one, by time.",
-    "repair": "Write what is whole in a truncated or damaged one.",
+    "repair": "Write what is whole in a damaged recording.",
 }
 
 

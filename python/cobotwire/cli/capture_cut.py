@@ -32,8 +32,8 @@ def _names(context: click.Context, option: click.Parameter, value: str | None) -
 @click.command()
 @click.argument("file", type=click.Path(), metavar="FILE")
 @output_options
-@click.option("--from", "begin", metavar="TIME", help="The first time to keep.")
-@click.option("--to", "end", metavar="TIME", help="The time of the end.")
+@click.option("--from", "begin", metavar="TIME", help="Keep packets from this time on.")
+@click.option("--to", "end", metavar="TIME", help="Keep packets before this time.")
 @click.option(
     "--commands",
     callback=_names,
@@ -79,7 +79,7 @@ def cut(
       cobotwire capture cut arm.pcapng -o part.pcapng --from 2026-11-23T14:00
       cobotwire capture cut arm.pcapng -o angles.pcapng --commands get_angles,send_angles
 
-    Exit codes: 0 success; 1 FILE ends too early, and OUT holds what is before that, or no packet
+    Exit codes: 0 success; 1 FILE ends too early (OUT holds everything before that), or no packet
     was chosen; 6 FILE is damaged: repair it first.
     """  # noqa: D301  (click keeps the lines of a paragraph that starts with the character \b)
     check_commands((*commands, *not_commands), InstalledEditions(edition))

@@ -30,14 +30,14 @@ DAMAGED = 6
     default=1.0,
     show_default=True,
     metavar="SECONDS",
-    help="Count pauses that are longer.",
+    help="Count pauses longer than this.",
 )
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object.")
 @uses_edition
 def info(edition: str, files: tuple[str, ...], gap: float, as_json: bool) -> None:
     """Show what each FILE holds, and the sum of several.
 
-    A rate is counted from the first to the last message of its kind. Noise is bytes that belong to
+    A rate is measured from the first to the last message of its kind. Noise is bytes that belong to
     no frame. A gap is a pause in which no byte came on an interface. An interface is read with the
     edition that it names; otherwise with that of --edition.
 

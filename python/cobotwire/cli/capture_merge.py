@@ -30,7 +30,7 @@ def merge(files: tuple[str, ...], output: str, overwrite: bool) -> None:
     A warning names a port that two recordings contain at the same time. Recordings with several
     sections, and big-endian ones, are rejected.
 
-    Exit codes: 0 success; 1 a FILE ends too early, and OUT holds what is before that; 6 a FILE is
+    Exit codes: 0 success; 1 a FILE ends too early (OUT holds everything before that); 6 a FILE is
     damaged: repair it first.
     """  # noqa: D301  (click keeps the lines of a paragraph that starts with the character \b)
     with progress_bar("merging", recorded_size(files)) as advance:
@@ -46,7 +46,7 @@ def merge(files: tuple[str, ...], output: str, overwrite: bool) -> None:
     for one, other in combinations(found, 2):
         if one.overlaps(other):
             text = f"{one.source} and {other.source} overlap on {one.interface.url}"
-            click.echo(f"cobotwire: {printable(text)}: bytes may be there twice", err=True)
+            click.echo(f"cobotwire: {printable(text)}: the output may hold bytes twice", err=True)
     for lack in lacks:
         click.echo(f"cobotwire: {printable(lack)}", err=True)
     sys.exit(1 if lacks else 0)

@@ -87,7 +87,7 @@ from cobotwire.protocol.errors import LinkError
     "--resume",
     type=click.Path(),
     metavar="REPORT",
-    help="Continue the run of a JSON report: run what it did not run, with its options.",
+    help="Continue the run of a JSON report, with its options: run the rest of the test cases.",
 )
 @click.option(
     "--again",

@@ -27,12 +27,12 @@ from cobotwire.protocol.printable import printable
 )
 @click.option("--json", "as_json", is_flag=True, help="Print a JSON object.")
 def verify(report: str, key: str | None, as_json: bool) -> None:
-    """Check that REPORT (JSON, or a survey) is as it was written, and who signed it.
+    """Check that REPORT (JSON, or a survey) was not changed, and who signed it.
 
     A right signature shows that the owner of the printed key signed the report. To check whose key
     it is, pass --key with the public key that you got from the tester.
 
-    Exit codes: 0 the report is as it was written, and with --key, that key signed it; 1 it is not;
+    Exit codes: 0 the report was not changed, and with --key, that key signed it; 1 otherwise;
     2 the file is not a report.
     """
     with exit_if_not_testable():
@@ -46,7 +46,7 @@ def verify(report: str, key: str | None, as_json: bool) -> None:
         click.echo(json.dumps(found, indent=1))
     else:
         signed = f"signed with the key {seal.key}" if seal.key else "not signed"
-        click.echo(mistake or f"{printable(report)} is as it was written; it is {signed}.")
+        click.echo(mistake or f"{printable(report)} was not changed; it is {signed}.")
     sys.exit(DOES_NOT if mistake else CONFORMS)
 
 
@@ -57,7 +57,7 @@ def _mistake(seal: Seal, wanted: str | None) -> str:
     if seal.digest != seal.stated:
         return f"The report was changed: its digest is {seal.digest}, not {printable(seal.stated)}."
     if seal.signature == "wrong":
-        return "The signature is wrong: another report was signed, or with another key."
+        return "The signature is wrong: it is of another report, or of another key."
     if wanted is not None and not seal.key:
         return "The report is not signed."
     if wanted is not None and seal.key != wanted:

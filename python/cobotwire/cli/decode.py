@@ -39,7 +39,7 @@ if TYPE_CHECKING:
 @click.option(
     "--accept-unknown", is_flag=True, help="Accept frames with ids unknown to the edition."
 )
-@click.option("--bytes", "each_byte", is_flag=True, help="Explain each byte, as is done for HEX.")
+@click.option("--bytes", "each_byte", is_flag=True, help="Explain each byte, as for HEX.")
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object per line.")
 @click.option("--summary", is_flag=True, help="Print only counts.")
 @click.option("--quiet", is_flag=True, help="Print nothing but the summary, if any.")
@@ -67,10 +67,10 @@ def decode(
     frame is decoded in the direction in which it was sent, and printed with its time. If a packet
     does not state its direction, --direction says which messages it holds.
 
-    FILE may also be raw bytes, hex text, what socat -x, xxd, hexdump -C, od, candump, Saleae Logic,
-    PulseView or pymycobot's debug log show, bytes as Python prints them, or the TCP packets of a
-    pcap file. The format is detected by the first 512 bytes, and reported. Other text is rejected,
-    so that it is not decoded by mistake. --raw, --hex and --read-as choose the format.
+    FILE may also be raw bytes, hex text, bytes as Python prints them, the TCP packets of a pcap
+    file, or the output of socat -x, xxd, hexdump -C, od, candump, Saleae Logic, PulseView or
+    pymycobot's debug log. The format is detected from the first 512 bytes, and reported. Other text
+    is rejected, so that it is not decoded by mistake. --raw, --hex and --read-as choose the format.
 
     \b
       cobotwire decode FE FE 06 21 01 00 1D 14 FA
@@ -116,7 +116,7 @@ def _decode(
     if isinstance(source, ByteSource):
         decode_bytes(source, options, counts)
         return bool(source.missing)
-    # Imported here, because most input is no recording.
+    # Imported here, because most input is not a recording.
     from cobotwire.cli.shared.decoded_recording import decode_recording
 
     return decode_recording(source, options, counts)

@@ -48,7 +48,7 @@ def _keys(context: click.Context, option: click.Parameter, value: str) -> tuple[
     "--as",
     "written_as",
     type=click.Choice(get_args(FormatName)),
-    help="The format; by default that of OUT's ending, or Parquet.",
+    help="The format; by default chosen by OUT's file extension, else Parquet.",
 )
 @click.option(
     "--command",
@@ -66,8 +66,12 @@ def _keys(context: click.Context, option: click.Parameter, value: str) -> tuple[
     help="Which messages to write; also which messages raw bytes hold.",
 )
 @reading_options
-@click.option("--from", "begin_ns", callback=_time, metavar="TIME", help="The first time (UTC).")
-@click.option("--to", "end_ns", callback=_time, metavar="TIME", help="The time of the end (UTC).")
+@click.option(
+    "--from", "begin_ns", callback=_time, metavar="TIME", help="Write messages from this time on."
+)
+@click.option(
+    "--to", "end_ns", callback=_time, metavar="TIME", help="Write messages before this time."
+)
 @click.option("--wide", is_flag=True, help="Give each number of a field a column of its own.")
 @click.option(
     "--gap",
@@ -75,7 +79,7 @@ def _keys(context: click.Context, option: click.Parameter, value: str) -> tuple[
     default=1.0,
     show_default=True,
     metavar="SECONDS",
-    help="Count pauses in a recording that are longer.",
+    help="Count pauses in a recording longer than this.",
 )
 @click.option(
     "--partition",

@@ -22,9 +22,9 @@ _COLOURS = {"+": "green", "-": "red", "@": "cyan"}
 def migrate(scripts: tuple[str, ...], write: bool, as_json: bool) -> None:
     """Rewrite programs that were written for pymycobot, to use our clients.
 
-    Prints what changes as a diff. A call is rewritten if the new one sends the same bytes and the
-    program can use its result alike. Each place where that is not certain is listed on standard
-    error with its line, the reason, and what to do; until you did that, do not run the program.
+    Prints what changes as a diff. A call is rewritten if the new one sends the same bytes, and its
+    result can be used in the same way. Each place where that is not certain is listed on standard
+    error with its line, the reason, and what to do. Do that before you run the program.
 
     Exit codes: 0 nothing is left to decide; 1 a place is listed; 2 wrong usage, or LibCST is not
     installed.

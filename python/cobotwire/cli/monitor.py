@@ -27,8 +27,8 @@ from cobotwire.inspect.monitor import FollowingMonitor, monitored
 from cobotwire.protocol.errors import UsageError
 from cobotwire.protocol.json_values import as_json_value
 
-# The width of a number with its name and the space after it; and the width of the borders, minus
-# one such space.
+# The columns of a number with its name and a space; the columns of the borders, minus that space
+# after the last number.
 NUMBER_COLUMNS, BORDER_COLUMNS = 13, 5
 
 

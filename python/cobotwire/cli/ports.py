@@ -17,7 +17,7 @@ from cobotwire.transport.serial.ports import Port
 from cobotwire.transport.serial.remedies import Remedy
 
 NOT_FOUND = (
-    "no arm is found: `cobotwire ports --fix` says what to check; `cobotwire sim` simulates one"
+    "no arm was found: `cobotwire ports --fix` says what to check; `cobotwire sim` simulates one"
 )
 NOT_ALLOWED = "you have no permission to open it"
 

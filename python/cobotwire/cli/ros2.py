@@ -17,7 +17,7 @@ from cobotwire.cli.shared.motion_options import MotionOptions, motion_options
 from cobotwire.cli.shared.output import print_line, report_written
 from cobotwire.protocol.addresses import check_one_moves
 
-# The highest domain whose ports exist: 7400 + 250 * 232 + 3999 < 65536.
+# The highest domain with valid port numbers: 7400 + 250 * 232 + 3999 < 65536.
 _LAST_DOMAIN = 232
 
 

@@ -67,7 +67,7 @@ def _list_scenarios(context: click.Context, option: click.Parameter, wanted: boo
 @click.option(
     "--behaviours",
     metavar="MODULE",
-    help="What the device does for its commands: a module, or a .py file, with `behaviours`.",
+    help="A module or .py file with `behaviours`: what the device does for its commands.",
 )
 @geometry_options
 @click.option("--quiet", is_flag=True, help="Print the port, but no traffic.")

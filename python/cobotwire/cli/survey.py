@@ -44,13 +44,13 @@ from cobotwire.transport.tapped import tapped
 WORKSPACE = (
     "The arm will make a few small slow motions, up to 5 degrees from where each joint is; a fact "
     "that is wrong may make one larger. Any key stops it. An arm that is off is switched on, and "
-    "off again at the end, and it sinks then. Is the workspace clear, the emergency stop within "
+    "off again at the end; then it sinks. Is the workspace clear, the emergency stop within "
     "reach, the gripper empty, and the arm supported?"
 )
 
 NOT_SHOWN = (
-    "a program may be {}, so the survey counts as one of a simulated arm and is no "
-    "evidence; if it is a real arm, stop with Ctrl-C and state it with --real-arm"
+    "{} may be a program, so the survey counts as one of a simulated arm and is no "
+    "evidence; if it is a real arm, press Ctrl-C and add --real-arm"
 )
 
 INCOMPLETE = (
@@ -78,7 +78,7 @@ VERDICTS = ("confirmed", "contradicted", "not seen")
     "recording",
     type=click.Path(),
     metavar="FILE",
-    help="Judge the survey that the page live/ recorded in FILE; nothing is sent.",
+    help="Evaluate the survey that the page live/ recorded in FILE; nothing is sent.",
 )
 @click.option(
     "--sign", type=click.Path(), metavar="KEY", help="Sign the file with this key (Ed25519)."
@@ -109,24 +109,26 @@ def survey(
     It takes at most ten minutes. At first only queries are sent, and what the arm reports is
     compared: encoders with angles, angles with coordinates, targets with readings. --settings
     also changes settings that a power cycle resets, and restores them. --allow-motion also moves
-    the arm, after a question; any key stops it. It switches an arm that is off on, and off at the
-    end: then the arm sinks.
+    the arm, after a question; any key stops it. If the arm is off, it is switched on, and off again
+    at the end: then it sinks.
 
-    A USB port shows that the arm is a real one. Of another port, such as socket://HOST:PORT,
-    or of a recording, --real-arm states it; without it, the survey counts as one of a simulated
-    arm.
+    A USB port shows that the arm is a real one. For another port, such as socket://HOST:PORT, and
+    for a recording, add --real-arm if the arm is real; without it, the survey counts as one of a
+    simulated arm.
 
     The file holds the recording and each fact with its bytes. It names no port, host or user;
     passwords are not requested, and serial numbers are replaced by their hash. If the survey is
-    interrupted, the same command with --continue goes on.
+    interrupted, the same command with --continue continues it.
 
-    Exit codes: 0 nothing is contradicted; 1 a fact is contradicted, or the arm is another one;
+    Exit codes: 0 nothing is contradicted; 1 a fact is contradicted, or the arm has another edition;
     3 the port failed; 130 interrupted.
     """
     recorded = None
     if recording is not None:
         if settings or allow_motion or simulated or port is not None:
-            message = "--from judges a recording: no URL and no --simulated, and queries only"
+            message = (
+                "--from evaluates a recording: omit URL, --simulated, --settings and --allow-motion"
+            )
             raise UsageError("from", message=message)
         edition, recorded = _recorded(recording, edition)
     table = editions.load(edition).TABLE
@@ -134,7 +136,7 @@ def survey(
     subject.validate()
     if not (simulated or real_arm or (port is not None and leads_to_device(port))):
         simulated = True
-        where = "at this port" if recorded is None else "what was recorded"
+        where = "what replies at this port" if recorded is None else "what was recorded"
         click.echo(fold(NOT_SHOWN.format(where), err=True), err=True)
     to = None if address is None else parse_address(address)
     if allow_motion:
@@ -142,7 +144,7 @@ def survey(
     signer = None if sign is None else load_signer(sign)
     earlier = _earlier(output, table, to) if resume else None
     if not resume and Path(output).exists():
-        message = f"{output} exists already; --continue goes on with an interrupted survey"
+        message = f"{output} exists already; --continue continues an interrupted survey"
         raise UsageError("output", output, message=message)
     if allow_motion and not yes_workspace_is_clear:
         _confirm_workspace()
@@ -203,7 +205,7 @@ def _recorded(path: str, edition: str) -> tuple[str, RecordedTransport]:
         codec = codec_of_interface(capture, 0, edition)
         warn_if_incomplete(capture)
     if not any(packet.direction == "sent" for packet in packets):
-        message = f"{path} holds no request, so there is nothing to judge"
+        message = f"{path} holds no request, so there is nothing to evaluate"
         raise UsageError("from", path, message=message)
     if not all(0 <= packet.time_ns < LATEST_NS for packet in packets):
         raise UsageError("from", path, message=f"{path} has times before 1970 or after 2262")
@@ -285,5 +287,5 @@ def _lines(found: Survey, content: dict[str, Any]) -> Iterator[str]:
     yield "facts: " + ", ".join(f"{verdicts[v]} {v}" for v in VERDICTS) + simulated
     hashed = ", ".join(found.hashed)
     yield "the file names no port, host or user; " + (
-        f"hashed are the replies to {hashed}" if hashed else "no serial number was reported"
+        f"the replies to {hashed} are hashed" if hashed else "no serial number was reported"
     )

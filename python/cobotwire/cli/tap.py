@@ -64,11 +64,11 @@ def tap(
     quiet: bool,
     as_json: bool,
 ) -> None:
-    """Pass everything between a program and the arm at URL, and show it, until Ctrl-C.
+    """Forward everything between a program and the arm at URL, and show it, until Ctrl-C.
 
     The first line of output is the port for the program: a pseudo-terminal, or with --tcp a URL.
-    Then comes a line for each frame and for noise. Nothing of this delays the program or the arm,
-    nothing is added, and every byte passes unchanged. While it records, cobotwire studio and
+    Then comes a line for each frame and for noise. Every byte passes unchanged, none is added, and
+    neither the program nor the arm waits for the output. While it records, cobotwire studio and
     monitor can watch: give them follow:FILE as URL.
 
     With --read-only, only whole requests that are queries, or that stop the arm, reach the arm.

@@ -16,7 +16,7 @@ else:
     import termios
     import tty
 
-# How often it is checked whether the block has ended, in seconds.
+# The interval, in seconds, at which the end of the block is noticed.
 POLL = 0.1
 
 
@@ -43,7 +43,7 @@ def interrupted_by_any_key(wanted: bool = True) -> Iterator[None]:
 
 @contextmanager
 def _single_keys() -> Iterator[None]:
-    """Pass keys on without waiting for a line; the terminal is as before at the end."""
+    """Pass keys on without waiting for a line; restore the terminal at the end."""
     if sys.platform == "win32":
         yield
         return
@@ -60,7 +60,7 @@ def _watch(ended: threading.Event) -> None:
     if sys.platform != "win32":
         while not ended.is_set():
             if select.select([sys.stdin], [], [], POLL)[0]:
-                # Only the signal to the thread itself ends its wait for the arm.
+                # Only a signal to the main thread itself ends its wait for the arm.
                 signal.pthread_kill(threading.main_thread().ident or 0, signal.SIGINT)
                 return
 

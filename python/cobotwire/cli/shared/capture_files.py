@@ -35,7 +35,7 @@ def recorded_size(paths: Iterable[str]) -> int | None:
 
 def time_text(time_ns: int) -> str:
     """Return a time in UTC, and in the time zone of this computer."""
-    # Systems know different ranges of local time.
+    # The range of local times differs between systems.
     with suppress(OverflowError, OSError, ValueError):
         time = _EPOCH + timedelta(microseconds=time_ns // 1000)
         return f"{time:%Y-%m-%d %H:%M:%S.%f} UTC (here: {time.astimezone():%H:%M:%S %z})"

@@ -10,7 +10,7 @@ import click
 from cobotwire.cli.shared.completers import complete_editions
 from cobotwire.editions import DEFAULT
 
-# Where the contexts of all groups and the verb keep the editions that were given.
+# The key of the given editions in ``meta``, which the contexts of groups and verb share.
 _GIVEN = "cobotwire.editions"
 
 

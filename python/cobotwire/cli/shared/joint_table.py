@@ -34,7 +34,7 @@ class JointTable:
     """
 
     def __init__(self, edition: Edition, arm: SimulatedArm, clock: RunningClock) -> None:
-        transport = MemoryTransport(arm.connect(lambda event, answer: None), clock)
+        transport = MemoryTransport(arm.connect(lambda event, reply: None), clock)
         self._arm = edition.CLIENT(transport, timeout=REPLY_SECONDS)
         self._clock, self._began = clock, clock()
         self._remark = arm.table.robot.geometry_remark or None

@@ -14,7 +14,7 @@ from cobotwire.transport.waiting import is_ready
 
 # Bytes that are kept for a reader that is slow: some thousand lines.
 KEPT = 1 << 20
-# A pipe that can be written takes this many bytes without waiting, or more.
+# A writable pipe takes at least this many bytes without waiting.
 PIECE = 512
 # At the end a slow reader may take this long for the lines that are left.
 CLOSING_SECONDS = 1.0

@@ -32,7 +32,7 @@ def _parse_workspace(
         return checked_ranges("workspace", ranges, len(AXES))
     except ValueError:
         message = (
-            f"{text!r} is no workspace; allowed: a range in mm for each of x, y and z, such as "
+            f"{text!r} is not a workspace; allowed: a range in mm for each of x, y and z, such as "
             "-200:200,-200:200,50:400; an empty range limits nothing"
         )
         raise click.BadParameter(message) from None
@@ -54,7 +54,7 @@ def motion_options(silence: float) -> Callable[[Verb], Verb]:
         click.option(
             "--allow-motion",
             is_flag=True,
-            help="Permit more than queries: to move and change the arm.",
+            help="Permit more than queries: also motions and changes of the arm.",
         ),
         click.option(
             "--max-speed",
@@ -74,7 +74,7 @@ def motion_options(silence: float) -> Callable[[Verb], Verb]:
             metavar="SECONDS",
             default=silence,
             show_default=True,
-            help="Stop a motion if its sender is silent for so long.",
+            help="Stop a motion if its sender is silent for this long.",
         ),
     )
 

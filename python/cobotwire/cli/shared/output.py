@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from rich.table import Table as Grid
 
 WIDTH_OF_FILES = 200
-# The terminal echoes ^C after the last row of a live table; there it must not begin another row.
+# Columns that a live table leaves free: the terminal echoes ^C after its last row.
 ECHO_COLUMNS = 3
 
 
@@ -49,7 +49,7 @@ def discard_output() -> None:
 def fold(text: str, *, err: bool = False) -> str:
     """Break long lines between words on a terminal, which would break them anywhere.
 
-    The rest of a line begins below its last column that starts in the left half of the terminal.
+    The following rows are indented to the last column that starts in the terminal's left half.
     """
     if not (sys.stderr if err else sys.stdout).isatty():
         return text

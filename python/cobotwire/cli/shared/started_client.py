@@ -16,7 +16,7 @@ PORT_WORD = "{port}"
 
 @contextmanager
 def started_client(command: str | None, port: str) -> Iterator[Callable[[], str | None]]:
-    """Run a client while the block runs; None: somebody else starts it.
+    """Run a client while the block runs; do nothing if ``command`` is None.
 
     Args:
         command: the program and its arguments; ``{port}`` stands for the port.

@@ -76,7 +76,7 @@ def remedies(computer: Computer, busy: Sequence[tuple[str, str]] = ()) -> list[R
 # The first words of --fix if no port is likely to lead to an arm.
 CABLE = Remedy(
     "cable",
-    "no arm is found: check that it has power, and that its USB cable carries data, since some "
+    "no arm was found: check that it has power, and that its USB cable carries data, since some "
     "only charge",
     "needed",
 )
