@@ -43,7 +43,7 @@ def open_input(
 ) -> ByteSource | CaptureReader:
     """Open what the arguments name: bytes in hex, a file, or ``-`` for standard input.
 
-    If ``format`` is None, it is detected. If the input then is of another program, ``notify`` is
+    If ``format`` is None, it is detected. If another program wrote the input, ``notify`` is then
     called with a sentence about it. Recordings, and files of other programs that state times or
     directions, are returned as recordings.
 

@@ -136,8 +136,7 @@ class CapturedColumns:
     ) -> CapturedRows:
         """Return the rows of one message; empty rows if it did not occur.
 
-        Rows of several streams are one after another, stream by stream, each in the order of its
-        stream.
+        The rows of one stream follow those of another, each in the order of its stream.
 
         Args:
             command: the name of the command.

@@ -36,7 +36,7 @@ SourcePath = str | os.PathLike[str]
 
 # Bytes to write at a time.
 _WRITE = 1 << 18
-# A limit that no time stamp reaches, forwards or, negated, backwards.
+# Later than any time stamp; negated, earlier than any.
 _ALWAYS = 1 << 200
 # Losses that are listed; all are counted.
 _LISTED = 20
@@ -68,7 +68,7 @@ def _output(
 
 
 def _as_stored(block: StoredBlock) -> bytes:
-    """Return a block that is no packet; a section no longer states its length."""
+    """Return a block that is not a packet; a section no longer states its length."""
     if block.kind != blocks.SECTION:
         return block.data
     return block.data[:16] + struct.pack("<q", blocks.SECTION_LENGTH_UNKNOWN) + block.data[24:]
@@ -86,8 +86,8 @@ def cut(
 ) -> tuple[Counter[str], str]:
     """Write the packets from ``begin_ns`` on and before ``end_ns`` that ``choose`` keeps.
 
-    Their bytes, times and comments do not change. All blocks that are no packets are kept, with
-    the statistics at the end, which describe the whole recording.
+    Their bytes, times and comments do not change. All other blocks are kept, also the statistics at
+    the end, which describe the whole recording.
 
     Returns:
         The number of packets that are ``kept``, the number that are not, by reason, and what the
@@ -300,7 +300,7 @@ class Repair:
     Attributes:
         packets: how many packets were kept.
         losses: the first ranges of bytes that were lost.
-        lost_ranges, lost_bytes: how many there are of all.
+        lost_ranges, lost_bytes: the numbers of all lost ranges and bytes.
         marked: the number of interfaces that are marked as finished now.
     """
 

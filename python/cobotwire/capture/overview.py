@@ -84,8 +84,10 @@ class Overview:
         rejected: frames with a value that the edition does not allow; they are not among the
             messages.
         times: the range of times of messages, rejected frames and noise; None for an empty
-        recording. gaps: the longest pauses, longest first. gap_count, gap_ns: the number of all
-        pauses, and their sum. missing: what the recording lacks at its end; empty if it is whole.
+            recording.
+        gaps: the longest pauses, longest first.
+        gap_count, gap_ns: the number of all pauses, and their sum.
+        missing: what the recording lacks at its end; empty if it is whole.
         error: why it cannot be read to its end.
     """
 

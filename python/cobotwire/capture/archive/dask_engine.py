@@ -73,7 +73,7 @@ class DaskEngine:
             with client:
                 yield client
             return
-        # A worker has one thread, so that the workers share no interpreter's lock and no memory.
+        # A worker has one thread, so that workers share neither memory nor an interpreter's lock.
         with (
             self._distributed.LocalCluster(
                 self._workers,

@@ -58,7 +58,8 @@ class PieceExport(NamedTuple):
                     output.write(batch)
                 files = output.publish()
         if not store.has(f"{self.folder}/{RUNNING}"):
-            # The export failed meanwhile, and removed the hidden folder before this was in it.
+            # The export has failed meanwhile, and removed the hidden folder; these files came
+            # later.
             store.remove(self.folder)
         report.files = [
             file._replace(path=Path(file.path).relative_to(local).as_posix()) for file in files

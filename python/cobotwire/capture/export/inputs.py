@@ -26,7 +26,7 @@ class Input:
     Attributes:
         url: a path, an fsspec URL, or ``-``.
         size: the number of stored bytes; None if it is not known.
-        listed: whether a folder or a pattern named it, and not its own name.
+        listed: whether a folder or a pattern led to it, not its own name.
     """
 
     url: str
@@ -35,7 +35,7 @@ class Input:
 
     @property
     def robot(self) -> str:
-        """The name of its robot: of its folder ``robot=NAME``, or its own name without endings."""
+        """The name of its robot: of a folder ``robot=NAME``, else its own without extensions."""
         url = self.url.replace(os.sep, "/")
         if found := _HIVE_ROBOT.search(url):
             return found[1]

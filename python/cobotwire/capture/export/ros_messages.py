@@ -27,10 +27,10 @@ JOINT_TRAJECTORY = "trajectory_msgs/msg/JointTrajectory"
 # The frame of reference of poses: the foot of the arm; and the frame at its end.
 BASE, END = "base", "end"
 
-_MOMENT = "int32 sec\nuint32 nanosec\n"
+_TIME = "int32 sec\nuint32 nanosec\n"
 _DEFINITIONS = {
-    "builtin_interfaces/msg/Duration": _MOMENT,
-    "builtin_interfaces/msg/Time": _MOMENT,
+    "builtin_interfaces/msg/Duration": _TIME,
+    "builtin_interfaces/msg/Time": _TIME,
     "std_msgs/msg/Header": "builtin_interfaces/Time stamp\nstring frame_id\n",
     "geometry_msgs/msg/Vector3": "float64 x\nfloat64 y\nfloat64 z\n",
     "geometry_msgs/msg/Quaternion": "float64 x\nfloat64 y\nfloat64 z\nfloat64 w\n",

@@ -1,4 +1,4 @@
-"""Read the ends of a time range."""
+"""Parse the start and the end of a time range."""
 
 from __future__ import annotations
 

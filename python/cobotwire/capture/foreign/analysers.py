@@ -81,8 +81,8 @@ def _sigrok(file: ForeignFile) -> Iterator[Chunk]:
     """Yield the data of annotations of the UART decoder, as PulseView and sigrok-cli export them.
 
     PulseView writes ``109-179 UART: RX data: FE``, by its setting ``%s %d: %c: %1``
-    (``decodetrace.cpp``); sigrok-cli writes ``109-179 uart-1: FE`` or ``uart-1: FE``. Samples are
-    no times: the file does not state their rate.
+    (``decodetrace.cpp``); sigrok-cli writes ``109-179 uart-1: FE`` or ``uart-1: FE``. The numbers
+    of samples are not times: the file does not state their rate.
     """
     problems = 0
     for line in file.lines():

@@ -36,7 +36,7 @@ def _read(file: ForeignFile) -> Iterator[Chunk]:
     for line in file.lines():
         size += len(line.text)
         if held[0] and not _CLOSE.search(line.text) and size < LONGEST_LINE:
-            # The middle of a list. Joining it now would take time that grows with its square.
+            # The middle of a list. Joining the text at each line would take quadratic time.
             held.append(line.text)
             continue
         first = first if held[0] else line

@@ -120,14 +120,14 @@ _CANDUMP = re.compile(
     # As in a log: 123#DEADBEEF, 123#R for a remote request, and 123##1DEADBEEF for CAN FD.
     rf" (?P<log>{_ID})#"
     r"(?P<packed>R[0-9a-f]?|#[0-9a-f](?:[0-9a-f]{2}){0,64}|(?:[0-9a-f]{2}){0,8})"
-    r"(?: (?P<log_way>[RT]))?|"
+    r"(?: (?P<log_direction>[RT]))?|"
     # As on the screen: 123   [4]  DE AD BE EF   '....'
-    rf"(?: +(?P<way>[RT]X)(?: [ A-Z-]){{2}})? +(?P<id>{_ID}) +\[ ?(?P<size>[0-9]{{1,2}})\]"
+    rf"(?: +(?P<direction>[RT]X)(?: [ A-Z-]){{2}})? +(?P<id>{_ID}) +\[ ?(?P<size>[0-9]{{1,2}})\]"
     r"(?: +(?P<remote>remote request)| +(?P<spaced>(?:[0-9a-f]{2} ?)+?)(?: +'.*')?)?"
     r") *",
     re.IGNORECASE,
 )
-_WAYS: dict[str, Direction] = {"T": "sent", "R": "received"}
+_DIRECTIONS: dict[str, Direction] = {"T": "sent", "R": "received"}
 
 
 def _candump(file: ForeignFile) -> Iterator[Chunk]:
@@ -151,10 +151,10 @@ def _candump(file: ForeignFile) -> Iterator[Chunk]:
         data = bytes.fromhex(packed[2:] if packed[:1] == "#" else packed or found["spaced"] or "")
         if found["size"] and int(found["size"]) != len(data):
             file.reject(line, f"{found['size']} bytes, as the line says")
-        way = (found["log_way"] or found["way"] or " ")[0].upper()
+        letter = (found["log_direction"] or found["direction"] or " ")[0].upper()
         stream = f"{found['bus']} {(found['log'] or found['id']).upper()}"
         if data:
-            yield Chunk(data, _WAYS.get(way, "unknown"), time_ns, stream)
+            yield Chunk(data, _DIRECTIONS.get(letter, "unknown"), time_ns, stream)
     if remote:
         file.notes.append(f"left out {counted(remote, 'remote request')}, which have no data")
 

@@ -14,14 +14,14 @@ from cobotwire.capture.writer import CaptureWriter
 from cobotwire.protocol.errors import UnreadableInput
 
 LATEST = (1 << 63) - 1
-# An earlier time, in nanoseconds since 1970, is no date.
+# An earlier time, in nanoseconds since 1970, is not a date.
 DATED = 10**18
 
 
 def recording_of(reader: Reader, file: ForeignFile) -> Iterator[bytes]:
     """Yield the blocks of a pcapng file; each stream of the chunks is an interface.
 
-    If the first chunk has no time, none has, and the application of the recording ends with
+    If the first chunk has no time, no chunk has one, and the application of the recording ends with
     ``UNTIMED``. If its time is before 2001, the times count from an unknown start, such as a
     trigger. Then the name of the application ends with ``UNDATED``.
     """

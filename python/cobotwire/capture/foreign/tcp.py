@@ -39,11 +39,11 @@ class _Connection:
 
     def __init__(self, name: str) -> None:
         self.name, self.parts = name, 1
-        self.sent = _Way(self, "sent")
-        self.received = _Way(self, "received")
+        self.sent = _Flow(self, "sent")
+        self.received = _Flow(self, "received")
 
 
-class _Way:
+class _Flow:
     """One direction of a connection.
 
     Attributes:
@@ -105,24 +105,24 @@ class Connections:
 
     def take(self, segment: Segment) -> Iterator[Chunk]:
         """Take the next segment of the capture; yield the bytes that are certain by now."""
-        if not (ways := self._ways(segment)):
+        if not (flows := self._flows(segment)):
             return
-        way, back = ways
+        flow, opposite = flows
         if segment.flags & SYN:
-            yield from self._opened(way, segment.number + 1 & _MASK)
+            yield from self._opened(flow, segment.number + 1 & _MASK)
             return
         # Bytes that the other end acknowledges were not lost on the network, but by the capture.
-        while back.waiting and back.ahead(segment.acknowledged) > _first(back):
-            yield from self._skip(back)
+        while opposite.waiting and opposite.ahead(segment.acknowledged) > _first(opposite):
+            yield from self._skip(opposite)
         if not segment.payload:
             return
         self._empty = False
-        if way.first is None:
-            way.begin(segment.number)
-        way.keep(segment)
-        yield from self._released(way)
-        if len(way.waiting) > MOST_WAITING:
-            yield from self._skip(way)
+        if flow.first is None:
+            flow.begin(segment.number)
+        flow.keep(segment)
+        yield from self._released(flow)
+        if len(flow.waiting) > MOST_WAITING:
+            yield from self._skip(flow)
 
     def end(self) -> Iterator[Chunk]:
         """Take the end of the capture; yield the rest.
@@ -131,15 +131,15 @@ class Connections:
             UnreadableInput: no segment belongs to the ports.
         """
         for connection in self._found.values():
-            for way in (connection.sent, connection.received):
-                yield from self._rest(way)
+            for flow in (connection.sent, connection.received):
+                yield from self._rest(flow)
         if self._repeated:
             repeated = counted(self._repeated, "byte")
             self._file.notes.append(f"left out {repeated} that TCP sent more than once")
         if self._empty:
             raise UnreadableInput(self._file.name, self._nothing())
 
-    def _ways(self, segment: Segment) -> tuple[_Way, _Way] | None:
+    def _flows(self, segment: Segment) -> tuple[_Flow, _Flow] | None:
         """Return the direction of a segment and the opposite direction; None for other ports."""
         _, source, source_port, target, target_port, *_, payload = segment
         if target_port in self._file.ports:
@@ -156,8 +156,8 @@ class Connections:
                 raise UnreadableInput(self._file.name, f"has more than {most}")
             self._found[key] = _Connection("{}:{} from {}:{}".format(*key))
         found = self._found[key]
-        ways = found.sent, found.received
-        return ways if key[0] == target and key[1] == target_port else ways[::-1]
+        flows = found.sent, found.received
+        return flows if key[0] == target and key[1] == target_port else flows[::-1]
 
     def _nothing(self) -> str:
         wanted = " or ".join(map(str, self._file.ports))
@@ -170,40 +170,40 @@ class Connections:
             f"choose the arm's, such as --tcp-port {others[0][0]}"
         )
 
-    def _opened(self, way: _Way, number: int) -> Iterator[Chunk]:
+    def _opened(self, flow: _Flow, number: int) -> Iterator[Chunk]:
         """Begin a direction at its SYN; the SYN may be repeated, or begin another connection."""
-        if way.first is None:
-            way.begin(number)
-        elif way.first != number:
-            yield from self._rest(way)
-            way.begin(number, another=True)
-            way.divide()
+        if flow.first is None:
+            flow.begin(number)
+        elif flow.first != number:
+            yield from self._rest(flow)
+            flow.begin(number, another=True)
+            flow.divide()
 
-    def _released(self, way: _Way) -> Iterator[Chunk]:
+    def _released(self, flow: _Flow) -> Iterator[Chunk]:
         """Yield the kept bytes that are now next in the stream."""
-        while way.waiting and (ahead := _first(way)) <= 0:
-            segment = way.waiting.pop(way.next + ahead & _MASK)
+        while flow.waiting and (ahead := _first(flow)) <= 0:
+            segment = flow.waiting.pop(flow.next + ahead & _MASK)
             data = segment.payload[-ahead:]
             self._repeated += len(segment.payload) - len(data)
             if data:
-                yield way.chunk(segment, data)
+                yield flow.chunk(segment, data)
 
-    def _skip(self, way: _Way) -> Iterator[Chunk]:
+    def _skip(self, flow: _Flow) -> Iterator[Chunk]:
         """Skip the bytes before the first segment that waits; what follows is another stream."""
-        lost = _first(way)
-        way.begin(way.next + lost & _MASK)
-        before = way.stream
-        way.divide()
+        lost = _first(flow)
+        flow.begin(flow.next + lost & _MASK)
+        before = flow.stream
+        flow.divide()
         self._file.missing.append(
-            f"lacks {counted(lost, 'byte')} of {before}; what follows them is {way.stream}"
+            f"lacks {counted(lost, 'byte')} of {before}; what follows them is {flow.stream}"
         )
-        yield from self._released(way)
+        yield from self._released(flow)
 
-    def _rest(self, way: _Way) -> Iterator[Chunk]:
-        while way.waiting:
-            yield from self._skip(way)
+    def _rest(self, flow: _Flow) -> Iterator[Chunk]:
+        while flow.waiting:
+            yield from self._skip(flow)
 
 
-def _first(way: _Way) -> int:
+def _first(flow: _Flow) -> int:
     """Return how many bytes are missing before the first segment that waits."""
-    return min(map(way.ahead, way.waiting))
+    return min(map(flow.ahead, flow.waiting))

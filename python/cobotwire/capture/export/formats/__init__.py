@@ -30,9 +30,9 @@ OpenSink = Callable[[BinaryIO, Any, ExportPlan], Sink]
 
 
 class Format(NamedTuple):
-    """A format: its endings, the package that it needs, and whether each message has its file.
+    """A format: its file extensions, its package, and whether each message has a file of its own.
 
-    Files whose name the export chooses get the first ending.
+    If the export chooses the name of a file, the name has the first extension.
     """
 
     name: FormatName
@@ -68,7 +68,7 @@ FORMATS: dict[FormatName, Format] = {
 
 
 def format_of(output: str) -> FormatName | None:
-    """Return the format that the ending of a file names; None if it names none."""
+    """Return the format of a file extension; None if no format has it."""
     for format in FORMATS.values():
         if output.endswith(format.suffixes):
             return format.name
