@@ -1,8 +1,8 @@
 """Measure an export of one large raw file on a Dask cluster of one worker and of two.
 
-Each run starts its own processes. The runs of one and two workers take turns, because a busy
-machine would favour either. For each it prints the time from the first task to the last file, the
-processor time of each worker, which another program's load changes less, and the peak memory.
+Each run starts its own processes. Runs with one and two workers alternate, so that other load on
+the machine favours neither. The bench prints the time from the first task to the last file, the
+processor time of each worker (other load changes it less), and the peak memory.
 
     python bench/archive_workers.py [--megabytes 2000] [--rounds 3]
 """
@@ -65,7 +65,7 @@ def measure(inputs: Inputs, workers: int, folder: Path, piece_bytes: int) -> Run
         ) as cluster,
         Client(cluster) as client,
     ):
-        # Importing is no part of the work.
+        # Imports are not timed.
         client.run(prepare)
         engine = DaskEngine(cluster.scheduler_address)
         before = client.run(time.process_time)

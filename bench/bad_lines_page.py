@@ -177,7 +177,7 @@ def _cases(
 
 
 def _ends(runs: Mapping[str, list[Row]], limit: float, first: str) -> str:
-    """Return how the runs ended: if they differ, after ``first``, then the others with labels."""
+    """Return each outcome of the runs; if they differ, with labels: ``first``, then their own."""
     alike: dict[str, tuple[list[str], list[Row]]] = {}
     for label, rows in runs.items():
         for row in rows:

@@ -93,7 +93,7 @@ class Turn:
 
 
 def _round_trips(url: str, simulated: str) -> None:
-    """Time each candidate. It opens the port for its turn, untimed, since open ports are locked."""
+    """Time each candidate. It holds the port, which is locked then, only for its turn."""
     candidates: dict[str, Callable[[str, Call], Turn]] = {
         "simulated arm": lambda _, floor: _bare(simulated, floor),
         "blocking": _blocking,

@@ -1,7 +1,7 @@
 """Poll 500 arms at 20 Hz in one process, then 1,000: lateness, CPU time and memory.
 
 The arms are TCP connections to the process of `asyncio_calls.py`, which compares a call with bare
-asyncio. A sample is late by the time from the begin of its period until the consumer has it. On
+asyncio. A sample is late by the time from the beginning of its period until the consumer has it. On
 Linux, one core is the client's and another the arms'. The CPU time is measured in the client's
 process. Memory is the growth of the process for each open arm with a stream, and the allocations of
 Python for it (tracemalloc, measured with few arms).
@@ -74,7 +74,7 @@ def main() -> None:
         for count in options.arms:
             rate, rarely = options.rate, options.rare_collections
             result = asyncio.run(_run(url, count, rate, options.seconds, rarely))
-            # More arms stay right, but may be late.
+            # With more arms than that, samples may be late.
             met &= _show(result, count, rate) or count > LIMITED_ARMS
         traced = asyncio.run(_traced(url))
     print(f"Python's objects take {traced / 1024:.0f} KiB an arm")

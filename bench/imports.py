@@ -31,7 +31,6 @@ LAYER_LIMIT = 1.3
 # The most MiB of an edition on average, of all else together, and of the wheel.
 EDITION_SIZE, OTHER_SIZE, WHEEL_SIZE = 0.5, 10.0, 3.0
 MIB = 1 << 20
-# How long a process may take, compared with one that only starts Python.
 START = "import sys; sys.argv[1:] = {!r}; from cobotwire.cli import main; main()"
 MEMORY = """
 class Memory:
@@ -49,6 +48,7 @@ class Arm(MyCobot280):
 Arm()"""
 OPEN_ASYNC = f"from cobotwire import AsyncMyCobot280{MEMORY}AsyncMyCobot280(Memory())"
 OUR_CLIENT, THE_LAYER = "import and open a client", "import and open it through the layer"
+# Programs, and how many times as long as a bare interpreter each may take.
 STARTS: dict[str, tuple[str, float | None]] = {
     "cobotwire --version": (START.format(["--version"]), 8.0),
     "cobotwire --help": (START.format(["--help"]), 8.0),

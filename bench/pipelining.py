@@ -34,7 +34,7 @@ while True:
 
 
 def main() -> None:
-    """Measure, and print the time of both ways."""
+    """Measure, and print the time of two requests in turns and at once."""
     for kind in ("one after another", "independently"):
         with responder(RESPONDER, kind) as url:
             descriptor = os.open(url, os.O_RDWR | os.O_NOCTTY)

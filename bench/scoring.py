@@ -59,7 +59,7 @@ class Verdict:
 
 def legal_heads(table: Table, listening: Listening) -> Legal:
     """Return ``LEN CMD`` of every variant that the table allows in this direction."""
-    variants = [variant for way in ("request", "reply") for variant in variants_of(table, way)]
+    variants = [variant for each in ("request", "reply") for variant in variants_of(table, each)]
     if listening != "both":
         variants = variants_of(table, listening)
     return {bytes([table.frame.length(variant.size), id]) for id, variant in variants}

@@ -1,12 +1,12 @@
-"""Measure how evenly the joints of a simulated 280 move along a path, by three ways to send it.
+"""Measure how evenly the joints of a simulated 280 move along a path that is sent by three methods.
 
     python bench/smoothness.py [--plot docs/plots/smoothness.svg]
 
 The arm moves in stepped time; the speeds of its joints are computed every 5 ms. A loop of
 ``move_angles`` waits at each point; ``send_angles`` without waiting fills the arm's queue;
-``follow`` sends setpoints. The share is the lowest ratio, inside the path, of a speed to the lowest
-speed that was commanded in the 0.3 s before. Inside the path is where at least 80 % of the highest
-speed is commanded before and after.
+``follow`` sends setpoints. The share is the lowest ratio of a speed to the lowest speed that was
+commanded in the 0.3 s before it. The start and the end of the path do not count: those are before
+the first and after the last command of at least 80 % of the highest speed.
 """
 
 from __future__ import annotations
@@ -99,7 +99,7 @@ def queue(arm: MyCobot280, speed: int) -> None:
     arm.wait_until_reached(PATH[-1])
 
 
-def run(way: Callable[[MyCobot280, int], None], speed: int, lag: float = 0.0) -> Run:
+def run(method: Callable[[MyCobot280, int], None], speed: int, lag: float = 0.0) -> Run:
     """Let an arm move along the path; return how it moved."""
     watched, sent = Watched(lag=lag), list[tuple[float, tuple[float, ...]]]()
 
@@ -109,7 +109,7 @@ def run(way: Callable[[MyCobot280, int], None], speed: int, lag: float = 0.0) ->
             sent.append((watched(), message.fields["angles"]))
 
     with MyCobot280(watched.transport, trace=listen) as arm:
-        way(arm, speed)
+        method(arm, speed)
     commanded = [
         (after, max(abs(b - a) for a, b in zip(one, two)) / (after - before))
         for (before, one), (after, two) in pairwise(sent)
@@ -123,20 +123,20 @@ def main() -> None:
     parser = argparse.ArgumentParser()
     parser.add_argument("--plot", type=Path)
     plot: Path | None = parser.parse_args().plot
-    print("| way | speed | lag of the joints | seconds | standstills | lowest share |")
+    print("| method | speed | lag of the joints | seconds | standstills | lowest share |")
     print("|---|--:|--:|--:|--:|--:|")
-    for way, speeds, lags in (
+    for method, speeds, lags in (
         (loop, (30,), (0.0,)),
         (queue, (30,), (0.0,)),
         (follow, (10, 30, 60), (0.0, 0.05)),
     ):
         for speed in speeds:
             for lag in lags:
-                done = run(way, speed, lag)
-                share = f"{done.share:.0%}" if way is follow else "0%"
+                done = run(method, speed, lag)
+                share = f"{done.share:.0%}" if method is follow else "0%"
                 print(
-                    f"| {way.__name__} | {speed} % | {lag * 1000:.0f} ms | {done.watched():.1f} | "
-                    f"{done.watched.standstills()} | {share} |"
+                    f"| {method.__name__} | {speed} % | {lag * 1000:.0f} ms | "
+                    f"{done.watched():.1f} | {done.watched.standstills()} | {share} |"
                 )
     if plot is not None:
         _draw(plot)
@@ -155,8 +155,8 @@ def _draw(path: Path) -> None:
     with mpl.rc_context({"svg.hashsalt": "cobotwire", "font.family": "DejaVu Sans"}):
         figure = Figure(figsize=(8, 3.2), layout="constrained", facecolor="white")
         axes = figure.add_subplot()
-        for way, name, look in looks:
-            watched = run(way, 30).watched
+        for method, name, look in looks:
+            watched = run(method, 30).watched
             axes.plot(watched.times, watched.speeds, label=name, **look)
         axes.set(xlabel="seconds", ylabel="fastest joint, °/s", xlim=(0, None), ylim=(0, None))
         axes.spines[["top", "right"]].set_visible(False)

@@ -19,7 +19,7 @@ from streams import stream_a
 
 ANGLES = [1.5, -20.25, 30.0, 0.01, 0.29, -179.99]
 CHUNK = 4096
-# The calls that a round of a row with one frame makes.
+# The calls in a round, for rows with one frame.
 MANY = 20_000
 # The frames that a large stream repeats: too many for any cache to learn.
 REPEATED = 1_000_000

@@ -1,6 +1,6 @@
-"""Measure the time that ``cobotwire tap`` adds to a round trip, beside watchers that are busy.
+"""Measure the time that ``cobotwire tap`` adds to a round trip while watchers keep it busy.
 
-Two processes reply at once, each on a pty of its own. The first is opened directly, the second
+Two processes reply immediately, each on a pty of its own. The first is opened directly, the second
 through a tap, which records and prints, and which a monitor watches. Round trips to both alternate,
 at most 1,000 a second, so that other load of the machine affects both. The measurement is repeated
 while the tap's watching process is stopped. The bench exits with 1 if the tap adds more than the
@@ -45,7 +45,7 @@ def main() -> int:
         os.kill(watching, signal.SIGSTOP)
         results.append(("watching process stopped", _alternating(direct, url)))
         os.kill(watching, signal.SIGCONT)
-    print(f"round trips in us, {TRIPS} each way   direct 50 %   99 %   tap 50 %   99 %   added")
+    print(f"round trips in us, {TRIPS} per port   direct 50 %   99 %   tap 50 %   99 %   added")
     met = True
     for name, times in results:
         (direct50, direct99), (tap50, tap99) = map(_quantiles, times)

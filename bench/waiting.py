@@ -1,4 +1,4 @@
-"""Measure how soon a waited motion is noticed to have ended, and how many queries that takes.
+"""Measure how soon a client notices that a motion has ended, and how many queries that takes.
 
 A simulated arm on a pty sends its replies at 115,200 baud, a few milliseconds after each request.
 The delay starts when the arm is near enough to its target to report that it has reached it. For an

@@ -16,27 +16,27 @@ def main(port: str, seconds: float = 10.0) -> list[Angles]:
     with MyCobot280(port) as arm:
         # The arm has no brakes: hold it before its servos let go.
         arm.release_all_servos()
-        way = teach(arm, seconds)
-        print("recorded", len(way), "poses")
+        path = teach(arm, seconds)
+        print("recorded", len(path), "poses")
         arm.power_on()  # hold the arm where it is now
-        for pose in way:
+        for pose in path:
             arm.move_angles(pose, SPEED)
         print("replayed; the arm is at", arm.get_angles())
-    return way
+    return path
 
 
 def teach(arm: MyCobot280, seconds: float) -> list[Angles]:
     """Sample the angles for some seconds; return the poses that differ, and the last one."""
-    way: list[Angles] = []
+    path: list[Angles] = []
     with arm.stream(GetAngles(), rate=RATE) as stream:
         for sample in stream:
             angles = sample[GetAngles()]
             last = sample.period >= seconds * RATE
-            if last or not way or distance(angles, way[-1]) >= STEP:
-                way.append(angles)
+            if last or not path or distance(angles, path[-1]) >= STEP:
+                path.append(angles)
             if last:
-                return way
-    return way
+                return path
+    return path
 
 
 def distance(one: Sequence[float], other: Sequence[float]) -> float:

@@ -25,7 +25,7 @@ ATTEMPTS, MOST_NAMED = 3, 8
 
 
 class _Open(Exception):
-    """The next query has no outcome yet; the argument is what its node says of it."""
+    """The next query has no outcome yet; the argument is its node."""
 
 
 def trees() -> list[dict[str, Any]]:
@@ -48,7 +48,7 @@ def _tree(among: Sequence[str], outcomes: tuple[Evidence, ...]) -> dict[str, Any
         return _tree(among, (*outcomes, outcome))
 
     silent = after(NO_REPLY)
-    # Later, an illegal reply shows as little as none.
+    # After the first reply, an illegal reply shows no more than silence does.
     first = all(outcome.text == NO_REPLY for outcome in outcomes)
     illegal = after("an illegal reply") if first else silent
     limits = _limits(node, silent) if node["given"] else [None]

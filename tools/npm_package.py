@@ -3,8 +3,8 @@
     python tools/npm_package.py            # build, pack, install, run programs; print the sizes
     python tools/npm_package.py --build    # only build it, and the module of the decoder page
 
-The program of the docs runs against ``cobotwire sim``, also as TypeScript, and so does a module of
-an own protocol with hostile texts. If something fails, it prints that, and exits with 1.
+The program of the docs runs against ``cobotwire sim``. A module for another protocol, whose spec
+has hostile texts, is type-checked and loaded. If something fails, it prints that, and exits with 1.
 """
 
 # ruff: noqa: S603  (node, npm, cargo and our own programs are started)
@@ -56,7 +56,7 @@ def run(folder: Path, *words: str) -> str:
 
 @cache
 def missing() -> str:
-    """Return what is not installed to build the package, and how to install it; empty: nothing."""
+    """Return which tool of the build is not installed, and how to install it; empty if all are."""
     for tool in ("node", "npm", "cargo"):
         if not shutil.which(tool):
             return f"needs {tool}: not installed"
@@ -70,10 +70,10 @@ def build(found: Callable[[], list[Edition]] = lambda: editions(ROOT)) -> Path:
     """Write what the package contains: editions, compiled sources, the session in WebAssembly.
 
     Return its folder. Do nothing if no source has changed. ``found`` returns the checked editions;
-    to load them takes seconds.
+    loading them takes seconds.
     """
     with (PACKAGE / "package.json").open() as lock:
-        # Tests of several processes build it.
+        # Tests in several processes build it.
         fcntl.flock(lock, fcntl.LOCK_EX)
         if _fresh():
             return PACKAGE
@@ -89,7 +89,7 @@ def build(found: Callable[[], list[Edition]] = lambda: editions(ROOT)) -> Path:
         words = ("--quiet", "--profile", "wasm", "--target", TARGET)
         run(ROOT, "cargo", "build", "--package", "cobotwire-wasm", *words)
         target = ROOT / os.environ.get("CARGO_TARGET_DIR", "target")
-        # Never half a file, since other processes may load it.
+        # Replaced as a whole, since other processes may load it.
         shutil.copy(target / TARGET / "wasm/cobotwire_wasm.wasm", PACKAGE / "dist/new.wasm")
         (PACKAGE / "dist/new.wasm").replace(PACKAGE / WASM)
         write(Target(DECODER, {PurePosixPath("module.js"): decoder_module()}, alone=False))
@@ -160,9 +160,9 @@ def first_program(folder: Path) -> str:
 
 
 def own_protocol(folder: Path) -> str:
-    """Check and load the module of an own protocol whose texts try to leave their comments."""
+    """Check and load the module of a protocol whose texts try to leave their comments."""
     lamp = (ROOT / "tests/codegen/lamp.yaml").read_text()
-    # Docs in braces end at a brace, so the others are enough.
+    # Docs inside braces share a line with other keys; those on lines of their own are enough.
     doc = re.compile(r"^( *doc: )[^{}\n]*$", re.M)
     (folder / "lamp.yaml").write_text(doc.sub(lambda found: f"{found[1]}'{HOSTILE}'", lamp))
     words = ("build", "lamp.yaml", "--out", "lamp", "--typescript", "own")

@@ -1,8 +1,8 @@
 """Package the crates, unpack them in a clean folder, and use them there as a stranger would.
 
-The program of the README runs against ``cobotwire sim``. A program with a generated module of its
-own protocol, with hostile texts, compiles. Every feature compiles alone, and all together; the
-documentation has no warning. It prints what failed, and ends with 1 then.
+The program of the README runs against ``cobotwire sim``. A program with the generated module of a
+protocol that has hostile texts compiles. Every feature compiles alone, and all together; the
+documentation has no warning. If something fails, this script prints that, and exits with 1.
 """
 
 # ruff: noqa: S603  (cargo and our own programs are started)
@@ -82,9 +82,9 @@ def first_program(folder: Path, crates: Path, target: str) -> None:
 
 
 def own_protocol(folder: Path, crates: Path, target: str) -> None:
-    """Compile the module of an own protocol whose texts try to leave their comments."""
+    """Compile the module of a protocol whose texts try to leave their comments."""
     lamp = (ROOT / "tests/codegen/lamp.yaml").read_text()
-    # Docs in braces end at a brace, so the others are enough.
+    # Docs inside braces share a line with other keys; those on lines of their own are enough.
     doc = re.compile(r"^( *doc: )[^{}\n]*$", re.M)
     (folder / "lamp.yaml").write_text(doc.sub(lambda found: f"{found[1]}'{HOSTILE}'", lamp))
     text = 'mod lamp;\nfn main() {\n    println!("{:?}", lamp::edition().is_ok());\n}\n'

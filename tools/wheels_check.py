@@ -1,4 +1,4 @@
-"""Build the distributions, install them (without LeRobot) as a user does, and run the pages.
+"""Build and install the distributions as a user does (not LeRobot), and run the pages of the docs.
 
     python tools/wheels_check.py [PYTHON ...]    # make wheels-check PYTHONS="python3.11 ..."
 

@@ -135,7 +135,7 @@ def _run(words: tuple[str, ...], folder: Path, prints: list[str]) -> None:
     missing = [each for each in prints if each not in ended.stdout]
     if ended.returncode or missing:
         output = f"{ended.stdout}{ended.stderr}".strip()
-        lacks = f", and printed nothing like {missing}" if missing else ""
+        lacks = f", and did not print {missing}" if missing else ""
         raise Wrong(f"`{shown}` ended with {ended.returncode}{lacks}:\n{output}")
     print(f"ok    {shown}", flush=True)
 

@@ -66,9 +66,9 @@ def test_teach_and_replay_repeats_the_path_of_the_hand(arms: _Arms) -> None:
     arm, port = arms.new(rate=10.0, powered=True)
     last = (40.0, -30.0, 10.0, 0.0, 0.0, 20.0)
     arm.lead([(5.0, (40.0, 0.0, 0.0, 0.0, 0.0, 0.0)), (15.0, last)])
-    way = load("teach_and_replay")["main"](port, 2.0)
-    assert len(way) > 3
-    assert way[-1] == pytest.approx(last, abs=0.1)
+    path = load("teach_and_replay")["main"](port, 2.0)
+    assert len(path) > 3
+    assert path[-1] == pytest.approx(last, abs=0.1)
     assert arm.state.angles.target(0.0) == pytest.approx(last, abs=0.1)
 
 
