@@ -1,9 +1,9 @@
 """Parses plain YAML in C, which is faster; the parser in Python decides everything else.
 
 The C parser is optional. It follows YAML 1.1 and has other messages. So its result is used only for
-text that both parsers read alike: one document that is a mapping or a list. It has no mistakes,
-directives, anchors, aliases or tags, and each empty value has quotes.
-``tests/codegen/test_c_parser.py`` compares both parsers.
+text that both parsers read alike: one document, a mapping or a list, without mistakes, directives,
+anchors, aliases and tags, in which each empty value has quotes. ``tests/codegen/test_c_parser.py``
+compares both parsers.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ except ImportError:
 
 # Text that the C parser reads differently: tabs, byte order marks, line breaks of YAML 1.1, a
 # comment right after | or >.
-_READ_OTHERWISE = re.compile(r"[\t\ufeff\x85\u2028\u2029]|[|>][-+0-9]*#")
+_READ_DIFFERENTLY = re.compile(r"[\t\ufeff\x85\u2028\u2029]|[|>][-+0-9]*#")
 _RESOLVER = YAML(typ="safe", pure=True).resolver
 _TAG = "tag:yaml.org,2002:"
 # Nodes share these tags: a tag caches its text, which takes long to make.
@@ -44,16 +44,16 @@ _SEQUENCE, _MAPPING = Tag(suffix=f"{_TAG}seq"), Tag(suffix=f"{_TAG}map")
 
 
 class _Unsure(Exception):
-    """The text has something that only the parser in Python may validate."""
+    """Only the parser in Python can validate the text."""
 
 
 def plain_root(text: str, deepest: int) -> Node | None:
     """Return the root node of plain YAML text that is nested at most ``deepest`` deep.
 
-    Nodes have no end marks. None means: use the parser in Python, which knows the rest of YAML, the
-    limits, and the places and words of mistakes.
+    Nodes have no end marks. Return None if the parser in Python must read the text: it knows the
+    rest of YAML, checks the limits and reports mistakes.
     """
-    if c_library is None or _READ_OTHERWISE.search(text):
+    if c_library is None or _READ_DIFFERENTLY.search(text):
         return None
     try:
         return _Composer(c_library.CParser(text), deepest).root()

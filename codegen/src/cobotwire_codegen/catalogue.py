@@ -14,7 +14,7 @@ import anycrc
 
 from cobotwire_codegen.errors import nearest
 
-# The widths in bytes of the checks that are no CRC; the first one is the default.
+# The widths in bytes of the checks that are not CRCs; the first one is the default.
 WIDTHS = {
     "sum": (1, 2, 4),
     "inverted-sum": (1, 2, 4),
@@ -59,9 +59,9 @@ def value_shown(name: str) -> str:
 
 
 def check_hint(given: str, others: Iterable[str]) -> str:
-    """Return a hint for an unknown check; ``others`` are the checks that are no CRC.
+    """Return a hint for an unknown check; ``others`` are the checks that are not CRCs.
 
-    The CRC with the most similar name can be another one, so spelling alone suggests no CRC.
+    The CRC with the most similar name may be the wrong one, so the hint does not suggest it.
     """
     value = "the CRC of the ASCII digits 123456789"
     if named := _KNOWN_AS.get(_plain(given)):

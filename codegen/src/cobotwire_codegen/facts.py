@@ -153,8 +153,8 @@ def facts_of_pages(text: str) -> dict[str, set[str]]:
         if row.startswith("= "):
             edition = row[2:].partition(" ")[0]
         elif match := _ROW.fullmatch(row):
-            way, request, reply, command = match.groups()
-            stated = zip(DIRECTIONS, (way == ">" or request, way == "<" or reply))
+            arrow, request, reply, command = match.groups()
+            stated = zip(DIRECTIONS, (arrow == ">" or request, arrow == "<" or reply))
             for direction in (each for each, size in stated if size and size != "-"):
                 found.setdefault(edition, set()).update(_framed(command, direction))
     return found

@@ -1,7 +1,7 @@
-"""Decides which characters the strings of a spec may contain. The only such rule.
+"""Decides which characters the strings of a spec may contain.
 
-``load`` applies it to every value and every key of every file, so no key of the language can miss
-it. What a name may be is stated by its kind, in ``language/names.py``.
+This is the only such rule: ``load`` applies it to every value and every key of every file. Names
+have further rules, in ``language/names.py``.
 """
 
 from __future__ import annotations

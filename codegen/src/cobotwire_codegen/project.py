@@ -108,8 +108,8 @@ def _library(root: Path, found: Sequence[Edition]) -> Library | None:
 def second_sources(root: Path, found: Sequence[Edition]) -> dict[str, Sources]:
     """Return what the maker's library and pages confirm of each edition.
 
-    If an edition has a command unchanged from its base, they confirm the same facts as there. So
-    does the library, unless it has its own class for the edition.
+    For a command that an edition inherits unchanged, they confirm what they confirm of the base. If
+    the library has a class for the edition, only that class counts.
     """
     library, pages = _in_library(root, found), root / "spec" / "public_pages.txt"
     stated = facts_of_pages(pages.read_text(encoding="utf-8")) if pages.is_file() else {}
@@ -229,7 +229,7 @@ def products(root: Path, found: list[Edition], folders: Iterable[str] = PRODUCTS
 
 
 def _sharings(found: list[Edition]) -> dict[str, Sharing]:
-    """Return each edition beside its base, bases first."""
+    """Return each edition with its base, bases first."""
     made: dict[str, Sharing] = {}
     left = {edition.name: edition for edition in found}
     while left:

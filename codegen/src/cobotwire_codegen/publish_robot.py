@@ -12,7 +12,7 @@ Record = dict[str, Any]
 
 
 def robot_parts(edition: Edition) -> Record:
-    """Return the parts that the edition states; those that it does not are None or empty."""
+    """Return the parts of the robot; what the edition does not state is None or empty."""
     robot = edition.robot
     return {
         "geometry": robot.geometry and _geometry(robot.geometry),
@@ -38,7 +38,7 @@ def _geometry(geometry: Geometry) -> Record:
 
 
 def is_coupled(geometry: Geometry) -> bool:
-    """Return whether any link is not turned by exactly the joint of its own number."""
+    """Return whether a link is turned by anything but the joint of its own number."""
     usual = [((number, Fraction(1)),) for number, _ in enumerate(geometry.links, 1)]
     return [link.turned_by for link in geometry.links] != usual
 

@@ -75,7 +75,7 @@ def enclose(
     direction: Literal["request", "reply"] = "request",
     address: int | None = None,
 ) -> bytes:
-    """Return the frame around data bytes; without ``address`` it has the first, if frames have one.
+    """Return the frame around data bytes; ``address`` is by default the first that frames have.
 
     Raises:
         ValueError: the id or LEN is too large.

@@ -47,8 +47,8 @@ def packets(file: bytes) -> Iterator[Packet]:
             port, _, _, held = struct.unpack_from(f"{order}IIII", block, 8)
             if held > size - 32:
                 raise ValueError("a packet of the recording is longer than its block")
-            way = _direction(block[28 + held + -held % 4 : size - 4], order)
-            yield Packet(first + port, way, bytes(block[28 : 28 + held]))
+            direction = _direction(block[28 + held + -held % 4 : size - 4], order)
+            yield Packet(first + port, direction, bytes(block[28 : 28 + held]))
         at += size
 
 

@@ -38,8 +38,8 @@ def known_variants(edition: Edition, direction: str) -> set[tuple[int, int]]:
     return {
         (command.id, sum(field.type.size for field in variant))
         for command in edition.commands
-        for way, variants in (("request", command.requests), ("reply", command.replies))
-        if way in directions
+        for each, variants in (("request", command.requests), ("reply", command.replies))
+        if each in directions
         for variant in variants
     }
 

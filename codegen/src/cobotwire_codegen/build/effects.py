@@ -66,14 +66,14 @@ def build_effect(node: Node | None, command: Command, problems: list[Problem]) -
 
     None if neither is the case.
     """
-    said = _of_role(command)
+    implied = _of_role(command)
     if node is None:
-        return said
+        return implied
     what = f"the effect of {command.name}"
-    if said is not None:
-        message = f"the role {command.role} of {command.name} says already what the command does"
+    if implied is not None:
+        message = f"the role {command.role} of {command.name} already states what the command does"
         problems.append(Problem(node.place, "bad-effect", message))
-        return said
+        return implied
     return _effect(node, command, what, problems)
 
 

@@ -27,7 +27,7 @@ _DIRECTIONS = (b"<", b">", b"!")
 
 
 def beyond_language(frame: Frame, stuffing: bool | None) -> Iterator[tuple[str, Limit]]:
-    """Yield features of frames that a spec cannot state, each with the sign of it.
+    """Yield features of frames that a spec cannot state, each with what shows it.
 
     ``stuffing`` is the spec's statement about byte stuffing.
     """

@@ -42,7 +42,7 @@ def packaged_edition(base: str, place: Place) -> Path:
 
 
 def packaged_hint(name: str) -> str:
-    """Return a hint for a base that is no file, if ``cobotwire`` ships an edition of its name."""
+    """Return a hint for a base that does not exist, if ``cobotwire`` ships its edition."""
     edition = name.removesuffix(".yaml")
     known = edition in _shipped(_folders("cobotwire"))
     return f"; did you mean cobotwire:{edition}?" if known else ""

@@ -57,10 +57,10 @@ def _read_back(
     for at in dict.fromkeys((effect.at, ())):
         found = []
         for query in queries:
-            asked = query.effect
-            if asked is None or asked.assumed or asked.at != at:
+            query_effect = query.effect
+            if query_effect is None or query_effect.assumed or query_effect.at != at:
                 continue
-            pairs = tuple(_pairs(written, command, query, asked, encoder_zero))
+            pairs = tuple(_pairs(written, command, query, query_effect, encoder_zero))
             # A query without an index can only confirm fixed values.
             if pairs and (at == effect.at or all(isinstance(raw, int) for _, raw in pairs)):
                 found.append((len(reported(query)) - len(pairs), query, pairs))
@@ -107,14 +107,18 @@ def _pairs(
     written: Sequence[_Written],
     command: Command,
     query: Command,
-    asked: Effect,
+    query_effect: Effect,
     encoder_zero: int | None,
 ) -> Iterator[tuple[str, str | int]]:
     """Yield each field of a query that shows what is written, with the argument or raw value."""
     fields, arguments = reported(query), given(command)
-    shown = [(next(iter(fields), ""), asked.what)] if asked.verb == "list" else asked.values
-    if asked.verb not in ("reports", "list") or (
-        asked.verb == "list" and asked.option("report") != "count"
+    shown = (
+        [(next(iter(fields), ""), query_effect.what)]
+        if query_effect.verb == "list"
+        else query_effect.values
+    )
+    if query_effect.verb not in ("reports", "list") or (
+        query_effect.verb == "list" and query_effect.option("report") != "count"
     ):
         return
     for name, state in shown:
@@ -145,7 +149,7 @@ def _units(type: Type) -> list[tuple[str, bool]]:
 
 
 def _raw(field: Field | None, value: object, encoder_zero: int | None) -> int | None:
-    """Return the raw value that a field reports for a value; None if it is no single number."""
+    """Return the raw value that a field reports for a value; None if it is not a single number."""
     if field is None or len(field.type.parts) != 1:
         return None
     if _units(field.type) == [("tick", False)] and value == 0:

@@ -28,12 +28,12 @@ _SINGLE = ("by", "about", "direction")
 
 
 def effects_fit(edition: Edition) -> Iterator[Problem]:
-    """Report effects that name an unknown state, field or case, or that no query may have."""
+    """Report effects that name an unknown state, field or case, or that change state in a query."""
     states = {state.name: state for state in edition.states}
     for command in edition.commands:
         effect = command.effect
         if effect is not None and command.event:
-            message = f"{command.name} is an event, which no request asks for, so it has no effect"
+            message = f"{command.name} is an event: without a request it has no effect"
             yield Problem(effect.place, "bad-effect", message)
         elif effect is not None and not effect.by_role:
             for message in _wrong(effect, command, states):
@@ -81,9 +81,9 @@ def _wrong_keys(effect: Effect) -> Iterator[str]:
     """Yield which keys of an effect are missing, or do not fit together."""
     keys = {name for name, _ in effect.options} | ({"at"} if effect.at else set())
     if effect.verb == "moves":
-        ways = _MOTIONS[effect.what]
-        if tuple(sorted(keys - {"speed", "keeps"})) not in map(tuple, map(sorted, ways)):
-            yield f"`moves: {effect.what}` needs {' or '.join(map(_listed, ways))}, and no more"
+        allowed = _MOTIONS[effect.what]
+        if tuple(sorted(keys - {"speed", "keeps"})) not in map(tuple, map(sorted, allowed)):
+            yield f"`moves: {effect.what}` needs {' or '.join(map(_listed, allowed))}, and no more"
         if "keeps" in keys and (effect.what != "end" or "until" not in keys):
             yield "only `moves: end` with `until` has the key `keeps`"
         if effect.what == "end" and "to" in keys and not isinstance(effect.option("to"), str):

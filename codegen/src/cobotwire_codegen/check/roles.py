@@ -34,7 +34,7 @@ def _is_picker(field: Field) -> bool:
 
 
 def _is_target(field: Field) -> bool:
-    """Return whether a field can be a target: it has a selector, or a unit that is no speed."""
+    """Return whether a field can be a target: it has a selector, or a unit that is not a speed."""
     if field.selector:
         return True
     type = field.type

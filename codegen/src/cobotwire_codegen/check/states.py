@@ -25,7 +25,9 @@ def states_fit(edition: Edition) -> Iterator[Problem]:
     for state in edition.states:
         for each in state.each:
             if each not in types:
-                message = f"{state.name} is for each {each}, which is no type{nearest(each, types)}"
+                message = (
+                    f"{state.name} is for each {each}, which is not a type{nearest(each, types)}"
+                )
                 yield Problem(state.place, "unknown-type", message)
         if state.name in BUILT_IN:
             message = f"{state.name} is the arm's own state, which no edition declares"

@@ -105,7 +105,7 @@ def _show(home: Path, before: Edition, after: Edition, given: Submitted, entry: 
         f"vectors; not confirmed by any arm: {left[0]} facts before, {left[1]} now"
     )
     if given.table not in ("", sha256(edition_json(with_used_types(before)).encode()).hexdigest()):
-        click.echo("The arm was compared with another state of the edition.")
+        click.echo("The arm was compared with another version of the edition.")
     for name, reason in list(entry.refused.items())[:_MOST_REFUSED]:
         click.echo(f"not taken: {name}: {reason}")
     if len(entry.refused) > _MOST_REFUSED:

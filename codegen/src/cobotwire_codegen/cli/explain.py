@@ -20,7 +20,7 @@ from cobotwire_codegen.errors import nearest
     "file",
     default=DEFAULT_EDITION,
     show_default=True,
-    help="The edition whose commands can be explained.",
+    help="The edition of the commands that can be explained.",
 )
 def explain(word: str | None, file: str) -> None:
     """Explain WORD: a problem code, a key of the spec's language, or a command of the edition.
@@ -44,7 +44,9 @@ def explain(word: str | None, file: str) -> None:
     commands = {command.name: command for command in edition.commands}
     if word not in commands:
         hint = _hint(word, [*CODES, *keys, *commands])
-        raise click.UsageError(f"{word} is no problem code, key or command of {edition.name}{hint}")
+        raise click.UsageError(
+            f"{word} is not a problem code, key or command of {edition.name}{hint}"
+        )
     click.echo(describe_command(edition, commands[word]))
 
 

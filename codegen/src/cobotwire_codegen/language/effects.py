@@ -13,7 +13,7 @@ _PLAIN = {"type": ["number", "string", "boolean", "array"]}
 _STATES = either(
     "object", {"additionalProperties": {"type": "string"}, "minProperties": 1}, {"type": "string"}
 )
-_AT = "The arguments that choose one value of a state that has one for each index."
+_AT = "The arguments that choose one of a state's values, if it has one for each index."
 
 
 class State(Record):
@@ -22,7 +22,7 @@ class State(Record):
     type = optional(_TYPE, "The type of its value. Left out: a text.")
     each = optional(
         Names(LOWER),
-        "There is a value for each index; the type of the index, or a list of types. `joint` "
+        "The type of the index, or a list of types: there is a value for each index. `joint` "
         "stands for each joint of the arm.",
     )
     start = optional(
@@ -99,7 +99,7 @@ class Moves(_AtIndex):
 class Zeroes(_AtIndex):
     """The present position of a part becomes its zero."""
 
-    zeroes = required(Word(ZEROED, ZEROED.values()), "Whose position becomes zero.")
+    zeroes = required(Word(ZEROED, ZEROED.values()), "Which part.")
     EXAMPLE = "{zeroes: joint, at: joint}"
 
 

@@ -66,7 +66,7 @@ class Record:
     EXAMPLE: ClassVar[str] = ""
     # Pairs of keys that exclude each other.
     EXCLUSIVE: ClassVar[tuple[tuple[str, str], ...]] = ()
-    # Limits of the language, by the key (known or unknown) with which a spec may try to go beyond.
+    # Limits of the language, by a key that a spec may use in an attempt to exceed the limit.
     LIMITS: ClassVar[ReadOnly[str, str]] = MappingProxyType({})
 
     @classmethod
@@ -163,7 +163,7 @@ class Part(Shape[Node | None]):
         self.words = f"a mapping ({link(record)})"
 
     def read(self, node: Node, subject: str, note: Note) -> Node | None:
-        """Return the node; a reader of its own reads it."""
+        """Return the node; another reader reads it."""
         return node
 
     def schema(self) -> Schema:

@@ -52,7 +52,7 @@ Editors that use the YAML language server complete and check a file whose first 
 `# yaml-language-server: $schema=PATH/schema.json`; `cobotwire-gen schema` writes the schema.
 """
 _LIMITS = """\
-`cobotwire-gen check` refuses these with a link to this chapter, where it can recognise them."""
+Where `cobotwire-gen check` recognises one of these, it refuses it with a link to this chapter."""
 STATE = "State and effects"
 _CHAPTERS: tuple[tuple[str, tuple[Described, ...]], ...] = (
     ("Editions", (WholeEdition, DeltaEdition, Acks, *ROBOT_RECORDS)),

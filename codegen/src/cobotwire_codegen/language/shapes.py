@@ -138,7 +138,7 @@ class Word(Shape[str]):
 
 
 class Catalogued(Word):
-    """A check; the list is too long to show, and only the words that are no CRC have docs."""
+    """A check; the list is too long to show, and only the words that are not CRCs have docs."""
 
     def __init__(self, known: Iterable[str], docs: Iterable[str]) -> None:
         super().__init__(known)

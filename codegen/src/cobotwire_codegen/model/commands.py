@@ -13,7 +13,7 @@ from cobotwire_codegen.model.types import Member
 
 
 class NoId(int):
-    """The id of a command whose spec states none: a stand-in, 0, that is no duplicate."""
+    """A stand-in, 0, for an id that the spec does not state; it never counts as a duplicate."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -23,8 +23,8 @@ class Field:
     When another field, the ``selector``, decides the type, ``cases`` holds a type for each value of
     the selector, and ``type`` is the first of them. A field with ``const`` always holds that raw
     value; the caller does not give it. ``default`` are the raw values of an argument that the
-    caller leaves out. ``counts`` names the list whose elements the field counts, which is no
-    argument and no result either.
+    caller leaves out. A field with ``counts`` holds the number of elements of that list; it is
+    neither an argument nor a result.
     """
 
     place: Place
@@ -44,7 +44,7 @@ Variant = tuple[Field, ...]
 
 
 def named_fields(variants: tuple[Variant, ...]) -> dict[str, tuple[Field, ...]]:
-    """Return the fields of a message that are no constants, those of the longest variant first.
+    """Return the fields of a message that are not constants, those of the longest variant first.
 
     A name has a field for each variant that contains it.
     """

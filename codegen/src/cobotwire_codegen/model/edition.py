@@ -96,7 +96,7 @@ class Edition:
     states: tuple[State, ...] = ()
     """What the arm keeps."""
     gone: tuple[tuple[str, str], ...] = ()
-    """Commands of the base that this edition takes away, each with a hint that says where."""
+    """Commands of the base that this edition removes or renames, with a hint that says where."""
     bases: tuple[str, ...] = ()
     """The names of the base, of its base, and so on."""
     root: Path = field(default=Path(), compare=False, repr=False)

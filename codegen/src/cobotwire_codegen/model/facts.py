@@ -54,7 +54,7 @@ class Dispute:
 
 @dataclass(frozen=True, slots=True)
 class ObservedFact:
-    """What an arm showed of a fact, COMMAND/PART/ASPECT; ``confirmed``: what the edition states."""
+    """What an arm showed of a fact, COMMAND/PART/ASPECT; ``confirmed``: it is as stated."""
 
     place: Place
     fact: str

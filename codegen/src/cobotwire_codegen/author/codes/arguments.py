@@ -8,7 +8,7 @@ EXPLANATIONS = (
     Explanation(
         "same-arguments",
         "Two variants of a message have the same arguments.",
-        "The arguments of a call choose the variant. Constants are no arguments, so nothing would "
+        "The arguments of a call choose the variant. Constants are not arguments, so nothing would "
         "choose between the two.",
         "Rename a field in one variant, or make one a command of its own with `shares_id`.",
         "request_variants:\n"

@@ -25,7 +25,7 @@ EXPLANATIONS = (
         "bad-state",
         "A state has the name of one that every arm has.",
         "The simulator computes that state, so a declaration would have no effect.",
-        "Remove the declaration, or name the state otherwise.",
+        "Remove the declaration, or rename the state.",
         "state:\n  moving: {type: flag}",
         "state:\n  level: {type: angle, start: 10}",
     ),
