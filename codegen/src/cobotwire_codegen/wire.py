@@ -135,7 +135,7 @@ def remainder(crc: Crc, data: bytes) -> int:
 def _field(field: Field, values: dict[str, object]) -> bytes:
     type, value = field.type, values[field.name]
     if field.selector:
-        # The check reports a selector that is no field of the message.
+        # The check reports a selector that is not a field of the message.
         picked = str(values.get(field.selector))
         type = next((case for member, case in field.cases if member.name == picked), field.type)
     if field.const is not None:

@@ -89,7 +89,7 @@ def _can_count(field: Field, listed: Field) -> bool:
 
 
 def build_field(node: Node, direction: Direction, outer: Reader, types: Types) -> Field:
-    """Return one field whose type does not depend on another field."""
+    """Return one field with a type that does not depend on another field."""
     [field] = _variant((node,), direction, outer, types)
     return field
 

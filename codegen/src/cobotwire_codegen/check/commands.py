@@ -37,7 +37,7 @@ def replies_cover_command(edition: Edition) -> Iterator[Problem]:
                 message = f"a reply of {command.name} has no data in the place of CMD"
                 yield Problem(command.place, "bad-frame", message)
         if command.ack:
-            message = f"an acknowledgement of {command.name} cannot be told apart without CMD"
+            message = f"an acknowledgement of {command.name} cannot be distinguished without CMD"
             yield Problem(command.place, "bad-frame", message)
 
 

@@ -10,7 +10,7 @@ from cobotwire_codegen.errors import Problem, nearest
 from cobotwire_codegen.language.words import BUILT_IN, SETTABLE
 from cobotwire_codegen.model import Command, Edition, Effect, Field, State
 
-# The keys of an effect whose value is an argument that every request has.
+# The keys of an effect that name an argument; every request must have it.
 ARGUMENTS = ("by", "about", "direction", "append", "from", "near")
 
 
@@ -22,7 +22,7 @@ _MOTIONS = {
     "gripper": (("to",),),
 }
 _LIST = ("append", "take", "clear", "report")
-# The kinds of types that have one number, and the keys whose argument has such a type.
+# The kinds of types that have one number, and the keys that name an argument of these kinds.
 _NUMBERS = ("quantity", "enum", "flag")
 _SINGLE = ("by", "about", "direction")
 

@@ -16,7 +16,7 @@ Values = dict[str, object]
 
 
 def vectors_hold(edition: Edition) -> Iterator[Problem]:
-    """Report vectors whose values encode to another frame."""
+    """Report vectors with values that encode to another frame."""
     commands = {command.name: command for command in edition.commands}
     for vector in edition.vectors:
         command = commands.get(vector.command)
@@ -69,7 +69,7 @@ def _shown(value: object) -> str:
 
 
 def text_vectors_hold(edition: Edition) -> Iterator[Problem]:
-    """Report text vectors whose values encode to another text."""
+    """Report text vectors with values that encode to another text."""
     texts = {command.name: command.text for command in edition.commands}
     for vector in edition.vectors:
         text = texts.get(vector.command)

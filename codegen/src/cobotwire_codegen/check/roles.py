@@ -155,7 +155,7 @@ def _needs(edition: Edition) -> dict[str, tuple[str, Callable[[Command], bool]]]
         ),
         "moving": ("it must take no arguments and reply with a flag", _reads_flag),
         "powered": (
-            "it must take no arguments and reply with a flag, or an enum of which only 1 is true",
+            "it must take no arguments and reply with a flag, or an enum in which only 1 is true",
             _reads_power,
         ),
         "paused": ("it must take no arguments and reply with a flag", _reads_flag),

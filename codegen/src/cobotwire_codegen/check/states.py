@@ -112,7 +112,7 @@ def _reported_states(effect: Effect) -> list[str]:
 
 
 def values_fit(edition: Edition) -> Iterator[Problem]:
-    """Report fields whose values a state cannot have, and indices that it lacks."""
+    """Report fields with values that a state cannot have, and indices that it lacks."""
     types = {type.name: type for type in edition.types}
     for command in edition.commands:
         effect = command.effect

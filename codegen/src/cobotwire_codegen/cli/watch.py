@@ -58,7 +58,7 @@ def _generate(words: tuple[str, ...], root: str) -> None:
 
 
 def _folders(words: tuple[str, ...], root: str) -> Iterator[Path]:
-    """Return the folders whose files belong to the spec."""
+    """Return the folders with files of the spec."""
     if not words:
         return iter([Path(root) / "spec"])
     try:

@@ -21,7 +21,7 @@ _SEVERITY = {level: index for index, level in enumerate(LEVELS)}
 def diff(old: Edition, new: Edition) -> tuple[Finding, ...]:
     """Return the findings from one edition to another, each once, the most severe first.
 
-    Places in files are not compared. The result is empty exactly if the editions are equal.
+    Places in files are not compared. The result is empty if and only if the editions are equal.
     """
     known, named = named_types(old, new)
     found = [

@@ -89,7 +89,7 @@ def _checked_out(revision: str) -> Iterator[Path]:
             # tarfile has the filter since 3.11.4; before that, git's own archive is trusted.
             if hasattr(tarfile, "data_filter"):
                 archive.extraction_filter = tarfile.data_filter
-            archive.extractall(folder)  # noqa: S202  (made by git a moment ago)
+            archive.extractall(folder)  # noqa: S202  (made by git just now)
         yield Path(folder)
 
 

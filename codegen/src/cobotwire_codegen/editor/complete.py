@@ -10,7 +10,7 @@ from cobotwire_codegen.language.shapes import Known, Word, YesNo
 from cobotwire_codegen.language.units import UNITS
 from cobotwire_codegen.model import Edition
 
-# Keys whose values are names of commands, types and vectors.
+# Keys with names of commands, types and vectors as values.
 _COMMANDS = {"command", "commands", "change", "remove", "rename", "alias", "shares_id", "except"}
 _COMMANDS |= {"agrees_with", "withdraw_acks"}
 

@@ -75,7 +75,7 @@ def _block_path(lines: list[str], line: int, before: str) -> list[str]:
 
 
 def _inner_path(before: str) -> tuple[list[str], str]:
-    """Return the keys opened on the line before the position, and the key whose value is there."""
+    """Return the keys opened on the line before the position, and the key of the value there."""
     opened: list[str] = []
     key = ""
     for bracket, name, _ in _INNER.findall(re.sub(r"^\s*(?:-\s+)*", "", before)):

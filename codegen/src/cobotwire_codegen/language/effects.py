@@ -166,7 +166,7 @@ EFFECT = Choice(
 
 
 class ByCase(Record):
-    """A command whose effect depends on an argument."""
+    """An effect that depends on an argument."""
 
     selector = required(Name(LOWER), "The argument that decides.")
     cases = required(

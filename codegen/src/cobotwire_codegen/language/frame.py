@@ -39,8 +39,8 @@ class Frame(Record):
     header = required(Hex(), "The one to four bytes that start a frame.")
     length_counts = required(
         Texts(),
-        "The parts whose bytes LEN counts, of `header`, `address`, `length`, `command`, `data`, "
-        "`check` and `footer`; for instance `[command, data, footer]`.",
+        "LEN counts the bytes of these parts. Choose from `header`, `address`, `length`, "
+        "`command`, `data`, `check` and `footer`; for instance `[command, data, footer]`.",
     )
     maximum_data = required(
         Whole(0, 4096, "bad-frame"), "The largest number of data bytes in a message."

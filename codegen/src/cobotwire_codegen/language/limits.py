@@ -123,7 +123,7 @@ OTHER_ACK = Limit(
     "UBX-ACK-ACK and UBX-ACK-NAK",
     "An acknowledgement carries the id of its request: this alone says to which request it belongs "
     "when several are under way. State a message that acknowledges all requests as a command with "
-    "`event: true`, whose fields name the request. `ack_within` does not wait for it; a program "
+    "`event: true`; its fields name the request. `ack_within` does not wait for it; a program "
     "waits with `events()` and compares the fields.",
     "state it as an event",
     ("acknowledged_by", "ack_by", "ack_id", "nack", "nack_id", "reply_id", "reply_command"),

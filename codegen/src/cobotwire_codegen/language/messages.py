@@ -46,8 +46,8 @@ class _Field(Record):
     )
     count = optional(
         Text(),
-        "An earlier field that counts the elements of this one, whose size varies; callers do not "
-        "pass it. Left out: the elements go to the end of the data.",
+        "An earlier field that counts the elements of this one, if their number varies; callers do "
+        "not pass it. Left out: the elements go to the end of the data.",
         "",
     )
 
@@ -89,7 +89,7 @@ class RequestField(_Typed, _Field):
 
 
 class SelectedRequestField(_Selected, _Field):
-    """An argument whose type depends on the value of another argument, its selector."""
+    """An argument with a type that depends on the value of another argument, its selector."""
 
     EXAMPLE = """\
 name: value
@@ -108,7 +108,7 @@ class ReplyField(_Typed, _ReplyField):
 
 
 class SelectedReplyField(_Selected, _ReplyField):
-    """A part of a reply whose type depends on the value of another part, its selector."""
+    """A part of a reply with a type that depends on the value of another part, its selector."""
 
 
 ANY_REQUEST_FIELD = Choice("any_request_field", {"selector": SelectedRequestField}, RequestField)

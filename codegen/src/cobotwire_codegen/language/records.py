@@ -243,7 +243,7 @@ class Named(Shape[tuple[Entry, ...]]):
         return found
 
     def schema(self) -> Schema:
-        """Return an object whose values are the content."""
+        """Return an object with the content as values."""
         content = self.content
         inner = content.schema() if isinstance(content, Shape) else ref(content.definition())
         least = {"minProperties": 1} if self.empty else {}

@@ -48,7 +48,7 @@ every key of each mapping. `spec/README.md` explains where the project keeps its
 An edition can contain the content of a file instead of its name, so a small protocol fits into one
 file; `cobotwire-gen init NAME` writes one to start with. `cobotwire-gen check` reports every
 problem as `file:line:column: code: message`, and `cobotwire-gen explain CODE` explains a code.
-Editors that use the YAML language server complete and check a file whose first line is
+Editors that use the YAML language server complete and check a file if its first line is
 `# yaml-language-server: $schema=PATH/schema.json`; `cobotwire-gen schema` writes the schema.
 """
 _LIMITS = """\

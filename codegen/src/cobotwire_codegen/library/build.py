@@ -173,7 +173,7 @@ def _method(
     called = reader.get(spec.calls) or name
     command = commands.get(called)
     if command is None:
-        message = f"{reader.what} calls {called}, which is no command{nearest(called, commands)}"
+        message = f"{reader.what} calls {called}, which is not a command{nearest(called, commands)}"
         reader.problem("unknown-command", message)
         return None
     ours = _as_ours(name, command)
@@ -195,7 +195,7 @@ def _method(
 def _ranges(
     reader: Reader, key: Key[tuple[str, ...]], parameters: tuple[str, ...]
 ) -> tuple[tuple[str, str, str], ...]:
-    """Return the ranges of parameters; note those that are no ranges, or of no parameter."""
+    """Return the ranges of parameters; note wrong ranges and unknown parameters."""
     found = []
     for text in reader.get(key):
         match = _RANGE.match(text)

@@ -199,7 +199,7 @@ def environment(templates: Path | None = None) -> Environment:
     """
     if templates is None:
         return _shipped()
-    # Made anew each time: the user of `watch` may add a template.
+    # Made again each time: the user of `watch` may add a template.
     return _environment(
         SandboxedEnvironment, FileSystemLoader(templates), PackageLoader("cobotwire_codegen")
     )

@@ -84,7 +84,7 @@ EXPLANATIONS = (
         "`count` names no earlier field that can count the elements, or two fields extend to the "
         "end of the data.",
         "A decoder reads the number of elements before the elements.",
-        "Name an earlier whole number whose range includes the sizes.",
+        "Name an earlier whole number with a range that includes the sizes.",
         "- {name: data, type: blob, count: missing}",
         "- {name: data, type: blob, count: size}",
     ),

@@ -113,7 +113,7 @@ def group_of(field: Field) -> Value | Bits | None:
 
 
 def kind_of(number: dict[str, Any]) -> Kind:
-    """Return how a number that is no byte of a text is stored."""
+    """Return how a number outside a text is stored."""
     if number.get("encoding") != "float":
         return "RAW"
     return "FLOAT" if number["width"] == 4 else "DOUBLE"

@@ -12,7 +12,7 @@ from cobotwire_codegen.model import Chars, Field, Listed, Octets, Variant
 def fixed_sizes(variant: Variant, most: int) -> list[Variant]:
     """Return a variant for each number of elements of its lists, with at most ``most`` bytes.
 
-    A variant whose size does not vary is returned as it is.
+    A variant of a fixed size is returned as it is.
     """
     varying = [field for field in variant if field.type.varies]
     if not varying:
