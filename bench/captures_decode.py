@@ -82,7 +82,7 @@ def decode(folder: Path, megabytes: int) -> tuple[dict[str, Timed], list[Target]
 def _decode(path: str, options: DecodeOptions) -> None:
     with Path(os.devnull).open("w") as nowhere, redirect_stdout(nowhere):
         source = open_input([path], "raw", print)
-        assert isinstance(source, ByteSource), "raw bytes are no recording"
+        assert isinstance(source, ByteSource), "raw bytes are not a recording"
         decoded_bytes.decode_bytes(source, options, StreamCounts())
 
 
@@ -90,7 +90,7 @@ def _frame_by_frame(path: str) -> None:
     codec = codecs.load(TABLE, "native")
     with Path(os.devnull).open("w") as nowhere, redirect_stdout(nowhere):
         source = open_input([path], "raw", print)
-        assert isinstance(source, ByteSource), "raw bytes are no recording"
+        assert isinstance(source, ByteSource), "raw bytes are not a recording"
         decoded_bytes.diagnose_bytes(codec, source, OPTIONS, StreamCounts())
 
 

@@ -76,7 +76,7 @@ IMPORTS = {
 def main() -> None:
     """Measure, and print the ratios with their limits."""
     with tempfile.TemporaryDirectory() as cache:
-        # Compiled modules are kept, as for users, also where a test environment turns that off.
+        # Compiled modules are kept, as for users, even if the environment turns that off.
         os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
         os.environ["PYTHONPYCACHEPREFIX"] = cache
         _times()

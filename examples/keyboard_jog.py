@@ -68,7 +68,7 @@ def keys() -> Iterator[str]:
     try:
         while True:
             ready, _, _ = select.select([terminal], [], [], SHOW_SECONDS)
-            # Not by sys.stdin, whose buffer would hold keys that select() no longer sees.
+            # Not by sys.stdin: its buffer would hold keys that select() no longer sees.
             yield os.read(terminal, 1).decode(errors="replace") if ready else ""
     finally:
         termios.tcsetattr(terminal, termios.TCSADRAIN, before)

@@ -3,8 +3,8 @@
     python tools/npm_package.py            # build, pack, install, run programs; print the sizes
     python tools/npm_package.py --build    # only build it, and the module of the decoder page
 
-The program of the docs runs against ``cobotwire sim``. A module for another protocol, whose spec
-has hostile texts, is type-checked and loaded. If something fails, it prints that, and exits with 1.
+The program of the docs runs against ``cobotwire sim``. A module for a protocol with hostile texts
+is type-checked and loaded. If something fails, it prints that, and exits with 1.
 """
 
 # ruff: noqa: S603  (node, npm, cargo and our own programs are started)
@@ -160,7 +160,7 @@ def first_program(folder: Path) -> str:
 
 
 def own_protocol(folder: Path) -> str:
-    """Check and load the module of a protocol whose texts try to leave their comments."""
+    """Check and load the module of a protocol with texts that try to leave their comments."""
     lamp = (ROOT / "tests/codegen/lamp.yaml").read_text()
     # Docs inside braces share a line with other keys; those on lines of their own are enough.
     doc = re.compile(r"^( *doc: )[^{}\n]*$", re.M)

@@ -188,7 +188,7 @@ def json_documents(old: Path, new: Path) -> Iterator[Finding]:
 
 
 def captures(old: Path, new: Path) -> Iterator[Finding]:
-    """Read the recordings of earlier releases, all of which must still be there."""
+    """Read the recordings of earlier releases; all must still be there."""
     kept = {path.name: path for path in (new / RECORDED).glob("*.pcapng")}
     for path in sorted((old / RECORDED).glob("*.pcapng")):
         where = f"{RECORDED}/{path.name}"

@@ -82,7 +82,7 @@ def first_program(folder: Path, crates: Path, target: str) -> None:
 
 
 def own_protocol(folder: Path, crates: Path, target: str) -> None:
-    """Compile the module of a protocol whose texts try to leave their comments."""
+    """Compile the module of a protocol with texts that try to leave their comments."""
     lamp = (ROOT / "tests/codegen/lamp.yaml").read_text()
     # Docs inside braces share a line with other keys; those on lines of their own are enough.
     doc = re.compile(r"^( *doc: )[^{}\n]*$", re.M)

@@ -72,7 +72,7 @@ class StreamColumns:
         return TimedOffsets(self.rejected_time, self.columns.rejected)
 
     def captured(self, rows: Rows) -> CapturedRows:
-        """Return rows of ``columns`` with their times; or rows of a message that did not occur."""
+        """Return rows of ``columns`` with their times; other rows must be empty."""
         part = Part(self.interface, self.direction, len(rows))
         for found, time in zip(self.columns, self.times):
             if found is rows:

@@ -29,8 +29,8 @@ from cobotwire.protocol.printable import printable
 def verify(report: str, key: str | None, as_json: bool) -> None:
     """Check that REPORT (JSON, or a survey) was not changed, and who signed it.
 
-    A right signature shows that the owner of the printed key signed the report. To check whose key
-    it is, pass --key with the public key that you got from the tester.
+    A right signature shows that the owner of the printed key signed the report. To check that this
+    is the tester, pass --key with the public key that the tester gave you.
 
     Exit codes: 0 the report was not changed, and with --key, that key signed it; 1 otherwise;
     2 the file is not a report.

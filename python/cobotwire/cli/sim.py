@@ -57,7 +57,7 @@ def _list_scenarios(context: click.Context, option: click.Parameter, wanted: boo
     help="The arm's speed: 2 is twice as fast.",
 )
 @click.option("--powered", is_flag=True, help="The arm has power from the start.")
-@click.option("--no-acks", is_flag=True, help="Send no acknowledgements, as older firmware.")
+@click.option("--no-acks", is_flag=True, help="Send no acknowledgements, like older firmware.")
 @click.option(
     "--led",
     type=click.Path(),

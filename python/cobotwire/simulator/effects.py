@@ -138,7 +138,7 @@ def _read(requested: Requested, name: str, state: str, at: Sequence[str]) -> Any
     field = None if requested.command.text is not None else requested.replied(name)
     if state in READERS:
         index = requested.fields[at[0]] if at else None
-        assert field is not None, "a built-in state is no text"
+        assert field is not None, "a built-in state is not a text"
         arm, now, command, fields = (
             requested.arm,
             requested.now,

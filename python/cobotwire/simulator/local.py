@@ -1,4 +1,4 @@
-"""Serve a peer to programs on this machine, by whatever the system has."""
+"""Serve a peer to programs on this machine: on a pty, or over TCP on Windows."""
 
 from __future__ import annotations
 

@@ -26,7 +26,7 @@ from cobotwire.simulator.targets import (
     reject,
 )
 
-# The speed of a motion whose command has no speed, in percent.
+# The speed of a motion if its command has no speed, in percent.
 USUAL_SPEED = 50
 FORWARD, LINEAR = 1, "LINEAR"
 

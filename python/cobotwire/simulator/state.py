@@ -122,7 +122,7 @@ class ArmState:
         return self._pose("world") if self.kept.get("reference_frame", 0) else None
 
     def _pose(self, name: str) -> tuple[float, ...]:
-        """Return the pose that is kept under a name; zeros if it is no pose in this edition."""
+        """Return the pose that is kept under a name; zeros if it is not a pose in this edition."""
         value = self.kept.get(name)
         return value if isinstance(value, tuple) and len(value) == len(NO_POSE) else NO_POSE
 

@@ -85,7 +85,7 @@ def scan(
         wide=wide,
     )
     inputs = Inputs.find([urls] if isinstance(urls, str) else urls)
-    # A command of another edition, or a direction that it lacks, has no columns.
+    # Raises an error here if the default edition has no such message.
     editions.codec("").decode_columns(b"").rows(command, direction)
     return Scan(Message(command, direction), plan, divide(inputs, piece_bytes))
 

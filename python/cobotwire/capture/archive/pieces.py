@@ -1,4 +1,4 @@
-"""Divide inputs into pieces, each of which one task reads."""
+"""Divide inputs into pieces; one task reads each piece."""
 
 from __future__ import annotations
 

@@ -2,7 +2,7 @@
 
 A line has an offset, bytes in hex, and in most dumps the same bytes as text. A line ``*`` stands
 for copies of the line before it, up to the next offset. The formats are those of the programs of
-Debian 12, whose output the tests read.
+Debian 12; the tests read what these write.
 """
 
 from __future__ import annotations

@@ -83,7 +83,7 @@ class ExportedInput(UnreadableInput):
 
 
 class Recognised(NamedTuple):
-    """A file whose format is known.
+    """A file in a known format.
 
     Attributes:
         reader: what reads it; None for raw bytes and for recordings.

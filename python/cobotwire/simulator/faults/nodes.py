@@ -53,7 +53,7 @@ def parse(
         message = f"the file has more than {MOST_CHARACTERS} characters, the limit"
         raise failed([f"{Place(name, 1, 1)}: {message}"])
     yaml = YAML(typ="safe", pure=True)
-    # The later anchor counts, as YAML says; that is no reason for a warning.
+    # The later anchor counts, as YAML says; no warning is needed.
     yaml.composer.warn_double_anchors = False
     yaml.max_depth = _DEEPEST + 5  # deeper files are not parsed; the others get a better message
     try:

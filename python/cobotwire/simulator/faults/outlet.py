@@ -26,7 +26,7 @@ class Outlet:
 
     def __init__(self) -> None:
         self.completed: list[int] = []
-        """The numbers of the requests whose replies have been sent; the owner empties it."""
+        """The numbers of the requests with replies that have been sent; the owner empties it."""
         self._due: list[_Planned] = []
         self._count = 0
         self._sending: deque[Piece] = deque()

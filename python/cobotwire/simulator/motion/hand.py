@@ -83,7 +83,7 @@ def read_points(path: str | Path, joints: int) -> tuple[TimedPoint, ...]:
         except UsageError as error:
             raise UsageError("led", message=f"{path}:{number}: {error}") from None
         except ValueError:
-            shown = f"expected seconds and {joints} angles, came {line.strip()!r}"
+            shown = f"expected seconds and {joints} angles, found {line.strip()!r}"
             raise UsageError("led", message=f"{path}:{number}: {shown}") from None
     if not found:
         raise UsageError("led", message=f"{path}: there is no point in the file")
