@@ -9,7 +9,7 @@ const ABOUT = SERIAL
   : "This browser cannot open a serial port, because it lacks WebSerial. Chrome and Edge on a computer have it. Recordings can be opened here, too.";
 const SURVEY =
   "The file will hold these bytes with their times, and the name of the edition: no serial number, and no name of this computer, " +
-  "its user or its port. “cobotwire survey --from FILE --real-arm -o survey.zip” judges it. Settings and motions are surveyed only by the command line.";
+  "its user or its port. “cobotwire survey --from FILE --real-arm -o survey.zip” evaluates it. Settings and motions are surveyed only by the command line.";
 // How long a page that is being closed waits for its worker to stop the arm.
 const LEAVE_MS = 100;
 const infoOf = (port) => JSON.stringify(port.getInfo());
