@@ -181,7 +181,7 @@ def test_fact_without_a_matching_frame_is_refused(wrong: Any, why: str) -> None:
         (packed(survey(edition="../../etc")), "is not a name"),
         (packed(survey(date="../2026-11-24")), "write it like"),
         (packed(survey({**fact("x", "confirmed"), "fact": "bus/a/../id"})), "not the name of a"),
-        (packed(survey(*[fact("light/command/present", "confirmed")] * 2)), "stands twice"),
+        (packed(survey(*[fact("light/command/present", "confirmed")] * 2)), "is given twice"),
         (packed(survey(fact("light/command/present", "proven"))), "verdict of"),
         (packed(b'{"format": 1, "format": 1}'), "a key twice"),
         (packed(b"[" * 100_000), "not JSON"),

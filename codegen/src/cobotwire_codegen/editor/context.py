@@ -57,8 +57,8 @@ def _block_path(lines: list[str], line: int, before: str) -> list[str]:
     path: list[str] = []
     start = _START.match(before)
     assert start is not None, "the pattern matches any text"
-    # A key contains the position if it stands left of this column. A list may stand exactly below
-    # its key: if a dash stands at this column, a key at the same column contains the position, too.
+    # A key left of this column contains the position. A list may be indented like its key: if a
+    # dash is at this column, a key at the same column contains the position, too.
     column, listed = start.end(), start["dash"] is not None
     column = start.start("dash") if listed else column
     for above in reversed(lines[:line]):

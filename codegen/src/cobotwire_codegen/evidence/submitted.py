@@ -252,7 +252,7 @@ def _facts(listed: list[Any], edition: str) -> Iterator[Reported]:
         fact = name.removeprefix(f"{edition}/")
         _require(fact != name, f"the fact {name} is not about {edition}")
         _require(bool(_FACT.fullmatch(fact)), f"{name} is not the name of a fact")
-        _require(name not in seen, f"the fact {name} stands twice")
+        _require(name not in seen, f"the fact {name} is given twice")
         seen.add(name)
         _require(verdict in (*VERDICTS, "not seen"), f"the verdict of {name} is {verdict!r}")
         pairs = [

@@ -103,7 +103,7 @@ class FrameFacts:
         self.parts = frame.layout if frame.address_values else _without_address(frame.layout)
         self.length_first = frame.layout.index("length") < frame.layout.index("command")
         self.overhead = frame.data_at("request") + frame.check_size - frame.length(0)
-        self.data_at = {way: frame.data_at(way) for way in ("request", "reply")}
+        self.data_at = {each: frame.data_at(each) for each in ("request", "reply")}
         head = max(frame.offset(part) + frame.sizes[part] for part in ("length", "command"))
         self.longest = max(self.overhead + frame.maximum_length, head)
         self.length = _unsigned("LENGTH_AT", frame.length_number)

@@ -55,7 +55,7 @@ class Tables:
         self.lists = Pool()
         self.listed = any(map(_lists_numbers, members))
         self.rows = [self._message(message) for message in self.messages]
-        self.lengths = {way: self._lengths(edition, way) for way in DIRECTIONS}
+        self.lengths = {each: self._lengths(edition, each) for each in DIRECTIONS}
         self.most = max((message.count for message in self.messages), default=0)
         self.most_fields = max((len(message.members) for message in self.messages), default=0)
         self.most_elements = max((member.storage.count for member in members), default=0)
