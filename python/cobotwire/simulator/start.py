@@ -8,7 +8,7 @@ from cobotwire.protocol.table import Number, Table
 
 
 def coordinates(table: Table) -> tuple[int, ...]:
-    """Return where the coordinates of an edition stand among x, y, z, rx, ry and rz."""
+    """Return the index in x, y, z, rx, ry, rz of each coordinate of an edition."""
     query = table.find_role("coordinates")
     if query is None or not query.reply:
         return ALL_SIX

@@ -46,7 +46,7 @@ class ArmState:
     joints: int
     geometry: Geometry | None = None
     robot: Robot = UNSTATED
-    # Where the coordinates of the edition stand among x, y, z, rx, ry and rz.
+    # For each coordinate of the edition, its index in x, y, z, rx, ry, rz.
     coordinates: tuple[int, ...] = ALL_SIX
     steps: Steps = NO_STEPS
     # By how many seconds the joints lag behind the motion that the arm computes.
