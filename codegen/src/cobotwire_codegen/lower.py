@@ -82,15 +82,12 @@ def _quantity(name: str, quantity: Quantity) -> dict[str, Any]:
 def _number(name: str, wire: Wire, minimum: int, maximum: int) -> dict[str, Any]:
     return {
         "name": name,
-        "width": wire.width,
-        "order": wire.order,
-        "signed_at": wire.signed_at,
+        **wire.form,
         "multiply": 1,
         "divide": 1,
         "minimum": minimum,
         "maximum": maximum,
         "unit": "",
-        **({"encoding": wire.encoding} if wire.is_float else {}),
     }
 
 

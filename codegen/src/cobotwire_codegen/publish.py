@@ -297,15 +297,7 @@ def _quantity(type: Quantity) -> Record:
 
 
 def _wire(wire: Wire) -> Record:
-    encoding = {"encoding": wire.encoding} if wire.is_float else {}
-    return {
-        "name": wire.name,
-        "width": wire.width,
-        "order": wire.order,
-        "signed_at": wire.signed_at,
-        **encoding,
-        "doc": wire.doc,
-    }
+    return {"name": wire.name, **wire.form, "doc": wire.doc}
 
 
 def _address(address: Address) -> Record:

@@ -11,6 +11,7 @@ from functools import reduce
 from operator import xor
 from typing import Literal
 
+from cobotwire_codegen import floats
 from cobotwire_codegen.catalogue import Crc
 from cobotwire_codegen.model import (
     Bits,
@@ -29,7 +30,6 @@ from cobotwire_codegen.model import (
     Value,
     Variant,
     Wire,
-    floats,
 )
 
 

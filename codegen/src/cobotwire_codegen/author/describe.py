@@ -76,8 +76,7 @@ def _decoded(field: Field, values: dict[str, object], data: bytes) -> str:
     shown = []
     for name, part in type.parts:
         word, data = data[: part.size], data[part.size :]
-        number = int.from_bytes(word, part.wire.order)
-        raw = number - 256**part.size if number > part.wire.signed_at else number
+        raw = part.wire.raw_of(word)
         unit = f" {words.units(part.unit)}" if isinstance(part, Quantity) and part.unit else ""
         value = part.read(word)
         physical = words.decimal(value) if isinstance(value, Fraction) else value

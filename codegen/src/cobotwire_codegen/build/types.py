@@ -9,6 +9,7 @@ from typing import Literal
 
 from cobotwire_codegen import language
 from cobotwire_codegen.build.parts import Named
+from cobotwire_codegen.encodings import ENCODINGS
 from cobotwire_codegen.errors import Place, Problem, nearest
 from cobotwire_codegen.language.meanings import in_words
 from cobotwire_codegen.language.records import Key
@@ -73,16 +74,17 @@ class Types:
         spec = language.Wire
         reader = Reader(node, spec, f"the wire type {name}", self._problems)
         width = reader.get(spec.bytes)
-        is_float = reader.get(spec.encoding) == "float"
-        if width not in ((4, 8) if is_float else (1, 2, 3, 4)):
-            kind, legal = ("a float", "4 or 8") if is_float else ("an integer", "1..4")
-            message = f"the wire type {name} is {kind} of {width} bytes; allowed: {legal}"
+        encoding = reader.get(spec.encoding)
+        rule = ENCODINGS[encoding]
+        kind = f"the wire type {name} is {rule.what}"
+        if width not in rule.widths:
+            message = f"{kind} of {width} bytes; allowed: {rule.allowed}"
             reader.problem("bad-width", message, reader.place_of(spec.bytes))
             width = 4
-        if is_float and reader.node(spec.signed_at) is not None:
-            message = f"the wire type {name} is a float; remove its signed_at"
+        if not rule.has_sign_rule and reader.node(spec.signed_at) is not None:
+            message = f"{kind}; remove its signed_at"
             reader.problem("bad-sign", message, reader.place_of(spec.signed_at))
-        top = 0 if is_float else 256**width - 1
+        top = 256**width - 1 if rule.has_sign_rule else 0
         signed_at = top if reader.node(spec.signed_at) is None else reader.get(spec.signed_at)
         if signed_at > top:
             message = f"signed_at of the wire type {name} is {signed_at}; allowed: 0..{top}"
@@ -97,7 +99,7 @@ class Types:
             reader.get(spec.doc),
             reader.get(spec.source),
             disputes(reader, spec.disputed),
-            "float" if is_float else "integer",
+            encoding,
         )
 
     def _integer(self, reader: Reader, key: Key[str]) -> Wire:

@@ -105,7 +105,7 @@ def _places(variant: Variant) -> dict[int, Field]:
 def _excluded(one: Field, other: Field) -> bool:
     """Return whether one of two fields at the same place has a constant that the other excludes."""
     [a], [b] = lower.numbers(one.type), lower.numbers(other.type)
-    if any(a[key] != b[key] for key in ("width", "order", "signed_at")):
+    if any(a.get(key) != b.get(key) for key in ("width", "order", "signed_at", "encoding")):
         return False
     pairs = ((one.const, other, b), (other.const, one, a))
     return any(

@@ -73,8 +73,8 @@ def wire_changes(where: str, old: Wire, new: Wire) -> Iterator[Finding]:
         yield finding("encoding-changed", where, old.encoding, new.encoding)
     unsigned = old.signed_at == old.top and new.signed_at == new.top
     # A float has a sign of its own.
-    unsigned = unsigned or old.is_float or new.is_float
-    if old.signed_at != new.signed_at and not unsigned:
+    comparable = old.rule.has_sign_rule and new.rule.has_sign_rule
+    if old.signed_at != new.signed_at and comparable and not unsigned:
         yield finding("sign-rule-changed", where, words.sign(old), words.sign(new))
     yield from prose.doc(where, old.doc, new.doc)
     yield from prose.source(where, old.source, new.source)

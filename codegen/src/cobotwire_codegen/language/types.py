@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from cobotwire_codegen.encodings import ENCODINGS
 from cobotwire_codegen.language import facts
 from cobotwire_codegen.language.meanings import MeaningsOfNumbers
 from cobotwire_codegen.language.names import CLASS, LOWER, UPPER
@@ -32,10 +33,7 @@ class Wire(Record):
         -1,
     )
     encoding = optional(
-        Word(
-            ("integer", "float"),
-            ("A whole number.", "An IEEE 754 float of 4 or 8 bytes; it has no sign rule."),
-        ),
+        Word(ENCODINGS, (encoding.doc for encoding in ENCODINGS.values())),
         "What the bytes encode.",
         "integer",
     )

@@ -12,8 +12,8 @@ from fractions import Fraction
 from functools import cached_property
 from typing import ClassVar
 
+from cobotwire_codegen import floats
 from cobotwire_codegen.errors import Place
-from cobotwire_codegen.model import floats
 from cobotwire_codegen.model.facts import Dispute, Lines
 from cobotwire_codegen.model.wires import Wire
 

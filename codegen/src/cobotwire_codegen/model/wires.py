@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal
+from typing import Any, Literal
 
+from cobotwire_codegen.encodings import ENCODINGS, Encoding
 from cobotwire_codegen.errors import Place
-from cobotwire_codegen.model import floats
 from cobotwire_codegen.model.facts import Dispute, Lines
 
 
@@ -22,7 +22,12 @@ class Wire:
     doc: str
     source: Lines
     disputed: tuple[Dispute, ...]
-    encoding: Literal["integer", "float"] = "integer"
+    encoding: str = "integer"
+
+    @property
+    def rule(self) -> Encoding:
+        """The rule of its encoding."""
+        return ENCODINGS[self.encoding]
 
     @property
     def is_float(self) -> bool:
@@ -30,29 +35,30 @@ class Wire:
         return self.encoding == "float"
 
     @property
+    def form(self) -> dict[str, Any]:
+        """Its bytes as tables and ``edition.json`` state them; integers leave the encoding out."""
+        encoding = {} if self.encoding == "integer" else {"encoding": self.encoding}
+        form = {"width": self.width, "order": self.order, "signed_at": self.signed_at}
+        return form | encoding
+
+    @property
     def minimum(self) -> int:
         """The lowest raw value; for a float, the raw value of the lowest finite float."""
-        if self.is_float:
-            return -1 - floats.largest_rank(self.width)
-        return self.signed_at + 1 - 256**self.width if self.signed_at < self.top else 0
+        return self.rule.bounds(self.width, self.signed_at)[0]
 
     @property
     def maximum(self) -> int:
         """The highest raw value; for a float, the raw value of the highest finite float."""
-        return floats.largest_rank(self.width) if self.is_float else self.signed_at
+        return self.rule.bounds(self.width, self.signed_at)[1]
 
     def raw_of(self, data: bytes) -> int:
         """Return the raw value that bytes encode."""
-        word = int.from_bytes(data, self.order)
-        if self.is_float:
-            half = 256**self.width // 2
-            return word if word < half else half - 1 - word
-        return word if word <= self.signed_at else word - int(256**self.width)
+        return self.rule.raw_of(int.from_bytes(data, self.order), self.width, self.signed_at)
 
     def bytes_of(self, raw: int) -> bytes:
         """Return the bytes that encode a raw value."""
-        word = 256**self.width // 2 - 1 - raw if self.is_float and raw < 0 else raw
-        return int(word % 256**self.width).to_bytes(self.width, self.order)
+        unsigned = self.rule.unsigned_of(raw, self.width) % 256**self.width
+        return int(unsigned).to_bytes(self.width, self.order)
 
     @property
     def top(self) -> int:

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from fractions import Fraction
 
-from cobotwire_codegen import lower
+from cobotwire_codegen import floats, lower
 from cobotwire_codegen.model import (
     BitPart,
     Bits,
@@ -21,7 +21,6 @@ from cobotwire_codegen.model import (
     Value,
     Variant,
     Wire,
-    floats,
 )
 from cobotwire_codegen.render.by_identity import by_identity
 

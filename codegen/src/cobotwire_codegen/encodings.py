@@ -1,0 +1,85 @@
+"""Define how bytes become raw values: the encodings of numbers.
+
+This module alone knows their rules; the spec language lists them from here.
+"""
+
+from __future__ import annotations
+
+from typing import ClassVar
+
+from cobotwire_codegen import floats
+
+
+class Encoding:
+    """One encoding of numbers; all its numbers have ``width`` bytes, in either order.
+
+    ``what`` names a number of the encoding, ``allowed`` the widths. The raw value is that of the
+    unsigned number that the bytes are. ``signed_at`` is the key of the spec; an encoding without a
+    sign rule does not have it, and ignores it.
+    """
+
+    what: ClassVar[str]
+    doc: ClassVar[str]
+    widths: ClassVar[tuple[int, ...]] = (1, 2, 3, 4)
+    allowed: ClassVar[str] = "1..4"
+    has_sign_rule: ClassVar[bool] = False
+
+    def bounds(self, width: int, signed_at: int) -> tuple[int, int]:
+        """Return the lowest and the highest raw value; of floats, the finite ones."""
+        raise NotImplementedError
+
+    def raw_of(self, unsigned: int, width: int, signed_at: int) -> int:
+        """Return the raw value of an unsigned number."""
+        raise NotImplementedError
+
+    def unsigned_of(self, raw: int, width: int) -> int:
+        """Return the unsigned number of a raw value; its lowest bytes are used."""
+        raise NotImplementedError
+
+
+class Integer(Encoding):
+    """Integers; those above ``signed_at`` are negative."""
+
+    what = "an integer"
+    doc = "A whole number."
+    has_sign_rule = True
+
+    def bounds(self, width: int, signed_at: int) -> tuple[int, int]:
+        """Return the bounds that the sign rule leaves."""
+        top = int(256**width) - 1
+        return (signed_at - top if signed_at < top else 0), signed_at
+
+    def raw_of(self, unsigned: int, width: int, signed_at: int) -> int:
+        """Return the number, less 256^width if it is above ``signed_at``."""
+        return unsigned if unsigned <= signed_at else unsigned - int(256**width)
+
+    def unsigned_of(self, raw: int, width: int) -> int:
+        """Return the raw value itself."""
+        return raw
+
+
+class Float(Encoding):
+    """IEEE floats; a raw value is the rank of the float (see ``floats``)."""
+
+    what = "a float"
+    doc = "An IEEE 754 float of 4 or 8 bytes; it has no sign rule."
+    widths = (4, 8)
+    allowed = "4 or 8"
+
+    def bounds(self, width: int, signed_at: int) -> tuple[int, int]:
+        """Return the ranks of the lowest and the highest finite float."""
+        largest = floats.largest_rank(width)
+        return -1 - largest, largest
+
+    def raw_of(self, unsigned: int, width: int, signed_at: int) -> int:
+        """Return the rank of the float with these bits."""
+        half = 256**width // 2
+        return unsigned if unsigned < half else half - 1 - unsigned
+
+    def unsigned_of(self, raw: int, width: int) -> int:
+        """Return the bits of the float with this rank."""
+        return raw if raw >= 0 else 256**width // 2 - 1 - raw
+
+
+# By the word of the spec; the first one is the default.
+ENCODINGS: dict[str, Encoding] = {"integer": Integer(), "float": Float()}
