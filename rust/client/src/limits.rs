@@ -156,7 +156,7 @@ fn is_speed(field: &Field) -> bool {
 
 /// Return a range as raw values, rounded inwards; 0.1 is one tenth, not the float next to it.
 fn raw_range(number: &Number, (low, high): Range) -> (i64, i64) {
-    if number.float {
+    if number.is_float() {
         // A lower limit of zero includes -0.0.
         let low = if low == 0.0 { -0.0 } else { low };
         let raw = |end| number.raw(end).unwrap_or_default();

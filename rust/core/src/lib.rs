@@ -76,7 +76,7 @@ pub use given::{Given, Row, Unread, ValueFault};
 pub use message::{Command, Variant, VariantId};
 #[cfg(feature = "std")]
 pub use noise::{Expected, Instruction, Kind, Operand, ServoBus};
-pub use number::{Bits, Encoding, Misfit, Number, Order, Value};
+pub use number::{Bits, Encoding, Misfit, Number, NumberEncoding, Order, Value};
 pub use owned::OwnedFrame;
 pub use plain::{PlainMessage, encode_plain, read_plain};
 pub use read::BadRaw;

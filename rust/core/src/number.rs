@@ -16,6 +16,29 @@ pub enum Order {
     Little,
 }
 
+/// How bytes become the raw value of a number.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum NumberEncoding {
+    /// An integer with the sign rule of `signed_at`.
+    #[default]
+    Integer,
+    /// An IEEE float.
+    Float,
+}
+
+impl NumberEncoding {
+    /// Their names.
+    pub const WORDS: [(&'static str, Self); 2] =
+        [("integer", Self::Integer), ("float", Self::Float)];
+
+    /// Return the encoding with a name; `None` if there is none.
+    #[must_use]
+    pub fn named(word: &str) -> Option<Self> {
+        let known = Self::WORDS.into_iter().find(|(known, _)| *known == word);
+        known.map(|(_, encoding)| encoding)
+    }
+}
+
 /// The bits of a word that a number uses.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Bits {
@@ -32,7 +55,7 @@ pub struct Bits {
 /// The bytes are an unsigned integer `u`. The raw value is `u - 256^width` if `u > signed_at`, else
 /// `u`. The physical value is `raw * multiply / divide`. The bounds are those of the raw value.
 ///
-/// With `float` the bytes are an IEEE float of 4 or 8 bytes, without a scale or a sign rule. Its raw
+/// A [`NumberEncoding::Float`] is an IEEE float of 4 or 8 bytes, without a scale or a sign rule. Its raw
 /// value is the integer of its bits, with the bits after a set sign inverted, so that raw values
 /// have the order of the floats.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -45,7 +68,7 @@ pub struct Number {
     pub divide: i64,
     pub minimum: i64,
     pub maximum: i64,
-    pub float: bool,
+    pub encoding: NumberEncoding,
     /// The legal raw values, where they differ from those of the field's other numbers.
     pub choices: Vec<i64>,
     /// Whether it is a flag beside other numbers.
@@ -126,15 +149,26 @@ impl Number {
         (self.multiply, self.divide) != (1, 1)
     }
 
+    /// Return whether it is an IEEE float.
+    #[must_use]
+    pub fn is_float(&self) -> bool {
+        self.encoding == NumberEncoding::Float
+    }
+
+    /// Return whether it is an integer that takes all bits of its bytes.
+    pub(crate) fn is_plain(&self) -> bool {
+        self.encoding == NumberEncoding::Integer && self.bits.is_none()
+    }
+
     /// Return whether the physical value is a real number, rather than the raw value itself.
     pub(crate) fn real(&self) -> bool {
-        self.float || self.scaled()
+        self.is_float() || self.scaled()
     }
 
     /// Return whether the same bytes hold the same raw value in both numbers.
     pub(crate) fn is_alike(&self, other: &Self) -> bool {
         let bits = |number: &Self| number.bits.map(|bits| (bits.shift, bits.count));
-        let sign = |number: &Self| (number.signed_at, number.float);
+        let sign = |number: &Self| (number.signed_at, number.encoding);
         (self.width, self.order) == (other.width, other.order)
             && (sign(self), bits(self)) == (sign(other), bits(other))
     }
@@ -161,7 +195,7 @@ impl Number {
 
     /// Return whether the bounds allow a float that is infinite or not a number.
     pub(crate) fn takes_not_finite(&self) -> bool {
-        self.float && self.maximum >= raw_of_float(f64::INFINITY, self.width)
+        self.is_float() && self.maximum >= raw_of_float(f64::INFINITY, self.width)
     }
 
     /// Return the raw value that starts there.
@@ -172,31 +206,23 @@ impl Number {
         let unsigned = match (bytes, self.order) {
             ([byte], _) => i64::from(*byte),
             (&[high, low], Order::Big) => i64::from(u16::from_be_bytes([high, low])),
-            _ if self.float => return self.unpack_float(bytes),
             (_, Order::Big) => bytes.iter().fold(0, join),
             (_, Order::Little) => bytes.iter().rev().fold(0, join),
         };
-        if let Some(bits) = self.bits {
-            let part = (unsigned >> bits.shift) & ((1 << bits.count) - 1);
-            return if part > self.signed_at {
-                part - (1 << bits.count)
+        let signed = |unsigned: i64, count: u32| {
+            if unsigned > self.signed_at {
+                unsigned - (1_i64 << count)
             } else {
-                part
-            };
-        }
-        if unsigned > self.signed_at {
-            unsigned - (1 << (8 * self.width))
-        } else {
-            unsigned
-        }
-    }
-
-    fn unpack_float(&self, bytes: &[u8]) -> i64 {
-        let unsigned = match self.order {
-            Order::Big => bytes.iter().fold(0, join),
-            Order::Little => bytes.iter().rev().fold(0, join),
+                unsigned
+            }
         };
-        ordered(unsigned, self.width)
+        match (self.encoding, self.bits) {
+            (NumberEncoding::Float, _) => ordered(unsigned, self.width),
+            (NumberEncoding::Integer, None) => signed(unsigned, 8 * self.width as u32),
+            (NumberEncoding::Integer, Some(Bits { shift, count, .. })) => {
+                signed((unsigned >> shift) & ((1 << count) - 1), count)
+            }
+        }
     }
 
     /// Append the lowest bytes of a raw value; a negative one is its two's complement.
@@ -227,7 +253,7 @@ impl Number {
     fn ordered_bytes(&self, raw: i64) -> [u8; 8] {
         let raw = match self.bits {
             Some(bits) => (raw & ((1 << bits.count) - 1)) << bits.shift,
-            None if self.float && raw < 0 => raw ^ magnitude(self.width),
+            None if self.is_float() && raw < 0 => raw ^ magnitude(self.width),
             None => raw,
         };
         match self.order {
@@ -241,7 +267,7 @@ impl Number {
     #[inline]
     #[must_use]
     pub fn physical(&self, raw: i64) -> Value {
-        if self.float {
+        if self.is_float() {
             Value::Real(float_of_raw(raw, self.width))
         } else if self.scaled() {
             Value::Real((raw * self.multiply) as f64 / self.divide as f64)
@@ -258,7 +284,7 @@ impl Number {
     #[inline]
     #[must_use]
     pub fn raw(&self, physical: f64) -> Option<i64> {
-        if self.float {
+        if self.is_float() {
             return Some(raw_of_float(physical, self.width));
         }
         let scaled = physical * self.divide as f64;
@@ -273,7 +299,7 @@ impl Number {
 
     /// Return whether the bounds allow every raw value that the bytes can encode.
     pub(crate) fn takes_all_bytes(&self) -> bool {
-        if self.float || self.bits.is_some() || !self.choices.is_empty() {
+        if !self.is_plain() || !self.choices.is_empty() {
             return false; // then each value is compared
         }
         let (least, most) = self.natural_range();
@@ -283,7 +309,7 @@ impl Number {
     /// Return the lowest and the highest raw value that its bytes can hold; of floats: finite ones.
     #[must_use]
     pub fn natural_range(&self) -> (i64, i64) {
-        if self.float {
+        if self.is_float() {
             let infinite = raw_of_float(f64::INFINITY, self.width);
             return (-infinite, infinite - 1);
         }
@@ -297,7 +323,7 @@ impl Number {
     /// # Errors
     /// They cannot.
     pub fn check(&self) -> Result<(), Misfit> {
-        if self.float {
+        if self.is_float() {
             return match (self.width, self.multiply, self.divide) {
                 (4 | 8, 1, 1) => Ok(()),
                 (4 | 8, ..) => Err(Misfit::Scale),

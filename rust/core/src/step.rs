@@ -35,7 +35,7 @@ impl Step {
     /// raw values are legal.
     pub(crate) fn new(number: &Number, at: usize, bounded: bool) -> Self {
         let form = match (number.width, number.order) {
-            _ if !bounded || number.float || number.bits.is_some() => Form::Other,
+            _ if !bounded || !number.is_plain() => Form::Other,
             (1, _) => Form::Byte,
             (2, Order::Big) => Form::Big,
             (2, Order::Little) => Form::Little,

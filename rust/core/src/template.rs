@@ -234,8 +234,6 @@ fn plain_numbers(field: &Field) -> Option<&[Number]> {
         && field.shape == Shape::Numbers
         && field.each == 0
         && !numbers.is_empty()
-        && numbers
-            .iter()
-            .all(|number| !number.float && number.bits.is_none());
+        && numbers.iter().all(Number::is_plain);
     plain.then_some(numbers)
 }

@@ -2,7 +2,7 @@
 
 use cobotwire_core::{
     Algorithm, Case, Check, Command, Computed, Crc, CrcParameters, Field, FrameFormat, Layout,
-    Number, Order, Part, Shape, Variant,
+    Number, NumberEncoding, Order, Part, Shape, Variant,
 };
 
 use crate::bytes::Bytes;
@@ -227,7 +227,11 @@ fn number(bytes: &mut Bytes<'_>) -> Number {
         divide: scale(bytes),
         minimum: integer(bytes, -100),
         maximum: integer(bytes, 100),
-        float,
+        encoding: if float {
+            NumberEncoding::Float
+        } else {
+            NumberEncoding::Integer
+        },
         choices: vec![],
         flag: false,
         bits: None,

@@ -166,7 +166,7 @@ fn raw_value(number: &Number, data: &[u8]) -> i64 {
     if number.order == Order::Little {
         bytes.reverse();
     }
-    if number.float {
+    if number.is_float() {
         let negative = bytes[0] >= 0x80;
         bytes[0] &= 0x7F;
         let rank = bytes
@@ -185,7 +185,7 @@ fn raw_value(number: &Number, data: &[u8]) -> i64 {
 }
 
 fn physical(number: &Number, raw: i64) -> Value {
-    if number.float {
+    if number.is_float() {
         let rank = (if raw < 0 { -1 - raw } else { raw }) as u64;
         let sign = u64::from(raw < 0) << (8 * number.width - 1);
         Value::Real(if number.width == 4 {

@@ -2,7 +2,7 @@
 
 use cobotwire_core::{
     Algorithm, Bits, Case, Check, Command, Computed, Crc, CrcParameters, Encoding, Field,
-    FrameFormat, Layout, Number, Order, Part, Shape, Table, Variant,
+    FrameFormat, Layout, Number, NumberEncoding, Order, Part, Shape, Table, Variant,
 };
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -16,7 +16,8 @@ struct NumberRecord {
     divide: i64,
     minimum: i64,
     maximum: i64,
-    encoding: String,
+    #[pyo3(from_py_with = number_encoding)]
+    encoding: NumberEncoding,
     kind: String,
     choices: Vec<i64>,
     shift: u32,
@@ -198,6 +199,11 @@ fn rejected(what: &str) -> PyErr {
     PyValueError::new_err(format!("table: {what}"))
 }
 
+fn number_encoding(word: &Bound<'_, PyAny>) -> PyResult<NumberEncoding> {
+    let found = NumberEncoding::named(word.extract::<&str>()?);
+    found.ok_or_else(|| rejected("the encoding of a number is unknown"))
+}
+
 fn order(word: &str) -> Order {
     if word == "little" {
         Order::Little
@@ -261,7 +267,7 @@ fn number(record: NumberRecord) -> Number {
         divide: record.divide,
         minimum: record.minimum,
         maximum: record.maximum,
-        float: record.encoding == "float",
+        encoding: record.encoding,
         choices: record.choices,
         flag: record.kind == "flag",
         bits: (record.bits > 0).then_some(Bits {

@@ -318,7 +318,7 @@ impl Part<'_> {
 /// Return what a number without choices may be.
 fn range(number: &WireNumber, unit: &str) -> String {
     let natural = number.natural_range();
-    let kind = match number.float {
+    let kind = match number.is_float() {
         true if number.maximum > natural.1 => "any-float",
         true if (number.minimum, number.maximum) == natural => "finite",
         float if float || number.scaled() => "real",
@@ -335,7 +335,7 @@ fn bound(number: &WireNumber, raw: i64) -> String {
     let divide = i128::from(number.divide);
     match number.physical(raw) {
         // The nearest float to a decimal has more digits than anyone wrote; -0.0 is written as 0.
-        WireValue::Real(real) if number.float => {
+        WireValue::Real(real) if number.is_float() => {
             general(real + 0.0, if number.width == 4 { 6 } else { 15 })
         }
         WireValue::Real(real) if scaled.checked_rem(divide) != Some(0) => shortest(real),

@@ -7,7 +7,7 @@ use alloc::vec::Vec;
 use core::cell::Cell;
 
 use cobotwire_core as core_table;
-use cobotwire_core::{Bits, Order};
+use cobotwire_core::{Bits, NumberEncoding, Order};
 
 use crate::json::{Record, Word};
 use crate::{BadEdition, Number, Outcome, Within};
@@ -54,14 +54,8 @@ impl Word for Order {
     const WORDS: &[(&str, Self)] = &[("big", Self::Big), ("little", Self::Little)];
 }
 
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Encoding {
-    Integer,
-    Float,
-}
-
-impl Word for Encoding {
-    const WORDS: &[(&str, Self)] = &[("integer", Self::Integer), ("float", Self::Float)];
+impl Word for NumberEncoding {
+    const WORDS: &[(&str, Self)] = &Self::WORDS;
 }
 
 /// The numbers of a type in the order of the wire, and what texts need of each.
@@ -214,7 +208,7 @@ fn number(wire: Record<'_>, of: Record<'_>, all: &[i64]) -> Outcome<core_table::
         signed_at: wire.get("signed_at")?,
         multiply,
         divide,
-        float: wire.word_or("encoding", Encoding::Integer)? == Encoding::Float,
+        encoding: wire.word_or("encoding", NumberEncoding::Integer)?,
         choices: of.any("choices")?,
         ..core_table::Number::default()
     };
@@ -235,7 +229,7 @@ pub(crate) fn fitting<'a>(
 ) -> Outcome<()> {
     let largest = 1 << (8 * number.width.min(4));
     let mut raws = raws.into_iter();
-    match raws.find(|raw| !number.float && raw.unsigned_abs() >= largest) {
+    match raws.find(|raw| !number.is_float() && raw.unsigned_abs() >= largest) {
         None => Ok(()),
         Some(raw) => BadEdition::because(format_args!("its bytes cannot hold {raw}")),
     }

@@ -26,7 +26,7 @@ impl Words {
         let width = numbers.first()?.width;
         let alike = |number: &Number| {
             number.width == width
-                && number.bits.is_none()
+                && number.is_plain()
                 && (width == 1 || width == 2 && number.order == Order::Big)
         };
         if !matches!(numbers.len(), 1 | 2 | 3 | MOST) || !numbers.iter().all(alike) {

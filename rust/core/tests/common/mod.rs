@@ -81,16 +81,12 @@ impl Row for Samples {
 pub fn number(width: usize, divide: i64, minimum: i64, maximum: i64) -> Number {
     Number {
         width,
-        order: Order::Big,
         signed_at: i64::from(u32::MAX),
         multiply: 1,
         divide,
         minimum,
         maximum,
-        float: false,
-        choices: vec![],
-        flag: false,
-        bits: None,
+        ..Number::default()
     }
 }
 

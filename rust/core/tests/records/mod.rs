@@ -1,8 +1,8 @@
 //! Reads the generator's JSON: the records of Python's `cobotwire.protocol.table` by attribute.
 
 use cobotwire_core::{
-    Algorithm, Case, Check, Command, Direction, Field, FrameFormat, Layout, Number, Order, Shape,
-    Table, Variant,
+    Algorithm, Case, Check, Command, Direction, Field, FrameFormat, Layout, Number, NumberEncoding,
+    Order, Shape, Table, Variant,
 };
 use serde_json::Value;
 
@@ -176,10 +176,11 @@ fn number(json: &Value) -> Number {
         divide: integer(&json["divide"]),
         minimum: integer(&json["minimum"]),
         maximum: integer(&json["maximum"]),
-        float: json["encoding"] == "float",
-        choices: vec![],
-        flag: false,
-        bits: None,
+        encoding: json["encoding"]
+            .as_str()
+            .and_then(NumberEncoding::named)
+            .expect("an encoding"),
+        ..Number::default()
     }
 }
 
