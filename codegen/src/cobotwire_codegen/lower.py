@@ -3,13 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from fractions import Fraction
 from itertools import groupby
 from typing import Any
 
 from cobotwire_codegen.model import (
-    Bits,
-    Chars,
     Command,
     Dispute,
     Edition,
@@ -17,94 +14,15 @@ from cobotwire_codegen.model import (
     Field,
     Flag,
     Listed,
-    Octets,
     Quantity,
     Type,
     Value,
-    Wire,
 )
-
-
-def numbers(type: Type) -> tuple[dict[str, Any], ...]:
-    """Return the numbers of a type, in wire order."""
-    if isinstance(type, Value):
-        return tuple(_quantity(name, item) for name, item in type.items)
-    if isinstance(type, Bits):
-        return tuple(_bits(type))
-    if isinstance(type, Octets | Chars):
-        return (byte_number(type),) * type.least
-    if isinstance(type, Listed):
-        return numbers(type.of) * type.least
-    if isinstance(type, Quantity):
-        return (_quantity("", type),)
-    if isinstance(type, Enum):
-        values = [member.value for member in type.members]
-        return (_number("", type.wire, min(values), max(values)),)
-    return (_number("", type.wire, 0, 1),)
-
-
-def byte_number(type: Octets | Chars) -> dict[str, Any]:
-    """Return the number of each byte of bytes or of a text."""
-    top = 127 if isinstance(type, Chars) and type.encoding == "ascii" else 255
-    return _number("", type.wire, 0, top)
-
-
-def _bits(type: Bits) -> Iterator[dict[str, Any]]:
-    """Yield the numbers of a word's parts."""
-    for part in type.bit_parts:
-        [number] = numbers(part.type)
-        yield {
-            **number,
-            "name": part.name,
-            "kind": kind(part.type),
-            "choices": list(choices(part.type)),
-            "labels": list(labels(part.type)),
-            "shift": part.shift,
-            "bits": part.count,
-            "more": part is not type.bit_parts[-1],
-        }
-
-
-def _quantity(name: str, quantity: Quantity) -> dict[str, Any]:
-    lowest, highest = quantity.bounds
-    if quantity.not_finite:
-        half = 256**quantity.wire.width // 2
-        lowest, highest = Fraction(-half), Fraction(half - 1)
-    number = _number(name, quantity.wire, int(lowest), int(highest))
-    number["multiply"] = quantity.scale.numerator
-    number["divide"] = quantity.scale.denominator
-    number["unit"] = quantity.unit
-    if quantity.choices:
-        number["choices"] = list(quantity.choices)
-    return number
-
-
-def _number(name: str, wire: Wire, minimum: int, maximum: int) -> dict[str, Any]:
-    return {
-        "name": name,
-        **wire.form,
-        "multiply": 1,
-        "divide": 1,
-        "minimum": minimum,
-        "maximum": maximum,
-        "unit": "",
-    }
 
 
 def kind(type: Type) -> str:
     """Return the kind of a field of this type."""
-    if isinstance(type, Flag):
-        return "flag"
-    return "enum" if isinstance(type, Enum) else "number"
-
-
-def choices(type: Type) -> tuple[int, ...]:
-    """Return the closed list of raw values; empty if there is none."""
-    if isinstance(type, Flag):
-        return (0, 1)
-    if isinstance(type, Quantity):
-        return type.choices
-    return tuple(member.value for member in type.members) if isinstance(type, Enum) else ()
+    return type.kind if isinstance(type, Enum | Flag) else "number"
 
 
 def field_choices(field: Field) -> tuple[int, ...]:
@@ -115,12 +33,12 @@ def field_choices(field: Field) -> tuple[int, ...]:
     if field.const is not None:
         return (field.const,)
     type = field.type.of if isinstance(field.type, Listed) else field.type
-    return () if field.selector and isinstance(type, Quantity) else choices(type)
+    return () if field.selector and isinstance(type, Quantity) else type.choices
 
 
 def labels(type: Type) -> tuple[str, ...]:
     """Return the names of the choices; empty if they have none."""
-    return tuple(member.name for member in type.members) if isinstance(type, Enum) else ()
+    return tuple(member.name for member in type.members)
 
 
 def cases(field: Field) -> Iterator[tuple[tuple[int, ...], Type]]:
@@ -231,7 +149,7 @@ def _field(field: Field, variant: tuple[Field, ...]) -> dict[str, Any]:
         "name": field.name,
         "kind": kind(field.type),
         "cases": [
-            {"when": list(when), "numbers": list(numbers(type))} for when, type in cases(field)
+            {"when": list(when), "numbers": list(type.numbers)} for when, type in cases(field)
         ],
         "doc": field.doc,
         "many": isinstance(field.type, Value | Listed),

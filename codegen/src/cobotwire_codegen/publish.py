@@ -15,21 +15,12 @@ from typing import Any
 from cobotwire_codegen import lower
 from cobotwire_codegen.model import (
     Address,
-    Bits,
-    Chars,
     Command,
     Edition,
-    Enum,
     Field,
-    Flag,
     Frame,
-    Listed,
-    Member,
-    Octets,
-    Quantity,
     Text,
     Type,
-    Value,
     Variant,
     Wire,
 )
@@ -38,7 +29,6 @@ from cobotwire_codegen.publish_robot import robot_parts
 from cobotwire_codegen.publish_sections import (
     Record,
     errata_of,
-    exact_number,
     given,
     hexed,
     places_of,
@@ -170,44 +160,7 @@ class _Writer:
 
     def type(self, type: Type) -> Record:
         """Return a type's record."""
-        if isinstance(type, Bits | Octets | Chars | Listed):
-            return self._shaped(type)
-        if isinstance(type, Value):
-            items = [{"name": name, "type": self._reference(item)} for name, item in type.items]
-            return {
-                "name": type.name,
-                "kind": "value",
-                "class_name": type.class_name,
-                "items": items,
-                "doc": type.doc,
-            }
-        wire = type.wire.name if self._wires.get(type.wire.name) == type.wire else _wire(type.wire)
-        if isinstance(type, Enum):
-            return {
-                "name": type.name,
-                "kind": "enum",
-                "class_name": type.class_name,
-                "wire": wire,
-                "members": [_member(member) for member in type.members],
-                "doc": type.doc,
-            }
-        if isinstance(type, Flag):
-            return {"name": type.name, "kind": "flag", "wire": wire, "doc": type.doc}
-        return {"name": type.name, "kind": "quantity", "wire": wire} | _quantity(type)
-
-    def _shaped(self, type: Bits | Octets | Chars | Listed) -> Record:
-        """Return the record of bits, bytes, a text or a list."""
-        head = {"name": type.name, "kind": type.kind}
-        if isinstance(type, Bits):
-            numbers = list(lower.numbers(type))
-            return head | {"class_name": type.class_name, "numbers": numbers, "doc": type.doc}
-        sizes = {"least": type.least, "most": type.most}
-        if isinstance(type, Listed):
-            return head | {"of": self._reference(type.of), **sizes, "doc": type.doc}
-        if isinstance(type, Octets):
-            return head | {**sizes, "doc": type.doc}
-        padding = {} if type.padding is None else {"padding": type.padding}
-        return head | {**sizes, "encoding": type.encoding, **padding, "doc": type.doc}
+        return {"name": type.name, "kind": type.kind, **type.stated(self._reference)}
 
     def command(self, family: str, command: Command) -> Record:
         """Return a command's record: what is on the wire first, then its description."""
@@ -269,31 +222,11 @@ class _Writer:
             doc=field.doc,
         )
 
-    def _reference(self, type: Type) -> str | Record:
+    def _reference(self, found: Type | Wire) -> str | Record:
         """Return a type's name, or its record where the edition's list does not have it."""
-        return type.name if self._types.get(type.name) == type else self.type(type)
-
-
-def _quantity(type: Quantity) -> Record:
-    bounds = {}
-    if type.range is not None:
-        low, high = map(exact_number, type.bounds)
-        bounds = {"minimum": low, "maximum": high}
-    elif type.not_finite:
-        number = lower.numbers(type)[0]
-        bounds = {"minimum": number["minimum"], "maximum": number["maximum"]}
-    scale = None if type.scale == 1 else exact_number(type.scale)
-    return given(
-        scale=scale,
-        unit=type.unit,
-        **bounds,
-        choices=list(type.choices),
-        radians=type.radians,
-        meanings=[
-            {"first": first, "last": last, "says": says} for first, last, says in type.meanings
-        ],
-        doc=type.doc,
-    )
+        if isinstance(found, Wire):
+            return found.name if self._wires.get(found.name) == found else _wire(found)
+        return found.name if self._types.get(found.name) == found else self.type(found)
 
 
 def _wire(wire: Wire) -> Record:
@@ -305,10 +238,6 @@ def _address(address: Address) -> Record:
     if address.replies != "own":
         record["replies"] = address.replies
     return record | ({"joints": address.joints} if address.joints else {})
-
-
-def _member(member: Member) -> Record:
-    return {"name": member.name, "value": member.value, "doc": member.doc}
 
 
 def _read_back(field: str, holds: str | int) -> Record:

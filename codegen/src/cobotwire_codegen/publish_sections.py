@@ -12,6 +12,7 @@ from typing import Any
 
 from cobotwire_codegen.errors import Place
 from cobotwire_codegen.model import Command, Edition
+from cobotwire_codegen.model.types import exact_number as exact_number
 
 Record = dict[str, Any]
 # Fields of records that hold pairs of a name and a value.
@@ -114,11 +115,6 @@ def published_lines(lines: Iterable[tuple[int, int]]) -> list[Record]:
 def given(**record: Any) -> Record:
     """Return a record without empty and False values; readers use the defaults."""
     return {key: value for key, value in record.items() if value or type(value) is int}
-
-
-def exact_number(number: Fraction) -> int | str:
-    """Return a whole number, or any other number as text: ``1/100``."""
-    return number.numerator if number.denominator == 1 else str(number)
 
 
 def hexed(data: bytes) -> str:

@@ -105,8 +105,8 @@ class Types:
     def _integer(self, reader: Reader, key: Key[str]) -> Wire:
         """Return a wire type that must be an integer."""
         wire = self._named_wire(reader, key)
-        if wire.is_float:
-            message = f"{reader.what} is encoded as a float; choose an integer"
+        if wire.encoding != "integer":
+            message = f"{reader.what} is encoded as {wire.rule.what}; choose an integer"
             reader.problem("bad-float", message, reader.place_of(key))
         return wire
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Literal
 
-from cobotwire_codegen import lower
 from cobotwire_codegen.errors import Problem
 from cobotwire_codegen.model import Command, Edition, Field
 from cobotwire_codegen.model.commands import NoId
@@ -109,7 +108,7 @@ def _wire(command: Command) -> object:
 
 
 def _rule(field: Field) -> object:
-    return lower.numbers(field.type), field.selector
+    return field.type.numbers, field.selector
 
 
 def cases_alike(edition: Edition) -> Iterator[Problem]:

@@ -84,8 +84,7 @@ def _apart(
 
 def _rules(variant: Variant) -> object:
     return [
-        (lower.numbers(field.type), field.type.sizes, field.selector, field.const)
-        for field in variant
+        (field.type.numbers, field.type.sizes, field.selector, field.const) for field in variant
     ]
 
 
@@ -104,7 +103,7 @@ def _places(variant: Variant) -> dict[int, Field]:
 
 def _excluded(one: Field, other: Field) -> bool:
     """Return whether one of two fields at the same place has a constant that the other excludes."""
-    [a], [b] = lower.numbers(one.type), lower.numbers(other.type)
+    [a], [b] = one.type.numbers, other.type.numbers
     if any(a.get(key) != b.get(key) for key in ("width", "order", "signed_at", "encoding")):
         return False
     pairs = ((one.const, other, b), (other.const, one, a))

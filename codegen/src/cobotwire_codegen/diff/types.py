@@ -6,7 +6,6 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-from cobotwire_codegen import lower
 from cobotwire_codegen.diff import prose, quantities, words
 from cobotwire_codegen.diff.finding import Finding, finding
 from cobotwire_codegen.diff.match import bare, match, order, renamed
@@ -103,14 +102,13 @@ def type_changes(where: str, old: Type, new: Type, known: Known) -> Iterator[Fin
 def wire_shape(type: Type) -> list[tuple[int, str, int, str]]:
     """Return how the raw values of a type are encoded."""
     return [
-        (n["width"], n["order"], n["signed_at"], n.get("encoding", "integer"))
-        for n in lower.numbers(type)
+        (n["width"], n["order"], n["signed_at"], n.get("encoding", "integer")) for n in type.numbers
     ]
 
 
 def shape(found: Type) -> tuple[Any, ...]:
     """Return a type without its names and descriptions."""
-    return found.kind, lower.numbers(found), lower.choices(found), found.sizes
+    return found.kind, found.numbers, found.choices, found.sizes
 
 
 def _shape(where: str, old: Type, new: Type, known: Known) -> Iterator[Finding]:

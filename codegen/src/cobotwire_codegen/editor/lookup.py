@@ -13,7 +13,6 @@ from cobotwire_codegen.editor.workspace import Workspace
 from cobotwire_codegen.errors import Place, SpecError
 from cobotwire_codegen.load import Mapping, Scalar, load
 from cobotwire_codegen.model import Edition, Vector
-from cobotwire_codegen.render import words
 
 _WORD = re.compile(r"[\w./:-]+")
 
@@ -49,7 +48,7 @@ def _meanings(edition: Edition, word: str) -> Iterator[str]:
             yield describe_command(edition, command)
     for type in edition.types:
         if type.name == word:
-            yield f"{type.name}: {type.doc}\n{words.span(type)}"
+            yield f"{type.name}: {type.doc}\n{type.span}"
     for wire in edition.wires:
         if wire.name == word:
             yield f"{wire.name}: {wire.doc}\n{wire.width} bytes, {wire.minimum}..{wire.maximum}"

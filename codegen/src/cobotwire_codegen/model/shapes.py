@@ -11,7 +11,17 @@ from fractions import Fraction
 from typing import ClassVar, Literal
 
 from cobotwire_codegen.errors import Place
-from cobotwire_codegen.model.types import Enum, Flag, Member, Quantity, Scalar, Value
+from cobotwire_codegen.model.types import (
+    Enum,
+    Flag,
+    Member,
+    Quantity,
+    Record,
+    Refer,
+    Scalar,
+    Value,
+    number_of,
+)
 from cobotwire_codegen.model.wires import Wire
 
 
@@ -49,6 +59,12 @@ class Shaped:
     def varies(self) -> bool:
         """Whether values differ in their number of elements."""
         return self.sizes[0] < self.sizes[1]
+
+    @property
+    def size_words(self) -> str:
+        """The least and the most elements in words."""
+        least, most = self.sizes
+        return f"{least}..{most}" if self.varies else str(most)
 
     def from_raw(self, raw: int) -> object:
         """Return the raw value itself."""
@@ -89,6 +105,7 @@ class Bits(Shaped):
     """A word divided into named parts: a named tuple."""
 
     kind: ClassVar[str] = "bits"
+    scalar: ClassVar[str] = "int"
 
     place: Place
     name: str
@@ -96,6 +113,34 @@ class Bits(Shaped):
     wire: Wire
     bit_parts: tuple[BitPart, ...]
     doc: str
+
+    @property
+    def numbers(self) -> tuple[Record, ...]:
+        """The numbers of the parts."""
+        return tuple(
+            {
+                **part.type.numbers[0],
+                "name": part.name,
+                "kind": part.type.kind if isinstance(part.type, Enum | Flag) else "number",
+                "choices": list(part.type.choices),
+                "labels": [member.name for member in part.type.members],
+                "shift": part.shift,
+                "bits": part.count,
+                "more": part is not self.bit_parts[-1],
+            }
+            for part in self.bit_parts
+        )
+
+    @property
+    def span(self) -> str:
+        """The parts with their values in words."""
+        parts = [f"{name} {part.span}" for name, part in self.items]
+        return f"{len(parts)} values ({'; '.join(parts)})"
+
+    def stated(self, refer: Refer) -> Record:
+        """Return its record in ``edition.json``."""
+        numbers = list(self.numbers)
+        return {"class_name": self.class_name, "numbers": numbers, "doc": self.doc}
 
     @property
     def element_size(self) -> int:
@@ -113,6 +158,8 @@ class Octets(Shaped):
     """Bytes without a meaning of their own."""
 
     kind: ClassVar[str] = "bytes"
+    scalar: ClassVar[str] = "bytes"
+    items: ClassVar[tuple[tuple[str, Scalar], ...]] = ()
     class_name: ClassVar[str] = ""  # type: ignore[misc]  # only bits have a class
 
     place: Place
@@ -127,6 +174,25 @@ class Octets(Shaped):
         return _byte(self.place)
 
     @property
+    def byte(self) -> Record:
+        """The number of each of its bytes."""
+        return number_of(self.wire, 0, 255)
+
+    @property
+    def numbers(self) -> tuple[Record, ...]:
+        """The numbers of its least bytes."""
+        return (self.byte,) * self.least
+
+    @property
+    def span(self) -> str:
+        """How many bytes, in words."""
+        return f"{self.size_words} bytes"
+
+    def stated(self, refer: Refer) -> Record:
+        """Return its record in ``edition.json``."""
+        return {"least": self.least, "most": self.most, "doc": self.doc}
+
+    @property
     def sizes(self) -> tuple[int, int]:
         """The least and the most bytes."""
         return self.least, self.most
@@ -137,6 +203,8 @@ class Chars(Shaped):
     """Text inside a frame. With ``padding`` a shorter text is followed by that byte."""
 
     kind: ClassVar[str] = "text"
+    scalar: ClassVar[str] = "str"
+    items: ClassVar[tuple[tuple[str, Scalar], ...]] = ()
     class_name: ClassVar[str] = ""  # type: ignore[misc]  # only bits have a class
 
     place: Place
@@ -153,6 +221,28 @@ class Chars(Shaped):
         return _byte(self.place)
 
     @property
+    def byte(self) -> Record:
+        """The number of each of its bytes."""
+        return number_of(self.wire, 0, 127 if self.encoding == "ascii" else 255)
+
+    @property
+    def numbers(self) -> tuple[Record, ...]:
+        """The numbers of its least bytes."""
+        return (self.byte,) * self.least
+
+    @property
+    def span(self) -> str:
+        """The encoding and how many bytes, in words."""
+        at_most = "at most " if self.padding is not None else ""
+        return f"{self.encoding} text of {at_most}{self.size_words} bytes"
+
+    def stated(self, refer: Refer) -> Record:
+        """Return its record in ``edition.json``."""
+        padding = {} if self.padding is None else {"padding": self.padding}
+        sizes = {"least": self.least, "most": self.most}
+        return {**sizes, "encoding": self.encoding, **padding, "doc": self.doc}
+
+    @property
     def sizes(self) -> tuple[int, int]:
         """The least and the most bytes."""
         return self.least, self.most
@@ -163,6 +253,7 @@ class Listed(Shaped):
     """Elements of one type: scalars, value types, or texts of a fixed size."""
 
     kind: ClassVar[str] = "list"
+    items: ClassVar[tuple[tuple[str, Scalar], ...]] = ()
     class_name: ClassVar[str] = ""  # type: ignore[misc]  # only bits have a class
 
     place: Place
@@ -176,6 +267,26 @@ class Listed(Shaped):
     def wire(self) -> Wire:
         """How the elements' first number is encoded."""
         return self.of.wire if isinstance(self.of, Chars) else self.of.parts[0][1].wire
+
+    @property
+    def scalar(self) -> str:
+        """The Python type of an element, or of each of its numbers."""
+        return self.of.scalar
+
+    @property
+    def numbers(self) -> tuple[Record, ...]:
+        """The numbers of the least elements."""
+        return self.of.numbers * self.least
+
+    @property
+    def span(self) -> str:
+        """How many elements of which values, in words."""
+        return f"{self.size_words} elements: {self.of.span}"
+
+    def stated(self, refer: Refer) -> Record:
+        """Return its record in ``edition.json``."""
+        sizes = {"least": self.least, "most": self.most}
+        return {"of": refer(self.of), **sizes, "doc": self.doc}
 
     @property
     def sizes(self) -> tuple[int, int]:

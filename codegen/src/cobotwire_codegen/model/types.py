@@ -1,29 +1,44 @@
 """Defines the types of numbers: quantity, enum, flag, and a value type of several quantities.
 
 All four have the same attributes, so that the rest of the generator rarely distinguishes them:
-``kind``, ``name``, ``doc``, ``class_name``, ``members``, ``parts``, ``size``, ``choices``, and the
-conversions ``from_raw`` and ``read``.
+``kind``, ``name``, ``doc``, ``class_name``, ``members``, ``items``, ``parts``, ``size``,
+``choices``, and the conversions ``from_raw`` and ``read``. A type also states itself: its
+``numbers`` in the table, its ``span`` in words, its record in ``edition.json`` (``stated``), and as
+``scalar`` the Python type of its value, or of each number of several.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
-from typing import ClassVar
+from typing import Any, ClassVar
 
 from cobotwire_codegen import floats
 from cobotwire_codegen.errors import Place
+from cobotwire_codegen.language.units import UNITS
 from cobotwire_codegen.model.facts import Dispute, Lines
 from cobotwire_codegen.model.wires import Wire
+
+Record = dict[str, Any]
+# Returns the name of a type or a wire type, or its record where an edition does not list it.
+Refer = Callable[[Any], str | Record]
 
 
 class _Scalar:
     """What quantities, enums and flags have in common: one raw value."""
 
     __slots__ = ()
+    items: ClassVar[tuple[tuple[str, Scalar], ...]] = ()
     name: str
     wire: Wire
+
+    @property
+    def numbers(self) -> tuple[Record, ...]:
+        """Its one number in the table."""
+        assert isinstance(self, Enum | Flag)
+        return (number_of(self.wire, min(self.choices), max(self.choices)),)
 
     @property
     def parts(self) -> tuple[tuple[str, Scalar], ...]:
@@ -100,6 +115,54 @@ class Quantity(_Scalar):
     not_finite: bool = False
     meanings: tuple[tuple[int, int, str], ...] = ()
 
+    @property
+    def scalar(self) -> str:
+        """The Python type of its value."""
+        return "float" if self.real else "int"
+
+    @property
+    def numbers(self) -> tuple[Record, ...]:
+        """Its one number in the table."""
+        lowest, highest = self.bounds
+        if self.not_finite:
+            half = 256**self.wire.width // 2
+            lowest, highest = Fraction(-half), Fraction(half - 1)
+        number = number_of(self.wire, int(lowest), int(highest))
+        number |= {"multiply": self.scale.numerator, "divide": self.scale.denominator}
+        number["unit"] = self.unit
+        return (number | ({"choices": list(self.choices)} if self.choices else {}),)
+
+    @property
+    def span(self) -> str:
+        """The allowed values in words."""
+        if self.choices:
+            return "one of " + ", ".join(map(str, self.choices))
+        lowest, highest = self.ends
+        units = UNITS[self.unit].plural if self.unit else ""
+        unit = f" {units}" if units else ""
+        if self.not_finite:
+            return f"a number{unit}, also infinity and NaN"
+        if self.wire.is_float and self.range is None:
+            return f"a finite number of {self.wire.width} bytes{units and f', in {units}'}"
+        return f"{decimal(lowest)}..{decimal(highest)}{unit}"
+
+    def stated(self, refer: Refer) -> Record:
+        """Return its record in ``edition.json``, without what is empty."""
+        record: Record = {"wire": refer(self.wire)}
+        if self.scale != 1:
+            record["scale"] = exact_number(self.scale)
+        if self.unit:
+            record["unit"] = self.unit
+        if self.range is not None:
+            record["minimum"], record["maximum"] = map(exact_number, self.bounds)
+        elif self.not_finite:
+            [number] = self.numbers
+            record |= {key: number[key] for key in ("minimum", "maximum")}
+        meanings = [{"first": a, "last": b, "says": says} for a, b, says in self.meanings]
+        rest = {"choices": list(self.choices), "radians": self.radians, "meanings": meanings}
+        rest["doc"] = self.doc
+        return record | {key: value for key, value in rest.items() if value}
+
     @cached_property
     def bounds(self) -> tuple[Fraction, Fraction]:
         """The range as raw values; their denominators are 1 if the wire type can encode them."""
@@ -174,6 +237,7 @@ class Enum(_Scalar):
     """A closed list of values."""
 
     kind: ClassVar[str] = "enum"
+    scalar: ClassVar[str] = "int"
     scale: ClassVar[Fraction] = Fraction(1)
     unit: ClassVar[str] = ""
 
@@ -190,6 +254,20 @@ class Enum(_Scalar):
         """The legal raw values."""
         return tuple(member.value for member in self.members)
 
+    @property
+    def span(self) -> str:
+        """The members in words."""
+        return "one of " + ", ".join(f"{member.name} ({member.value})" for member in self.members)
+
+    def stated(self, refer: Refer) -> Record:
+        """Return its record in ``edition.json``."""
+        members = [
+            {"name": member.name, "value": member.value, "doc": member.doc}
+            for member in self.members
+        ]
+        record = {"class_name": self.class_name, "wire": refer(self.wire)}
+        return record | {"members": members, "doc": self.doc}
+
     def from_raw(self, raw: int) -> object:
         """Return the name of the member with a raw value, or the raw value as text."""
         names = {member.value: member.name for member in self.members}
@@ -205,6 +283,8 @@ class Flag(_Scalar):
     """Yes or no, encoded as 1 or 0."""
 
     kind: ClassVar[str] = "flag"
+    scalar: ClassVar[str] = "bool"
+    span: ClassVar[str] = "True or False"
     class_name: ClassVar[str] = ""
     members: ClassVar[tuple[Member, ...]] = ()
     scale: ClassVar[Fraction] = Fraction(1)
@@ -215,6 +295,10 @@ class Flag(_Scalar):
     name: str
     wire: Wire
     doc: str
+
+    def stated(self, refer: Refer) -> Record:
+        """Return its record in ``edition.json``."""
+        return {"wire": refer(self.wire), "doc": self.doc}
 
     def from_raw(self, raw: int) -> object:
         """Return whether a raw value is 1."""
@@ -234,6 +318,30 @@ class Value:
     class_name: str
     items: tuple[tuple[str, Quantity], ...]
     doc: str
+
+    @property
+    def scalar(self) -> str:
+        """The Python type of each number."""
+        return "float" if any(item.real for _, item in self.items) else "int"
+
+    @property
+    def numbers(self) -> tuple[Record, ...]:
+        """The numbers of the items, with their names."""
+        return tuple(item.numbers[0] | {"name": name} for name, item in self.items)
+
+    @property
+    def span(self) -> str:
+        """The allowed values in words, each range once."""
+        spans: dict[str, list[str]] = {}
+        for name, item in self.items:
+            spans.setdefault(item.span, []).append(name)
+        inner = "; ".join(f"{', '.join(group)} {words}" for words, group in spans.items())
+        return f"{len(self.items)} numbers ({inner})"
+
+    def stated(self, refer: Refer) -> Record:
+        """Return its record in ``edition.json``."""
+        items = [{"name": name, "type": refer(item)} for name, item in self.items]
+        return {"class_name": self.class_name, "items": items, "doc": self.doc}
 
     @property
     def parts(self) -> tuple[tuple[str, Scalar], ...]:
@@ -287,6 +395,23 @@ class Value:
 def _plain(exact: Fraction) -> int | Fraction:
     """Return a whole number as an int, any other number as it is."""
     return int(exact) if exact.denominator == 1 else exact
+
+
+def exact_number(number: Fraction) -> int | str:
+    """Return a whole number, or any other number as text: ``1/100``."""
+    return number.numerator if number.denominator == 1 else str(number)
+
+
+def decimal(exact: Fraction) -> str:
+    """Return an exact number as people write it."""
+    return str(exact.numerator) if exact.denominator == 1 else str(float(exact))
+
+
+def number_of(wire: Wire, minimum: int, maximum: int) -> Record:
+    """Return a number in the table, without a name, a scale and a unit."""
+    scale = {"multiply": 1, "divide": 1}
+    bounds = {"minimum": minimum, "maximum": maximum, "unit": ""}
+    return {"name": "", **wire.form, **scale, **bounds}
 
 
 Scalar = Quantity | Enum | Flag

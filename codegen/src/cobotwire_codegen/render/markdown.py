@@ -23,7 +23,7 @@ from cobotwire_codegen.model import (
 from cobotwire_codegen.model.shapes import Shaped
 from cobotwire_codegen.render.arguments import constant_in_words, default_in_words
 from cobotwire_codegen.render.escape_markdown import code as code
-from cobotwire_codegen.render.words import decimal, span, units
+from cobotwire_codegen.render.words import decimal, units
 
 
 def robot(edition: Edition) -> str:
@@ -34,7 +34,7 @@ def robot(edition: Edition) -> str:
 def wire_encoding(type: Type) -> str:
     """Return how a type is encoded, in words."""
     if isinstance(type, Shaped):
-        return span(type)
+        return type.span
     if isinstance(type, Value):
         return ", ".join(wire_encoding(item) for _, item in type.items)
     if not isinstance(type, Quantity):

@@ -6,17 +6,11 @@ from dataclasses import dataclass
 
 from cobotwire_codegen import lower
 from cobotwire_codegen.model import (
-    Bits,
-    Chars,
     Command,
-    Enum,
     Field,
-    Flag,
     Listed,
-    Octets,
     Quantity,
     Type,
-    Value,
     Variant,
     named_fields,
 )
@@ -99,9 +93,7 @@ def _by_name(variants: tuple[Variant, ...]) -> list[Parameter]:
 
 
 def _radians(type: Type) -> bool:
-    if isinstance(type, Value):
-        return any(item.radians for _, item in type.items)
-    return isinstance(type, Quantity) and type.radians
+    return any(isinstance(part, Quantity) and part.radians for _, part in type.parts)
 
 
 def argument_type(parameter: Parameter) -> str:
@@ -113,50 +105,28 @@ def argument_type(parameter: Parameter) -> str:
 
 
 def _argument(type: Type) -> str:
-    if isinstance(type, Bits):
-        return "Sequence[int]"
     if isinstance(type, Listed):
         return f"Sequence[{_argument(type.of)}]"
-    if isinstance(type, Value):
-        return f"Sequence[{'float' if scaled(type) else 'int'}]"
-    if isinstance(type, Enum):
-        return f"{type.class_name} | int"
-    return _scalar(type)
-
-
-def scaled(type: Value) -> bool:
-    """Return whether a part of the named tuple is a float."""
-    return any(item.real for _, item in type.items)
-
-
-def _scalar(type: Type) -> str:
-    if isinstance(type, Octets | Chars):
-        return "bytes" if isinstance(type, Octets) else "str"
-    if isinstance(type, Flag):
-        return "bool"
-    return "int" if isinstance(type, Quantity) and not type.real else "float"
+    if type.items:
+        return f"Sequence[{type.scalar}]"
+    return f"{type.class_name} | {type.scalar}" if type.class_name else type.scalar
 
 
 def result_type(parameter: Parameter) -> str:
     """Return the annotation of a result."""
     first = parameter.types[0]
-    same = len(parameter.types) == 1
-    if isinstance(first, Value):
-        if same:
-            return first.class_name
-        every = [type for type in parameter.types if isinstance(type, Value)]
-        return f"tuple[{'float' if any(map(scaled, every)) else 'int'}, ...]"
-    if isinstance(first, Enum | Bits) and same:
-        return first.class_name
-    if isinstance(first, Listed) and same:
-        return f"tuple[{element_type(first.of)}, ...]"
-    words = {_scalar(type) if not isinstance(type, Enum) else "int" for type in parameter.types}
-    return words.pop() if len(words) == 1 else "float"
+    if len(parameter.types) == 1:
+        if isinstance(first, Listed):
+            return f"tuple[{element_type(first.of)}, ...]"
+        return element_type(first)
+    words = {type.scalar for type in parameter.types}
+    word = words.pop() if len(words) == 1 else "float"
+    return f"tuple[{word}, ...]" if first.items else word
 
 
 def element_type(type: Type) -> str:
     """Return the annotation of an element of a list, or of a part of a named tuple."""
-    return type.class_name or _scalar(type)
+    return type.class_name or type.scalar
 
 
 def returns(command: Command) -> str:

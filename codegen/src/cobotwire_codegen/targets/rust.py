@@ -13,14 +13,9 @@ from pathlib import Path, PurePosixPath
 from cobotwire_codegen import lower
 from cobotwire_codegen.model import (
     Bits,
-    Chars,
     Command,
     Edition,
-    Enum,
-    Flag,
     Listed,
-    Octets,
-    Quantity,
     Type,
     Value,
 )
@@ -43,6 +38,8 @@ _TYPES = frozenset(
     {"Async", "From", "Into", "Option", "Result", "Self", "Some", "String", "Typed", "Value", "Vec"}
 )
 _METHODS = frozenset({"acknowledged", "clone", "open_with", "over"})
+# The types of values, by their types in Python.
+_SCALARS = {"bool": "bool", "int": "i64", "float": "f64", "bytes": "Vec<u8>", "str": "String"}
 
 
 def render_rust(edition: Edition, templates: Path | None = None) -> Files:
@@ -124,7 +121,7 @@ def _result(parameter: Parameter) -> str:
 def _given(type: Type) -> str:
     if isinstance(type, Listed):
         return f"Vec<{_given(type.of)}>"
-    return _array(type) if isinstance(type, Value | Bits) else _reported(type)
+    return _array(type) if type.items else _reported(type)
 
 
 def _reported(type: Type) -> str:
@@ -133,13 +130,7 @@ def _reported(type: Type) -> str:
         return f"Vec<{_reported(type.of)}>"
     if isinstance(type, Value) and _is_of_joints(type):
         return _array(type)
-    if isinstance(type, Enum | Bits | Value):
-        return type_name(type.class_name)
-    if isinstance(type, Octets | Chars):
-        return "Vec<u8>" if isinstance(type, Octets) else "String"
-    if isinstance(type, Flag):
-        return "bool"
-    return "f64" if type.real else "i64"
+    return type_name(type.class_name) if type.class_name else _SCALARS[type.scalar]
 
 
 def _is_of_joints(type: Type) -> bool:
@@ -153,9 +144,8 @@ def _items(type: Value | Bits) -> list[tuple[str, str, str]]:
     return [(name, _reported(item), api.item_doc(item)) for name, item in type.items]
 
 
-def _array(type: Value | Bits) -> str:
-    real = any(isinstance(item, Quantity) and item.real for _, item in type.items)
-    return f"[{'f64' if real else 'i64'}; {len(type.items)}]"
+def _array(type: Type) -> str:
+    return f"[{_SCALARS[type.scalar]}; {len(type.items)}]"
 
 
 def _one(found: Iterable[str]) -> str:

@@ -14,16 +14,10 @@ from typing import Any
 
 from cobotwire_codegen import lower
 from cobotwire_codegen.model import (
-    Bits,
-    Chars,
     Command,
     Edition,
-    Enum,
-    Flag,
     Listed,
-    Octets,
     Type,
-    Value,
 )
 from cobotwire_codegen.publish import edition_json
 from cobotwire_codegen.render import Files, environment, with_used_types
@@ -38,6 +32,14 @@ _METHODS = frozenset(
     {"acknowledged", "at", "call", "close", "constructor", "events", "stream", "then", "withSignal"}
     | {"description", "line", "perform", "settings", "with"}
 )
+# The types of values, by their types in Python.
+_SCALARS = {
+    "bool": "boolean",
+    "int": "number",
+    "float": "number",
+    "bytes": "Uint8Array",
+    "str": "string",
+}
 # Names that an argument cannot have.
 _WORDS = """
     arguments await break case catch class const continue debugger default delete do else enum eval
@@ -123,26 +125,18 @@ def tsdoc(text: str, indent: int = 0) -> str:
 
 def _reported(type: Type) -> str:
     """Return the type of a value in a reply."""
-    if isinstance(type, Value | Bits | Enum):
-        return type_name(type.class_name)
     if isinstance(type, Listed):
         return f"{_reported(type.of)}[]"
-    return _scalar(type)
+    return type_name(type.class_name) if type.class_name else _SCALARS[type.scalar]
 
 
 def _given(type: Type) -> str:
     """Return the type of an argument."""
-    if isinstance(type, Value | Bits):
+    if type.items:
         return "readonly number[]"
     if isinstance(type, Listed):
         return f"readonly ({_given(type.of)})[]"
     return _reported(type)
-
-
-def _scalar(type: Type) -> str:
-    if isinstance(type, Octets | Chars):
-        return "Uint8Array" if isinstance(type, Octets) else "string"
-    return "boolean" if isinstance(type, Flag) else "number"
 
 
 def _union(types: Iterable[str]) -> str:
@@ -216,4 +210,4 @@ class _Shown:
 
 
 def _is_flag(type: Type) -> bool:
-    return _is_flag(type.of) if isinstance(type, Listed) else isinstance(type, Flag)
+    return type.scalar == "bool"

@@ -5,9 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from cobotwire_codegen import lower
 from cobotwire_codegen.model import Bits, Flag, Value
-from cobotwire_codegen.render.words import span
 from cobotwire_codegen.targets.c import names
 from cobotwire_codegen.targets.c.messages import Message
 from cobotwire_codegen.targets.c.storage import c_type, group_name, group_of, kind_of
@@ -34,7 +32,7 @@ def groups(prefix: str, messages: list[Message]) -> Iterator[Group]:
 
 
 def _items(prefix: str, type: Value | Bits) -> Iterator[tuple[str, str]]:
-    for (name, part), number in zip(type.items, lower.numbers(type)):
-        words = "0 or 1" if isinstance(part, Flag) else span(part)
+    for (name, part), number in zip(type.items, type.numbers):
+        words = "0 or 1" if isinstance(part, Flag) else part.span
         declared = f"{c_type(prefix, kind_of(number))} {names.member(name)}"
         yield declared, f"{part.doc.rstrip('.')}: {words}."

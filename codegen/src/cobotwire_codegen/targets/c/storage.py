@@ -78,7 +78,7 @@ def _shaped(prefix: str, type: Type) -> Storage:
         return Storage(group_name(prefix, type), (), 1, 1, 1, (leaves,), True)
     least, most = type.sizes
     if isinstance(type, Octets | Chars):
-        leaf = Leaf(lower.byte_number(type), "BYTE", "", "0")
+        leaf = Leaf(type.byte, "BYTE", "", "0")
         element = "char" if isinstance(type, Chars) else "uint8_t"
         return Storage(element, (max(most, 1),), least, most, 1, ((leaf,),), True)
     assert isinstance(type, Listed)
@@ -121,7 +121,7 @@ def kind_of(number: dict[str, Any]) -> Kind:
 
 def _leaves(prefix: str, type: Type, in_struct: bool) -> tuple[Leaf, ...]:
     found = []
-    for index, number in enumerate(lower.numbers(type)):
+    for index, number in enumerate(type.numbers):
         access, place = "", "0"
         if isinstance(type, Value | Bits) and in_struct:
             member = names.member(number["name"])
@@ -140,7 +140,7 @@ def _in_union(prefix: str, type: Type) -> tuple[Leaf, ...]:
             f"[{index}].{_UNION[kind_of(number)]}",
             f"{index} * sizeof({prefix}_number_t)",
         )
-        for index, number in enumerate(lower.numbers(type))
+        for index, number in enumerate(type.numbers)
     )
 
 

@@ -172,12 +172,12 @@ def _of_type(type: Type, const: tuple[int, ...] | None = None) -> tuple[Slot, ..
     if isinstance(type, Listed):
         return _of_type(type.of) * type.least
     if isinstance(type, Octets | Chars):
-        top = lower.byte_number(type)["maximum"]
+        top = type.byte["maximum"]
         letter = isinstance(type, Chars)
         utf8 = isinstance(type, Chars) and type.encoding == "utf-8"
         slot = Slot(type.wire, Fraction(1), 0, top, (), letter=letter, utf8=utf8)
         return (slot,) * type.least
-    choices = lower.choices(type) if const is None else const
+    choices = type.choices if const is None else const
     if isinstance(type, Quantity):
         return (_quantity(type, choices),)
     assert isinstance(type, Enum | Flag)

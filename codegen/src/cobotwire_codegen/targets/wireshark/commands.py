@@ -53,7 +53,7 @@ class Commands:
     def _field(self, command: Command, field: Field, variant: Variant) -> dict[str, Any]:
         names = [other.name for other in variant]
         element = field.type.of if isinstance(field.type, Listed) else field.type
-        labels = dict(zip(lower.choices(element), lower.labels(element)))
+        labels = dict(zip(element.choices, lower.labels(element)))
         # Lists count from 1 in Lua, so 0 means that there is no group, selector or list.
         optional = {
             "flag": lower.kind(element) == "flag",

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any, NamedTuple
 
-from cobotwire_codegen import lower
 from cobotwire_codegen.model import Bits, Chars, Enum, Flag, Listed, Octets, Quantity, Type
 from cobotwire_codegen.render.words import units
 
@@ -51,7 +50,7 @@ def group_kind(type: Type) -> str:
 
 def _numbers(type: Type) -> Iterator[Leaf]:
     assert not isinstance(type, Bits | Octets | Chars | Listed), "these have leaves of their own"
-    for number, (_, part) in zip(lower.numbers(type), type.parts):
+    for number, (_, part) in zip(type.numbers, type.parts):
         reading = _reading(number)
         if isinstance(part, Quantity):
             if part.wire.is_float:
@@ -82,7 +81,7 @@ def _float(reading: dict[str, Any], type: Quantity) -> dict[str, Any]:
 
 
 def _bits(type: Bits) -> Iterator[Leaf]:
-    for number, part in zip(lower.numbers(type), type.bit_parts):
+    for number, part in zip(type.numbers, type.bit_parts):
         reading = _reading(number) | {"shift": part.shift, "bits": part.count}
         if isinstance(part.type, Flag | Enum):
             # The list says which values are legal.
