@@ -20,9 +20,7 @@ from cobotwire.protocol.table import (
     Command,
     Crc,
     Field,
-    FieldKind,
     FrameFormat,
-    Number,
     ReadBack,
     Table,
     TextReply,
@@ -30,18 +28,10 @@ from cobotwire.protocol.table import (
     Unsigned,
     Variant,
 )
-from cobotwire.protocol.type_records import (
-    BYTE,
-    Record,
-    TypeRecords,
-    choices_of,
-    letters_of,
-)
+from cobotwire.protocol.type_records import Record, TypeRecords
 
 VERSION = 3
 CARRIAGE_RETURN = b"\r"
-# The kinds of types that are neither a number nor a tuple of numbers.
-SHAPED = ("bits", "bytes", "text", "list")
 
 
 def load_table(package: str, checksum: str | None = "") -> Table:
@@ -242,91 +232,54 @@ class _Reader:
 
     def _sizes(self, field: Record) -> tuple[int, int] | None:
         """Return the least and the most elements of a field if they differ."""
-        type = self._types.record(field["type"]) if "type" in field else {}
-        least, most = type.get("least", 1), type.get("most", 1)
-        return (least, most) if least < most else None
+        return self._types.field(field["type"]).sizes if "type" in field else None
 
     def _variant(self, fields: list[Record], counts: dict[str, int]) -> Variant:
         names = [field["name"] for field in fields]
         by_name = {field["name"]: field for field in fields}
         made = []
         for record in fields:
-            counted = record.get("counts", "")
-            if counted:
-                field = self._field({**record, "const": counts[counted]}, names)
-                sizes = self._sizes(by_name[counted])
-                field = field._replace(sizes=sizes, counts=counted)
-            elif "type" in record and self._types.record(record["type"])["kind"] in SHAPED:
-                field = self._shaped(record, counts.get(record["name"]))
-            else:
-                field = self._field(record, names)
+            field = self._field(record, names, counts)
+            if field.counts:
+                field = field._replace(sizes=self._sizes(by_name[field.counts]))
             made.append(field)
         return Variant(tuple(made))
 
-    def _shaped(self, record: Record, count: int | None) -> Field:
-        """Return a field of bits, bytes, a text or a list, with that many elements."""
-        type = self._types.record(record["type"])
-        kind: FieldKind = type["kind"] if type["kind"] in ("bytes", "text") else "number"
-        each, of = 0, type
-        element: tuple[Number, ...] = (BYTE,)
-        if type["kind"] == "bits":
-            element = type["numbers"]
-        elif type["kind"] == "list":
-            of = self._types.record(type["of"])
-            if of["kind"] == "text":
-                kind, element = "text", letters_of(of) * of["least"]
-            else:
-                element = self._types.numbers_of(type["of"])
-                kind = of["kind"] if of["kind"] in ("enum", "flag") else "number"
-            each = len(element) if of["kind"] in ("value", "text") else 0
-        elif kind == "text":
-            element = letters_of(type)
-        members = of.get("members", ())
-        return Field(
-            record["name"],
-            kind,
-            (Case((), element * (type.get("least", 1) if count is None else count)),),
-            record.get("doc", ""),
-            True,
-            choices_of(of) if type["kind"] == "list" else (),
-            tuple([member["name"] for member in members]),
-            echo="echo" in record,
-            each=each,
-            encoding=of.get("encoding", ""),
-            padding=of.get("padding", -1),
-            sizes=self._sizes(record),
-        )
-
-    def _field(self, record: Record, names: list[str]) -> Field:
-        get = record.get
-        selector = get("selector", "")
-        types = get("cases") or ({"when": (), "type": record["type"]},)
-        cases = tuple(
-            [Case(tuple(case["when"]), self._types.numbers_of(case["type"])) for case in types]
-        )
-        first = self._types.record(types[0]["type"])
-        const, kind = get("const"), first["kind"]
-        choices: tuple[int, ...] = ()
-        labels: tuple[str, ...] = ()
-        if const is not None:
-            choices = (const,)
+    def _field(self, record: Record, names: list[str], counts: dict[str, int]) -> Field:
+        """Return a field; ``counts`` are the numbers of elements of the fields that vary."""
+        get, types = record.get, self._types
+        name, selector, counted = record["name"], get("selector", ""), get("counts", "")
+        const = counts[counted] if counted else get("const")
+        if cases := get("cases"):
+            field = types.field(cases[0]["type"])
+            made = [Case(tuple(each["when"]), types.numbers_of(each["type"])) for each in cases]
         else:
-            # Each case of a selected quantity has its own choices, in its number.
-            choices = () if selector and first["kind"] == "quantity" else choices_of(first)
-            labels = tuple([member["name"] for member in first.get("members", ())])
+            field = types.field(record["type"])
+            made = [Case((), types.numbers_of(record["type"], counts.get(name)))]
+        choices, labels = field.choices, field.labels
+        if const is not None:
+            choices, labels = (const,), ()
+        elif selector and field.kind == "number":
+            # Each case has its own choices, in its number.
+            choices = ()
         return Field(
-            record["name"],
-            kind if kind in ("enum", "flag") else "number",
-            cases,
+            name,
+            field.kind,
+            tuple(made),
             get("doc", ""),
-            kind == "value",
+            field.many,
             choices,
             labels,
             names.index(selector) if selector else -1,
             "echo" in record,
             const,
             tuple(default) if (default := get("default")) is not None else None,
-            meanings=first["meanings"],
+            field.each,
+            field.encoding,
+            field.padding,
+            field.sizes,
+            counted,
+            field.meanings,
         )
 
 

@@ -1,16 +1,23 @@
-"""Turn the types of an ``edition.json`` into the numbers of a table."""
+"""Turn the types of an ``edition.json`` into the numbers and fields of a table."""
 
 from __future__ import annotations
 
-from math import inf
 from typing import Any
 
-from cobotwire.protocol.numbers import raw_of_float
-from cobotwire.protocol.table import Number
+from cobotwire.protocol.table import Field, FieldKind, Number
 
 Record = dict[str, Any]
 BYTE = Number("", 1, "big", 255, 1, 1, 0, 255, "")
 ASCII = Number("", 1, "big", 255, 1, 1, 0, 127, "")
+# The kinds of fields, by the kinds of their types; the others are numbers.
+FIELD_KINDS: dict[str, FieldKind] = {
+    "flag": "flag",
+    "enum": "enum",
+    "bytes": "bytes",
+    "text": "text",
+}
+# The kinds of types with several numbers, besides lists.
+MANY = ("value", "bits", "bytes", "text")
 
 
 class TypeRecords:
@@ -19,6 +26,7 @@ class TypeRecords:
     def __init__(self, wires: list[Record], types: list[Record]) -> None:
         self._wires = {wire["name"]: wire for wire in wires}
         self._records = {type["name"]: _prepared(type) for type in types}
+        self._fields: dict[str, Field] = {}
         self._numbers: dict[str, tuple[Number, ...]] = {}
 
     def record(self, reference: str | Record) -> Record:
@@ -27,15 +35,55 @@ class TypeRecords:
             return self._records[reference]
         return reference if "numbers" in reference else _prepared(reference)
 
-    def numbers_of(self, reference: str | Record) -> tuple[Number, ...]:
-        """Return a type's numbers in the order of the wire."""
+    def field(self, reference: str | Record) -> Field:
+        """Return a field of a type, without what the message decides: a name, cases, a constant."""
+        if isinstance(reference, str) and reference in self._fields:
+            return self._fields[reference]
+        type = self.record(reference)
+        least, most = type.get("least", 1), type.get("most", 1)
+        if type["kind"] == "list":
+            of = self.field(type["of"])
+            each = len(self.numbers_of(type["of"])) if of.many else 0
+            field = of._replace(many=True, each=each, meanings=())
+        else:
+            field = Field(
+                "",
+                FIELD_KINDS.get(type["kind"], "number"),
+                (),
+                "",
+                type["kind"] in MANY,
+                choices_of(type),
+                tuple([member["name"] for member in type.get("members", ())]),
+                encoding=type.get("encoding", ""),
+                padding=type.get("padding", -1),
+                meanings=type["meanings"],
+            )
+        field = field._replace(sizes=(least, most) if least < most else None)
+        if isinstance(reference, str):
+            self._fields[reference] = field
+        return field
+
+    def numbers_of(self, reference: str | Record, count: int | None = None) -> tuple[Number, ...]:
+        """Return a type's numbers in the order of the wire: of ``count`` elements, or the least."""
+        type = self.record(reference)
+        least: int = type.get("least", 1)
+        return self._element(reference, type) * (least if count is None else count)
+
+    def _element(self, reference: str | Record, type: Record) -> tuple[Number, ...]:
+        """Return the numbers of one element; of a type that is no list, all of them."""
         if isinstance(reference, str) and reference in self._numbers:
             return self._numbers[reference]
-        type = self.record(reference)
-        if type["kind"] == "value":
+        kind = type["kind"]
+        if kind == "value":
             numbers = tuple(
                 [self._number(item["name"], self.record(item["type"])) for item in type["items"]]
             )
+        elif kind == "list":
+            numbers = self.numbers_of(type["of"])
+        elif kind == "bits":
+            numbers = type["numbers"]
+        elif kind in ("bytes", "text"):
+            numbers = (ASCII if type.get("encoding") == "ascii" else BYTE,)
         else:
             numbers = (self._number("", type),)
         if isinstance(reference, str):
@@ -46,35 +94,28 @@ class TypeRecords:
         wire = type["wire"]
         if isinstance(wire, str):
             wire = self._wires[wire]
-        top = 256 ** wire["width"]
-        signed_at, get = wire["signed_at"], type.get
-        encoding = wire.get("encoding", "integer")
-        low, high = (signed_at + 1 - top if signed_at < top - 1 else 0), signed_at
-        if encoding == "float":
-            # A bound that is left out allows all finite floats.
-            high = raw_of_float(inf, wire["width"]) - 1
-            low = -1 - high
-        kind = type["kind"]
-        if kind == "flag":
-            low, high = 0, 1
-        elif listed := choices_of(type):
-            low, high = min(listed), max(listed)
-        else:
-            low, high = get("minimum", low), get("maximum", high)
+        get = type.get
         multiply, _, divide = str(get("scale", 1)).partition("/")
-        return Number(
+        number = Number(
             name,
             wire["width"],
             wire["order"],
-            signed_at,
+            wire["signed_at"],
             int(multiply),
             int(divide or 1),
-            low,
-            high,
+            0,
+            0,
             get("unit", ""),
-            encoding,
+            wire.get("encoding", "integer"),
             choices=tuple(get("choices", ())),
         )
+        if listed := choices_of(type):
+            low, high = min(listed), max(listed)
+        else:
+            # A bound that is left out allows every raw value, but of floats only the finite ones.
+            low, high = number.raw_range
+            low, high = get("minimum", low), get("maximum", high)
+        return number._replace(minimum=low, maximum=high)
 
 
 def _prepared(type: Record) -> Record:
@@ -99,8 +140,3 @@ def _bits(record: Record) -> Number:
     """Return a number that is some bits of a word."""
     lists = {name: tuple(record[name]) for name in ("choices", "labels")}
     return Number(**{**record, **lists})
-
-
-def letters_of(type: Record) -> tuple[Number, ...]:
-    """Return the number of a byte of text."""
-    return (ASCII if type["encoding"] == "ascii" else BYTE,)
