@@ -13,7 +13,7 @@ from cobotwire_codegen.build import build_edition
 from cobotwire_codegen.model import Command, Edition, Variant
 from cobotwire_codegen.wire import build_frame
 from random_formats import formats
-from random_types import FEATURES, fixed_types, types, varying_types
+from random_types import FIXED, VARYING, types
 from random_variants import draw_arguments, several_variants, sharing_queries
 
 Record = dict[str, Any]
@@ -42,36 +42,35 @@ def frames(draw: st.DrawFn) -> Record:
 
 
 @st.composite
-def commands(draw: st.DrawFn, features: frozenset[str]) -> Record:
+def commands(draw: st.DrawFn) -> Record:
     """Draw some commands; each has its own id, so that no two can be confused."""
-    kinds, varying = fixed_types(features), varying_types(features)
     ids = draw(st.lists(st.integers(0, 255), min_size=1, max_size=4, unique=True))
     made: Record = {}
     for index, id in enumerate(ids):
         command = {"id": id, "title": "A call", "doc": "Does it.", "safety": "setting"}
         kind = draw(st.sampled_from(["one", "one", "varying", "several", "event"]))
-        if kind == "varying" and varying:
-            command |= draw(_varying(kinds, varying))
+        if kind == "varying":
+            command |= draw(_varying())
         elif kind == "several":
-            command |= draw(_several(kinds))
-        elif kind == "event" and "event" in features:
-            reply = [{"name": "news", "type": draw(st.sampled_from(kinds))}]
+            command |= draw(_several())
+        elif kind == "event":
+            reply = [{"name": "news", "type": draw(st.sampled_from(FIXED))}]
             command |= {"safety": "query", "event": True, "reply": reply}
         else:
-            command |= draw(_one(kinds))
+            command |= draw(_one())
         made[f"call{index}"] = command
     if draw(st.integers(0, 2)) == 0:
         free = st.integers(0, 255).filter(lambda id: id not in ids)
-        made |= draw(sharing_queries(draw(free), kinds))
+        made |= draw(sharing_queries(draw(free), FIXED))
     for command in made.values():
         _stored(draw, command, made)
     return made
 
 
 @st.composite
-def _one(draw: st.DrawFn, kinds: list[str]) -> Record:
+def _one(draw: st.DrawFn) -> Record:
     """Draw a request with a selector, a constant or an optional field, and perhaps a reply."""
-    each = st.sampled_from(kinds)
+    each = st.sampled_from(FIXED)
     fields: list[Record] = [
         {"name": f"f{position}", "type": draw(each)} for position in range(draw(st.integers(0, 3)))
     ]
@@ -95,23 +94,23 @@ def _one(draw: st.DrawFn, kinds: list[str]) -> Record:
 
 
 @st.composite
-def _several(draw: st.DrawFn, kinds: list[str]) -> Record:
+def _several(draw: st.DrawFn) -> Record:
     """Draw several variants of a request, and perhaps of a reply."""
-    command: Record = {"request_variants": draw(several_variants("request", kinds))}
+    command: Record = {"request_variants": draw(several_variants("request", FIXED))}
     if draw(st.booleans()):
         command["safety"] = "query"
-        command["reply_variants"] = draw(several_variants("reply", kinds))
+        command["reply_variants"] = draw(several_variants("reply", FIXED))
     return command
 
 
 @st.composite
-def _varying(draw: st.DrawFn, kinds: list[str], varying: list[str]) -> Record:
+def _varying(draw: st.DrawFn) -> Record:
     """Draw messages with sizes that vary: counted, to the end, or both."""
     command: Record = {}
     if draw(st.booleans()):
-        command["request"] = draw(_sized_fields(kinds, varying))
+        command["request"] = draw(_sized_fields())
     if draw(st.booleans()) or not command:
-        fields = draw(_sized_fields(kinds, varying))
+        fields = draw(_sized_fields())
         # The last field of a query's reply is what a setting stores.
         fields[-1]["name"] = "answer"
         command |= {"safety": "query", "reply": fields}
@@ -119,18 +118,18 @@ def _varying(draw: st.DrawFn, kinds: list[str], varying: list[str]) -> Record:
 
 
 @st.composite
-def _sized_fields(draw: st.DrawFn, kinds: list[str], varying: list[str]) -> list[Record]:
+def _sized_fields(draw: st.DrawFn) -> list[Record]:
     fields: list[Record] = []
     if draw(st.booleans()):
-        fields.append({"name": "before", "type": draw(st.sampled_from(kinds))})
+        fields.append({"name": "before", "type": draw(st.sampled_from(FIXED))})
     ways = draw(st.sampled_from(["end", "count", "both"]))
     if ways != "end":
         fields.append({"name": "size", "type": "count"})
-        fields.append({"name": "data", "type": draw(st.sampled_from(varying)), "count": "size"})
+        fields.append({"name": "data", "type": draw(st.sampled_from(VARYING)), "count": "size"})
     if ways != "count":
-        fields.append({"name": "rest", "type": draw(st.sampled_from(varying))})
+        fields.append({"name": "rest", "type": draw(st.sampled_from(VARYING))})
     if draw(st.booleans()):
-        fields.append({"name": "after", "type": draw(st.sampled_from(kinds))})
+        fields.append({"name": "after", "type": draw(st.sampled_from(FIXED))})
     return fields
 
 
@@ -174,13 +173,8 @@ def states_of(commands: Record) -> Record:
 
 
 @st.composite
-def specs(
-    draw: st.DrawFn, folder: Path, name: str = "rnd", *, features: frozenset[str] = FEATURES
-) -> tuple[Path, Edition]:
-    """Draw a whole protocol as one YAML file, with a vector for each variant; return its model.
-
-    ``features`` are those of ``random_types.FEATURES`` that an output target can express.
-    """
+def specs(draw: st.DrawFn, folder: Path, name: str = "rnd") -> tuple[Path, Edition]:
+    """Draw a whole protocol as one YAML file, with a vector for each variant; return its model."""
     data: Record = {
         "edition": name,
         "class": "Rnd",
@@ -188,12 +182,12 @@ def specs(
         "doc": "A random protocol.",
         "joints": 3,
         "frame": draw(frames()),
-        "types": draw(types(features)),
-        "commands": draw(commands(features)),
+        "types": draw(types()),
+        "commands": draw(commands()),
     }
     if state := states_of(data["commands"]):
         data["state"] = state
-    if "ack" in features and draw(st.booleans()):
+    if draw(st.booleans()):
         data["acks"] = draw(acks())
     path = folder / f"{name}.yaml"
     _write(path, data)

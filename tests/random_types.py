@@ -12,34 +12,18 @@ from random_values import decimal
 
 Record = dict[str, Any]
 
-# The features of drawn protocols. Tests of an output target draw those that it can express.
-FEATURES = frozenset({"float", "bits", "bytes", "text", "list", "event", "ack"})
-PLAIN: frozenset[str] = frozenset()
 # Each multiple of these scales is a finite decimal, so a vector can state it exactly.
 SCALES = ["1", "1/10", "1/100", "1/1000", "1/8", "3/20", "5", "1/2"]
-# The types of fields with a fixed size, and with a varying size.
-FIXED = {"bits": ["word"], "bytes": ["octets"], "text": ["name"], "list": ["numbers", "pairs"]}
-VARYING = {"bytes": ["blob"], "text": ["note"], "list": ["some", "groups"]}
-
-
-def fixed_types(features: frozenset[str]) -> list[str]:
-    """Return the names of the drawn types that may stand anywhere in a message."""
-    return ["joint", "q0", "q1", "flag", "mode", "row", *_named(FIXED, features)]
-
-
-def varying_types(features: frozenset[str]) -> list[str]:
-    """Return the names of the drawn types with a size that varies."""
-    return _named(VARYING, features)
-
-
-def _named(names: dict[str, list[str]], features: frozenset[str]) -> list[str]:
-    return [name for feature in names if feature in features for name in names[feature]]
+# The types of fields with a fixed size, which may stand anywhere in a message.
+FIXED = ["joint", "q0", "q1", "flag", "mode", "row", "word", "octets", "name", "numbers", "pairs"]
+# The types of fields with a varying size.
+VARYING = ["blob", "note", "some", "groups"]
 
 
 @st.composite
-def types(draw: st.DrawFn, features: frozenset[str]) -> Record:
+def types(draw: st.DrawFn) -> Record:
     """Draw a types file; every type exists, whether or not a message uses it."""
-    wires = draw(_wires("float" in features))
+    wires = draw(_wires())
     quantities = {f"q{index}": draw(quantity(wires)) for index in range(draw(st.integers(2, 4)))}
     names = st.sampled_from(sorted(quantities))
     members = draw(st.lists(st.integers(0, 255), min_size=1, max_size=4, unique=True))
@@ -68,7 +52,7 @@ def types(draw: st.DrawFn, features: frozenset[str]) -> Record:
 
 
 @st.composite
-def _wires(draw: st.DrawFn, floats: bool) -> Record:
+def _wires(draw: st.DrawFn) -> Record:
     wires: Record = {
         "byte": {"bytes": 1, "doc": "A byte."},
         "double": {"bytes": 2, "doc": "Two bytes."},
@@ -80,7 +64,7 @@ def _wires(draw: st.DrawFn, floats: bool) -> Record:
         order = draw(st.sampled_from(["big", "little"]))
         sign = draw(signs)
         wires[f"w{index}"] = {"bytes": width, "order": order, "signed_at": sign, "doc": "A wire."}
-        if floats and draw(st.integers(0, 4)) == 0:
+        if draw(st.integers(0, 4)) == 0:
             size = draw(st.sampled_from([4, 8]))
             wires[f"w{index}"] = {"bytes": size, "order": order, "encoding": "float", "doc": "F."}
     return wires
