@@ -99,8 +99,17 @@ def raising(call: Method) -> Method:
 
 
 def slow(seconds: float) -> Callable[[Method], Method]:
-    """Sleep after the call."""
-    return lambda call: lambda arm, *given: (call(arm, *given), time.sleep(seconds))[0]
+    """Sleep before the call returns."""
+
+    def wrapped(call: Method) -> Method:
+        def instead(arm: Any, *given: Any) -> Any:
+            result = call(arm, *given)
+            time.sleep(seconds)
+            return result
+
+        return instead
+
+    return wrapped
 
 
 @pytest.mark.parametrize(
