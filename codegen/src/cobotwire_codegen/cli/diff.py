@@ -80,10 +80,10 @@ def diff(
     or revisions, editions of the same name are compared. A single file is compared with the edition
     of the same name. The specs are not checked: `cobotwire-gen check` does that.
 
-    Findings that break the wire or the API require a major version; changes of behaviour, what
-    peers of another version do not know, and additions require a minor version; changes of docs
-    require a patch. Before 1.0, where SemVer promises nothing, additions and docs raise the patch
-    number, and all others the minor number.
+    Findings that break the wire or the API require a major version; changes of behaviour, values
+    that a peer of the other version does not know, and additions require a minor version; changes
+    of docs require a patch. Before 1.0, where SemVer promises nothing, additions and docs raise the
+    patch number, and all others the minor number.
 
     By default the exit code is 1 unless every finding is an addition or concerns docs, as a
     release requires. `--fail-on wire` or `--fail-on api` accepts changes of behaviour, such as

@@ -122,7 +122,7 @@ def _open(input: Input) -> BinaryIO:
 
 
 def _compression(input: Input, first: bytes) -> Compression | None:
-    """Return how an input is compressed. Standard input has no name with an ending."""
+    """Return how an input is compressed. Standard input has no extension that says so."""
     if input.url == STDIN:
         return compression_of(first)
     kinds = (kind for end, kind in COMPRESSED.items() if input.url.endswith(end))
