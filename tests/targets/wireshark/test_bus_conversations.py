@@ -6,12 +6,10 @@ from pathlib import Path
 
 import pytest
 
-import small_specs
 import vectors
 from cobotwire_codegen.build import build_edition
 from cobotwire_codegen.emit import Target, write
 from cobotwire_codegen.targets.wireshark import render_wireshark
-from session.test_replies_with_constants import COMMANDS, VECTORS
 from targets.built import built
 from targets.wireshark.captures import Chunk, serial
 from targets.wireshark.dissecting import Item, dissected, needs_tshark
@@ -28,8 +26,8 @@ LINES = {
         *("> FF FF 01 04 02 3E 01 B9", "< FF FF 01 03 00 79 82"),
         *("> FF FF 01 04 02 3F 01 B8", "< FF FF 01 03 00 20 DB"),
     ),
-    "constants": ("small", "> FE FE 04 E9 0E 0A FA", "< FE FE 05 E9 0E 0B 01 FA"),
-    "constant": ("small", "> FE FE 04 E9 0E 0A FA", "< FE FE 05 E9 0E 0A FF FA"),
+    "constants": ("mycobot320", "> FE FE 05 E9 0E 00 1C FA", "< FE FE 07 E9 0E 00 0E 00 01 FA"),
+    "constant": ("mycobot320", "> FE FE 05 E9 0E 00 1C FA", "< FE FE 07 E9 0E 00 1C FF FF FA"),
 }
 
 
@@ -37,10 +35,9 @@ LINES = {
 def shown(tmp_path_factory: pytest.TempPathFactory) -> dict[str, list[Item]]:
     """Return the items of each line, from one run of tshark."""
     folder = tmp_path_factory.mktemp("bus")
-    small = small_specs.build(folder, COMMANDS, VECTORS)
-    editions = {"feetech": build_edition(BUS / "feetech.yaml", BUS), "small": small}
-    write(Target(folder / "lua", render_wireshark([*editions.values()])))
-    names = [editions[line[0]].name for line in LINES.values()]
+    editions = [build_edition(BUS / "feetech.yaml", BUS), vectors.edition("mycobot320")]
+    write(Target(folder / "lua", render_wireshark(editions)))
+    names = [line[0] for line in LINES.values()]
     chunks = [
         Chunk(
             number, "request" if packet[0] == ">" else "reply", bytes.fromhex(packet[2:]), at * MS
@@ -50,7 +47,7 @@ def shown(tmp_path_factory: pytest.TempPathFactory) -> dict[str, list[Item]]:
     ]
     path = folder / "bus.pcapng"
     path.write_bytes(serial(chunks, names))
-    scripts = [folder / "lua" / f"{edition.name}.lua" for edition in editions.values()]
+    scripts = [folder / "lua" / f"{edition.name}.lua" for edition in editions]
     packets = iter(dissected(path, " ".join({*names}), "-2", "-R", "frame", scripts=scripts))
     return {key: [next(packets)[0] for _ in line[1:]] for key, line in LINES.items()}
 
@@ -78,12 +75,15 @@ def test_reply_without_id_is_decoded_for_its_request(shown: dict[str, list[Item]
 def test_reply_with_the_constant_of_another_command_is_not_matched(
     shown: dict[str, list[Item]],
 ) -> None:
-    force, state = shown["constants"]
-    assert force.experts == ["unanswered"]
-    assert (state.own["frame.command"], state.experts) == ("get_state", [])
+    torque, status = shown["constants"]
+    assert torque.experts == ["unanswered"]
+    assert (status.own["frame.command"], status.experts) == ("get_pro_gripper_status", [])
     # A reply that no command allows is a faulty one of the request's command.
     _, faulty = shown["constant"]
-    assert (faulty.own["frame.command"], faulty.experts) == ("get_force", ["bad_value"])
+    assert (faulty.own["frame.command"], faulty.experts) == (
+        "get_pro_gripper_torque",
+        ["bad_value"],
+    )
     assert "request_in" in faulty.own
 
 
