@@ -36,7 +36,7 @@ SOON_SECONDS = 0.02
 
 
 def _late(every: int, first: int) -> tuple[Fault, ...]:
-    """Return faults that delay replies, in turn the ``every + 1``-th and the ``every``-th next one.
+    """Return faults that delay replies at distances of ``every + 1`` and ``every``, alternately.
 
     If the distance were fixed, and a client sent its queries in a fixed order, the late replies
     would all be to the same query, and would come when the client waits for that query again.

@@ -93,7 +93,7 @@ class Setting:
     def _request(self, query: Request[Any], values: Mapping[str, Any], speed: int) -> Request[Any]:
         """Return the request that sets ``values`` of what ``query`` reads.
 
-        Of its other arguments, speeds are ``speed``, and the rest do the least.
+        Its speeds are ``speed``, and its other arguments are those that do the least.
         """
         speeds = {f.name: speed for f in self.variant.fields if _is_speed(f) and not f.many}
         return self.command.request_type.from_fields(
