@@ -7,7 +7,7 @@ from typing import Any
 
 from hypothesis import strategies as st
 
-from cobotwire_codegen.language.units import UNITS
+from cobotwire_codegen.units import UNITS
 from random_values import decimal
 
 Record = dict[str, Any]

@@ -7,8 +7,8 @@ from typing import NamedTuple
 
 from cobotwire_codegen.editor.context import context_at
 from cobotwire_codegen.language.shapes import Known, Word, YesNo
-from cobotwire_codegen.language.units import UNITS
 from cobotwire_codegen.model import Edition
+from cobotwire_codegen.units import UNITS
 
 # Keys with names of commands, types and vectors as values.
 _COMMANDS = {"command", "commands", "change", "remove", "rename", "alias", "shares_id", "except"}

@@ -9,7 +9,7 @@ from cobotwire_codegen.language.names import CLASS, LOWER, UPPER
 from cobotwire_codegen.language.number_shapes import Exact, Numbers, Range, Span, Whole
 from cobotwire_codegen.language.records import Named, Record, optional, required
 from cobotwire_codegen.language.shapes import Known, Name, Text, Word, YesNo
-from cobotwire_codegen.language.units import UNITS
+from cobotwire_codegen.units import UNITS
 
 _WIRE = Known("wire_name", "the name of a wire type")
 _QUANTITY = Known("quantity_name", "the name of a quantity")

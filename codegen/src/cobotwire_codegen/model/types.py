@@ -17,9 +17,9 @@ from typing import Any, ClassVar
 
 from cobotwire_codegen import floats
 from cobotwire_codegen.errors import Place
-from cobotwire_codegen.language.units import UNITS
 from cobotwire_codegen.model.facts import Dispute, Lines
 from cobotwire_codegen.model.wires import Wire
+from cobotwire_codegen.units import UNITS
 
 Record = dict[str, Any]
 # Returns the name of a type or a wire type, or its record where an edition does not list it.

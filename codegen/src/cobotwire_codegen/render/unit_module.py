@@ -5,13 +5,13 @@ from __future__ import annotations
 import json
 from collections.abc import Sequence
 
-from cobotwire_codegen.language.units import UNITS
 from cobotwire_codegen.model import Edition
+from cobotwire_codegen.units import UNITS
 
 
 def render_units() -> str:
     """Return ``cobotwire/protocol/units.json``: the plural of each unit, as it follows a number."""
-    note = {"GENERATED": "from cobotwire_codegen.language.units; not to be edited"}
+    note = {"GENERATED": "from cobotwire_codegen.units; not to be edited"}
     plurals = {name: unit.plural for name, unit in UNITS.items()}
     return json.dumps(note | plurals, indent=0) + "\n"
 

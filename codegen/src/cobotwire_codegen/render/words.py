@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from cobotwire_codegen import lower
-from cobotwire_codegen.language.units import UNITS
 from cobotwire_codegen.model import (
     Field,
     Lines,
 )
 from cobotwire_codegen.model.types import decimal as decimal
+from cobotwire_codegen.units import UNITS
 
 
 def allowed(field: Field) -> str:

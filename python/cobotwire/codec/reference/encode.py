@@ -177,7 +177,7 @@ def _real(number: Number, value: Any) -> int:
         raise _Rejected("range") from None
     except (TypeError, ValueError):
         raise _Rejected("type") from None
-    if number.encoding == "float":
+    if not number.scaled:
         return number.raw(real)
     steps = number.steps(real)
     # Checked before rounding, because a huge float would become a huge integer.
