@@ -27,14 +27,13 @@ pub enum NumberEncoding {
 }
 
 impl NumberEncoding {
-    /// Their names.
-    pub const WORDS: [(&'static str, Self); 2] =
-        [("integer", Self::Integer), ("float", Self::Float)];
+    /// All encodings, with their names.
+    pub const ALL: [(&'static str, Self); 2] = [("integer", Self::Integer), ("float", Self::Float)];
 
     /// Return the encoding with a name; `None` if there is none.
     #[must_use]
     pub fn named(word: &str) -> Option<Self> {
-        let known = Self::WORDS.into_iter().find(|(known, _)| *known == word);
+        let known = Self::ALL.into_iter().find(|(known, _)| *known == word);
         known.map(|(_, encoding)| encoding)
     }
 }

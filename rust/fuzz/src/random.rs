@@ -208,7 +208,9 @@ fn number(bytes: &mut Bytes<'_>) -> Number {
         WILD.. => usize::try_from(integer(bytes, 8)).unwrap_or(usize::MAX),
         _ => 1 + usize::from(shape & 3),
     };
-    let float = shape & 0x30 == 0x30;
+    let encoding = NumberEncoding::ALL.get(usize::from(4 - (shape >> 4 & 3)));
+    let encoding = encoding.map(|(_, encoding)| *encoding).unwrap_or_default();
+    let float = encoding == NumberEncoding::Float;
     let width = match width {
         1..=4 if float => 4 << (shape & 1),
         _ => width,
@@ -227,11 +229,7 @@ fn number(bytes: &mut Bytes<'_>) -> Number {
         divide: scale(bytes),
         minimum: integer(bytes, -100),
         maximum: integer(bytes, 100),
-        encoding: if float {
-            NumberEncoding::Float
-        } else {
-            NumberEncoding::Integer
-        },
+        encoding,
         choices: vec![],
         flag: false,
         bits: None,

@@ -55,7 +55,7 @@ impl Word for Order {
 }
 
 impl Word for NumberEncoding {
-    const WORDS: &[(&str, Self)] = &Self::WORDS;
+    const WORDS: &[(&str, Self)] = &Self::ALL;
 }
 
 /// The numbers of a type in the order of the wire, and what texts need of each.
