@@ -176,10 +176,10 @@ fn number(json: &Value) -> Number {
         divide: integer(&json["divide"]),
         minimum: integer(&json["minimum"]),
         maximum: integer(&json["maximum"]),
-        encoding: json["encoding"]
-            .as_str()
-            .and_then(NumberEncoding::named)
-            .expect("an encoding"),
+        encoding: match json["encoding"].as_str() {
+            Some(word) => NumberEncoding::named(word).expect("an encoding"),
+            None => NumberEncoding::Integer,
+        },
         ..Number::default()
     }
 }
