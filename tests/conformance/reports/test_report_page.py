@@ -12,6 +12,7 @@ from cobotwire.conformance.provenance import identify
 from cobotwire.conformance.report import Environment
 from cobotwire.conformance.reports import from_json, to_html, to_json
 from cobotwire.conformance.reports.grouped import by_cause
+from cobotwire.conformance.reports.html_results import SIGNS
 from cobotwire.conformance.statement import statement_template
 from conformance.device.testing import prepared
 
@@ -157,3 +158,7 @@ def test_long_reason_is_grouped(text: str) -> None:
     # Without a limit, some of these take minutes.
     results = [Result("x", "", Verdict.FAIL, text) for _ in range(50)]
     assert len(by_cause(results)) == 1
+
+
+def test_each_cause_of_an_outcome_has_a_sign() -> None:
+    assert {cause for _, cause in SIGNS} == {*Cause}

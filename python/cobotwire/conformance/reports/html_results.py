@@ -23,6 +23,7 @@ SIGNS = {
     (Verdict.FAIL, Cause.NONE): "✗",
     (Verdict.FAIL, Cause.UNSTABLE): "≈",
     (Verdict.INCONCLUSIVE, Cause.NOT_SUPPORTED): "○",
+    (Verdict.INCONCLUSIVE, Cause.NOT_TIMED): "◌",
     (Verdict.PASS, Cause.NONE): "✓",
     (Verdict.NOT_RUN, Cause.NOT_PERMITTED): "·",
     (Verdict.NOT_RUN, Cause.NOT_SELECTED): "-",
