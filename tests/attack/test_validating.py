@@ -99,17 +99,17 @@ def raising(call: Method) -> Method:
 
 
 def slow(seconds: float) -> Callable[[Method], Method]:
-    """Sleep before the call returns."""
+    """Sleep after the call."""
 
-    def wrapped(call: Method) -> Method:
+    def broken(call: Method) -> Method:
         def instead(arm: Any, *given: Any) -> Any:
-            result = call(arm, *given)
+            value = call(arm, *given)
             time.sleep(seconds)
-            return result
+            return value
 
         return instead
 
-    return wrapped
+    return broken
 
 
 @pytest.mark.parametrize(

@@ -1,15 +1,10 @@
-"""Find the maker's classes that are compared: each module of this package has one as ``ROBOT``."""
+"""The maker's classes that are compared, by their names."""
 
 from __future__ import annotations
 
-from importlib import import_module
-from pkgutil import iter_modules
-
+from robots.classes import arms, closed_loop, mybuddy, pro450
 from robots.robot import Robot
 
 ROBOTS: dict[str, Robot] = {
-    robot.peer: robot
-    for robot in (
-        import_module(f"{__name__}.{found.name}").ROBOT for found in iter_modules(__path__)
-    )
+    robot.peer: robot for module in (arms, closed_loop, mybuddy, pro450) for robot in module.ROBOTS
 }

@@ -22,7 +22,7 @@ _WHOLE_ROBOT = frozenset(
     | {"get_base_coords", "jog_inc_coord", "collision_switch", "is_collision_on"}
 )
 
-ROBOT = Robot(
+_ROBOT = Robot(
     "MyBuddy",
     "mybuddy",
     methods={
@@ -69,3 +69,4 @@ ROBOT = Robot(
         Call("sync_send_coords", (2, _ZERO, 50), "send_coords", (_ZERO, 50, 0), "RIGHT"),
     ],
 )
+ROBOTS = (_ROBOT,)

@@ -65,7 +65,7 @@ _CALLS = [
 ]
 _PLACE = [300, 0, 200, 90, 0, -90]
 _ZERO = [0] * 6
-ROBOT = Robot(
+_ROBOT = Robot(
     "Pro450Client",
     "pro450",
     local=LOCAL | {"set_limit_switch"},
@@ -96,3 +96,4 @@ ROBOT = Robot(
     opened=opened_on_socket,
     # Motions return their final status; the robot type is returned as a string of digits.
 )
+ROBOTS = (_ROBOT,)

@@ -1,15 +1,18 @@
-"""The Mercury A1; a module beside this one compares the same class with the Mercury B1 and X1."""
+"""The Mercury, the Pro 400 and the Pro 630, which report the end of a motion."""
 
 from __future__ import annotations
 
+from dataclasses import replace
+from typing import Any
+
 from robots.crc_classes import SINGLE, opened_as
-from robots.robot import LOCAL, Arguments, Call, Robot
+from robots.robot import LOCAL, Call, Robot
 
 _PRO = {"angle": (11, 12), "torque": (27, 28), "speed": (32, 33)}
 _HAND = {"angle": (11, 12), "torque": (27, 28), "p": (15, 16), "d": (17, 18), "i": (19, 20)}
 _HAND |= {"clockwise": (21, 22), "counterclockwise": (23, 24), "min_pressure": (25, 26)}
 # Methods that write or read one register of a tool, by our commands for any register.
-TOOLS = [
+_TOOLS = [
     *(
         Call(f"set_pro_gripper_{what}", (50,), "set_pro_gripper", (at, 50))
         for what, (at, _) in _PRO.items()
@@ -60,11 +63,11 @@ _HOME = [0, 0, 0, 0, 0, 90, 0]
 _PLACE = [300, 0, 200, 90, 0, -90]
 
 
-def calls_of(joints: int) -> list[Call]:
+def _calls_of(joints: int) -> list[Call]:
     """Return the calls of methods without a command of the same name."""
     zero = [0] * joints
     return [
-        *TOOLS,
+        *_TOOLS,
         Call("clear_encoders_error", (joints,), "clear_encoder_error", (joints,)),
         Call("set_servos_calibration", (), "set_servo_calibration", (1,)),
         Call("go_home", (), "send_angles", (_HOME, 20)),
@@ -78,24 +81,51 @@ def calls_of(joints: int) -> list[Call]:
 _TWO_ARMS = {"get_base_coords", "send_base_coord", "send_base_coords", "jog_base_coord"}
 _TWO_ARMS |= {"jog_base_increment_coord", "jog_base_rpy", "set_servo_cw", "get_servo_cw"}
 _TWO_ARMS |= {"clear_waist_queue"}
-OWN_ARGUMENTS: dict[str, list[Arguments]] = {
-    "set_pro_gripper": [(3, 254), (10, 1), (11, 0), (11, 100), (43, 300)],
-    "tool_serial_write_data": [([1, 2, 3],), ([255] * 45,)],
-    "get_pro_gripper": [(1, 14), (4, 1), (44, 254)],
+_SHARED: dict[str, Any] = {
+    "lacking": {
+        "angles_to_coords": "get_coords with angles",
+        "is_in_position_coords": "is_in_position with the mode 1",
+        "set_hand_gripper": "a method for each register",
+        "get_hand_gripper": "a method for each register",
+    },
+    "own_arguments": {
+        "set_pro_gripper": [(3, 254), (10, 1), (11, 0), (11, 100), (43, 300)],
+        "tool_serial_write_data": [([1, 2, 3],), ([255] * 45,)],
+        "get_pro_gripper": [(1, 14), (4, 1), (44, 254)],
+    },
 }
-LACKING = {
-    "angles_to_coords": "get_coords with angles",
-    "is_in_position_coords": "is_in_position with the mode 1",
-    "set_hand_gripper": "a method for each register",
-    "get_hand_gripper": "a method for each register",
-}
-ROBOT = Robot(
+_A1 = Robot(
     "Mercury (A1)",
     "mercury_a1",
     further=("mercury_b1",),
     local=LOCAL | _TWO_ARMS,
-    lacking=LACKING,
-    own_arguments=OWN_ARGUMENTS,
-    calls=calls_of(7),
+    calls=_calls_of(7),
     opened=opened_as(SINGLE),
+    **_SHARED,
 )
+_BODY = "is_in_position_base_coords"
+# The left arm of a Mercury B1 or X1.
+_B1 = replace(
+    _A1,
+    peer="Mercury (B1, X1)",
+    edition="mercury_b1",
+    further=(),
+    local=LOCAL,
+    lacking={**_A1.lacking, _BODY: "is_in_position with the mode 2"},
+    calls=[*_A1.calls, Call("is_in_position", (_PLACE, 2), _BODY, (_PLACE,))],
+    opened=opened_as("/dev/left_arm"),
+)
+_400 = replace(_A1, peer="Pro400", edition="pro400", local=LOCAL, calls=_calls_of(6))
+# These switch pins of the computer in the arm, or raise that the robot does not support them.
+_PINS = {"get_basic_input", "set_basic_output", "power_on_only"}
+_PINS |= {"get_monitor_mode", "set_monitor_mode"}
+_ZERO = [0] * 6
+_630 = replace(
+    _400,
+    peer="Pro630",
+    edition="pro630",
+    calls=[*_400.calls, Call("send_angles_sync", (_ZERO, 50), "send_angles", (_ZERO, 50))],
+    local=LOCAL | _PINS,
+    own_arguments={**_400.own_arguments, "power_on": [(1,)]},
+)
+ROBOTS = (_A1, _B1, _400, _630)
