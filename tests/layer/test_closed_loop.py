@@ -167,31 +167,3 @@ def test_name_of_the_port_says_which_robot_it_is() -> None:
             ):
                 call()
         alone.close()
-
-
-@pytest.mark.parametrize(
-    ("name", "method", "arguments", "text"),
-    [
-        ("Mercury", "set_pro_gripper_angle", (300,), "gripper_angle is 300"),
-        ("Mercury", "set_hand_gripper_p", (9, 5), "hand_id is 9"),
-        ("Mercury", "set_hand_gripper_pinch_action_speed_consort", (7, 0), "pinch_pose is 7"),
-        ("Mercury", "is_in_position", ([0] * 5,), "len(data) is 5"),
-        ("Mercury", "is_in_position", ([0] * 7, 3), "mode is 3"),
-        ("Mercury", "get_coords", ([0] * 5,), "len(angles) is 5"),
-        ("Pro450Client", "set_pro_gripper_angle", (101,), "gripper_angle is 101"),
-        ("Pro450Client", "get_pro_gripper_angle", (0,), "gripper_id is 0"),
-        ("Pro450Client", "base_external_can_control", (0, [1]), "can_id is 0"),
-        ("Pro450Client", "set_limit_switch", (3, 1), "limit_mode is 3"),
-        ("Mercury", "set_limit_switch", (3, 1), "limit_mode is 3"),
-        ("Mercury", "set_limit_switch", (1, 2), "state is 2"),
-        ("Pro630", "set_basic_output", (7, 1), "pin_no is 7"),
-        *(("Pro630", "power_on", (delay,), f"delay is {delay!r}") for delay in (None, "2", -1)),
-    ],
-)
-def test_wrong_argument_is_named_as_in_the_library(
-    name: str, method: str, arguments: tuple[Any, ...], text: str
-) -> None:
-    arm, _ = made(name)
-    with pytest.raises(UsageError) as raised:
-        getattr(arm, method)(*arguments)
-    assert str(raised.value).startswith(f"{text}; allowed: ")

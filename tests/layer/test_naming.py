@@ -13,25 +13,39 @@ from layer.arms import made
 
 
 @pytest.mark.parametrize(
-    ("method", "arguments", "text"),
+    ("name", "method", "arguments", "text"),
     [
-        ("send_angle", (1, 200, 50), "degree is 200; allowed: "),
-        ("send_angle", (9, 20, 50), "id is 9; allowed: "),
-        ("send_angles", ([0] * 5, 50), "len(angles) is 5; allowed: "),
-        ("set_encoders", ([0] * 6, 200), "sp is 200; allowed: "),
-        ("sync_send_angles", ([0] * 5, 50), "len(degrees) is 5; allowed: "),
-        ("sync_send_angles", ([200] + [0] * 5, 50), "degrees.j1 is 200; allowed: "),
-        ("is_in_position", ([0] * 5, 0), "len(data) is 5; allowed: "),
-        ("set_color", (300, 0, 0), "r is 300; allowed: "),
-        ("set_ssid_pwd", ("é", "c"), "account is "),
+        ("MyCobot280", "send_angle", (1, 200, 50), "degree is 200"),
+        ("MyCobot280", "send_angle", (9, 20, 50), "id is 9"),
+        ("MyCobot280", "send_angles", ([0] * 5, 50), "len(angles) is 5"),
+        ("MyCobot280", "set_encoders", ([0] * 6, 200), "sp is 200"),
+        ("MyCobot280", "sync_send_angles", ([0] * 5, 50), "len(degrees) is 5"),
+        ("MyCobot280", "sync_send_angles", ([200] + [0] * 5, 50), "degrees.j1 is 200"),
+        ("MyCobot280", "is_in_position", ([0] * 5, 0), "len(data) is 5"),
+        ("MyCobot280", "set_color", (300, 0, 0), "r is 300"),
+        ("MyCobot280", "set_ssid_pwd", ("é", "c"), "account is 'é'"),
+        ("Mercury", "set_pro_gripper_angle", (300,), "gripper_angle is 300"),
+        ("Mercury", "set_hand_gripper_p", (9, 5), "hand_id is 9"),
+        ("Mercury", "set_hand_gripper_pinch_action_speed_consort", (7, 0), "pinch_pose is 7"),
+        ("Mercury", "is_in_position", ([0] * 5,), "len(data) is 5"),
+        ("Mercury", "is_in_position", ([0] * 7, 3), "mode is 3"),
+        ("Mercury", "get_coords", ([0] * 5,), "len(angles) is 5"),
+        ("Pro450Client", "set_pro_gripper_angle", (101,), "gripper_angle is 101"),
+        ("Pro450Client", "get_pro_gripper_angle", (0,), "gripper_id is 0"),
+        ("Pro450Client", "base_external_can_control", (0, [1]), "can_id is 0"),
+        ("Pro450Client", "set_limit_switch", (3, 1), "limit_mode is 3"),
+        ("Mercury", "set_limit_switch", (3, 1), "limit_mode is 3"),
+        ("Mercury", "set_limit_switch", (1, 2), "state is 2"),
+        ("Pro630", "set_basic_output", (7, 1), "pin_no is 7"),
+        *(("Pro630", "power_on", (delay,), f"delay is {delay!r}") for delay in (None, "2", -1)),
     ],
 )
 def test_error_names_what_the_caller_wrote(
-    method: str, arguments: tuple[Any, ...], text: str
+    name: str, method: str, arguments: tuple[Any, ...], text: str
 ) -> None:
     with pytest.raises(UsageError) as raised:
-        getattr(made("MyCobot280")[0], method)(*arguments)
-    assert str(raised.value).startswith(text)
+        getattr(made(name)[0], method)(*arguments)
+    assert str(raised.value).startswith(f"{text}; allowed: ")
     assert raised.value.argument == text.partition(" is ")[0]
 
 
