@@ -3,34 +3,13 @@ same robots."""
 
 from __future__ import annotations
 
-import sys
-import threading
 from dataclasses import replace
-from functools import partial
 from typing import Any
 
 from pymycobot_classes import library
 from robots.classes import ROBOTS
+from robots.opening import on_socket, opened_by_client
 from robots.robot import Robot
-from robots.tcp_classes import PortSocket, opened_by_client
-
-
-def on_socket(peer_class: str, port: Any) -> Any:
-    """Return an object of a class that opens a TCP connection, on a port in this process."""
-    from pymycobot.common import read, write
-    from pymycobot.generate import CommandGenerator
-
-    kind = library(peer_class)
-    peer = object.__new__(kind)
-    CommandGenerator.__init__(peer)
-    peer.calibration_parameters = sys.modules[kind.__module__].calibration_parameters
-    peer.lock, peer.sock = threading.Lock(), PortSocket(port)
-    if not hasattr(kind, "_write"):
-        # The constructor of the class would set these attributes.
-        peer.thread_lock = True
-        peer._write = partial(write, peer, method="socket")
-        peer._read = partial(read, peer, method="socket")
-    return peer
 
 
 def _another(peer: str, of: str, **changes: Any) -> Robot:

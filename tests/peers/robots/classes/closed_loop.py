@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Any
 
-from robots.crc_classes import SINGLE, opened_as
+from robots.opening import SINGLE, opened_as
 from robots.robot import LOCAL, Call, Robot
 
 _PRO = {"angle": (11, 12), "torque": (27, 28), "speed": (32, 33)}

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+from robots.opening import opened_on_socket
 from robots.robot import LOCAL, Arguments, Call, Robot
-from robots.tcp_classes import opened_on_socket
 
 GRIPPER = 14
 # The registers of the gripper that methods write and read.
