@@ -19,6 +19,7 @@ from cobotwire.codec.interface import Codec
 from cobotwire.protocol.addresses import find_address
 from cobotwire.protocol.errors import UsageError
 from cobotwire.protocol.radians import to_degrees
+from cobotwire.session.request import RequestEncoder
 from cobotwire_codegen.model import Edition
 from pymycobot_classes import library
 from robots.arguments import Named
@@ -106,7 +107,7 @@ def _neighbours(value: Any) -> Iterator[Any]:
 
 
 def _sent(codec: Codec, call: Call) -> bytes | None:
-    """Return the frame of a call; None if the edition rejects it."""
+    """Return the frame of a call and the text after it; None if the edition rejects the call."""
     named = {}
     if isinstance(call.ours, Named):
         named = dict(zip(call.ours.names, call.ours, strict=True))
@@ -115,9 +116,9 @@ def _sent(codec: Codec, call: Call) -> bytes | None:
     try:
         command = codec.table.command(call.command)
         request = command.request_type(*(() if named else call.ours), **named)
-        known = None if call.address is None else find_address(codec.table, call.address)
-        address = None if known is None else known.value
-        return codec.encode(command.name, "request", request.values, address=address)
+        address = None if call.address is None else find_address(codec.table, call.address)
+        encoded = RequestEncoder(codec, address).encode_request(request)
+        return encoded.frame + encoded.text
     except (UsageError, TypeError, ValueError):
         return None
 
