@@ -1,4 +1,4 @@
-"""Check the laws of diagnosis on random streams, with both codecs."""
+"""Check the laws of diagnosis on random streams, with both codecs, also of other formats."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from itertools import pairwise
 from hypothesis import given
 from hypothesis import strategies as st
 
+import diagnosed_formats
 import field
 import strategies
 from cobotwire import codec as codecs
@@ -18,6 +19,11 @@ from diagnosing import diagnose
 CODECS = st.sampled_from([codecs.load(TABLE, "reference"), codecs.load(TABLE, "native")])
 LISTENING = st.sampled_from(["request", "reply", "both"])
 STREAMS = field.streams() | strategies.streams()
+# A codec and a stream of its format.
+LINES = st.tuples(CODECS, STREAMS) | st.sampled_from(diagnosed_formats.CODECS).flatmap(
+    lambda codec: st.tuples(st.just(codec), diagnosed_formats.streams(codec))
+)
+Line = tuple[Codec, bytes]
 
 
 def _pieces(items: list[Item]) -> list[tuple[int, bytes, bool]]:
@@ -29,11 +35,11 @@ def _pieces(items: list[Item]) -> list[tuple[int, bytes, bool]]:
     )
 
 
-@given(CODECS, LISTENING, st.data())
+@given(LINES, LISTENING)
 def test_every_byte_of_noise_is_in_one_finding_and_every_frame_passes_through(
-    codec: Codec, listening: Listening, data: st.DataObject
+    line: Line, listening: Listening
 ) -> None:
-    stream = data.draw(STREAMS)
+    codec, stream = line
     framer = codec.framer(listening)
     events = [*framer.feed(stream), *framer.flush()]
     items = diagnose(codec, stream, listening=listening)
@@ -45,11 +51,11 @@ def test_every_byte_of_noise_is_in_one_finding_and_every_frame_passes_through(
     ]
 
 
-@given(CODECS, LISTENING, st.data())
+@given(LINES, LISTENING, st.data())
 def test_findings_do_not_depend_on_chunking(
-    codec: Codec, listening: Listening, data: st.DataObject
+    line: Line, listening: Listening, data: st.DataObject
 ) -> None:
-    stream = data.draw(STREAMS)
+    codec, stream = line
     whole = diagnose(codec, stream, listening=listening)
     assert diagnose(codec, *data.draw(strategies.chunked(stream)), listening=listening) == whole
     assert diagnose(codec, *[bytes([byte]) for byte in stream], listening=listening) == whole

@@ -24,7 +24,7 @@ from cobotwire.conformance.codec import (
 )
 from cobotwire.conformance.codec.questions.our_codec import OurCodec
 from cobotwire.conformance.codec.questions.question import Json
-from cobotwire.conformance.report import Cause, Report
+from cobotwire.conformance.report import Cause
 from cobotwire.conformance.reports import from_json, to_html, to_json, to_junit
 from cobotwire.editions.mycobot import TABLE
 from cobotwire.protocol.errors import LinkError, UsageError
@@ -74,7 +74,8 @@ def test_implementation_without_answers_fails_and_is_restarted_at_most_five_time
     assert message in failure.reason
     assert failure.reason.endswith("(5 of 5 failed)")
     assert not report.finished
-    assert not report.conforms
+    assert report.stopped == "the codec had ended or hung 5 times"
+    assert any(result.cause is Cause.RUN_ENDED for result in report.results)
 
 
 def test_command_that_hangs_fails_after_its_timeout(decoding: list[Question]) -> None:
@@ -196,39 +197,25 @@ def test_answer_may_omit_an_echo_but_no_other_field() -> None:
     assert not Run(TABLE, _Changed(without(rest))).ask_all(about).conforms
 
 
-def _run_with(text: str, questions: list[Question], change: Callable[[Json], Json]) -> Report:
-    known = read_expectations(text, "known.txt")
-    return Run(TABLE, _Changed(change), expected=known).ask_all(questions)
-
-
-def _reject(answer: Json) -> Json:
-    return {"error": "no"} if "fields" in answer else answer
-
-
-def test_expected_failure_is_excused_with_its_reason(questions: list[Question]) -> None:
-    text = "# known\n\ndecode-values/get_angles/*   it reads no angles\n"
-    report = _run_with(text, questions, _reject)
-    [excused] = [r for r in report.results if r.cause is Cause.NOT_SUPPORTED]
-    assert excused.reason == "expected to fail (known.txt:3): it reads no angles"
-    assert report.conforms
-
-
 @pytest.mark.parametrize(
-    ("line", "message"),
+    ("line", "works", "reason"),
     [
-        ("decode-values/get_angles/* it reads none", "passed, among them decode-values"),
-        (
-            "decode-values/get_angels/* it reads none",
-            "nothing that was tested matches decode-values/get_angels",
-        ),
+        ("get_angles/*  it reads none", False, "expected to fail (known.txt:1): it reads none"),
+        ("get_angles/* it reads none", True, "passed, among them decode-values"),
+        ("get_angels/* why", True, "nothing that was tested matches decode-values"),
     ],
 )
-def test_expectation_that_is_not_met_fails(
-    questions: list[Question], line: str, message: str
+def test_expected_failure_is_excused_and_one_that_is_not_met_fails(
+    questions: list[Question], line: str, works: bool, reason: str
 ) -> None:
-    [failure] = _run_with(line, questions, lambda answer: answer).failures
-    assert failure.case == "expected-failure"
-    assert message in failure.reason
+    def reject(answer: Json) -> Json:
+        return {"error": "no"} if "fields" in answer and not works else answer
+
+    known = read_expectations(f"decode-values/{line}\n", "known.txt")
+    report = Run(TABLE, _Changed(reject), expected=known).ask_all(questions)
+    [found] = [r for r in report.results if r.case == "expected-failure" or "known.txt" in r.reason]
+    assert report.conforms is not works
+    assert reason in found.reason
 
 
 @pytest.mark.parametrize("text", ["decode-values/x", "a b\na c"])
@@ -311,7 +298,7 @@ def test_answer_of_any_values_gets_a_verdict(answers: list[Any]) -> None:
     ElementTree.fromstring(to_junit(report).encode())
 
 
-@pytest.mark.parametrize("depth", [17, 500, 990, 1000, 3000, 100_000])
+@pytest.mark.parametrize("depth", [17, 990, 100_000])
 @pytest.mark.parametrize("brackets", ["[]", "{}"], ids=["lists", "objects"])
 def test_deeply_nested_answer_is_invalid_output(
     decoding: list[Question], depth: int, brackets: str

@@ -22,9 +22,7 @@ def prepared_at(ticks: list[int], defect: str, *allow: str) -> Tester:
     return on_peer(arm, clock, TABLE, OurTester, permissions=permissions(*allow))
 
 
-@pytest.mark.parametrize(
-    "defect", ["", "tenths-of-degrees", "two-joints-swapped", "joints-in-reverse"]
-)
+@pytest.mark.parametrize("defect", ["", "two-joints-swapped"])
 def test_report_of_an_arm_at_zero_names_the_permission_motion(defect: str) -> None:
     report = prepared_at([0] * 6, defect, "setting").run()
     assert report.untested.startswith(SAYS.format("1, 2, 3, 4, 5, 6"))

@@ -13,10 +13,8 @@ from pathlib import Path
 
 import pytest
 
-import in_process
 import vectors
 from cobotwire import editions
-from cobotwire.cli.app import app
 from cobotwire.conformance import Verdict
 from cobotwire.conformance.device import DeviceConnection, Permissions, Tester
 from cobotwire.conformance.reports import from_json
@@ -67,19 +65,6 @@ def test_ctrl_c_stops_the_arm_restores_settings_and_writes_a_report(tmp_path: Pa
     assert report.results
     assert run.returncode == 2
     assert (arm.state.minimum, arm.state.maximum) == limits
-
-
-def test_exit_code_shows_whether_the_device_conforms() -> None:
-    def run(edition: str, *words: str) -> in_process.Ended:
-        words = ("--edition", edition, "conform", "device", *words)
-        return in_process.run(app, "cobotwire", *words)
-
-    refused = run("mycobot280", "--simulated", "--allow", "motion")
-    assert refused.returncode == 2
-    assert "max_speed" in refused.stderr
-    # The document's edition has commands that today's firmware lacks.
-    with PtyServer(SimulatedArm(TABLE)) as server:
-        assert run("mycobot", server.url).returncode == 1
 
 
 def test_plugin_without_a_device_is_a_usage_error(tmp_path: Path) -> None:

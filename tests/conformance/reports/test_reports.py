@@ -115,7 +115,10 @@ def test_report_with_a_value_of_another_type_is_rejected(written: str, wrong: st
         from_json(text.replace(written, wrong))
 
 
-@pytest.mark.parametrize("text", ["", "{}", "[]", '{"format": "other", "version": 1}', "nonsense"])
+NOT_A_REPORT = ["", "{}", "[]", '{"format": "other", "version": 1}', "nonsense", "[" * 100_000]
+
+
+@pytest.mark.parametrize("text", NOT_A_REPORT, ids=range(6))
 def test_text_that_is_not_a_report_is_rejected(text: str) -> None:
     with pytest.raises(UsageError, match="report"):
         from_json(text)
@@ -148,11 +151,6 @@ def test_report_with_a_wrong_value_is_rejected_or_can_be_compared(
     assert len(compare(report, found).changes) == len(compare(found, report).changes)
     to_html(found).encode()
     to_junit(found).encode()
-
-
-def test_report_that_is_nested_deeply_is_rejected() -> None:
-    with pytest.raises(UsageError, match="not a report in JSON"):
-        from_json("[" * 100_000)
 
 
 @given(REPORTS)
@@ -193,14 +191,6 @@ def test_cell_shows_its_most_severe_result(report: Report) -> None:
     for (command, case), cell in matrix(report).items():
         verdicts = [r.verdict for r in report.results if (r.command, r.case) == (command, case)]
         assert cell.verdict == min(verdicts, key=GRAVEST.index)
-
-
-@given(REPORTS)
-def test_report_does_not_differ_from_itself(report: Report) -> None:
-    found = compare(report, report)
-    assert found.changes == ()
-    assert found.times == ()
-    assert not found.worse
 
 
 @given(REPORTS, REPORTS)

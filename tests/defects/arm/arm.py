@@ -189,9 +189,6 @@ class Arm:
         }
         return answers[id]() if id in answers else None
 
-    def _opening(self) -> int:
-        return max(0, min(105, round(self._width.place()[0] - self._width_zero)))
-
     def tool(self) -> list[float]:
         """Return the lengths of the tool in millimetres."""
         return [n / 100 for n in signed(self.references[0x81][:6])]

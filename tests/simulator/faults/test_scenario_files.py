@@ -196,21 +196,6 @@ def test_missing_yaml_library_error_names_the_package_to_install() -> None:
     assert "pip install 'cobotwire[sim]'" in ended.stderr
 
 
-def test_aliases_that_stand_for_a_billion_values_are_refused_at_their_place() -> None:
-    many = ", ".join(["*a"] * 400)
-    text = f"faults:\n  - &a [1, 1, 1, 1]\n  - &b [{many}]\n  - [{many.replace('*a', '*b')}]\n"
-    place = "scenario:2:12: up to here the file has more than 100000 values"
-    with pytest.raises(ScenarioError, match=place):
-        loads(text)
-
-
-@pytest.mark.parametrize(
-    ("text", "message"),
-    [
-        ("[" * 3000, r"scenario:1:11: this is nested too deeply"),
-        ("# \n" * 400_000, r"scenario:1:1: the file has more than 1048576 characters, the limit"),
-    ],
-)
-def test_file_above_a_limit_is_refused(text: str, message: str) -> None:
-    with pytest.raises(ScenarioError, match=message):
-        loads(text)
+def test_file_above_a_limit_is_refused() -> None:
+    with pytest.raises(ScenarioError, match="scenario:1:1: the file has more than 1048576 char"):
+        loads("# \n" * 400_000)

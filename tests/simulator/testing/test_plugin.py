@@ -6,23 +6,26 @@ import re
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 import vectors
+from cobotwire.protocol.errors import UsageError
+from cobotwire.simulator.testing.options import combined
 
 INI = "[pytest]\naddopts = --strict-markers -q -p no:cacheprovider\nfilterwarnings = error\n"
 GUIDE = (vectors.ROOT / "docs" / "testing.md").read_text()
 EXAMPLES = re.findall(r"```python\n(.*?)```", GUIDE, re.DOTALL)
 
 
-def run(folder: Path, *tests: str, words: tuple[str, ...] = ()) -> str:
+def run(folder: Path, *tests: str) -> str:
     """Run test files as a separate project; return what pytest printed."""
     (folder / "pytest.ini").write_text(INI)
     for number, test in enumerate(tests):
         (folder / f"test_it{number}.py").write_text(test)
     result = subprocess.run(
-        [sys.executable, "-m", "pytest", *words],
+        [sys.executable, "-m", "pytest"],
         cwd=folder,
         capture_output=True,
         text=True,
@@ -97,26 +100,30 @@ def test_example_of_the_guide_ports_and_marks_work_in_another_project(tmp_path: 
     assert "9 passed" in (output := run(tmp_path, EXAMPLES[0], PORTS, MARKS)), output
 
 
-WRONG = {
-    "'mycobot280'": "arguments by name",
-    "senario='x'": "did you mean scenario?",
-    "transport='serial'": "one of memory, pty, tcp",
-    "speed=0": "above 0",
-    "scenario=3": "an object with wrap()",
-    "scenario='late-replys'": "late-replies",
-    "edition='mycobot28'": "did you mean mycobot280?",
-}
+WRONG: list[tuple[tuple[Any, ...], dict[str, Any], str]] = [
+    (("mycobot280",), {}, "arguments by name"),
+    ((), {"senario": "x"}, "did you mean scenario?"),
+    ((), {"transport": "serial"}, "one of memory, pty, tcp"),
+    ((), {"speed": 0}, "above 0"),
+    ((), {"scenario": 3}, "an object with wrap()"),
+]
 
 
-def test_wrong_mark_is_reported(tmp_path: Path) -> None:
-    tests = [
-        f"@pytest.mark.simulated_arm({mark})\ndef test_{number}(simulated_arm):\n    pass\n"
-        for number, mark in enumerate(WRONG)
-    ]
-    printed = run(tmp_path, "import pytest\n" + "\n".join(tests))
-    assert f"{len(WRONG)} errors" in printed
-    for message in WRONG.values():
-        assert message in printed
+@pytest.mark.parametrize(("places", "names", "message"), WRONG, ids=str)
+def test_argument_that_a_mark_cannot_have_is_refused(
+    places: tuple[Any, ...], names: dict[str, Any], message: str
+) -> None:
+    with pytest.raises(UsageError, match=re.escape(message)):
+        combined([(places, names)], Path())
+
+
+def test_wrong_mark_is_reported_as_an_error_of_its_test(tmp_path: Path) -> None:
+    mark = (
+        "@pytest.mark.simulated_arm(edition='mycobot28')\ndef test_it(simulated_arm):\n    pass\n"
+    )
+    printed = run(tmp_path, "import pytest\n" + mark)
+    assert "1 error" in printed
+    assert "did you mean mycobot280?" in printed
 
 
 def test_run_without_the_fixtures_imports_only_the_plugins(tmp_path: Path) -> None:
@@ -146,8 +153,3 @@ def test_it():
     assert not {"serial", "ruamel", "matplotlib", "numpy"} & loaded
 """
     assert "1 passed" in (output := run(tmp_path, test)), output
-
-
-def test_mark_is_listed_by_pytest(tmp_path: Path) -> None:
-    printed = run(tmp_path, words=("--markers",))
-    assert "@pytest.mark.simulated_arm(edition='mycobot280'" in printed
