@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from typing import Any
 
 import pytest
@@ -14,7 +14,7 @@ from cobotwire.conformance.codec.questions.our_codec import OurCodec
 from cobotwire.conformance.codec.questions.question import Json, Question
 from cobotwire.conformance.report import Report
 from cobotwire.simulator import MemoryTransport, SteppedClock
-from conformance.device.testing import Altered, prepared
+from conformance.device.testing import altering, prepared
 from random_editions import SENSOR
 from trial_specs import imported
 
@@ -49,16 +49,12 @@ def test_right_device_conforms(sensor: Any) -> None:
 def test_device_that_changes_a_byte_of_a_value_fails(
     sensor: Any, command: str, setter: str, place: int
 ) -> None:
-    id = sensor.TABLE.command(command).id
-
-    def changed(request: bytes, reply: bytes, number: int) -> bytes:
-        if len(reply) < 9 or reply[3] != id:
-            return reply
+    def changed(reply: bytes) -> bytes:
         data = bytearray(reply)
-        data[place] ^= 1
+        data[place] ^= len(reply) >= 9
         return bytes(data)
 
-    report = prepared(sensor.TABLE, lambda arm: Altered(arm, changed)).run()
+    report = prepared(sensor.TABLE, altering(sensor.TABLE, command, changed)).run()
     assert not setter or ("read-back", setter) in failed(report)
 
 
@@ -71,13 +67,28 @@ def test_right_codec_conforms(
     assert Run(sensor.TABLE, codec).ask_all(questions[::43]).conforms
 
 
-class Lower(OurCodec):
-    """A codec with hexadecimal digits in lower case."""
+class Changed(OurCodec):
+    """A codec that changes the fields of its answers."""
+
+    def __init__(self, table: Any, change: Callable[[str, Any], Any]) -> None:
+        super().__init__(codecs.load(table))
+        self._change = change
 
     def ask(self, question: Json) -> Json:
         answer = super().ask(question)
-        octets = {name: v.lower() for name, v in answer.get("fields", {}).items() if name == "data"}
-        return answer | ({"fields": answer["fields"] | octets} if octets else {})
+        fields = {name: self._change(name, v) for name, v in answer.get("fields", {}).items()}
+        return answer | ({"fields": fields} if fields else {})
+
+
+def lower(name: str, value: Any) -> Any:
+    return value.lower() if name == "data" else value
+
+
+def wrong(name: str, value: Any) -> Any:
+    """Return texts in upper case, and bytes in reverse."""
+    if name == "data" and isinstance(value, str):
+        return bytes.fromhex(value)[::-1].hex()
+    return value.upper() if name == "note" else value
 
 
 def test_bytes_of_fields_may_be_written_in_lower_case(
@@ -85,30 +96,13 @@ def test_bytes_of_fields_may_be_written_in_lower_case(
 ) -> None:
     some = [q for q in questions if q.command == "write_memory" and q.case.id == "decode-values"]
     assert some
-    assert Run(sensor.TABLE, Lower(codecs.load(sensor.TABLE))).ask_all(some).conforms
-
-
-class Wrong:
-    """A codec with text in upper case, and bytes in reverse."""
-
-    def __init__(self, codec: OurCodec) -> None:
-        self._codec = codec
-
-    def ask(self, question: Json) -> Json:
-        answer = self._codec.ask(question)
-        fields = dict(answer.get("fields", {}))
-        if "note" in fields:
-            fields["note"] = fields["note"].upper()
-        if isinstance(fields.get("data"), str):
-            fields["data"] = bytes.fromhex(fields["data"])[::-1].hex()
-        return answer | ({"fields": fields} if fields else {})
+    assert Run(sensor.TABLE, Changed(sensor.TABLE, lower)).ask_all(some).conforms
 
 
 def test_codec_that_changes_texts_and_bytes_fails(sensor: Any, questions: list[Question]) -> None:
-    wrong = Wrong(OurCodec(codecs.load(sensor.TABLE)))
     about = {"set_name", "write_memory", "set_torque"}
     some = [q for q in questions if q.command in about and q.case.id == "decode-values"]
-    found = failed(Run(sensor.TABLE, wrong).ask_all(some))
+    found = failed(Run(sensor.TABLE, Changed(sensor.TABLE, wrong)).ask_all(some))
     assert found == {("decode-values", "set_name"), ("decode-values", "write_memory")}
 
 
@@ -123,8 +117,8 @@ CALLS: list[tuple[str, tuple[Any, ...], tuple[Any, ...]]] = [
 ]
 
 
-@pytest.mark.parametrize("wrong", [False, True])
-def test_client_is_tested_with_values_of_every_type(sensor: Any, wrong: bool) -> None:
+@pytest.mark.parametrize("mistaken", [False, True])
+def test_client_is_tested_with_values_of_every_type(sensor: Any, mistaken: bool) -> None:
     clock = SteppedClock()
     script = [
         ScriptLine(sensor.TABLE.command(name), values, name, None) for name, _, values in CALLS
@@ -133,11 +127,11 @@ def test_client_is_tested_with_values_of_every_type(sensor: Any, wrong: bool) ->
     referee = Referee(sensor.TABLE, scenario=scenario, script=script, clock=clock)
     with sensor.CLIENT(MemoryTransport(referee, clock), on_error="leave") as client:
         for name, arguments, _ in CALLS:
-            if wrong and name == "write_memory":
+            if mistaken and name == "write_memory":
                 arguments = (3, b"\xca\xff", True)
-            if wrong and name == "set_name":
+            if mistaken and name == "set_name":
                 arguments = ("left", b"1234", "à cote")
             getattr(client, name)(*arguments)
             clock.sleep(1.0)
     commands = {command for _, command in failed(referee.finish())}
-    assert commands == ({"write_memory", "set_name"} if wrong else set())
+    assert commands == ({"write_memory", "set_name"} if mistaken else set())

@@ -70,6 +70,16 @@ class Altered:
         return self._peer.flush()
 
 
+def altering(table: Table, command: str, change: Callable[[bytes], bytes]) -> Wrap:
+    """Return what wraps an arm so that the replies to one command are changed."""
+    at, id = table.frame.id_at, table.command(command).id
+
+    def alter(request: bytes, reply: bytes, count: int) -> bytes:
+        return change(reply) if reply and request[at : at + 1] == bytes([id]) else reply
+
+    return lambda arm: Altered(arm, alter)
+
+
 # An interrupted run does not restore the power, since an arm without power would fall.
 HELD = ("powered",)
 # State that is not a setting: the arm's position, history and build.
