@@ -11,7 +11,6 @@ from cobotwire.conformance import Suite
 from cobotwire.conformance.catalogue import HISTORY, VERSION, listing
 from cobotwire.conformance.catalogue.history import CLAUSES
 from cobotwire.conformance.device import SUITE
-from cobotwire.conformance.provenance import code_digest
 from conformance.device.testing import permissions, prepared
 
 
@@ -85,9 +84,3 @@ def test_page_of_an_edition_lists_the_test_cases_of_a_run() -> None:
         for result in tester.results_without_run(step)
     }
     assert listed == run
-
-
-def test_digest_of_the_code_is_stable() -> None:
-    code_digest.cache_clear()
-    assert code_digest() == code_digest()
-    assert len(code_digest()) == 64

@@ -170,20 +170,6 @@ def test_identify_verb_prints_edition_firmware_and_evidence(arm: tuple[str, str]
     assert edition in evidence[-1]
 
 
-def test_arm_with_other_frames_is_recognised_by_them() -> None:
-    simulated = SimulatedArm(load("mercury_a1").TABLE)
-    with TcpServer(simulated.connect) as server:
-        found = identify(server.url, timeout=0.15)
-        with pytest.raises(EditionUnknown, match=r"Its replies allow .*mercury_a1") as caught:
-            connect(server.url, timeout=0.15)
-    assert found.candidates == caught.value.candidates == ALIKE
-    assert [(each.query, each.replied) for each in found.evidence[:3]] == [
-        ("is_power_on", False),
-        ("get_system_version", False),
-        ("is_power_on", True),
-    ]
-
-
 def test_connect_names_the_candidates_if_neither_queries_nor_limits_decide() -> None:
     simulated = SimulatedArm(load("mecharm270").TABLE)
     simulated.state.minimum, simulated.state.maximum = [-10.0] * 6, [10.0] * 6

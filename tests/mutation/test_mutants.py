@@ -8,11 +8,8 @@ from random import Random
 import pytest
 
 from cobotwire import editions
-from cobotwire.editions import mycobot, mycobot280
-from cobotwire.protocol.table import Table
-from cobotwire.simulator.clock import SteppedClock
 from mutation.device import device_mutants
-from mutation.device.broken import BrokenArm, Fault, Mutant
+from mutation.device.broken import Fault, Mutant
 from mutation.device.cells import STIMULI
 from mutation.oracle.conversation import conversations, replies_of
 from mutation.oracle.reasons import reason
@@ -127,21 +124,10 @@ def test_wrong_frame_of_another_edition_is_killed_or_excused(edition: str) -> No
 # An edition with several devices; one with events between replies, also together with late replies.
 @pytest.mark.parametrize("edition", ["mycobot", "mycobot280", "mybuddy", "mercury_a1", "pro630"])
 def test_broken_arm_without_a_fault_passes_as_correct(edition: str) -> None:
-    assert not _differs(editions.load(edition).TABLE, Mutant("none", "", Fault), rounds=3)
-
-
-def _differs(table: Table, mutant: Mutant, rounds: int) -> bool:
-    return any(
-        replies_of(table, mutant, conversation) != conversation.received
-        for conversation in conversations(table, mutant.command, rounds)
-    )
-
-
-def test_wrong_footer_differs_in_some_conversation() -> None:
-    table = mycobot280.TABLE
-    footers = [mutant for mutant in device_mutants(table) if mutant.kind == "footer"]
-    for mutant in footers[::20]:
-        assert _differs(table, mutant, rounds=24), mutant.id
+    table = editions.load(edition).TABLE
+    for conversation in conversations(table, "", rounds=3):
+        found = replies_of(table, Mutant("none", "", Fault), conversation)
+        assert found == conversation.received != []
 
 
 @pytest.mark.parametrize(
@@ -162,10 +148,3 @@ def test_oracle_explains_why_a_survivor_cannot_be_distinguished(
     given = reason(table, found)
     assert why in given
     assert bool(given) == bool(why)
-
-
-def test_conversation_is_the_same_each_time() -> None:
-    conversation = next(conversations(mycobot.TABLE, "get_angles"))
-    clock = SteppedClock()
-    again = conversation.again(BrokenArm(mycobot.TABLE, Fault(), clock), clock)
-    assert again == conversation.received != []

@@ -24,24 +24,6 @@ REASON = "the geometry of this arm is not known"
 EDITION: Any = load("pro630")
 
 
-class Silent:
-    """An arm that does not reply to get_coords, and does not say why."""
-
-    wait = None
-
-    def __init__(self, arm: SimulatedArm) -> None:
-        self._arm = arm
-
-    def receive(self, data: bytes) -> bytes:
-        """Pass on what is received; drop text."""
-        reply = self._arm.receive(data)
-        return reply if reply.startswith(b"\xfe") else b""
-
-    def flush(self) -> bytes:
-        """Pass on what the arm sends by itself."""
-        return self._arm.flush()
-
-
 def _counting() -> tuple[SimulatedArm, Counter[str]]:
     """Return an arm, and how often it receives each request."""
     received: Counter[str] = Counter()
@@ -53,28 +35,17 @@ def _counting() -> tuple[SimulatedArm, Counter[str]]:
     return SimulatedArm(EDITION.TABLE, powered=True, on_event=count), received
 
 
-def _in_memory(package: Any, silent: bool = False) -> Any:
-    clock = SteppedClock()
-    arm = SimulatedArm(package.TABLE, clock=clock, powered=True)
-    return package.CLIENT(MemoryTransport(Silent(arm) if silent else arm, clock))
-
-
 @pytest.mark.parametrize("edition", WITHOUT_GEOMETRY)
 def test_error_of_unanswerable_query_says_why_in_every_edition(edition: str) -> None:
     package: Any = load(edition)
     query = package.TABLE.in_role("coordinates").name
-    with _in_memory(package) as arm:
+    clock = SteppedClock()
+    simulated = SimulatedArm(package.TABLE, clock=clock, powered=True)
+    with package.CLIENT(MemoryTransport(simulated, clock)) as arm:
         with pytest.raises(ReplyTimeout, match=f"because the arm is simulated: {REASON}$") as error:
             getattr(arm, query)()
         assert error.value.refusal == REASON
         assert getattr(arm, package.TABLE.in_role("joints").name)() is not None
-
-
-def test_silence_without_a_reason_is_reported_as_before() -> None:
-    with _in_memory(EDITION, silent=True) as arm:
-        with pytest.raises(ReplyTimeout, match="received meanwhile: nothing") as error:
-            arm.get_coords()
-    assert error.value.refusal == ""
 
 
 def test_stream_of_a_query_that_the_arm_refuses_ends_with_the_reason() -> None:
