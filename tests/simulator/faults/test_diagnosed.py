@@ -43,7 +43,7 @@ SHOWN: dict[str, tuple[int, set[str], set[str]]] = {
 def test_diagnosis_recognises_the_fault_of_a_scenario(name: str) -> None:
     number, certain, possible = SHOWN[name]
     scenario = find(name, TABLE)
-    requests = [GET_ANGLES, 1.0] * number
+    requests: list[bytes | float] = [GET_ANGLES, 1.0] * number
     played = talk(scenario.faults, requests, seed=scenario.seed)
     items = diagnose(CODEC, played.data, sent=GET_ANGLES * number)
     findings = [item for item in items if isinstance(item, Finding)]
