@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import json
+from functools import lru_cache
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 import pytest
 from click.testing import CliRunner
@@ -48,9 +50,13 @@ def file(tmp_path: Path) -> Path:
     return tmp_path / "trial.yaml"
 
 
-def built(file: Path, text: str = "") -> Edition:
-    file.write_text(HEAD + text)
-    return build_edition(file, file.parent)
+@lru_cache
+def built(text: str = "", head: str = HEAD) -> Edition:
+    """Return the edition of a delta; several tests compare with the unchanged one."""
+    with TemporaryDirectory() as folder:
+        file = Path(folder) / "trial.yaml"
+        file.write_text(head + text)
+        return build_edition(file, file.parent)
 
 
 def vector(edition: Edition, name: str) -> Vector:
@@ -63,8 +69,8 @@ def problems(edition: Edition) -> list[str]:
     return [f"{problem.code}: {problem.message}" for problem in caught.value.problems]
 
 
-def test_unchanged_delta_inherits_every_vector_as_it_is(file: Path) -> None:
-    edition = built(file)
+def test_unchanged_delta_inherits_every_vector_as_it_is() -> None:
+    edition = built()
     check(edition)
     assert len(edition.vectors) > 300
     before = build_edition(SPEC / "mycobot280.yaml", SPEC)
@@ -75,12 +81,10 @@ def test_unchanged_delta_inherits_every_vector_as_it_is(file: Path) -> None:
     assert {"send-angle-request-nearest-word", "set-encoders-request-corners"} <= derived
 
 
-def test_delta_with_another_frame_format_derives_every_vector_and_states_its_origin(
-    file: Path,
-) -> None:
-    edition = built(file, CRC_FRAME)
+def test_delta_with_another_frame_format_derives_every_vector_and_states_its_origin() -> None:
+    edition = built(CRC_FRAME)
     check(edition)
-    before = built(file)
+    before = built()
     framed = [vector for vector in edition.vectors if vector.frame is not None]
     assert len(framed) == len([vector for vector in before.vectors if vector.frame is not None])
     for after in framed:
@@ -95,9 +99,9 @@ def test_delta_with_another_frame_format_derives_every_vector_and_states_its_ori
         assert after.frame[3:-2] == former.frame[3:-1]
 
 
-def test_value_beyond_a_new_range_becomes_the_nearest_legal_one(file: Path) -> None:
+def test_value_beyond_a_new_range_becomes_the_nearest_legal_one() -> None:
     speed = f"changes:\n  - change_type: speed\n    set: {{range: [1, 30]}}\n    {WHY}"
-    edition = built(file, speed)
+    edition = built(speed)
     check(edition)
     changed = [v for v in edition.vectors if v.derived and v.derived.edition == "mycobot280"]
     assert changed
@@ -107,11 +111,11 @@ def test_value_beyond_a_new_range_becomes_the_nearest_legal_one(file: Path) -> N
         assert dict(after.values)["speed"] == 30
 
 
-def test_first_joints_of_a_vector_remain_in_an_arm_with_fewer(file: Path) -> None:
+def test_first_joints_of_a_vector_remain_in_an_arm_with_fewer() -> None:
     limits = "types:\n  quantities:\n    limited_angle: "
     limits += "{wire: signed_word, scale: 1/100, unit: degree, range: [-90, 90], doc: Up to 90.}\n"
-    before = vector(built(file), "get-angles-reply-lowest-and-highest")
-    after = vector(built(file, limits + FOUR_JOINTS), "get-angles-reply-lowest-and-highest")
+    before = vector(built(), "get-angles-reply-lowest-and-highest")
+    after = vector(built(limits + FOUR_JOINTS), "get-angles-reply-lowest-and-highest")
     [(_, six)], [(_, four)] = before.values, after.values
     assert isinstance(six, tuple)
     assert isinstance(four, tuple)
@@ -120,15 +124,15 @@ def test_first_joints_of_a_vector_remain_in_an_arm_with_fewer(file: Path) -> Non
     assert after.frame[:4] == bytes.fromhex("FE FE 0A 20")
 
 
-def test_changed_scale_is_not_derived_but_reported(file: Path) -> None:
-    edition = built(file, f"changes:\n  - change_type: length\n    set: {{scale: 1/5}}\n    {WHY}")
+def test_changed_scale_is_not_derived_but_reported() -> None:
+    edition = built(f"changes:\n  - change_type: length\n    set: {{scale: 1/5}}\n    {WHY}")
     found = problems(edition)
     assert "unencodable-vector: get-coords-reply-twos-complement: coords.x is not" in "".join(found)
 
 
-def test_moved_id_is_in_the_derived_vectors(file: Path) -> None:
+def test_moved_id_is_in_the_derived_vectors() -> None:
     moved = f"changes:\n  - change: get_encoder\n    set: {{id: 0x7E}}\n    {WHY}"
-    edition = built(file, moved)
+    edition = built(moved)
     check(edition)
     after = vector(edition, "get-encoder-reply-limits")
     assert after.derived is not None
@@ -137,14 +141,14 @@ def test_moved_id_is_in_the_derived_vectors(file: Path) -> None:
     assert (after.frame[4:], after.values) == (after.derived.frame[4:], after.derived.values)
 
 
-def test_removed_command_takes_its_vectors_along(file: Path) -> None:
-    edition = built(file, f"changes:\n  - remove: [get_coords, send_coords]\n    {WHY}")
+def test_removed_command_takes_its_vectors_along() -> None:
+    edition = built(f"changes:\n  - remove: [get_coords, send_coords]\n    {WHY}")
     assert not {"get_coords", "send_coords"} & {vector.command for vector in edition.vectors}
     assert not [found for found in problems(edition) if "vector" in found.partition(":")[0]]
 
 
-def test_vectors_of_a_renamed_command_show_its_new_name(file: Path) -> None:
-    edition = built(file, f"changes:\n  - rename: get_coords\n    to: get_pose\n    {WHY}")
+def test_vectors_of_a_renamed_command_show_its_new_name() -> None:
+    edition = built(f"changes:\n  - rename: get_coords\n    to: get_pose\n    {WHY}")
     names = {vector.command for vector in edition.vectors}
     assert "get_pose" in names
     assert "get_coords" not in names
@@ -196,9 +200,9 @@ def test_unknown_base_of_a_package_is_reported_with_its_place(
     assert message in result.output
 
 
-def test_delta_with_unknown_geometry_inherits_no_geometry(file: Path) -> None:
-    assert built(file).robot.geometry is not None
-    unknown = built(file, "geometry_unknown: No source gives the links.\n")
+def test_delta_with_unknown_geometry_inherits_no_geometry() -> None:
+    assert built().robot.geometry is not None
+    unknown = built("geometry_unknown: No source gives the links.\n")
     assert unknown.robot.geometry is None
     robot = load_robot(json.loads(edition_json(unknown))["edition"])
     assert robot.why_no_geometry.endswith("is not known: No source gives the links.")

@@ -2,23 +2,18 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import pytest
 
-from cobotwire_codegen.build import build_edition
 from cobotwire_codegen.check import check
 from cobotwire_codegen.diff.editions import diff
 from cobotwire_codegen.errors import SpecError
 from cobotwire_codegen.model import Edition
-from codegen.test_inherited_vectors import HEAD, WHY, file
+from codegen.test_inherited_vectors import HEAD, WHY
 from codegen.test_inherited_vectors import built as build_delta
 
-__all__ = ["file"]
 
-
-def built(file: Path, text: str = "") -> Edition:
-    edition = build_delta(file, text)
+def built(text: str = "") -> Edition:
+    edition = build_delta(text)
     check(edition)
     return edition
 
@@ -27,11 +22,9 @@ def acknowledged(edition: Edition) -> set[str]:
     return {command.name for command in edition.commands if command.ack}
 
 
-def test_withdrawn_acks_leave_setters_without_reply_and_take_their_vectors_along(
-    file: Path,
-) -> None:
-    base = built(file)
-    delta = built(file, f"changes:\n  - withdraw_acks: all\n    {WHY}")
+def test_withdrawn_acks_leave_setters_without_reply_and_take_their_vectors_along() -> None:
+    base = built()
+    delta = built(f"changes:\n  - withdraw_acks: all\n    {WHY}")
     assert acknowledged(base)
     assert not acknowledged(delta)
     silent = {command.name for command in delta.commands if not command.replies}
@@ -42,7 +35,7 @@ def test_withdrawn_acks_leave_setters_without_reply_and_take_their_vectors_along
     }
 
 
-def test_ack_of_one_command_is_withdrawn_also_after_a_rename(file: Path) -> None:
+def test_ack_of_one_command_is_withdrawn_also_after_a_rename() -> None:
     changes = f"""\
 changes:
   - withdraw_acks: [power_on, power_off]
@@ -50,38 +43,37 @@ changes:
   - rename: power_off
     to: switch_off
     {WHY}"""
-    base, delta = built(file), built(file, changes)
+    base, delta = built(), built(changes)
     assert acknowledged(base) - acknowledged(delta) == {"power_on", "power_off"}
     assert "switch_off" not in acknowledged(delta)
 
 
-def test_acks_of_a_delta_replace_those_of_its_base(file: Path) -> None:
+def test_acks_of_a_delta_replace_those_of_its_base() -> None:
     changes = f"changes:\n  - withdraw_acks: [power_on]\n    {WHY}"
     acks = "acks:\n  field: {name: done, type: acknowledgement}\n  why: A trial.\n"
     acks += "  except: [set_ssid_pwd, jog_stop, power_off]\n"
-    base, delta = built(file), built(file, changes + acks)
+    base, delta = built(), built(changes + acks)
     assert acknowledged(base) - acknowledged(delta) == {"power_off"}
 
 
-def test_removed_command_may_be_an_exception_of_the_base(file: Path) -> None:
-    built(file, f"changes:\n  - remove: set_ssid_pwd\n    {WHY}")
+def test_removed_command_may_be_an_exception_of_the_base() -> None:
+    built(f"changes:\n  - remove: set_ssid_pwd\n    {WHY}")
 
 
-def test_withdrawn_ack_of_unknown_command_is_reported(file: Path) -> None:
+def test_withdrawn_ack_of_unknown_command_is_reported() -> None:
     with pytest.raises(SpecError, match="there is no command power_onn; did you mean power_on"):
-        built(file, f"changes:\n  - withdraw_acks: [power_onn]\n    {WHY}")
+        built(f"changes:\n  - withdraw_acks: [power_onn]\n    {WHY}")
 
 
-def test_acks_that_the_base_lacks_cannot_be_withdrawn(file: Path) -> None:
-    file.write_text(
-        HEAD.replace("mycobot280", "mycobot") + f"changes:\n  - withdraw_acks: all\n    {WHY}"
-    )
+def test_acks_that_the_base_lacks_cannot_be_withdrawn() -> None:
     with pytest.raises(SpecError, match="the base has no acks to withdraw"):
-        build_edition(file, file.parent)
+        build_delta(
+            f"changes:\n  - withdraw_acks: all\n    {WHY}", HEAD.replace("mycobot280", "mycobot")
+        )
 
 
-def test_diff_reports_each_withdrawn_ack(file: Path) -> None:
-    base = built(file)
-    delta = built(file, f"changes:\n  - withdraw_acks: [power_on]\n    {WHY}")
+def test_diff_reports_each_withdrawn_ack() -> None:
+    base = built()
+    delta = built(f"changes:\n  - withdraw_acks: [power_on]\n    {WHY}")
     found = [one.rule for one in diff(base, delta)]
     assert "ack-changed" in found
