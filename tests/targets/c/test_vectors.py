@@ -13,7 +13,7 @@ from strategies import TABLES
 from targets.c.comparison import compare, validated
 from targets.c.compiled import missing
 from targets.specs import SPECS, edition_of
-from targets.vectors.comparison import read
+from targets.vectors.comparison import read, sample
 from wrong_models import WRONG, with_wrong_angles
 
 EDITIONS = sorted(TABLES)
@@ -42,6 +42,14 @@ def test_c_code_of_other_types_and_frames_agrees_with_vectors(name: str) -> None
     found = validated(json.loads(document(edition)), edition, "gcc")
     assert found.differences == []
     assert found.vectors > 50
+
+
+@WITH_GCC
+def test_c_code_refuses_values_that_a_case_does_not_list() -> None:
+    found = sample("mycobot320", "set_pro_gripper")
+    assert any(r["name"] == "set_pro_gripper request, value 2" for r in found["rejected"])
+    edition = vectors.edition("mycobot320")
+    assert validated(found, edition, "gcc", QUICK, "sample320").differences == []
 
 
 @WITH_GCC

@@ -30,6 +30,20 @@ def read(edition: str) -> Record:
     return found
 
 
+def sample(edition: str, command: str) -> Record:
+    """Return every ninth vector of an edition's document, and every vector of one command."""
+    document = read(edition)
+    parts = ("messages", "rejected", "malformed", "streams", "texts")
+    return document | {
+        part: [
+            record
+            for at, record in enumerate(document[part])
+            if at % 9 == 0 or record.get("command") == command
+        ]
+        for part in parts
+    }
+
+
 def compare(edition: str) -> Comparison:
     """Run an edition's document on both codecs."""
     document = read(edition)

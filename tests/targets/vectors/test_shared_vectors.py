@@ -25,7 +25,7 @@ from strategies import TABLES, codec_of
 from targets.built import built
 from targets.expected import codec_of_edition
 from targets.specs import SPECS, edition_of
-from targets.vectors.comparison import CODECS, Record, read, validated
+from targets.vectors.comparison import CODECS, Record, read, sample, validated
 from wrong_models import WRONG, with_wrong_angles
 
 EDITIONS = sorted(TABLES)
@@ -38,6 +38,15 @@ def test_every_vector_agrees_with_codec(edition: str, name: codecs.CodecName) ->
     assert found.differences == []
     assert found.vectors > 1000
     assert found.fields > 300
+
+
+@pytest.mark.parametrize("edition", [n for n in vectors.further() if n in vectors.sampled()])
+def test_sample_of_vectors_of_further_editions_agrees_with_codecs(edition: str) -> None:
+    """`make targets` compares all vectors of all editions, in all targets."""
+    for codec in CODECS:
+        found = validated(sample(edition, "set_pro_gripper"), codec_of(edition, codec))
+        assert found.differences == []
+        assert found.refused > 20
 
 
 @pytest.mark.parametrize("name", sorted(SPECS))
