@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 import os
 import sys
-from collections.abc import AsyncIterator, Awaitable, Callable
+from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 from pathlib import Path
 
@@ -21,24 +21,24 @@ SECONDS = 30.0
 
 
 class Editor:
-    """What an editor does, for one file at a time."""
+    """What an editor does."""
 
     def __init__(self, client: LanguageClient) -> None:
         self.client = client
         self.published: dict[str, list[lsp.Diagnostic]] = {}
         self.changed = asyncio.Event()
-        self.version = 0
+        self.versions: dict[Path, int] = {}
 
     async def show(self, path: Path, text: str) -> None:
         """Open a file, or change its text, without saving it; wait for its problems."""
         self.changed.clear()
         self.published.pop(uri(path), None)
-        self.version += 1
-        if self.version == 1:
-            item = lsp.TextDocumentItem(uri(path), "yaml", self.version, text)
+        version = self.versions[path] = self.versions.get(path, 0) + 1
+        if version == 1:
+            item = lsp.TextDocumentItem(uri(path), "yaml", version, text)
             self.client.text_document_did_open(lsp.DidOpenTextDocumentParams(item))
         else:
-            document = lsp.VersionedTextDocumentIdentifier(self.version, uri(path))
+            document = lsp.VersionedTextDocumentIdentifier(version, uri(path))
             whole = lsp.TextDocumentContentChangeWholeDocument(text)
             self.client.text_document_did_change(lsp.DidChangeTextDocumentParams(document, [whole]))
         async with asyncio.timeout(SECONDS):
@@ -112,67 +112,56 @@ async def editing(root: Path) -> AsyncIterator[Editor]:
             await client.stop()  # type: ignore[no-untyped-call]
 
 
-def session(root: Path, play: Callable[[Editor], Awaitable[None]]) -> None:
-    async def run() -> None:
-        async with editing(root) as editor:
-            await play(editor)
-
-    asyncio.run(run())
-
-
-@pytest.fixture
-def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    monkeypatch.setenv("PYTHONPATH", os.environ.get("PYTHONPATH", ""))
-    return samples.copied(tmp_path)
-
-
-def test_problems_of_unsaved_text_appear_at_their_place_and_go_away(folder: Path) -> None:
+async def problems_of_unsaved_text(editor: Editor, folder: Path) -> None:
     lamp = folder / "lamp.yaml"
     text = lamp.read_text()
-
-    async def play(editor: Editor) -> None:
-        await editor.show(lamp, text)
-        assert editor.problems(lamp) == []
-        broken = text.replace("safety: query", "safety: qery", 1)
-        place = at(broken, "qery")
-        await editor.show(lamp, broken)
-        assert editor.problems(lamp) == [f"{place.line + 1}:{place.character + 1}: unknown-word"]
-        await editor.show(lamp, text)
-        assert editor.problems(lamp) == []
-
-    session(folder, play)
+    await editor.show(lamp, text)
+    assert editor.problems(lamp) == []
+    broken = text.replace("safety: query", "safety: qery", 1)
+    place = at(broken, "qery")
+    await editor.show(lamp, broken)
+    assert editor.problems(lamp) == [f"{place.line + 1}:{place.character + 1}: unknown-word"]
+    await editor.show(lamp, text)
+    assert editor.problems(lamp) == []
     assert lamp.read_text() == text
 
 
-def test_hover_completion_and_definition_in_a_delta(folder: Path) -> None:
+async def hover_completion_and_definition_in_a_delta(editor: Editor, folder: Path) -> None:
     delta = folder / "lamp2.yaml"
     text = delta.read_text()
+    await editor.show(delta, text)
+    assert editor.problems(delta) == []
+    place = "name: angle-reply-2"
+    assert "values: The values of the fields" in await editor.hover(delta, text, "values", place)
+    shown = await editor.hover(delta, text, "FE", place)
+    assert "degrees (raw -15)" in shown
+    shown = await editor.hover(delta, text, "get_angle", place)
+    assert shown.startswith("```text\nget_angle: ")
+    # From the delta to what it uses, changes and removes in its base.
+    base = (folder / "lamp.yaml").read_text().splitlines()
+    for word, after in (
+        *(("get_angle", place), ("set_light", "- change: ")),
+        ("read_angle", "- remove: "),
+    ):
+        goal = await editor.definition(delta, text, word, after)
+        assert goal == f"lamp.yaml:{1 + base.index(f'  {word}:')}"
 
-    async def play(editor: Editor) -> None:
-        await editor.show(delta, text)
-        assert editor.problems(delta) == []
-        place = "name: angle-reply-2"
-        assert "values: The values of the fields" in await editor.hover(
-            delta, text, "values", place
-        )
-        shown = await editor.hover(delta, text, "FE", place)
-        assert "degrees (raw -15)" in shown
-        shown = await editor.hover(delta, text, "get_angle", place)
-        assert shown.startswith("```text\nget_angle: ")
-        # From the delta to what it uses, changes and removes in its base.
-        base = (folder / "lamp.yaml").read_text().splitlines()
-        for word, after in (
-            *(("get_angle", place), ("set_light", "- change: ")),
-            ("read_angle", "- remove: "),
-        ):
-            goal = await editor.definition(delta, text, word, after)
-            assert goal == f"lamp.yaml:{1 + base.index(f'  {word}:')}"
+    added = f"{text.partition('commands:')[0]}  - change: get_angle\n    set: {{safety: \n"
+    await editor.show(delta, added)
+    end = lsp.Position(added.count("\n") - 1, len("    set: {safety: "))
+    assert "motion" in await editor.complete(delta, end)
+    line = lsp.Position(added.count("\n") - 2, len("  - change: "))
+    assert "get_angle" in await editor.complete(delta, line)
 
-        added = f"{text.partition('commands:')[0]}  - change: get_angle\n    set: {{safety: \n"
-        await editor.show(delta, added)
-        end = lsp.Position(added.count("\n") - 1, len("    set: {safety: "))
-        assert "motion" in await editor.complete(delta, end)
-        line = lsp.Position(added.count("\n") - 2, len("  - change: "))
-        assert "get_angle" in await editor.complete(delta, line)
 
-    session(folder, play)
+def test_server_serves_an_editor(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """One server for both parts, since it starts slowly."""
+    monkeypatch.setenv("PYTHONPATH", os.environ.get("PYTHONPATH", ""))
+    folder = samples.copied(tmp_path)
+
+    async def run() -> None:
+        async with editing(folder) as editor:
+            await problems_of_unsaved_text(editor, folder)
+            await hover_completion_and_definition_in_a_delta(editor, folder)
+
+    asyncio.run(run())
