@@ -34,9 +34,10 @@ def line(edition: str, *frames: tuple[int, Listening, str, tuple[object, ...]]) 
     ]
 
 
-def exchange(item: Item) -> dict[str, str]:
+def exchange(item: Item, before: int = 0) -> dict[str, str]:
+    """Return what a frame shows of its exchange; its line starts after ``before`` packets."""
     ends = ("request_in", "response_in")
-    found: dict[str, str] = {key: item.own[key] for key in ends if key in item.own}
+    found = {key: str(int(item.own[key]) - before) for key in ends if key in item.own}
     if "response_time" in item.own:
         found["ms"] = f"{float(item.own['response_time']) * 1000:g}"
     return found | ({"expert": ",".join(item.experts)} if item.experts else {})
@@ -119,12 +120,18 @@ EXCHANGES: dict[str, tuple[list[Any], list[dict[str, str]]]] = {
 }
 
 
-@pytest.mark.parametrize("case", EXCHANGES)
-def test_replies_are_matched_to_their_requests(case: str, tmp_path: Path) -> None:
-    frames, expected = EXCHANGES[case]
-    path = tmp_path / "line"
-    path.write_bytes(serial(line("mycobot", *frames), "mycobot"))
-    assert [exchange(items[0]) for items in dissected(path, "mycobot", *TWICE)] == expected
+def test_replies_are_matched_to_their_requests_on_lines_beside_each_other(tmp_path: Path) -> None:
+    lines = [line("mycobot", *frames) for frames, _ in EXCHANGES.values()]
+    chunks = [each._replace(line=at) for at, found in enumerate(lines) for each in found]
+    path = tmp_path / "lines"
+    path.write_bytes(serial(chunks, "mycobot"))
+    shown = dissected(path, "mycobot", *TWICE)
+    before, found = 0, {}
+    for case, own in zip(EXCHANGES, lines):
+        packets = shown[before : before + len(own)]
+        found[case] = [exchange(items[0], before) for items in packets]
+        before += len(own)
+    assert found == {case: expected for case, (_, expected) in EXCHANGES.items()}
 
 
 def test_requests_in_one_segment_match_the_replies_in_another(tmp_path: Path) -> None:
