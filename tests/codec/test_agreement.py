@@ -31,7 +31,6 @@ PIECES = [
         *("FE FE 03 12 01 FA FE FE 03 12 00 FA", "FE FE 03 99 01 FA", "FE FE 03 12 01 FA FE", "00"),
     )
 ]
-# An example draws one of many kinds of tables.
 
 
 def _outcome(action: Callable[[], Any]) -> Any:
