@@ -62,17 +62,6 @@ def test_acknowledgement_counts_until_its_time_is_over(
         assert type(event) is kind
 
 
-def test_expired_acknowledgement_counts_while_an_earlier_one_may_still_come(loaded: Codec) -> None:
-    exchange, ack = Exchange(loaded), loaded.encode(SETTING[0], "reply", (1,))
-    for now, within in ((0.0, 31.0), (0.0, None), (2.0, None)):
-        exchange.send_one_way(RequestEncoder(loaded).encode(*SETTING), now, within)
-    for _ in range(3):
-        # A chunk ends inside the frame, so nobody knows when its first byte came.
-        exchange.receive(ack[:3], 2.1)
-        [event] = exchange.receive(ack[3:], 2.2)
-        assert isinstance(event, AckReceived)
-
-
 def test_acknowledgement_of_0_is_an_error(loaded: Codec) -> None:
     refused = loaded.encode("set_color", "reply", (0,))
     pending = sent(Exchange(loaded), loaded, 0.0, refused, "set_color", 1, 2, 3)

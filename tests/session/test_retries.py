@@ -1,6 +1,7 @@
-"""Queries take turns and are repeated at even intervals; nothing else is ever repeated.
+"""Queries take turns; only queries are ever repeated.
 
-``test_explored.py`` holds the other promises of the exchange.
+``test_explored.py`` holds the other promises of the exchange. ``test_rust_exchange.py`` compares
+with Rust when queries are repeated.
 """
 
 from __future__ import annotations
@@ -11,31 +12,13 @@ from cobotwire.client.opening import settings
 from cobotwire.codec.interface import Codec
 from cobotwire.editions.mycobot import TABLE
 from cobotwire.editions.mycobot280 import TABLE as TABLE_280
-from cobotwire.protocol.errors import ReplyTimeout, UsageError
+from cobotwire.protocol.errors import UsageError
 from cobotwire.session import Exchange, RetryPolicy
 from cobotwire.session.request import RequestEncoder
 from session.one_caller import submit
 
 pytestmark = pytest.mark.usefixtures("repeated_in_rust")
 THREE = RetryPolicy()
-
-
-def test_query_is_sent_at_even_intervals_until_its_deadline(codec: Codec) -> None:
-    exchange = Exchange(codec)
-    pending = submit(exchange, RequestEncoder(codec).encode("get_angles", ()), 0.0, THREE)
-    sent = [0.0] if exchange.outgoing(0.0, drained=True) else []
-    now = 0.0
-    while not pending.done:
-        wait = exchange.idle_seconds(now)
-        assert wait is not None
-        now += wait
-        exchange.wake(now)
-        if exchange.outgoing(now, drained=True):
-            sent.append(now)
-    assert sent == pytest.approx([0.0, 0.5 / 3, 1.0 / 3])
-    assert now == pytest.approx(0.5)
-    with pytest.raises(ReplyTimeout, match=r"get_angles\(\) within 0\.500 s after 3 attempts"):
-        pending.result()
 
 
 def test_queries_take_turns_in_the_order_of_submission(codec: Codec) -> None:
@@ -46,13 +29,6 @@ def test_queries_take_turns_in_the_order_of_submission(codec: Codec) -> None:
         assert exchange.outgoing(0.0, drained=True) == pending.request.frame
         assert exchange.outgoing(0.0, drained=True) == b"", "one query waits at a time"
         exchange.give_up(pending)
-
-
-@pytest.mark.parametrize(
-    ("wait", "attempts"), [(0.05, 1), (0.19, 1), (0.2, 2), (0.3, 3), (0.5, 3), (3.0, 3)]
-)
-def test_short_deadline_is_split_into_fewer_attempts(wait: float, attempts: int) -> None:
-    assert THREE.attempts_of(TABLE.command("get_angles"), wait) == attempts
 
 
 def test_only_queries_are_ever_repeated() -> None:
