@@ -11,50 +11,29 @@ from cobotwire_codegen import floats
 
 
 class Encoding:
-    """One encoding of numbers; all its numbers have ``width`` bytes, in either order.
+    """Integers of ``width`` bytes; those above ``signed_at`` are negative. The others override it.
 
-    ``what`` names a number of the encoding, ``allowed`` the widths. The raw value is that of the
-    unsigned number that the bytes are. ``signed_at`` is the key of the spec; an encoding without a
-    sign rule does not have it, and ignores it.
+    ``what`` names a number of the encoding, ``allowed`` its widths. The bytes are an unsigned
+    number, from which the raw value follows. An encoding without a sign rule ignores ``signed_at``.
     """
 
-    what: ClassVar[str]
-    doc: ClassVar[str]
+    what: ClassVar[str] = "an integer"
+    doc: ClassVar[str] = "A whole number."
     widths: ClassVar[tuple[int, ...]] = (1, 2, 3, 4)
     allowed: ClassVar[str] = "1..4"
-    has_sign_rule: ClassVar[bool] = False
+    has_sign_rule: ClassVar[bool] = True
 
     def bounds(self, width: int, signed_at: int) -> tuple[int, int]:
         """Return the lowest and the highest raw value; of floats, the finite ones."""
-        raise NotImplementedError
-
-    def raw_of(self, unsigned: int, width: int, signed_at: int) -> int:
-        """Return the raw value of an unsigned number."""
-        raise NotImplementedError
-
-    def unsigned_of(self, raw: int, width: int) -> int:
-        """Return the unsigned number of a raw value; its lowest bytes are used."""
-        raise NotImplementedError
-
-
-class Integer(Encoding):
-    """Integers; those above ``signed_at`` are negative."""
-
-    what = "an integer"
-    doc = "A whole number."
-    has_sign_rule = True
-
-    def bounds(self, width: int, signed_at: int) -> tuple[int, int]:
-        """Return the bounds that the sign rule leaves."""
         top = int(256**width) - 1
         return (signed_at - top if signed_at < top else 0), signed_at
 
     def raw_of(self, unsigned: int, width: int, signed_at: int) -> int:
-        """Return the number, less 256^width if it is above ``signed_at``."""
+        """Return the raw value of an unsigned number."""
         return unsigned if unsigned <= signed_at else unsigned - int(256**width)
 
     def unsigned_of(self, raw: int, width: int) -> int:
-        """Return the raw value itself."""
+        """Return the unsigned number of a raw value; its lowest bytes are used."""
         return raw
 
 
@@ -65,6 +44,7 @@ class Float(Encoding):
     doc = "An IEEE 754 float of 4 or 8 bytes; it has no sign rule."
     widths = (4, 8)
     allowed = "4 or 8"
+    has_sign_rule = False
 
     def bounds(self, width: int, signed_at: int) -> tuple[int, int]:
         """Return the ranks of the lowest and the highest finite float."""
@@ -82,4 +62,4 @@ class Float(Encoding):
 
 
 # By the word of the spec; the first one is the default.
-ENCODINGS: dict[str, Encoding] = {"integer": Integer(), "float": Float()}
+ENCODINGS: dict[str, Encoding] = {"integer": Encoding(), "float": Float()}

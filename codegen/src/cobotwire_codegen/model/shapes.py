@@ -153,35 +153,55 @@ class Bits(Shaped):
         return tuple((part.name, part.type) for part in self.bit_parts)
 
 
+class _Sized(Shaped):
+    """What types with a number of elements have in common."""
+
+    __slots__ = ()
+    class_name: ClassVar[str] = ""  # type: ignore[misc]  # only bits have a class
+    items: ClassVar[tuple[tuple[str, Scalar], ...]] = ()
+    least: int
+    most: int
+
+    @property
+    def sizes(self) -> tuple[int, int]:
+        """The least and the most elements."""
+        return self.least, self.most
+
+
+class _Bytes(_Sized):
+    """What bytes and texts have in common: each element is a byte."""
+
+    __slots__ = ()
+    place: Place
+
+    @property
+    def wire(self) -> Wire:
+        """How each byte is encoded."""
+        return Wire(self.place, "byte", 1, "big", 255, "A byte.", (), ())
+
+    @property
+    def byte(self) -> Record:
+        """The number of each byte."""
+        return number_of(self.wire, 0, 255)
+
+    @property
+    def numbers(self) -> tuple[Record, ...]:
+        """The numbers of the least bytes."""
+        return (self.byte,) * self.least
+
+
 @dataclass(frozen=True, slots=True)
-class Octets(Shaped):
+class Octets(_Bytes):
     """Bytes without a meaning of their own."""
 
     kind: ClassVar[str] = "bytes"
     scalar: ClassVar[str] = "bytes"
-    items: ClassVar[tuple[tuple[str, Scalar], ...]] = ()
-    class_name: ClassVar[str] = ""  # type: ignore[misc]  # only bits have a class
 
     place: Place
     name: str
     least: int
     most: int
     doc: str
-
-    @property
-    def wire(self) -> Wire:
-        """How each of its bytes is encoded."""
-        return _byte(self.place)
-
-    @property
-    def byte(self) -> Record:
-        """The number of each of its bytes."""
-        return number_of(self.wire, 0, 255)
-
-    @property
-    def numbers(self) -> tuple[Record, ...]:
-        """The numbers of its least bytes."""
-        return (self.byte,) * self.least
 
     @property
     def span(self) -> str:
@@ -192,20 +212,13 @@ class Octets(Shaped):
         """Return its record in ``edition.json``."""
         return {"least": self.least, "most": self.most, "doc": self.doc}
 
-    @property
-    def sizes(self) -> tuple[int, int]:
-        """The least and the most bytes."""
-        return self.least, self.most
-
 
 @dataclass(frozen=True, slots=True)
-class Chars(Shaped):
+class Chars(_Bytes):
     """Text inside a frame. With ``padding`` a shorter text is followed by that byte."""
 
     kind: ClassVar[str] = "text"
     scalar: ClassVar[str] = "str"
-    items: ClassVar[tuple[tuple[str, Scalar], ...]] = ()
-    class_name: ClassVar[str] = ""  # type: ignore[misc]  # only bits have a class
 
     place: Place
     name: str
@@ -216,19 +229,9 @@ class Chars(Shaped):
     doc: str
 
     @property
-    def wire(self) -> Wire:
-        """How each of its bytes is encoded."""
-        return _byte(self.place)
-
-    @property
     def byte(self) -> Record:
         """The number of each of its bytes."""
         return number_of(self.wire, 0, 127 if self.encoding == "ascii" else 255)
-
-    @property
-    def numbers(self) -> tuple[Record, ...]:
-        """The numbers of its least bytes."""
-        return (self.byte,) * self.least
 
     @property
     def span(self) -> str:
@@ -242,19 +245,12 @@ class Chars(Shaped):
         sizes = {"least": self.least, "most": self.most}
         return {**sizes, "encoding": self.encoding, **padding, "doc": self.doc}
 
-    @property
-    def sizes(self) -> tuple[int, int]:
-        """The least and the most bytes."""
-        return self.least, self.most
-
 
 @dataclass(frozen=True, slots=True)
-class Listed(Shaped):
+class Listed(_Sized):
     """Elements of one type: scalars, value types, or texts of a fixed size."""
 
     kind: ClassVar[str] = "list"
-    items: ClassVar[tuple[tuple[str, Scalar], ...]] = ()
-    class_name: ClassVar[str] = ""  # type: ignore[misc]  # only bits have a class
 
     place: Place
     name: str
@@ -289,18 +285,9 @@ class Listed(Shaped):
         return {"of": refer(self.of), **sizes, "doc": self.doc}
 
     @property
-    def sizes(self) -> tuple[int, int]:
-        """The least and the most elements."""
-        return self.least, self.most
-
-    @property
     def element_size(self) -> int:
         """Bytes of an element on the wire."""
         return self.of.size
-
-
-def _byte(place: Place) -> Wire:
-    return Wire(place, "byte", 1, "big", 255, "A byte.", (), ())
 
 
 Type = Quantity | Enum | Flag | Value | Bits | Octets | Chars | Listed
