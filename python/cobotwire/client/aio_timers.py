@@ -51,8 +51,8 @@ class LoopTimers:
 
     def __init__(self, loop: asyncio.AbstractEventLoop) -> None:
         self._loop = loop
-        # Each with the time at which it is due, and a number that decides between equal times.
-        # Entries that were cancelled or set to another time stay until then.
+        # Calls by the time at which they are due; the number decides between equal times. An entry
+        # whose call was cancelled, or got another time, stays until its own time.
         self._waiting: list[tuple[float, int, Timed]] = []
         self._numbers = count()
         self._wakes_at = inf
@@ -79,7 +79,7 @@ class LoopTimers:
 
     def _run(self) -> None:
         """Make the calls that are due."""
-        # The calls may set others. No timer is needed for these before the end of this function.
+        # The calls may set other calls, for which this function sets the timer at its end.
         self._wakes_at = -inf
         waiting, now = self._waiting, time.monotonic()
         try:

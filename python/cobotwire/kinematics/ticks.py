@@ -10,7 +10,7 @@ from cobotwire.protocol.robot import Encoders
 
 
 class Steps(NamedTuple):
-    """How many raw values of a reply make a unit; 0: as many as a float holds.
+    """How many raw values of a reply make a unit; 0: the reply is a float, and is not truncated.
 
     Attributes:
         angle: of a degree of a joint.

@@ -66,7 +66,7 @@ class RetryPolicy(_RetryFields):
         return super().__new__(cls, attempts, shortest_attempt, grace)
 
     def attempts_of(self, command: Command, wait: float) -> int:
-        """Return into how many attempts the ``wait`` of a request is split.
+        """Return the number of attempts into which the ``wait`` of a request is split.
 
         A command that is not a query gets one. So does a query with a text reply: two texts in a
         row look like a longer one.

@@ -217,7 +217,7 @@ impl Part<'_> {
         self.name.number(self.case, at)
     }
 
-    /// Return the name of a number: of the field, the place in its list, its own.
+    /// Return the name of a number: that of its field, its index in a list, and its own.
     pub(crate) fn element(&self, at: usize) -> String {
         let field = &self.name.name;
         let number = self.named(at).map_or("", |number| &number.name);

@@ -99,7 +99,7 @@ def _ending(frame: Frame, ruler: _Ruler) -> Iterator[Row]:
 
 
 def check_words(frame: Frame) -> str:
-    """Return what the check is, in words."""
+    """Describe the check in words."""
     check = frame.check
     if check is None:
         return ""

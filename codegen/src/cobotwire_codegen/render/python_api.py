@@ -24,7 +24,7 @@ from cobotwire_codegen.render.messages import classes_in_method, declared
 from cobotwire_codegen.render.parameters import Parameter, results, returns
 from cobotwire_codegen.render.words import units
 
-# Stems that a description may use without adding anything to the rest of a docstring.
+# Word stems that add nothing to a docstring.
 _WORDS = "a all an and arm as at by each every for from given in is it of on one or the their to"
 _VERBS = "check get mov read report return send set switch whether"
 FILLING = frozenset(f"{_WORDS} {_VERBS}".split())

@@ -63,7 +63,7 @@ class ReferenceFramer:
 
     def feed(self, data: Data) -> list[Event]:
         """Take bytes; return the events that are certain by now."""
-        # Any buffer of bytes, but no number and no list.
+        # Any buffer of bytes is allowed; numbers and lists are not.
         waiting = bytearray(self._state.waiting)
         waiting += data
         return self._cut(bytes(waiting), at_end=False)

@@ -18,7 +18,7 @@ class Bindings(cst.CSTVisitor):
         self.functions: list[cst.FunctionDef] = []
         self.from_imports: list[cst.ImportFrom] = []
         self.returns: dict[cst.FunctionDef, list[cst.BaseExpression]] = defaultdict(list)
-        # Names that an import binds to something else than the module of that name.
+        # Names that imports bind, except modules under their own names.
         self.imported: set[str] = set()
         self._inside: list[cst.FunctionDef] = []
 

@@ -10,7 +10,7 @@ from typing import Any
 from cobotwire.protocol.errors import LinkError, UsageError
 from cobotwire.transport.descriptor import reason_of
 
-# pyserial has the number of an error of Windows only in its text.
+# pyserial gives the number of a Windows error only in its text.
 _NUMBER_OF_WINDOWS = re.compile(r"Error\((\d+), ")
 
 
@@ -18,8 +18,8 @@ def configure(port: Any, baudrate: int) -> None:
     """Set up a port that is not open yet; frames are 8N1 without flow control."""
     port.baudrate = baudrate
     port.timeout = 0
-    # With flow control, a 0x13 in the data would stop the line, or control lines that the board
-    # lacks.
+    # With flow control, a 0x13 in the data would stop the line; so would control lines that the
+    # board does not connect.
     port.xonxoff = False
     port.rtscts = False
     port.dsrdtr = False
