@@ -42,8 +42,9 @@ impl Default for RetryPolicy {
 }
 
 impl RetryPolicy {
-    /// Return the number of attempts into which the `wait` of a request is split. A command that is not a
-    /// query gets one. So does a text reply: two that follow each other look like one longer text.
+    /// Return the number of attempts into which the `wait` of a request is split. A command that is
+    /// not a query gets one. So does a text reply: two that follow each other look like one longer
+    /// text.
     pub(super) fn attempts_of(&self, facts: &Facts, wait: Nanos) -> u64 {
         if facts.safety != Safety::Query || facts.text.is_some() {
             return 1;
