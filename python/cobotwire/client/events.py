@@ -101,7 +101,7 @@ class EventQueue:
 
 
 class EndSigns:
-    """What a device sends that can mean the end of a waited motion.
+    """Collects messages of a device that can mean the end of a motion.
 
     Attributes:
         acked: whether a motion was acknowledged since this was last False.

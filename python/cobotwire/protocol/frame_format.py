@@ -46,8 +46,9 @@ class FrameFormat(_FrameFields):
     chooses another. LEN is the size of the parts in ``counted``. ``check`` is None if only the
     footer detects damage.
 
-    Without ``reply_has_id`` a reply carries no command id: its data take the id's place, so ``id``
-    is the number there. The id then is the last fixed part, and a reply has at least its size.
+    Without ``reply_has_id`` a reply carries no command id: its data begin where the id would be,
+    and ``read_id`` returns their first bytes. The id is then the last fixed part, and no reply has
+    fewer data bytes than an id.
     """
 
     @cached_property

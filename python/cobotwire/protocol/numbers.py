@@ -137,7 +137,7 @@ class Number(NamedTuple):
 
 
 def raw_of_float(value: float, width: int) -> int:
-    """Return the raw value of the nearest float of ``width`` bytes; too large a value: infinity."""
+    """Return the raw value of the nearest float of ``width`` bytes: infinity if it is too large."""
     real, bits = _FORMATS[width]
     if value != value:  # one NaN for all, since a payload does not survive every conversion
         return 0x7FC0_0000 if width == 4 else 0x7FF8_0000_0000_0000

@@ -81,7 +81,7 @@ def as_event(frame: Frame, table: Table) -> EventReceived | None:
 
 
 def replies_elsewhere(frame: Frame, command: Command, table: Table) -> bool:
-    """Return whether a frame that is no legal reply of a command replies to one that shares its id.
+    """Return whether a frame that is not a legal reply of a command replies to one with its id.
 
     A constant in each reply tells them apart, for instance the number of the register that a device
     behind the arm reports. The rest of such a reply may be illegal.

@@ -75,7 +75,7 @@ class ReceivedMeanwhile:
 def _diagnoses(
     items: deque[_Item], codec: Codec, request: bytes, command: Command
 ) -> Iterator[str]:
-    """Yield for each span what begins in it, as a sentence; empty where nothing is recognised."""
+    """Yield a diagnosis for each span, as a sentence; empty if nothing is recognised in it."""
     # Imported here: most programs never need it.
     import_aside(
         "cobotwire.diagnose", "DamagedFrame", "Diagnoser", "Finding", "Summary", "Unrecognised"
@@ -86,7 +86,7 @@ def _diagnoses(
     diagnoser.sent(request)
     found = [*diagnoser.feed(_as_events(items)), *diagnoser.flush()]
     findings = [i for i in found if isinstance(i, Finding) and not isinstance(i, Unrecognised)]
-    # Of the commands that share an id, the user knows the one that was called.
+    # If commands share an id, the text names the one that the user called.
     findings = [
         found.of_command(command.name)
         if isinstance(found, DamagedFrame) and found.id == command.id

@@ -25,9 +25,9 @@ class EncodedRequest(NamedTuple):
     """A request as it goes over the line.
 
     ``arguments`` are the arguments that a reply repeats, with their values; empty if no reply
-    repeats any. ``text`` follows some frames. ``replier`` is the address that
-    its reply must have, or who replies to a broadcast (ANYBODY, SOMEBODY, NOBODY); None if frames
-    have no address. Without ``reply_has_id`` its reply is known only by address and size.
+    repeats any. ``text`` follows some frames. ``replier`` is the address that its reply must have,
+    or who replies to a broadcast (ANYBODY, SOMEBODY, NOBODY); None if frames have no address.
+    Without ``reply_has_id`` its reply is known only by address and size.
     """
 
     command: Command
@@ -61,7 +61,7 @@ class RequestEncoder:
         self._address = None if self._to is None else self._to.value
         self._replier = replier_of(self._to)
         self._reply_has_id = codec.table.frame.reply_has_id
-        # The commands that were used, and whether a reply can repeat arguments of theirs.
+        # The commands that were used, each with whether a reply can repeat its arguments.
         self._commands: dict[str, tuple[Command, bool]] = {}
         # A request without arguments is always the same bytes.
         self._known: dict[str, EncodedRequest] = {}

@@ -85,7 +85,7 @@ class Sampler:
         """Return the sample of a period in which every request has its reply."""
         period = self._nearest(readings[0].requested_at)
         if period > self._next:
-            # The periods before it were not used, and the consumer is not the reason.
+            # The periods before it were missed, and not because of the consumer.
             self._overrun += period - self._next
         else:
             period = self._next
@@ -99,7 +99,7 @@ class Sampler:
         """Count a period in which a request had no reply in time, or an illegal one."""
         self._unanswered += 1
         self._next += 1
-        # The periods that passed meanwhile passed because of that request, not of the consumer.
+        # More periods were missed because of that request, not because of the consumer.
         self._overrun += (late := max(0, self._nearest(now) - self._next))
         self._next += late
         self._free = now

@@ -1,4 +1,4 @@
-//! Limits for those who move an arm from afar: a highest speed, and a box for the end of the arm.
+//! Limits: a highest speed, and a box for the end of the arm.
 
 use std::fmt::Display;
 use std::sync::Arc;
@@ -51,8 +51,9 @@ impl Limits {
                 *variant = wire::Variant::new(fields);
             }
         }
-        edition.protocol.table = Table::new(table.frame().clone(), commands)
-            .map_err(|_| Error::usage("the limits leave nothing of a range of this edition"))?;
+        edition.protocol.table = Table::new(table.frame().clone(), commands).map_err(|_| {
+            Error::usage("the limits exclude every value of a range of this edition")
+        })?;
         Ok(Arc::new(edition))
     }
 

@@ -9,8 +9,8 @@ use crate::handle::{Handle, Prepared};
 use crate::{Error, Value};
 
 /// The samples of a query, or the events of a type: an iterator of [`poll`](crate::Client::poll) or
-/// [`events`](crate::Client::events), and a `Stream` if the client is asynchronous. `N` is what
-/// waits for the next one.
+/// [`events`](crate::Client::events), and a `Stream` if the client is asynchronous. `N` is the
+/// type of the next one, or of its future.
 pub struct Received<N> {
     pub(crate) next: Box<dyn FnMut() -> N + Send>,
     #[cfg_attr(not(feature = "tokio"), allow(dead_code))]
@@ -19,8 +19,8 @@ pub struct Received<N> {
 }
 
 impl<N> Received<N> {
-    /// Return how many periods have had no sample, or how many events were dropped, always the
-    /// oldest, because too many waited.
+    /// Return how many periods had no sample, or how many events were dropped because too many
+    /// waited; the oldest is dropped first.
     #[must_use]
     pub fn missed(&self) -> u64 {
         (self.missed)()

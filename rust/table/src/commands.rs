@@ -86,7 +86,7 @@ fn text_form(record: Record<'_>, key: &str) -> Outcome<Option<TextForm>> {
         silence: record.within_or("silence_ms", 0..=LONGEST_MS, 0)? * 1_000_000,
     };
     if form.prefixes.len() != form.fields.len() {
-        return BadEdition::because("prefixes must be as many as fields").within(key, "");
+        return BadEdition::because("there must be as many prefixes as fields").within(key, "");
     }
     Ok(Some(form))
 }

@@ -93,11 +93,11 @@ pub struct Field {
     /// The numbers of each case. A list, bytes or a text has those of one element:
     /// [`Field::number`] finds the number of any.
     pub cases: Vec<Vec<Number>>,
-    /// The least and the most elements, if they differ.
+    /// The smallest and the largest number of elements, if they differ.
     pub sizes: Option<(usize, usize)>,
     /// The field whose elements it counts.
     pub counts: Option<String>,
-    /// Whether it is a constant, which the default is then.
+    /// Whether it is a constant; `default` is its value.
     pub constant: bool,
     /// The value of an argument that is left out, in physical units.
     pub default: Option<Value>,
@@ -112,8 +112,8 @@ impl Field {
     }
 }
 
-/// What texts need of a number: its name in a row, its unit, and the words of its choices. What is
-/// empty does not exist.
+/// What texts need of a number: its name in a named tuple, its unit, and the words of its choices;
+/// each is empty if there is none.
 #[derive(Clone, Debug, Default)]
 #[allow(missing_docs)] // of fields, whose names say what they are
 pub struct Number {
@@ -149,7 +149,7 @@ impl Edition {
         for record in root.records("commands")? {
             let name = record.name().within("a command", "")?;
             if !names.insert(name) {
-                return BadEdition::because("the file has it twice").within("command", name);
+                return BadEdition::because("the file defines it twice").within("command", name);
             }
             let parts = commands::command(record, &messages, last).within("command", name)?;
             wire.push(parts.0);

@@ -164,7 +164,7 @@ fn referred<'a>(known: &BTreeMap<&str, Record<'a>>, reference: Record<'a>) -> Ou
     found.map_or_else(unknown, Ok)
 }
 
-/// Return the parts of words.
+/// Return the numbers of a type of bits: each is some bits of a word.
 pub(crate) fn bits(of: Record<'_>) -> Outcome<Numbers> {
     let mut numbers = Numbers::default();
     for part in of.records("numbers")? {

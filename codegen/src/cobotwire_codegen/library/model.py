@@ -49,9 +49,9 @@ class LibraryClass:
     """A class of the library.
 
     ``edition`` is the edition on ``ports``, and ``elsewhere`` the edition on all other ports; they
-    may be equal. ``like`` is the class whose methods it has; empty if none. ``one_way`` says what
-    its one-way requests return, and when. ``absent`` are its names that have no counterpart, each
-    with why.
+    may be equal. ``like`` is the class that it inherits from; empty if there is none. ``one_way``
+    says what its one-way requests return, and when. ``absent`` are its names that have no
+    counterpart, each with why.
     """
 
     name: str

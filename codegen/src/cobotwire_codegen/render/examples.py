@@ -57,7 +57,7 @@ def example_frame(edition: Edition, command: Command, direction: Direction, size
 
 
 def source_lines(edition: Edition, command: Command) -> str:
-    """Return the lines of the document about a command and with its examples; empty if none."""
+    """Return which lines of the document state a command and its examples; empty if none do."""
     stated = f"document, {lines(command.source)}" if command.source else ""
     found = sorted({v.line for v in examples(edition, command).values() if v.line})
     one = "an example" if len(found) == 1 else "examples"

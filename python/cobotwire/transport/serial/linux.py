@@ -35,7 +35,7 @@ def _group_of(device: str) -> int | None:
     """Return the group that may read and write a port; None if only users may."""
     with suppress(OSError):
         status = os.stat(device)
-        # No one is meant to join the group of the administrator.
+        # Users should not join the group of root.
         return status.st_gid if status.st_mode & _BOTH == _BOTH and status.st_gid else None
     return None
 
