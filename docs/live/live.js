@@ -150,7 +150,7 @@ export class Live extends Session {
       results = Object.values(await arm.call(name, given));
     } finally {
       // The stop may have overtaken the request.
-      if (!query && this.stops !== stops) await this.sendStop();
+      if (!query && this.stops !== stops && this.arm) await this.sendStop();
     }
     const error = this.facts.ready.filter(({ role }) => role === "error");
     if (checks) await this.check(arm, error, true, `${name} was sent, but`);

@@ -103,16 +103,36 @@ export class Source {
     this.run.textContent = "Run the survey";
   }
 
+  // Become the only page of this site that uses an arm; return whether it is.
+  alone() {
+    return this.release !== undefined || new Promise((done, failed) => {
+      const kept = (lock) => (done(lock !== null), lock && new Promise((release) => (this.release = release)));
+      navigator.locks.request("arm", { ifAvailable: true }, kept).catch(failed);
+    });
+  }
+
+  letGo() {
+    this.release?.();
+    this.release = undefined;
+  }
+
   choose() {
     return this.attempt("finding out which robot it is, with queries", async () => {
       if (self !== top) throw new Error("open this page on its own: inside another page it connects no arm");
-      const port = await navigator.serial.requestPort();
-      // The worker finds the port by its information, so the page keeps no other port that looks like it.
-      for (const other of await navigator.serial.getPorts()) if (other !== port && infoOf(other) === infoOf(port)) await other.forget();
-      const ports = await navigator.serial.getPorts();
-      const infos = JSON.stringify(ports.map((each) => each.getInfo()));
-      const asked = { name: this.edition.value, speed: Number(this.speed.value), at: ports.indexOf(port), infos };
-      return `Connected: ${await this.ask("connect", asked)}.`;
+      // To forget a port takes it from every page of this site.
+      if (!(await this.alone())) throw new Error("another page of this site uses an arm: disconnect it there first");
+      try {
+        const port = await navigator.serial.requestPort();
+        // The worker finds the port by its information, so the page keeps no other port that looks like it.
+        for (const other of await navigator.serial.getPorts()) if (other !== port && infoOf(other) === infoOf(port)) await other.forget();
+        const ports = await navigator.serial.getPorts();
+        const infos = JSON.stringify(ports.map((each) => each.getInfo()));
+        const asked = { name: this.edition.value, speed: Number(this.speed.value), at: ports.indexOf(port), infos };
+        return `Connected: ${await this.ask("connect", asked)}.`;
+      } catch (error) {
+        this.letGo();
+        throw error;
+      }
     });
   }
 
@@ -146,7 +166,10 @@ export class Source {
     if (port) {
       this.connected = this.again.disabled = port.problem === "";
       this.disconnect.disabled = this.run.disabled = !this.connected;
-      if (port.problem) this.say(port.problem, true);
+      if (port.problem) {
+        this.letGo();
+        this.say(port.problem, true);
+      }
     }
     this.onBatch(news);
   }

@@ -26,7 +26,8 @@ PORT = """
 const port = {
   getInfo: () => ({ usbVendorId: 0x1a86, usbProductId: 0x55d4 }),
   async open({ baudRate }) {
-    if (port.readable?.locked) throw new Error("The port is already open.");
+    if (port.opened) throw new Error("The port is already open.");
+    port.opened = true;
     const socket = new WebSocket(`ws://${location.host}/port?${baudRate}`);
     socket.binaryType = "arraybuffer";
     await new Promise((done) => (socket.onopen = done));
@@ -36,8 +37,16 @@ const port = {
     port.writable = new WritableStream({ start: (controller) => (written = controller), write });
     socket.onmessage = ({ data }) => received.enqueue(new Uint8Array(data));
     const lost = (controller) => controller.error(new Error("The device has been lost."));
-    socket.onclose = () => [received, written].map(lost);
-    port.close = async () => port.readable.locked || port.writable.locked || socket.close();
+    const closed = new Promise((done) => (socket.onclose = done)).then(() => {
+      port.opened = false;
+      [received, written].map(lost);
+    });
+    // Like a real port, it is open until it has closed.
+    port.close = async () => {
+      if (port.readable.locked || port.writable.locked) return;
+      socket.close();
+      await closed;
+    };
   },
 };
 if (location.hash === "#none") delete Navigator.prototype.serial;
@@ -111,7 +120,8 @@ class LiveSite:
         return Response(200, "OK", headers, data)
 
     def port(self, socket: ServerConnection) -> None:
-        """Forward between the page and an arm."""
+        """Forward between the page and an arm, which understands only its own baud rate."""
+        understood = self.baudrate == self.table.baudrate
         arm = MemoryTransport(SimulatedArm(self.table, powered=True))
         self._sockets.add(socket)
         threading.Thread(target=_forward, args=(arm, socket), daemon=True).start()
@@ -123,7 +133,7 @@ class LiveSite:
                     self.stopped_at = time.monotonic()
                 if self.silent_after is not None:
                     self.silent_after -= 1
-                if self.silent_after is None or self.silent_after >= 0:
+                if understood and (self.silent_after is None or self.silent_after >= 0):
                     arm.write(data)
         self._sockets.discard(socket)
         arm.close()

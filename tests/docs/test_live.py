@@ -376,9 +376,22 @@ def test_wrong_edition_is_named_and_an_open_one_must_be_chosen(site: LiveSite, p
     # Between the frames of two formats it sends bytes that end a frame.
     assert b"\xfa\x00\xfe\xfe" in site.sent
     page.choose("edition", "mercury_x1")
+    lock = "navigator.locks.request('arm', () => new Promise((done) => (self.free = done)))"
+    page.get(f"void {lock}")
+    page.click("#connect")
+    page.until(f"{SAID}.startsWith('another page of this site uses an arm')")
+    page.get("free()")
     page.click("#connect")
     page.until(f"{SAID}.startsWith('Connected: edition mercury_x1, as you chose; ')")
     page.until("document.getElementById('source').textContent.endsWith('edition mercury_x1')")
+
+
+def test_arm_with_another_baud_rate_is_found(site: LiveSite, page: Page) -> None:
+    site.table = editions.load("mycobot280_rdkx5").TABLE
+    page.choose("edition", "mycobot280_rdkx5")
+    page.click("#connect")
+    page.until(f"{SAID}.startsWith('Connected: edition mycobot280_rdkx5')")
+    assert site.baudrate == 1_000_000
 
 
 @pytest.mark.parametrize("edition", editions.names())

@@ -7,6 +7,37 @@ const [name, url] = process.argv.slice(2);
 const failed = (error) => [error.name, error.message];
 const say = (value) => console.log(JSON.stringify(value, (_, each) => (each === undefined ? null : each)));
 
+const wait = (milliseconds) => new Promise((done) => setTimeout(done, milliseconds));
+
+/** A transport whose writes take 2 ms, as in a browser; it notes them. */
+function slow(log) {
+  let last = Promise.resolve();
+  const write = (data) => (last = last.then(() => wait(2)).then(() => void log.push(Buffer.from(data).toString("hex"))));
+  return { url: "memory", start() {}, write, close: () => last, abort() {} };
+}
+
+/** A port as the browser has it: it goes on after an error of a byte, and takes time to close. */
+class SerialPort {
+  async open() {
+    if (this.opened) throw new Error("The port is already open.");
+    this.opened = true;
+    this.read();
+    const write = () => this.controller.enqueue(Uint8Array.from([0xfe, 0xfe, 3, 0x12, 1, 0xfa]));
+    this.writable = new WritableStream({ write });
+  }
+  read() {
+    this.readable = new ReadableStream({ start: (controller) => (this.controller = controller) });
+  }
+  fail() {
+    this.controller.error(new Error("A framing error has been detected."));
+    this.read();
+  }
+  async close() {
+    await wait(2);
+    this.opened = false;
+  }
+}
+
 const conversations = {
   async results() {
     const arm = await MyCobot280.open(url);
@@ -47,6 +78,57 @@ const conversations = {
     const signal = AbortSignal.timeout(50);
     say((await arm.withSignal(signal).getAngles().catch((error) => error)) === signal.reason);
     say((await arm.withSignal(signal).getAngles().catch((error) => error)) === signal.reason);
+    await arm.close();
+    const events = (await Pro630.open(slow([]))).withSignal(signal).events("motionEnded");
+    say((await events[Symbol.asyncIterator]().next().catch((error) => error)) === signal.reason);
+  },
+  async queued() {
+    const log = [];
+    const run = MyCobot280.run(slow(log), async (arm) => {
+      for (const angle of [10, 90]) arm.sendAngles([0, 0, 0, 0, 0, angle], 10).catch((error) => log.push(error.message));
+      throw new Error("mine");
+    });
+    await run.catch(failed);
+    await wait(20);
+    say(log);
+  },
+  async options() {
+    const [log, text] = [[], "20"];
+    const given = [
+      { limits: { speed: text } },
+      { limits: { workspace: [[0, 100]] } },
+      { limits: { workspace: { x: [0, 100] } } },
+      { limits: { workspace: [[0, text], undefined, undefined] } },
+      { timeout: text },
+      { deadline: 0 },
+      { retry: { attempts: 2.7 } },
+      { retry: { grace: 1e8 } },
+      { onError: "leaves" },
+    ];
+    const found = [];
+    for (const options of given) found.push(await MyCobot280.open(slow(log), options).then(String, failed));
+    const arm = await MyCobot280.open(slow(log));
+    found.push(await arm.acknowledged(1e8).setColor(1, 2, 3).then(String, failed), log);
+    say(found);
+  },
+  async browser() {
+    const port = new SerialPort();
+    const arm = await MyCobot280.open(port);
+    const found = [await arm.isPowerOn()];
+    port.fail();
+    await wait(5);
+    found.push(await arm.isPowerOn());
+    await arm.close();
+    const again = await MyCobot280.open(port);
+    port.controller.close();
+    say([...found, await again.isPowerOn().catch(failed)]);
+  },
+  async blocked() {
+    const arm = await MyCobot280.open(url, { timeout: 0.3, retry: { attempts: 1 } });
+    const call = arm.getEncoder(2);
+    await wait(5);
+    for (const until = performance.now() + 400; performance.now() < until; );
+    say(await call.catch(failed));
     await arm.close();
   },
   async shared() {
@@ -90,11 +172,15 @@ const conversations = {
     const arm = await MyCobot280.open(url);
     const call = arm.getAngles().catch(failed);
     say([await call, await arm.getAngles().catch(failed)]);
+    const next = await MyCobot280.open(url, { timeout: 0.1 });
+    await next.getAngles().catch(failed);
+    await next.close();
   },
   async late() {
     const first = await MyCobot280.open(url, { timeout: 0.1 });
     say(await first.getEncoder(1).catch((error) => error.name));
     await first.close();
+    await MyCobot280.open(url, { timeout: -1 }).catch(failed);
     const second = await MyCobot280.open(url, { timeout: 2 });
     say(await second.getEncoder(2));
     await second.close();

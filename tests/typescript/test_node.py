@@ -91,7 +91,7 @@ def test_mistakes_have_the_texts_of_python() -> None:
         "speed is 60; allowed: a whole number 1..50 percent",
         "2.5",
         "takes 0 arguments, not 1",
-        "timeout is -1.0; allowed: seconds above 0 and below 3600",
+        "timeout is -1; allowed: seconds above 0 and below 3600",
         "socket://127.0.0.1:1: cannot be opened: connect ECONNREFUSED",
         "/dev/nowhere is a serial port, which needs: npm install serialport",
         "send_angle is not a query; a stream can send only queries",
@@ -111,7 +111,36 @@ def test_call_without_reply_times_out_and_close_ends_waiting_call() -> None:
 
 def test_aborted_call_ends_with_reason_of_signal() -> None:
     with peer(read_all) as url:
-        assert talk("aborted", url) == [True, True]
+        assert talk("aborted", url) == [True, True, True]
+
+
+def test_queued_motion_is_not_sent_after_stop() -> None:
+    move, stop = "fefe0f220000000000000000000003e80afa", "fefe0229fa"
+    assert talk("queued", "") == [["memory: is closed", move, stop]]
+
+
+def test_option_of_another_type_is_an_error_before_a_byte_is_sent() -> None:
+    [[*found, sent]] = talk("options", "")
+    names = ["limits.speed", *["limits.workspace"] * 3, "timeout", "deadline", "retry.attempts"]
+    names += ["retry.grace", "onError", "seconds"]
+    assert sent == []
+    for name, (kind, text) in zip(names, found, strict=True):
+        assert kind == "UsageError"
+        assert text.startswith(f"{name} is ")
+
+
+def test_port_of_browser_survives_a_wrong_byte_and_can_be_opened_again() -> None:
+    lost = ["LinkError", "serial port 1: the peer has closed the connection"]
+    assert talk("browser", "") == [[True, True, lost]]
+
+
+def test_reply_that_came_while_the_program_computed_is_returned() -> None:
+    def serve(connection: socket.socket) -> None:
+        while connection.recv(6):
+            connection.sendall(bytes.fromhex("FEFE043B0002FA"))
+
+    with peer(serve) as url:
+        assert talk("blocked", url) == [2]
 
 
 def test_calls_that_run_at_once_get_their_own_replies() -> None:
@@ -150,8 +179,16 @@ def test_failed_run_stops_the_arm_unless_on_error_is_leave() -> None:
 
 
 def test_lost_connection_ends_calls_with_link_error() -> None:
-    with peer(lambda connection: connection.recv(100)) as url:
+    received: list[bytes] = []
+
+    def serve(connection: socket.socket) -> None:
+        received.append(read_all(connection) if received else connection.recv(100))
+
+    with peer(serve) as url:
         [found] = talk("lost", url)
+    # The device may hold half a frame, which the next client ends.
+    assert received[1].lstrip(b"\0").startswith(received[0])
+    assert received[1][0] == 0
     assert found == [["LinkError", f"{url}: the peer has closed the connection"]] * 2
 
 

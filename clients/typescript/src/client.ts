@@ -9,6 +9,9 @@ import { inNode, node } from "./wasm.js";
 /** Where an arm is: `/dev/ttyACM0` or `socket://host:port` in Node, a port of the browser, a transport. */
 export type Port = string | WebSerialPort | Transport;
 
+/** The lowest and the highest value. */
+export type Range = readonly [number, number] | undefined;
+
 /** The options of a client; times are in seconds. */
 export interface Options {
   /** How long the arm has to reply once a request is sent; default: as the edition says. */
@@ -22,7 +25,7 @@ export interface Options {
   /** The rate of a serial port; default: that of the edition. */
   baudrate?: number;
   /** The highest speed in percent, and ranges for x, y and z of the end of the arm in millimetres. */
-  limits?: { speed?: number; workspace?: (readonly [number, number] | undefined)[] };
+  limits?: { speed?: number; workspace?: readonly [Range, Range, Range] };
   /** What happens to an arm in motion when `run()` fails, or the client is disposed of. */
   onError?: "stop" | "leave";
 }
@@ -115,7 +118,7 @@ export class Client {
     const { timeout, deadline, retry, address, baudrate = usual, limits, onError } = options;
     const given = [
       ...[timeout, deadline, retry?.attempts, retry?.shortestAttempt, retry?.grace],
-      ...[address?.toString(), limits?.speed, limits?.workspace, onError === "leave"],
+      ...[address?.toString(), limits?.speed, limits?.workspace, onError],
     ];
     const url = typeof port === "string" ? port : "start" in port ? port.url : nameOf(port);
     // The session first: it reports what is not allowed before the port is opened.
@@ -142,7 +145,7 @@ export class Client {
     try {
       return await body(arm);
     } catch (error) {
-      await arm.line.stop();
+      await arm.line.close(true);
       throw error;
     } finally {
       await arm.close();
@@ -156,8 +159,7 @@ export class Client {
 
   /** Stop an arm that this client has set in motion, unless `close()` was called; then close. */
   async [Symbol.asyncDispose](): Promise<void> {
-    await this.line.stop();
-    await this.line.close();
+    await this.line.close(true);
   }
 
   /** Return this client for another address, by its name or number. */

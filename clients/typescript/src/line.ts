@@ -40,7 +40,7 @@ export class Line {
   private waiting: (() => void)[] = [];
   private timer: ReturnType<typeof setTimeout> | undefined;
   private wakesAt = Infinity;
-  private turning = false;
+  private reading = false;
   private emptyAt = -Infinity;
   /** Whether everything that had come was read before the last step. */
   private drained = false;
@@ -91,6 +91,7 @@ export class Line {
   /** Wait until something was received, for some time at most; return false if the time is over. */
   arrival(seconds: number, signal: AbortSignal | undefined): Promise<boolean> {
     return new Promise((done, failed) => {
+      signal?.throwIfAborted();
       const end = (settle: () => void) => (): void => {
         clearTimeout(timer);
         signal?.removeEventListener("abort", abort);
@@ -104,20 +105,16 @@ export class Line {
     });
   }
 
-  /** Send a stop to each device that was set in motion, as the policy says. */
-  async stop(): Promise<void> {
-    const bytes = this.open ? this.step<Uint8Array>("stops") : [];
-    if (bytes instanceof Uint8Array && bytes.length) {
-      await within(WRITE_SECONDS, this.transport.write(bytes)).catch(() => {});
-    }
-  }
-
-  /** End every call, send what was written, and close the transport. */
-  async close(): Promise<void> {
-    if (this.open) {
-      this.end("close");
-      await this.transport.close();
-    }
+  /**
+   * End every call, send what was written, and close the transport. `stops`: also send a stop to each
+   * device that was set in motion, as the policy says. Requests that were not sent never will be.
+   */
+  async close(stops = false): Promise<void> {
+    if (!this.open) return;
+    const bytes = stops ? this.step<Uint8Array>("stops") : undefined;
+    this.end("close");
+    if (bytes?.length) await within(WRITE_SECONDS, this.transport.write(bytes)).catch(() => {});
+    await this.transport.close();
   }
 
   private lose(detail: string): void {
@@ -164,15 +161,18 @@ export class Line {
     const pending = this.transport.write(bytes);
     if (!pending) return undefined;
     this.writing = true;
-    const why = `the line took no bytes in ${this.writeSeconds.toFixed(3)} s`;
-    const timer = setTimeout(() => this.lose(`cannot be written: ${why}`), this.writeSeconds * 1000);
-    const written = pending.then(
+    let timer: ReturnType<typeof setTimeout> | undefined;
+    const stuck = new Promise<never>((_, failed) => {
+      const why = `the line took no bytes in ${this.writeSeconds.toFixed(3)} s`;
+      timer = setTimeout(() => failed(new Error(why)), this.writeSeconds * 1000);
+    });
+    const written = Promise.race([pending, stuck]).then(
       () => {
         this.writing = false;
         this.advance("step");
       },
       (error: unknown) => {
-        const detail = `cannot be written: ${this.open ? reason(error) : why}`;
+        const detail = `cannot be written: ${reason(error)}`;
         this.lose(detail);
         throw new LinkError(`${this.transport.url}: ${detail}`);
       },
@@ -183,13 +183,20 @@ export class Line {
 
   /** Continue when everything that has come was read, and the transport is free. */
   private turn(): void {
-    if (this.turning || this.writing) return;
-    this.turning = true;
-    afterTurn(() => {
-      this.turning = false;
+    if (!this.writing) this.read();
+  }
+
+  /** Continue when everything that has come was read. */
+  private read(): void {
+    if (this.reading) return;
+    this.reading = true;
+    const read = (): void => {
+      this.reading = false;
       this.emptyAt = performance.now();
       this.advance("step");
-    });
+    };
+    if (this.transport.drained) this.transport.drained(() => afterTurn(read));
+    else afterTurn(read);
   }
 
   private schedule(idle: number | undefined): void {
@@ -200,7 +207,8 @@ export class Line {
     this.wakesAt = at;
     this.timer = setTimeout(() => {
       this.wakesAt = Infinity;
-      this.advance("step");
+      // What came while the program computed has its time.
+      this.read();
     }, at - performance.now());
   }
 }

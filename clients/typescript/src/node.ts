@@ -1,4 +1,5 @@
 /** What only Node has: files, TCP, and serial ports by the package `serialport`. */
+import { stat } from "node:fs";
 import { readFile } from "node:fs/promises";
 import { connect, type Socket } from "node:net";
 import { LinkError, UsageError } from "./errors.js";
@@ -7,6 +8,7 @@ import { reason, within, type Transport } from "./transport.js";
 const CONNECT_SECONDS = 5;
 /** Node reads a socket into a new buffer of this size. */
 const TCP_CHUNK = 1 << 16;
+const ROUNDS = 4;
 
 /** Read a file of the package. */
 export function read(url: URL): Promise<Uint8Array> {
@@ -100,5 +102,15 @@ class NodeTransport implements Transport {
 
   abort(): void {
     this.stream.destroy();
+  }
+
+  drained(run: () => void): void {
+    // The pool of threads reads a serial port. It begins what it is asked in order, and may end it in
+    // another one: so after a few rounds through the pool, what was in the port has come.
+    const round = (left: number): void => {
+      if (left) setImmediate(() => stat(".", () => round(left - 1)));
+      else run();
+    };
+    round(this.chunk ? 0 : ROUNDS);
   }
 }

@@ -15,6 +15,8 @@ export interface Transport {
   close(): Promise<void>;
   /** Close the stream at once; nothing more is sent. */
   abort(): void;
+  /** Run a function when what has come by now was reported; left out: it was by the next turn of the loop. */
+  drained?(run: () => void): void;
 }
 
 /** What a serial port of the browser (`navigator.serial`) has. */
@@ -66,8 +68,9 @@ export async function openWebSerial(
 }
 
 class WebSerial implements Transport {
-  private readonly reader: ReadableStreamDefaultReader<Uint8Array>;
+  private reader: ReadableStreamDefaultReader<Uint8Array>;
   private readonly writer: WritableStreamDefaultWriter<Uint8Array>;
+  private closed: Promise<void> | undefined;
 
   constructor(
     readonly url: string,
@@ -79,10 +82,18 @@ class WebSerial implements Transport {
 
   start(received: (data: Uint8Array) => void, ended: (detail: string) => void): void {
     const read = async (): Promise<void> => {
-      for (;;) {
-        const { done, value } = await this.reader.read();
-        if (done) return ended("the peer has closed the connection");
-        received(value);
+      for (let stream = this.port.readable; ; ) {
+        const chunk = await this.reader.read().catch((error: unknown) => reason(error));
+        if (typeof chunk !== "string") {
+          if (chunk.done) return ended("the peer has closed the connection");
+          received(chunk.value);
+          continue;
+        }
+        // After a break, a wrong parity bit or too many bytes, the port goes on with a new stream.
+        const next = this.closed ? stream : this.port.readable;
+        if (!next || next === stream) return ended(`cannot be read: ${chunk}`);
+        this.reader.releaseLock();
+        this.reader = (stream = next).getReader();
       }
     };
     read().catch((error: unknown) => ended(`cannot be read: ${reason(error)}`));
@@ -97,13 +108,14 @@ class WebSerial implements Transport {
       await within(1, this.writer.close());
     } finally {
       this.abort();
+      await within(1, this.closed);
     }
   }
 
   abort(): void {
     const nothing = (): void => {};
     const ended = [this.reader.cancel(), this.writer.abort()].map((each) => each.catch(nothing));
-    Promise.all(ended)
+    this.closed ??= Promise.all(ended)
       .then(() => {
         this.reader.releaseLock();
         this.writer.releaseLock();

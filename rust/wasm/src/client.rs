@@ -105,8 +105,8 @@ impl Client {
                 }
             }
             ("lose", [Value::Text(detail)]) => {
-                let state = self.session.persist(now);
-                self.ended = Some((state, self.session.lose(detail, now)));
+                let fault = self.session.lose(detail, now);
+                self.ended = Some((self.session.persist(now), fault));
             }
             ("close", []) => {
                 let state = self.session.close(now);
@@ -124,7 +124,8 @@ impl Client {
                 .filter(|outgoing| !outgoing.is_empty())
                 .map_or(bytes, Value::Bytes);
         }
-        let ended = self.ended_calls();
+        let cut = what == "lose" && drained.is_none();
+        let ended = self.ended_calls(cut);
         let idle = self.session.idle(now);
         let idle = idle.map_or(Value::Absent, |idle| Value::Integer(idle as i64));
         Ok(Value::Row(vec![bytes, Value::Row(ended), idle, call]))
@@ -139,7 +140,7 @@ impl Client {
         if let Some(address) = number(address) {
             handle.address = u8::try_from(address).ok();
         }
-        handle.ack_within = seconds("seconds", within)?.map(nanos);
+        handle.ack_within = positive("seconds", within)?.map(nanos);
         let pairs = named.chunks_exact(2).filter_map(|pair| match pair {
             [Value::Text(name), value] => Some((&**name, value.clone())),
             _ => None,
@@ -176,12 +177,16 @@ impl Client {
     }
 
     /// Return the calls that have ended: their numbers, whether it is good, and the answer or error.
-    fn ended_calls(&mut self) -> Vec<Value> {
+    /// `cut`: the transport was lost while it took bytes, so nobody knows how many.
+    fn ended_calls(&mut self, cut: bool) -> Vec<Value> {
         let mut ended = Vec::new();
         for caller in std::mem::take(&mut self.callers) {
             match self.session.take(caller.call) {
                 None => self.callers.push(caller),
-                Some(outcome) => {
+                Some(mut outcome) => {
+                    if let Err(Error::LinkError { written, .. }) = &mut outcome {
+                        *written = written.filter(|written| !cut || *written == 0);
+                    }
                     let good = Value::Flag(outcome.is_ok());
                     let answer = outcome.map(|answer| self.answered(&caller, answer));
                     let answer = answer.unwrap_or_else(|error| described(&error));
@@ -232,56 +237,90 @@ fn options(given: &[Value], url: &str) -> Result<Options, Error> {
         address,
         speed,
         workspace,
-        leaves,
+        on_error,
     ] = given
     else {
         return Err(wrong());
     };
     let usual = RetryPolicy::default();
-    let range = |value: Option<&Value>| match value {
-        Some(Value::Row(ends)) => Some((real(ends.first()?)?, real(ends.get(1)?)?)),
+    let count = |given: &Value| u8::try_from(number(given)?).ok();
+    let attempts = read("retry.attempts", attempts, "a whole number 1..100", count)?;
+    let leaves = |given: &Value| match given {
+        Value::Text(word) if word == "stop" => Some(OnDrop::Stop),
+        Value::Text(word) if word == "leave" => Some(OnDrop::Leave),
         _ => None,
     };
+    let ranges = "three ranges for x, y and z: each [lowest, highest], or undefined";
     Ok(Options {
-        timeout: seconds("timeout", timeout)?,
-        deadline: seconds("deadline", deadline)?,
+        timeout: positive("timeout", timeout)?,
+        deadline: positive("deadline", deadline)?,
         retry: RetryPolicy {
-            attempts: real(attempts).map_or(usual.attempts, |attempts| attempts as u8),
-            shortest_attempt: seconds("retry.shortestAttempt", shortest)?
+            attempts: attempts.unwrap_or(usual.attempts),
+            shortest_attempt: positive("retry.shortestAttempt", shortest)?
                 .map_or(usual.shortest_attempt, nanos),
-            grace: seconds("retry.grace", grace)?.map_or(usual.grace, nanos),
+            grace: seconds("retry.grace", grace, "seconds from 0 to below 3600")?
+                .map_or(usual.grace, nanos),
         },
         address: match address {
             Value::Text(address) => Some(address.clone()),
             _ => None,
         },
         limits: Limits {
-            speed: real(speed),
-            workspace: match workspace {
-                Value::Row(all) => Some([0, 1, 2].map(|axis| range(all.get(axis)))),
-                _ => None,
-            },
+            speed: read("limits.speed", speed, "a number 1..100", real)?,
+            workspace: read("limits.workspace", workspace, ranges, box_of)?,
         },
-        on_drop: match leaves {
-            Value::Flag(true) => OnDrop::Leave,
-            _ => OnDrop::Stop,
-        },
+        on_drop: read("onError", on_error, "stop or leave", leaves)?.unwrap_or_default(),
         port_name: Some(url.to_owned()),
         ..Options::default()
     })
 }
 
-/// Return an argument in seconds as a duration.
-fn seconds(argument: &str, value: &Value) -> Result<Option<Duration>, Error> {
-    let time = real(value).map(|given| {
-        Duration::try_from_secs_f64(given).map_err(|_| {
-            let shown = Value::Real(given);
-            let allowed = "seconds above 0 and below 3600";
-            let message = cobotwire_table::bad_argument(argument, &shown, allowed);
-            Error::UsageError { message }
-        })
-    });
-    time.transpose()
+/// Return what an option means; `None`: it was left out. A value that means nothing is an error.
+fn read<T>(
+    argument: &str,
+    value: &Value,
+    allowed: &str,
+    meaning: impl Fn(&Value) -> Option<T>,
+) -> Result<Option<T>, Error> {
+    let given = Some(value).filter(|value| **value != Value::Absent);
+    let meant = given.map(|value| meaning(value).ok_or(value)).transpose();
+    meant.map_err(|value| Error::UsageError {
+        message: cobotwire_table::bad_argument(argument, value, allowed),
+    })
+}
+
+fn box_of(value: &Value) -> Option<[Option<(f64, f64)>; 3]> {
+    let range = |value: &Value| match value {
+        Value::Absent => Some(None),
+        Value::Row(ends) => match &**ends {
+            [low, high] => Some(Some((real(low)?, real(high)?))),
+            _ => None,
+        },
+        _ => None,
+    };
+    match value {
+        Value::Row(axes) => match &**axes {
+            [x, y, z] => Some([range(x)?, range(y)?, range(z)?]),
+            _ => None,
+        },
+        _ => None,
+    }
+}
+
+/// Return an argument in seconds as a duration, which may be 0.
+fn seconds(argument: &str, value: &Value, allowed: &str) -> Result<Option<Duration>, Error> {
+    read(argument, value, allowed, |given| {
+        let time = Duration::try_from_secs_f64(real(given)?).ok();
+        time.filter(|time| time.as_secs() < 3600)
+    })
+}
+
+fn positive(argument: &str, value: &Value) -> Result<Option<Duration>, Error> {
+    let allowed = "seconds above 0 and below 3600";
+    let time = seconds(argument, value, allowed)?;
+    read(argument, value, allowed, |_| {
+        time.filter(|time| !time.is_zero())
+    })
 }
 
 fn nanos(time: Duration) -> u64 {

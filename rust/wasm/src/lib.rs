@@ -66,8 +66,9 @@ impl Machine {
             }
             [Value::Text(what), index, Value::Text(url), given @ ..] if what == "open" => {
                 let edition = self.edition(index)?.edition.clone();
-                let left = self.left.remove(url).unwrap_or_default();
-                let client = Client::new(edition, url, given, &left)?;
+                let (left, none) = (self.left.get(url), PersistedState::default());
+                let client = Client::new(edition, url, given, left.unwrap_or(&none))?;
+                self.left.remove(url);
                 self.clients.push(Ok(client));
                 Ok(whole(self.clients.len() - 1))
             }
