@@ -199,7 +199,7 @@ REFUSED = {
     "path[1].time is 1.0": trajectory((ANGLES, 1), (ANGLES, 1)),
     "path[0].time is -1.0": trajectory((ANGLES, -1)),
     "allowed: a number -168..168": trajectory((ANGLES, 1), ([170, 0, 0, 0, 0, 0], 9)),
-    "x as long would do": trajectory((FAST, 0.1)),
+    "times as long": trajectory((FAST, 0.1)),
     "points[1].time is 601.0": trajectory((ANGLES, 1), (ANGLES, 601)),
     "limits.workspace allows": trajectory(([10, 90, 0, 0, 0, 0], 9)),
     "is damaged": trajectory((ANGLES, 1), names=[*NAMES[:5], "@@"]),

@@ -49,6 +49,12 @@ SCRIPTS = [
 ]
 
 
+def test_motion_needs_a_highest_speed_and_a_workspace() -> None:
+    refused = _run("device", "--simulated", "--allow", "motion")
+    assert refused.returncode == 2
+    assert "max_speed" in refused.stderr
+
+
 @pytest.mark.parametrize(("listen", "calls", "expected", "word"), SCRIPTS)
 def test_client_is_compared_with_its_script(
     listen: str, calls: str, expected: int, word: str, tmp_path: Path

@@ -101,3 +101,10 @@ def test_request_never_succeeds_by_the_ack_of_another_one(loaded: Codec, sent: l
     for pending, key, _ in waiting:
         alike = [comes for _, other, comes in waiting if other == key]
         assert not succeeds(pending) or all(alike)
+
+
+def test_requests_do_not_collect_outstanding_replies(loaded: Codec) -> None:
+    bus = Bus(loaded)
+    for number in range(100):
+        bus.send(("set_force", 14), 2.0 * number)
+    assert len(bus.exchange._outstanding.replies) == 1

@@ -1,8 +1,7 @@
 """Compares requests, and which values they accept, with the maker's classes.
 
 A call counts as a second source where the class and the unchanged edition agree: they send the same
-bytes, or both reject the call. The other calls differ for reasons that
-``tests/peers/differences.txt`` lists.
+bytes, or both reject the call. The other calls are only counted, in docs/robots.md.
 """
 
 from __future__ import annotations
@@ -45,6 +44,12 @@ def requests(edition: Edition) -> Iterator[str]:
         for call, wanted in calls:
             if _sent(codec, call) != wanted:
                 yield f"{call.command}: {call.ours} differs from the maker's {call.method}"
+
+
+def unequal(name: str) -> set[str]:
+    """Return the commands of an edition for which no call sends the bytes of the maker's class."""
+    equal = {call.command for call, frame in compared(name)[0] if frame is not None}
+    return {call.command for robot in _robots(name) for call in _calls(robot)} - equal
 
 
 @lru_cache(maxsize=32)

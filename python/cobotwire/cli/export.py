@@ -67,10 +67,10 @@ def _keys(context: click.Context, option: click.Parameter, value: str) -> tuple[
 )
 @reading_options
 @click.option(
-    "--from", "begin_ns", callback=_time, metavar="TIME", help="Write messages from this time on."
+    "--from", "begin_ns", callback=_time, metavar="TIME", help="Write messages from this time (UTC) on."
 )
 @click.option(
-    "--to", "end_ns", callback=_time, metavar="TIME", help="Write messages before this time."
+    "--to", "end_ns", callback=_time, metavar="TIME", help="Write messages before this time (UTC)."
 )
 @click.option("--wide", is_flag=True, help="Give each number of a field a column of its own.")
 @click.option(
