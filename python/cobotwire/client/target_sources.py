@@ -10,7 +10,7 @@ from typing import Any, TypeGuard
 from cobotwire.protocol.errors import UsageError
 from cobotwire.session.paths import Source, Target, Waypoint
 
-# A sequence is a path; the others are live.
+# A sequence is a path; an iterator or a function gives live targets.
 Targets = Sequence[Target | Waypoint] | Iterable[Target] | Callable[[], Target | None]
 
 

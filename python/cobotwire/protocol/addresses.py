@@ -1,4 +1,4 @@
-"""Name the addresses of an edition, and tell which devices may reply to a request to each."""
+"""Name the addresses of an edition, and state which devices may reply to each."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from cobotwire.protocol.error_texts import error_text
 from cobotwire.protocol.errors import UsageError
 from cobotwire.protocol.table import Address, Command, Table
 
-# Repliers that are no address.
+# Repliers of broadcasts: any device, none, or one of them.
 ANYBODY = -1
 NOBODY = -2
 SOMEBODY = -3
@@ -30,7 +30,7 @@ def addresses_of(table: Table) -> tuple[Address, ...]:
 
 
 def devices_of(table: Table) -> tuple[Address, ...]:
-    """Return the addresses that a single device has: those that are no broadcast."""
+    """Return the addresses that a single device has: those that are not broadcasts."""
     return tuple(address for address in addresses_of(table) if address.replies == "own")
 
 

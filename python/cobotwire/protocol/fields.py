@@ -298,7 +298,7 @@ class Variant(_VariantFields):
 
 
 def named_fields(variants: tuple[Variant, ...]) -> dict[str, list[Field]]:
-    """Return the fields that are no constants by name, those of the longest variant first."""
+    """Return the fields by name, without constants; those of the longest variant come first."""
     found: dict[str, list[Field]] = {}
     for variant in sorted(variants, key=lambda variant: len(variant.fields), reverse=True):
         for field in variant.fields:

@@ -76,7 +76,7 @@ def limited(table: Table, limits: Limits) -> Table:
 def joint_limits(table: Table) -> list[Range]:
     """Return the limits of each joint: the ranges of targets, or else those that are stated.
 
-    A range that holds every number of the wire is no limit. Empty: the edition states no limit.
+    A range of every number of the wire does not count. Empty: the edition states no limits.
     """
     return _ranges(table) or list(table.robot.joint_limits)
 
@@ -231,7 +231,7 @@ def _value_of(picker: Field, name: str, part: int) -> int:
 
 
 def _raw_range(number: Number, given: Range) -> tuple[int, int]:
-    """Return a range as raw values, rounded inwards; 0.1 is one tenth, not the float next to it."""
+    """Return a range as raw values, rounded inwards. Its ends are decimals: 0.1 is one tenth."""
     low, high = given
     if number.encoding == "float":
         # A lower limit of zero includes -0.0.

@@ -231,7 +231,7 @@ class _Reader:
                 yield variant
 
     def _sizes(self, field: Record) -> tuple[int, int] | None:
-        """Return the least and the most elements of a field if they differ."""
+        """Return the smallest and the largest number of elements of a field, if they differ."""
         return self._types.field(field["type"]).sizes if "type" in field else None
 
     def _variant(self, fields: list[Record], counts: dict[str, int]) -> Variant:

@@ -70,7 +70,7 @@ class TypeRecords:
         return self._element(reference, type) * (least if count is None else count)
 
     def _element(self, reference: str | Record, type: Record) -> tuple[Number, ...]:
-        """Return the numbers of one element; of a type that is no list, all of them."""
+        """Return the numbers of one element; of a type other than a list, all of them."""
         if isinstance(reference, str) and reference in self._numbers:
             return self._numbers[reference]
         kind = type["kind"]

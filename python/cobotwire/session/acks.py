@@ -37,7 +37,7 @@ class ExpectedAck:
         offset: where in the received stream it can begin at the earliest.
         doubts: for each similar acknowledgement of another request, the second until which it may
             come; soonest first.
-        certain: whether it has come for sure, whichever requests other acknowledgements belong to.
+        certain: whether it has come, however the received acknowledgements belong to requests.
     """
 
     __slots__ = ("certain", "doubts", "offset", "request", "sent_at", "until")

@@ -99,7 +99,7 @@ class _Reported(H11Protocol):
 
 
 def _shorten(record: logging.LogRecord) -> bool:
-    """Log one line, not a traceback, about bytes that are no text: the other end sent them."""
+    """Log one line, without a traceback, if the other end sent bytes that are not text."""
     if record.exc_info and isinstance(record.exc_info[1], UnicodeError):
         record.msg, record.args = f"{record.getMessage()} {record.exc_info[1]}", ()
         record.exc_info = None

@@ -375,7 +375,7 @@ impl Session {
 }
 
 impl Call {
-    /// End a request with the error that none of its bytes was written by its deadline.
+    /// End a request whose deadline passed before any of its bytes was written.
     fn unsent(&mut self, handle: &Handle, now: Nanos) {
         let failure = Failure::Timeout {
             waited: now.saturating_sub(self.called_at),

@@ -226,7 +226,7 @@ fn crc(json: &[u8], size: usize) -> Outcome<Algorithm> {
     match Crc::new(crc).filter(|crc| crc.size() == size) {
         Some(made) if fits(crc.poly | crc.init | crc.xorout) => Ok(Algorithm::Crc(made)),
         _ => BadEdition::because(
-            "crc must have 1 to 120 bits, numbers of that many bits, and check_width its bytes",
+            "crc must have 1 to 120 bits, its numbers at most as many; check_width must be its size in bytes",
         ),
     }
 }

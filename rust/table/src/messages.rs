@@ -281,7 +281,7 @@ fn lengthen(mut lists: &mut [Varying<'_>], room: usize) -> bool {
     false
 }
 
-/// Return the least and the most elements of a type.
+/// Return the smallest and the largest number of elements of a type.
 fn bounds(of: Record<'_>) -> Outcome<(usize, usize)> {
     let bound = |key| of.within_or(key, 0..=LONGEST, 1);
     Ok((bound("least")?, bound("most")?))

@@ -66,7 +66,7 @@ class _Ruler:
 
 
 def _lengths(frame: Frame, direction: Direction, variant: tuple[Field, ...]) -> str:
-    """Return LEN, or the least and the most LEN of a message whose size varies."""
+    """Return LEN, or the range of LEN if the size of the message varies."""
     sizes = [
         (size(f.type), f.type.sizes[1] * f.type.element_size) for f in variant if f.type.varies
     ]

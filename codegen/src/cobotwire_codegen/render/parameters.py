@@ -69,9 +69,9 @@ def parameters(command: Command) -> list[Parameter]:
 
 
 def results(command: Command) -> list[Parameter]:
-    """Return what every variant of the reply reports and the request did not contain.
+    """Return the fields of every variant of the reply, without those that repeat an argument.
 
-    If the variants have nothing in common, these are all their fields, each of which may be absent.
+    If no field is in every variant, return all fields; each of them may be absent.
     """
     if command.ack:
         return []

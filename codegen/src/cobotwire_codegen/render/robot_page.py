@@ -80,7 +80,7 @@ _CHANGES = {"since": "new", "until": "removed", "reply_since": "gets a reply"}
 
 
 def _history(edition: Edition) -> list[tuple[str, str, str, str]]:
-    """Return version, command, change and source of what is known of the firmware, by version."""
+    """Return the known changes of the firmware, by version: version, command, change, source."""
     stated = [(each.name, each.firmware) for each in edition.commands if each.firmware]
     found = sorted(
         (version, name, _CHANGES[key], "; ".join(map(_words, firmware.evidence)))

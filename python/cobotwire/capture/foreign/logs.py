@@ -65,9 +65,9 @@ def _socat(file: ForeignFile) -> Iterator[Chunk]:
                 parts += 1
                 streams[direction] = f"part {parts}"
                 lost = begin - ends[direction]
-                what = f"lacks {counted(lost, 'byte')}" if lost > 0 else "goes back"
+                what = f"lacks {counted(lost, 'byte')}" if lost > 0 else "goes back to bytes"
                 follows = f"before line {line.number}; what follows is part {parts}"
-                file.missing.append(f"{what} of what was {direction} {follows}")
+                file.missing.append(f"{what} {direction} {follows}")
             ends[direction] = begin + size
             block = Chunk(b"", direction, time_ns, streams.get(direction, ""))
         if data and len(data) == size:

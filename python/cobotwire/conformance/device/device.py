@@ -42,7 +42,7 @@ class NotSupported(Exception):
 
 
 class Restores(dict[str, Callable[[], object]]):
-    """The functions that undo changes of a body, or of the run, by the name of what was changed."""
+    """The functions that undo what a body or the run changed, by the name of the changed thing."""
 
     def run(self) -> None:
         """Restore everything, the last change first.

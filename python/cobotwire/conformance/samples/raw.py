@@ -60,7 +60,7 @@ def corners(field: Field, number: Number) -> list[int]:
 
 
 def beyond(field: Field, number: Number) -> list[int]:
-    """Return the values next to the legal ones, and the ends of what the wire can carry."""
+    """Return the illegal values next to legal ones, and the illegal ends of the wire's range."""
     lowest, highest = number.raw_range
     choices = listed(field, number)
     if choices:

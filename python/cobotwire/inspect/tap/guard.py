@@ -19,9 +19,9 @@ class Decision(NamedTuple):
 class Guard:
     """Passes whole requests that only read, or that stop the arm; holds back all other bytes.
 
-    If several commands share an id, a request passes only if each of those that it can be only
-    reads, or stops the arm. Bytes that are no request of the edition are held back, because the arm
-    may parse them differently.
+    If a request can be several commands with the same id, each of them must only read, or stop the
+    arm. Bytes that are not a request of the edition are held back, because the arm may parse them
+    differently.
     """
 
     def __init__(self, codec: Codec) -> None:

@@ -11,7 +11,7 @@ from cobotwire.pymycobot import error
 from cobotwire.pymycobot.migrate.calls import library
 
 OURS = "cobotwire.pymycobot"
-# The names in the layer that are no classes, by the module of the library.
+# The names in the layer that are not classes, by the module of the library.
 KEPT = {
     "": {"PI_BAUD", "PI_PORT", "Angle", "Coord", "utils"},
     "genre": {"Angle", "Coord"},

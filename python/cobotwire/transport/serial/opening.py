@@ -74,7 +74,7 @@ def _explained(device: str, error: Exception, cause: BaseException) -> str:
 
 
 def _innermost(error: BaseException) -> BaseException:
-    """Return the first error: pyserial wraps it in others, some of which fail themselves."""
+    """Return the original error: pyserial wraps it in others, and fails while it formats some."""
     while error.__context__ is not None:
         error = error.__context__
     return error

@@ -64,8 +64,8 @@ impl Protocol {
         self.table.frame().layout.reply_has_id
     }
 
-    /// Return a frame of the request's command as its reply, whichever arguments it repeats;
-    /// `None`: it replies to something else.
+    /// Decode a frame with the request's command id as its reply; do not compare repeated arguments.
+    /// `None`: the frame replies to something else.
     pub(super) fn as_reply(
         &self,
         frame: &SeenFrame,
@@ -113,11 +113,11 @@ impl Protocol {
         Event::Unexpected { frame }
     }
 
-    /// Return whether a frame that is no legal reply of a command replies to another command with
-    /// the same id.
+    /// Return whether a frame replies to another command with the same id.
     ///
-    /// A constant in each reply tells them apart, for instance the number of the register that a
-    /// device behind the arm reports. The rest of such a reply may be illegal.
+    /// The frame is not a legal reply of `of`. A constant in the replies distinguishes commands that
+    /// share an id, such as the register number of a device that the arm forwards to. The rest of the
+    /// frame may be illegal.
     fn replies_elsewhere(&self, frame: &SeenFrame, of: usize) -> bool {
         let format = self.table.frame();
         let frame = frame.frame.get(format);

@@ -94,7 +94,7 @@ class Commands:
 def _shape(type: Type) -> dict[str, Any]:
     """Return what distinguishes lists, bytes and texts from a single value.
 
-    ``size`` are the least and the most elements: bytes, unless it is a list.
+    ``size`` is the smallest and the largest number of elements: bytes, unless it is a list.
     """
     element = type.of if isinstance(type, Listed) else type
     shape: dict[str, Any] = {}

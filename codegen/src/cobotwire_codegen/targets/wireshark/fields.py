@@ -32,7 +32,7 @@ _WIDTH = (
     *(f"INT{bits}" for bits in (8, 16, 24, 32)),
     *("INT64", "FLOAT", "DOUBLE"),
 )
-# Fields of these kinds share no filter name with fields of another kind.
+# A filter name is for fields of one of these kinds only, or for fields of all other kinds.
 _APART = {"STRING": "text", "BYTES": "bytes", "NONE": "group"}
 
 

@@ -21,7 +21,7 @@ UNKNOWN_ROW = "the device does not report the position that the query takes"
 DRIFT = 0.02
 # The time after power on until the readings of an arm must be steady, in seconds.
 SETTLES = 1.0
-# If this many replies in a row come with NULs, it is no accident.
+# If this many replies in a row come with NULs, the arm sends them regularly.
 NOISY = 10
 # The name of the permission, and of the state that is restored.
 POWER = "power"
