@@ -96,7 +96,7 @@ def _alternating(*ports: str) -> list[list[float]]:
     opened = [os.open(port, os.O_RDWR | os.O_NOCTTY) for port in ports]
     times: list[list[float]] = [[] for _ in ports]
     for turn in range(TRIPS):
-        # The first one after the pause also waits for the scheduler.
+        # The first round trip after a pause also waits for the scheduler: the ports take turns.
         for port, taken in list(zip(opened, times))[:: (-1) ** turn]:
             started = time.perf_counter()
             os.write(port, QUERY)

@@ -79,7 +79,7 @@ def test_chunk_that_is_one_frame_has_the_same_events_and_counts(
 
 
 def _readings(codec: Codec, frame: Frame, names: list[str]) -> Iterator[Any]:
-    """Yield what a frame of a framer says in each direction and as each of the commands."""
+    """Yield how a framer's frame decodes in each direction and as each of the commands."""
     yield _outcome(lambda: repr(frame.message)), _outcome(lambda: repr(frame.values))
     for name in [None, *names]:
         yield _outcome(lambda: repr(frame.decode(of=name)))  # noqa: B023  (called at once)

@@ -1,4 +1,4 @@
-"""The kind of a mistake is guessed from the right numbers of a row and those that came."""
+"""The kind of a mistake is guessed from the expected and the received numbers of a row."""
 
 from __future__ import annotations
 

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 from cobotwire_codegen.model import Edition, Field, Quantity
 
-# The names of fields, and the units that their types then have; other fields have no unit.
+# The units that a field with such a name may have; other fields have no unit.
 FIELDS = (
     (r"angles?|radians|(current|target)_angle", {"degree"}),
     (r"coords?|target|through|end", {"millimetre", "degree"}),
@@ -23,7 +23,7 @@ FIELDS = (
     (r"baud", {"baud"}),
     (r"timeout", {"millisecond"}),
 )
-# Fields with other units than their names tell: the edition or a base of it, command and field.
+# Exceptions, each as "EDITION COMMAND FIELD"; EDITION may also be a base of the edition.
 OTHERWISE = (
     # The class has a method of its own for coordinates.
     (r"(mercury_a1|myarm300) is_in_position target", {"degree"}),
@@ -94,7 +94,7 @@ def field_units(edition: Edition) -> Iterator[str]:
 
 
 def case_units(edition: Edition) -> Iterator[str]:
-    """Report fields that an axis selects, with another unit than the axis has."""
+    """Report fields that an axis selects, if their unit differs from that of the axis."""
     for command in edition.commands:
         for field in command.fields:
             for member, type in field.cases:

@@ -11,10 +11,11 @@ from cobotwire_codegen import floats
 
 
 class Encoding:
-    """Integers of ``width`` bytes; those above ``signed_at`` are negative. The others override it.
+    """Integers of ``width`` bytes. Other encodings are subclasses.
 
-    ``what`` names a number of the encoding, ``allowed`` its widths. The bytes are an unsigned
-    number, from which the raw value follows. An encoding without a sign rule ignores ``signed_at``.
+    The bytes of a number are read as an unsigned number, which then becomes the raw value: an
+    integer above ``signed_at`` is negative. An encoding without a sign rule ignores ``signed_at``.
+    ``what`` names a number of the encoding in messages, and ``allowed`` lists its widths.
     """
 
     what: ClassVar[str] = "an integer"
@@ -24,7 +25,7 @@ class Encoding:
     has_sign_rule: ClassVar[bool] = True
 
     def bounds(self, width: int, signed_at: int) -> tuple[int, int]:
-        """Return the lowest and the highest raw value; of floats, the finite ones."""
+        """Return the lowest and the highest raw value."""
         top = int(256**width) - 1
         return (signed_at - top if signed_at < top else 0), signed_at
 
@@ -33,7 +34,7 @@ class Encoding:
         return unsigned if unsigned <= signed_at else unsigned - int(256**width)
 
     def unsigned_of(self, raw: int, width: int) -> int:
-        """Return the unsigned number of a raw value; its lowest bytes are used."""
+        """Return the unsigned number of a raw value; callers keep its lowest ``width`` bytes."""
         return raw
 
 

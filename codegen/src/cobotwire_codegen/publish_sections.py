@@ -43,8 +43,8 @@ def places_of(command: Command, edition: Edition) -> str:
 def published_file(file: str, edition: Edition) -> str:
     """Return the name of a file of the spec, which is the same on every machine.
 
-    It is relative to the folder of the edition's file. Files of a package that ships editions in
-    ``spec/editions``, as this project does, are named from ``spec`` on.
+    It is relative to the folder of the edition's file. If a folder ``spec`` with ``editions``
+    contains the file, as in this project, the name starts with ``spec``.
     """
     path = edition.root / file
     home = _home(edition.root / edition.place.file)

@@ -8,7 +8,7 @@
     "noise between": "FF FF 01 04 02 38 02 BE FE FE 03 12 01 FA 00 00",
     "a false header": "FE FE 0E 20 FE FE 03 12 01 FA FE FE 03 53 87 FA 00",
   };
-  const FIRST_EDITION = "mycobot280"; // that of today's arm
+  const FIRST_EDITION = "mycobot280"; // the edition of today's arm
   // The colours of parts of a frame; the others are data.
   const KINDS = { header: "header", address: "header", LEN: "length", CMD: "command", check: "footer", footer: "footer" };
 
@@ -80,7 +80,7 @@
   let job = 0;
   let busy = false;
 
-  // Have the worker do a job. One that is at work on an outdated input is ended.
+  // Give the worker a job. A worker that is still busy with outdated input is replaced.
   function ask(root, request, answered) {
     if (worker === null || (busy && request.text !== undefined)) {
       if (worker !== null) worker.terminate();
@@ -278,7 +278,7 @@
     const root = document.getElementById("decoder");
     if (!root) return;
     if (!cobotwire.module) {
-      root.append("This copy of the site was built without Node, and cannot decode. The command cobotwire decode does.");
+      root.append("This copy of the site was built without Node, so it cannot decode. Use the command cobotwire decode.");
       return;
     }
     build(root);

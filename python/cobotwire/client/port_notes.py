@@ -105,7 +105,7 @@ def _take(path: str) -> bytes:
 
 
 def _read(note: dict[str, Any], key: str) -> PersistedState:
-    """Return what a note says; raise anything if it is damaged."""
+    """Return what a note says; raise some exception if it is damaged."""
     if note["port"] != key:
         # Another port has the same file name.
         return PersistedState()

@@ -36,11 +36,11 @@ def repeats_arguments(message: DecodedMessage, request: EncodedRequest) -> bool:
 def as_reply(
     frame: Frame, request: EncodedRequest, table: Table
 ) -> DecodedMessage | ProtocolError | None:
-    """Return a frame of the request's command as its reply, whichever arguments it repeats.
+    """Decode a frame with the request's command id as its reply; do not compare repeated arguments.
 
     Returns:
-        The error if the frame replies to the request with values that the edition does not allow;
-        None if it replies to something else.
+        The reply; the error if the frame replies to the request with values that the edition does
+        not allow; None if it replies to something else.
     """
     if request.replier is not None and not can_come_from(table.frame.address(frame.data), request):
         return None
@@ -81,10 +81,11 @@ def as_event(frame: Frame, table: Table) -> EventReceived | None:
 
 
 def replies_elsewhere(frame: Frame, command: Command, table: Table) -> bool:
-    """Return whether a frame that is not a legal reply of a command replies to one with its id.
+    """Return whether a frame replies to another command with the same id.
 
-    A constant in each reply tells them apart, for instance the number of the register that a device
-    behind the arm reports. The rest of such a reply may be illegal.
+    The frame is not a legal reply of ``command``. A constant in the replies distinguishes commands
+    that share an id, such as the register number of a device that the arm forwards to. The rest of
+    the frame may be illegal.
     """
     data, has_id = table.frame.data(frame.data, "reply"), table.frame.reply_has_id
     others = [

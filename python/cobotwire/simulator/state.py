@@ -29,7 +29,7 @@ UNSTATED_GRIPPER = Gripper(1.0, 0, 100)
 NEAR_DEGREES, NEAR_MILLIMETRES = 0.1, 5.0
 HALF_TURN = 180.0
 NO_POSE = (0.0,) * 6
-# In percent per square second; so high that a gripper is at full speed at once.
+# In percent per second squared; so high that a gripper is at full speed at once.
 OPENING_ACCELERATION = 10_000.0
 # No source states how often points are recorded; their number is sent in two bytes.
 RECORD_EVERY_SECONDS = 0.1
@@ -58,7 +58,7 @@ class ArmState:
     # The state that the edition declares, by name, and what behaviours from outside keep. A state
     # with a value for each index is a mapping from the index.
     kept: dict[str, Any] = field(default_factory=dict)
-    # What is set for joints that the arm lacks, by the state and the index.
+    # What clients set for joints that the arm lacks, by the state and the index.
     elsewhere: dict[str, dict[Any, Any]] = field(default_factory=dict)
     # The last error; 0: none.
     error: int = 0
@@ -248,7 +248,7 @@ class ArmState:
         self.angles.resume(now)
 
     def servo_speeds(self, now: float) -> tuple[int, ...]:
-        """Return how fast each servo turns, in encoder steps per second and direction."""
+        """Return the speed of each servo in encoder steps per second; its sign is the direction."""
         if self.encoders is None:
             return (0,) * self.joints
         encoders, speeds = self.encoders, enumerate(self.angles.speed(now))
@@ -283,7 +283,7 @@ class ArmState:
         return tuple(coords[place] for place in self.coordinates)
 
     def pose_of(self, values: Sequence[float], angles: tuple[float, ...]) -> Pose:
-        """Return the end's pose; coordinates that the edition lacks are as at ``angles``."""
+        """Return the end's pose; coordinates that the edition lacks are those of ``angles``."""
         return pose_with(values, self.coordinates, self.end(angles))
 
     def end(self, angles: tuple[float, ...], *, base: bool = False) -> Pose | None:

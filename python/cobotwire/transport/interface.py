@@ -114,7 +114,7 @@ class AsyncTransport(Protocol):
         ...
 
     def is_free(self) -> bool:
-        """Return whether everything that was written was taken, and more may be."""
+        """Return whether all written bytes were taken, so that more may be written."""
         ...
 
     def end_writing(self) -> None:

@@ -155,7 +155,7 @@ fn is_speed(field: &Field) -> bool {
     field.name == "speed" && numbers.all(|number| number.unit == "percent")
 }
 
-/// Return a range as raw values, rounded inwards; 0.1 is one tenth, not the float next to it.
+/// Return a range as raw values, rounded inwards. Its ends are decimals: 0.1 is one tenth.
 fn raw_range(number: &Number, (low, high): Range) -> (i64, i64) {
     if number.is_float() {
         // A lower limit of zero includes -0.0.

@@ -180,9 +180,9 @@ fn algorithm(record: CheckRecord) -> PyResult<Algorithm> {
             xorout,
         });
         let crc = crc.filter(|crc| crc.size() == record.width);
-        return crc
-            .map(Algorithm::Crc)
-            .ok_or_else(|| rejected("a CRC must have 1 to 120 bits, and the check its bytes"));
+        return crc.map(Algorithm::Crc).ok_or_else(|| {
+            rejected("a CRC must have 1 to 120 bits, and the check must be as wide as the CRC")
+        });
     }
     Ok(match record.algorithm.as_str() {
         "sum" => Algorithm::Sum,

@@ -1,7 +1,8 @@
 """Defines the types that are more than a number: bits of a word, bytes, text, and lists.
 
 They have the attributes of the other types, so that the rest of the generator rarely distinguishes
-them. ``sizes`` are the least and the most elements (bytes of a text) of a value.
+them. ``sizes`` are the smallest and the largest number of elements of a value; the elements of a
+text are its bytes.
 """
 
 from __future__ import annotations
@@ -26,7 +27,7 @@ from cobotwire_codegen.model.wires import Wire
 
 
 class Shaped:
-    """What these types have in common: no raw value, no range, no members."""
+    """What these types have in common: no single raw value, no range, no members."""
 
     __slots__ = ()
     members: ClassVar[tuple[Member, ...]] = ()
@@ -42,7 +43,7 @@ class Shaped:
 
     @property
     def sizes(self) -> tuple[int, int]:
-        """The least and the most elements."""
+        """The smallest and the largest number of elements."""
         return 1, 1
 
     @property
@@ -52,7 +53,7 @@ class Shaped:
 
     @property
     def size(self) -> int:
-        """The least number of bytes on the wire."""
+        """The smallest number of bytes on the wire."""
         return self.sizes[0] * self.element_size
 
     @property
@@ -62,7 +63,7 @@ class Shaped:
 
     @property
     def size_words(self) -> str:
-        """The least and the most elements in words."""
+        """The number of elements, or its range, in words."""
         least, most = self.sizes
         return f"{least}..{most}" if self.varies else str(most)
 
@@ -75,11 +76,11 @@ class Shaped:
         return data.hex(" ")
 
     def can_hold(self, raw: int) -> bool:
-        """Return False: the type has several raw values."""
+        """Return False: a value of the type is not a single number."""
         return False
 
     def can_hold_any(self, width: int) -> bool:
-        """Return False: the type has several raw values."""
+        """Return False: a value of the type is not a single number."""
         return False
 
     def narrowed(self, ends: tuple[Fraction, Fraction]) -> None:
@@ -164,7 +165,7 @@ class _Sized(Shaped):
 
     @property
     def sizes(self) -> tuple[int, int]:
-        """The least and the most elements."""
+        """The smallest and the largest number of elements."""
         return self.least, self.most
 
 
@@ -186,7 +187,7 @@ class _Bytes(_Sized):
 
     @property
     def numbers(self) -> tuple[Record, ...]:
-        """The numbers of the least bytes."""
+        """The numbers of the shortest value: one for each byte."""
         return (self.byte,) * self.least
 
 
@@ -271,7 +272,7 @@ class Listed(_Sized):
 
     @property
     def numbers(self) -> tuple[Record, ...]:
-        """The numbers of the least elements."""
+        """The numbers of the shortest list."""
         return self.of.numbers * self.least
 
     @property

@@ -86,7 +86,7 @@ def fields_of(kind: str) -> tuple[Field, ...]:
 
 @cache
 def schema_text(kind: str) -> str:
-    """Return a definition with those that it needs, as MCAP's ``ros2msg`` has them."""
+    """Return a definition and the definitions that it needs, as text in MCAP's ``ros2msg``."""
     needed = list(dict.fromkeys(_needed(kind)))
     parts = [f"MSG: {each.replace('/msg/', '/')}\n{_DEFINITIONS[each]}" for each in needed]
     return f"{'=' * 80}\n".join([_DEFINITIONS[kind], *parts])
@@ -100,13 +100,13 @@ def serialised(kind: str, message: Message) -> bytes:
 
 
 def header(time_ns: int, frame: str = "") -> Message:
-    """Return the header of a message; times after ROS's last one, in 2038, become that one."""
+    """Return the header of a message; a time after ROS's latest one, in 2038, becomes that one."""
     sec, nanosec = divmod(time_ns, 1_000_000_000)
     return {"stamp": {"sec": min(sec, _LATEST), "nanosec": nanosec}, "frame_id": frame}
 
 
 def unit_in_ros(number: Number) -> float:
-    """Return how many radians or metres, the units of ROS, one unit of a joint is."""
+    """Return the factor from the unit of a joint to that of ROS: radians or metres."""
     return _RADIANS_OR_METRES.get(number.unit, 1.0)
 
 

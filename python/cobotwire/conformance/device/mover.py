@@ -52,14 +52,14 @@ class Mover:
         self.joints = self._in_role("joints")
         self.speed = self.device.permissions.max_speed or 1
         self.tolerance = angle_tolerance(self.device.table)
-        # The pose, by its index, that the arm is near, if a test case has noted it.
+        # The index of the pose that the arm is near; None if no test case has set it.
         self.near: int | None = None
         give_power(self.device)
         self._come_back()
 
     @property
     def poses(self) -> list[int]:
-        """The indices of the poses; first those from which the arm has moved, latest first."""
+        """The indices of the poses. Those from which the arm has moved come first, latest first."""
         return list(dict.fromkeys([*self.device.noticed.poses, *range(len(POSES))]))
 
     def go_near(self, which: int) -> None:
@@ -134,7 +134,7 @@ class Mover:
         return tuple(self.device.require(self.joints.request_type()).result)
 
     def differences(self, wanted: Pose) -> list[str]:
-        """Describe the joints that are not where they should be, or reported illegally.
+        """Describe the joints that are not where they should be, or the illegal values reported.
 
         Raises:
             NotSupported: no reply came.

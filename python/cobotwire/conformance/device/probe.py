@@ -111,15 +111,15 @@ FoundBody = Callable[[Probe, Found], None]
 def for_found(
     find: Callable[[Table, Command], Found | None], body: FoundBody[Found]
 ) -> tuple[Body, Selects]:
-    """Return a body, and the selector of its commands: those for which ``find`` finds something.
+    """Return a body for the commands for which ``find`` finds something, and their selector.
 
-    The body gets what was found.
+    ``body`` gets what was found.
     """
 
     def run(probe: Probe) -> None:
         found = find(probe.device.table, probe.command)
         if found is None:
-            raise NotSupported("the device lacks a command without which this cannot be observed")
+            raise NotSupported("the device lacks a command that this test needs")
         body(probe, found)
 
     return run, find

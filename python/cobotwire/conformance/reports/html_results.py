@@ -11,9 +11,10 @@ from cobotwire.conformance.report import Cause, Exchange, Kind, Report, Result, 
 from cobotwire.conformance.reports.element import Child, element
 from cobotwire.conformance.reports.grouped import columns, matrix, rows, title_of
 
-# The length, in characters, that long texts are shortened to.
+# Longer texts are shortened to this many characters.
 LONGEST = 200
-# How many exchanges the page shows of what passed, the last ones; the JSON report has more.
+# For a test case that passed, the page shows this many exchanges, the last ones; the JSON report
+# has more.
 OF_PASSES = 3
 # How many further failures of a test case it describes.
 FURTHER = 3
@@ -113,8 +114,8 @@ def by_command(report: Report) -> Iterator[Element]:
         found.setdefault(result.command, []).append(result)
     yield heading("commands", "Results by command")
     legend = (
-        f"→ the tester sends, ← it receives; times in seconds since the start. Of what passed, the "
-        f"last {OF_PASSES} exchanges are shown; the JSON report has more."
+        f"→ the tester sends, ← it receives; times in seconds since the start. For test "
+        f"cases that passed, the last {OF_PASSES} exchanges are shown; the JSON report has more."
     )
     yield element("p", legend, class_="faint")
     for command in sorted(found, key=lambda name: name == ""):

@@ -41,8 +41,8 @@ SETTINGS = (settings.SETTINGS, settings.SHOWN_AMONG, references.REFERENCES)
 MOTIONS = (motion.POSES, motion.JOINTS, on_the_way.STOPPING)
 # The time that an arm has for a query by which its edition is recognised, in seconds.
 EDITION_SECONDS = 0.5
-# The distance of a motion from the present pose, its first step, and the distance at which that
-# step is stopped, in degrees; and the speed in percent.
+# In degrees: how far the motions leave the present pose, how far the first step turns a joint, and
+# at which distance the first step is stopped. The speed is in percent.
 AROUND, FIRST, TOO_FAR = 5.0, 1.0, 3.0
 SPEED = 10
 # How long a survey lasts at most, in seconds.
@@ -82,20 +82,21 @@ class Survey:
             earlier: the content of the file of an interrupted survey; facts that it decided are not
                 tested again.
             sources: where the spec defines each command, by name.
-            on_private: called with True before replies come that name a device, False after them.
+            on_private: called with True before a query for a device's identity is sent, and
+                with False after its replies.
             address: the device's address, by number or name; left out: the edition's first one.
         """
         self.table, self.facts = table, Facts(table)
         self.hashed: list[str] = []
         self.firmware: dict[str, str] = {}
         self.finished = False
-        # The highest level of which anything ran: 1 queries, 2 also settings, 3 also motion.
+        # What has run: 1 queries, 2 also settings, 3 also motion.
         self.level = 1
-        # The options, of this survey or the earlier one, that have not run to their end.
+        # The options of this survey, or the earlier one, whose test cases have not all run.
         before = (earlier or {}).get("left_out", ())
         options = {"--settings": settings, "--allow-motion": motion}
         self.left_out = [name for name, chosen in options.items() if chosen or name in before]
-        # Why the arm was not moved, or not surveyed at all; empty: it was, or need not be.
+        # Why the arm was not surveyed, or not moved although it should be; else empty.
         self.obstacle = ""
         # Whether the arm speaks another edition.
         self.other = False
@@ -234,7 +235,7 @@ class Survey:
         self.mistakes = self._checks.mistakes(self._snapshots)
 
     def _read(self, probe: Probe, sent: Row = ()) -> None:
-        """Read all states that can be compared, of queries that have a reply."""
+        """Read each state that can be compared, by the queries that have had a reply."""
         replied, row = probe.device.noticed.reply_seconds, dict[Key, Row]()
         for source in sources(self.table):
             present = self.facts.name(source.query.name, "command", "present") in self._done
@@ -354,7 +355,7 @@ def states(command: Command) -> tuple[str, ...]:
 
 
 def _decides(step: Step) -> str:
-    """Return the aspect of the fact that shows, in an earlier file, that a step has been run."""
+    """Return the aspect of a fact: if an earlier file decided that fact, the step has been run."""
     return "present" if step.group is queries.QUERIES else "effect"
 
 

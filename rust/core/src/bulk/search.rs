@@ -160,7 +160,8 @@ impl Search {
         at_end: bool,
         collect: &mut impl Collect,
     ) -> usize {
-        // A frame that starts before `stop` ends in the block; kept bytes are always scanned whole.
+        // A frame that starts before `stop` must end in the block. The bytes that a stream has kept are
+        // fewer than that, so one call scans them all.
         let stop = stop.min(BLOCK.min((BLOCK + MARGIN).saturating_sub(self.rules.longest())));
         if stop == 0 {
             return 0;

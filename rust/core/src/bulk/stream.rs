@@ -80,8 +80,8 @@ impl Stream {
         self.search.noise.end();
     }
 
-    /// Scan what waits, and then a chunk. `start` scans any part of the chunk's start, and returns its
-    /// number of bytes.
+    /// Scan the bytes that wait, and then a chunk. `start` may scan the first bytes of the chunk, and
+    /// returns how many.
     fn cut<C: Collect>(
         &mut self,
         chunk: &[u8],

@@ -20,7 +20,7 @@ def frame_table(frame: Frame) -> dict[str, Any]:
         "length": _number(frame.length_number),
         "command": _number(frame.command_number),
         "replies_have_command": frame.replies_have_command,
-        # Up to the last of LEN and CMD.
+        # The bytes up to the end of LEN and CMD.
         "head_size": max(frame.offset(p) + sizes[p] for p in ("length", "command")),
         "data_at": data_at,
         # LEN is the number of data bytes plus this.
@@ -40,7 +40,7 @@ def _number(number: FrameNumber) -> dict[str, Any]:
 
 
 def _spans(values: tuple[int, ...]) -> list[list[int]]:
-    """Return numbers as the first and the last one of each run."""
+    """Return the first and the last number of each run of consecutive numbers."""
     spans: list[list[int]] = []
     for value in sorted(values):
         if spans and spans[-1][1] == value - 1:
