@@ -165,7 +165,7 @@ def test_long_chain_of_bases_is_refused(tmp_path: Path) -> None:
         (tmp_path / f"lamp{number}.yaml").write_text(text)
     assert _problems(tmp_path / "lamp10.yaml") == []
     assert _problems(tmp_path / "lamp12.yaml") == [
-        "lamp2.yaml:2:7: too-large: the edition has more than 10 bases below each other, the limit"
+        "lamp2.yaml:2:7: too-large: the edition has a chain of more than 10 bases, the limit"
     ]
 
 

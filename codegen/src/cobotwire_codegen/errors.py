@@ -26,7 +26,7 @@ class Place:
 class Problem:
     """One problem of a spec. ``code`` is stable; the message may improve.
 
-    Messages quote the spec, which may contain what a terminal would execute or cannot show.
+    Messages quote the spec; characters that a terminal executes or cannot show are escaped.
     """
 
     place: Place

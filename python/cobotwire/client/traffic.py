@@ -61,7 +61,7 @@ class TrafficListeners:
         self._now = now
 
     def add(self, listener: TrafficListener) -> Callable[[], None]:
-        """Call this listener too, until the function that is returned is called."""
+        """Add a listener; return a function that removes it."""
         self.listeners = (*self.listeners, listener)
 
         def remove() -> None:

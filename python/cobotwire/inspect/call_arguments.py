@@ -100,7 +100,7 @@ def parse_method(
 
 
 def _sizes(command: Command) -> dict[str, int]:
-    """Return how many words each argument can be: as many as a list of a fixed size has numbers.
+    """Return the number of words that each argument takes: one, or the size of a fixed-size list.
 
     0: the argument has to be named.
     """

@@ -8,7 +8,7 @@ from cobotwire.protocol.limits import Limits, is_speed
 from cobotwire.protocol.roles import moves_arm
 from cobotwire.protocol.table import Command, Table
 
-# The states that decide which point of the arm coordinates are about, and in which frame.
+# The states that decide what coordinates mean: the point of the arm, and the frame of reference.
 _FRAMES = frozenset({"tool", "world", "reference_frame", "end_type"})
 
 

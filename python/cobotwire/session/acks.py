@@ -37,7 +37,7 @@ class ExpectedAck:
         offset: where in the received stream it can begin at the earliest.
         doubts: for each similar acknowledgement of another request, the second until which it may
             come; soonest first.
-        certain: whether it has come, however the received acknowledgements belong to requests.
+        certain: whether it has come for sure: others cannot account for all acknowledgements.
     """
 
     __slots__ = ("certain", "doubts", "offset", "request", "sent_at", "until")
@@ -259,9 +259,10 @@ class Acks:
     def _learn(self, acks: _CommandAcks, received: _Received, now: float) -> None:
         """Learn whether motions are acknowledged at once.
 
-        They are if the acknowledgement of a single motion comes at once. They also are if one has
-        come soon after its motion, and acknowledgements have been expected without a break for
-        longer than a motion may take: then an earlier one was lost.
+        If only one motion is outstanding and its acknowledgement comes soon, they are. If several
+        are outstanding, an early acknowledgement may belong to an older motion. It does not if
+        acknowledgements have been outstanding without a break for longer than a motion may take:
+        then an older one was lost.
         """
         newest = next(ack for ack in reversed(acks.expected) if received.of(ack.request))
         if newest.request.command.safety != "motion" or now - newest.sent_at >= GRACE_SECONDS:

@@ -1,7 +1,7 @@
 //! Reads exact numbers, in exact tuples and lists, for the templates of the core.
 //!
-//! Reading these runs no code of the caller's. So it may stop anywhere, and `given` may read the
-//! same values again, to convert others or to name the mistake.
+//! Reading them runs no code of the caller. So if it stops at another value or at a mistake, `given`
+//! can read all values again.
 
 use cobotwire_core::{Direction, Exact, LONGEST_PLAIN, Place, Table, encode_plain};
 use pyo3::prelude::*;

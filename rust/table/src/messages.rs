@@ -155,7 +155,7 @@ impl<'a> Messages<'a> {
         found.transpose()
     }
 
-    /// Return a field of bits, bytes, a text or a list, with as many elements as the list has.
+    /// Return a field of bits, bytes, a text or a list; `list` has its number of elements if it varies.
     fn repeated(
         &self,
         of: Record<'a>,
@@ -174,7 +174,8 @@ impl<'a> Messages<'a> {
         Ok((field, text))
     }
 
-    /// Return such a field without its numbers, and the numbers of one element.
+    /// Return a field of bits, bytes, a text or a list without its numbers, the numbers of one element,
+    /// and its texts.
     fn shaped(&self, of: Record<'a>) -> Outcome<(wire::Field, Numbers, Field)> {
         let (mut field, mut text) = (wire::Field::default(), Field::default());
         let shape = kind(of)?;
@@ -265,8 +266,8 @@ fn labels(of: Record<'_>) -> Outcome<Vec<String>> {
     members.map(|member| member.get("name")).collect()
 }
 
-/// Set the next numbers of elements; the last list changes first. All lists together may take that
-/// many bytes more than their shortest ones. Return false after the last variant.
+/// Set the numbers of elements of the next variant; the last list changes first. The lists may take
+/// `room` bytes more than in the shortest variant. Return false after the last variant.
 fn lengthen(mut lists: &mut [Varying<'_>], room: usize) -> bool {
     let more = |list: &Varying<'_>| (list.count - list.least) * list.each;
     while let Some((last, earlier)) = lists.split_last_mut() {

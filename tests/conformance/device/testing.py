@@ -71,7 +71,7 @@ class Altered:
 
 
 def altering(table: Table, command: str, change: Callable[[bytes], bytes]) -> Wrap:
-    """Return what wraps an arm so that the replies to one command are changed."""
+    """Return a function that wraps an arm and changes its replies to one command."""
     at, id = table.frame.id_at, table.command(command).id
 
     def alter(request: bytes, reply: bytes, count: int) -> bytes:

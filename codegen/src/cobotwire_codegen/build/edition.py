@@ -70,7 +70,7 @@ def _collect(
             problem = Problem(base.place, "circular-base", "an edition cannot be its own base")
             raise SpecError([*problems, problem])
         if len(above) > MOST_BASES:
-            message = f"the edition has more than {MOST_BASES} bases below each other, the limit"
+            message = f"the edition has a chain of more than {MOST_BASES} bases, the limit"
             raise SpecError([*problems, Problem(base.place, "too-large", message)])
         base_reader, parts = _collect(base_path, texts, problems, above, built)
         parts.base = _built(base_path, base_reader, parts, problems, built)

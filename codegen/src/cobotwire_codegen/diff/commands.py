@@ -119,7 +119,7 @@ def _messages(where: str, old: Command, new: Command, known: Known) -> Iterator[
 
 
 def _shared_ids(matched: Matched[Command]) -> Iterator[Finding]:
-    """Compare which of the commands that share an id comes first and so names a frame."""
+    """Report a change in the order of commands that share an id: the first one names a frame."""
     stayed = [j for _, j in matched.places]
     for id in dict.fromkeys(command.id for _, command in matched.pairs):
         before = [j for j in stayed if matched.new[j].id == id]

@@ -1,7 +1,7 @@
 """Reads the file of an owner: a survey, or a conformance report. It is hostile until checked.
 
-Every size is limited before memory is used, nothing is unpacked to a disk, and of the text only
-printable characters are taken. Whether the frames are frames of the edition is checked by `entry`.
+Every size is limited before memory is used, nothing is unpacked to a disk, and texts must be
+printable. `entry` checks that the frames are frames of the edition.
 """
 
 from __future__ import annotations
@@ -51,14 +51,14 @@ _FACT = re.compile(
     rf"({'|'.join(ASPECTS)})",
     re.ASCII,
 )
-# The names of USB ports and of built-in ports. At any other port, the arm can be simulated.
+# The names of USB ports and of built-in ports. At any other port, the arm may be simulated.
 _DEVICE = re.compile(
     r"/dev/(tty(USB|ACM|AMA|THS)\d+|cu\.[\w#-]+|serial/by-(id|path)/[^/]+)|COM\d+", re.ASCII | re.I
 )
 # The robot of a report, or of an owner who does not name it.
 _UNNAMED = "an arm"
 _SEAL = ("digest", "signature")
-_CHANGED = "the file was changed after it was written: its digest is another one"
+_CHANGED = "the file was changed after it was written: its digest does not match"
 _DAY = re.compile(r"(20\d\d-(0[1-9]|1[0-2])-(0[1-9]|[12]\d|3[01]))(T[\d:.+\-Z]{0,30})?", re.ASCII)
 _HEX = re.compile(rf"([0-9A-Fa-f]{{2}} ?){{0,{MOST_BYTES}}}")
 
@@ -186,7 +186,7 @@ def _parsed(data: bytes) -> dict[str, Any]:
 
 
 def _of(value: Any, kind: type, name: str) -> Any:
-    """Return a JSON value if it is of its kind, and, as a list, not too long."""
+    """Return a JSON value; reject one of another kind, and a list that is too long."""
     _require(type(value) is kind, f"{name} must be a {kind.__name__}")
     _require(kind is not list or len(value) <= MOST_FACTS, f"{name} is too long")
     return value

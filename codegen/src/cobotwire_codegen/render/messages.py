@@ -40,7 +40,7 @@ class MessageClass:
     doc: str
     fields: tuple[str, ...]
     constructors: tuple[str, ...] = ()
-    """The heads of the constructor, one for each variant, if the fields do not state it."""
+    """The heads of the constructor, one for each variant; empty if the fields define it."""
 
     @property
     def head(self) -> str:
@@ -90,7 +90,7 @@ def _are_prefixes(command: Command) -> bool:
 
 
 def _are_shortened(rows: list[tuple[str, ...]]) -> bool:
-    """Return whether the number of values decides the variant of a reply: one leaves fields out."""
+    """Return whether a reply has one variant, or a second one that only leaves fields out."""
     different = sorted(set(rows), key=len)
     if len(different) <= 1:
         return True

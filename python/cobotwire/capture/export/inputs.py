@@ -26,7 +26,7 @@ class Input:
     Attributes:
         url: a path, an fsspec URL, or ``-``.
         size: the number of stored bytes; None if it is not known.
-        listed: whether a folder or a pattern led to it, not its own name.
+        listed: whether it was found by a folder or a pattern; False: its own name was given.
     """
 
     url: str
@@ -35,7 +35,7 @@ class Input:
 
     @property
     def robot(self) -> str:
-        """The name of its robot: of a folder ``robot=NAME``, else its own without extensions."""
+        """The robot: NAME of a folder ``robot=NAME``, else the file's name without extensions."""
         url = self.url.replace(os.sep, "/")
         if found := _HIVE_ROBOT.search(url):
             return found[1]

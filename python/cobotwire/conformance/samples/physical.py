@@ -1,4 +1,4 @@
-"""Derive physical values by field name: of any sample, and those that no raw value expresses."""
+"""Derive the physical values of samples, and physical values that no raw value expresses."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _TURNS = (0, 7)
 # Fractions of the distance from zero to an end. All differ, and none is the double of another, so
 # that each number of a row is recognised.
 _SHARES = tuple(Fraction(share, 100) for share in (61, 37, 23, 83, 47, 13))
-# Samples 0 and 1 lie in between, 2 and 3 are the ends, and this one is a step beyond zero.
+# Samples 0 and 1 lie between zero and an end, 2 and 3 are the ends; this one is a step beyond zero.
 _BEYOND = 4
 
 
@@ -185,7 +185,7 @@ def _step(number: Number) -> Fraction:
 
 
 def _exact(number: Number, raw: int) -> Fraction:
-    """Return the physical value of a raw value without rounding; floats: of a finite one."""
+    """Return the physical value of a raw value without rounding; a float must be finite."""
     if number.encoding == "float":
         return Fraction(number.physical(raw))
     return Fraction(raw * number.multiply, number.divide)

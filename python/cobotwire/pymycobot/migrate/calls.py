@@ -146,7 +146,8 @@ def _waits(timeout: str = "15", address: str = "", mode: str = "0") -> dict[str,
     }
 
 
-# Methods of several requests that our clients have too, and those of helpers of the layer.
+# Methods that send several requests and have a counterpart in our clients: of all classes, and of
+# the layer's helpers by name.
 _SEVERAL = {**_waits(), "close": Call("close", {}, {}, gives="same", by_hand=True)}
 _OF_HELPERS = {
     "Limbs": {

@@ -40,7 +40,7 @@ struct ExpectedAck {
     expected: bool,
     /// Whether a caller waits for it; so it is doubted until it is certain.
     uncertain: bool,
-    /// Whether it has come, however the received acknowledgements belong to requests.
+    /// Whether it has come for sure: other requests cannot account for all acknowledgements.
     certain: bool,
 }
 

@@ -24,7 +24,7 @@ pub enum Safety {
 }
 
 /// The name of a field. `echo`: a reply repeats the argument of that name. `status`: the field can
-/// report success or failure; this excludes only constants without labels.
+/// report success or failure; only a constant without labels cannot.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[allow(missing_docs)] // of fields, whose names say what they are
 pub struct Named {

@@ -116,7 +116,7 @@ _B1 = replace(
     opened=opened_as("/dev/left_arm"),
 )
 _400 = replace(_A1, peer="Pro400", edition="pro400", local=LOCAL, calls=_calls_of(6))
-# These switch pins of the computer in the arm, or raise that the robot does not support them.
+# These switch pins of the computer in the arm, or raise an error: the robot does not support them.
 _PINS = {"get_basic_input", "set_basic_output", "power_on_only"}
 _PINS |= {"get_monitor_mode", "set_monitor_mode"}
 _ZERO = [0] * 6

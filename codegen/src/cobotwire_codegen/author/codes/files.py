@@ -17,7 +17,7 @@ EXPLANATIONS = (
     Explanation(
         "too-large",
         "A file, or all files of an edition and its bases together, exceed a limit: of bytes, of "
-        "values, of bases below each other, or of how deeply values are nested.",
+        "values, of bases in a chain, or of how deeply values are nested.",
         "A few hundred bytes of aliases can stand for millions of values, which would keep the "
         "generator busy for hours. The limits are many times what the largest known spec needs.",
         "Divide the file or the edition, or write less deeply nested values.",

@@ -32,7 +32,7 @@ _WIDTH = (
     *(f"INT{bits}" for bits in (8, 16, 24, 32)),
     *("INT64", "FLOAT", "DOUBLE"),
 )
-# A filter name is for fields of one of these kinds only, or for fields of all other kinds.
+# Fields of these kinds never share a filter name with fields of another kind.
 _APART = {"STRING": "text", "BYTES": "bytes", "NONE": "group"}
 
 
