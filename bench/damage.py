@@ -82,7 +82,7 @@ def noisy(
 
 
 def apply(line: Line, edits: list[Edit]) -> Line:
-    """Return ``line`` after the edits; of two edits at one place, only the first counts."""
+    """Return ``line`` after the edits. At each place only the first edit counts."""
     assert line.whole.all(), "edits are tracked only for a stream that is still undamaged"
     first = {edit.place: edit for edit in reversed(edits)}
     edits = [first[place] for place in sorted(first)]

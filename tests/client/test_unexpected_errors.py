@@ -51,7 +51,7 @@ def test_stop_is_sent_and_the_port_is_closed_whatever_stop_and_close_raise(
     # For asyncio a thread writes, and counts any error of the transport as a lost line.
     repeated = open_arm is MyCobot
     sent = failures == 0 or (failures == 1 and repeated)
-    # Bytes before the second stop complete the first one, of which the arm may have a part.
+    # The arm may have a part of the first stop: the bytes before the second one complete it.
     assert transport.written.endswith(STOP) if sent else transport.written == b""
     assert transport.closed
     notes = getattr(error, "__notes__", [])

@@ -30,7 +30,7 @@ def exact_of(rank: int, width: int) -> Fraction:
 
 
 def nearest(value: Fraction, width: int) -> int:
-    """Return the rank of the nearest float, ties to even; of infinity if the value overflows."""
+    """Return the rank of the nearest float, ties to even, or of infinity if the value overflows."""
     if value < 0:
         return -1 - nearest(-value, width)
     below = floor(value, width)

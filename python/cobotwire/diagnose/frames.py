@@ -165,7 +165,7 @@ class Frames(FrameStarts):
         return UnlistedFrame(spans=spans, reason=reason, id=id, command=self._names.get(id))
 
     def _name(self, data: bytes, direction: Direction) -> str | None:
-        """Return the name of a frame's command; of those with its id, the first with its size."""
+        """Return the name of the first command that has the id and the size of a frame."""
         if len(data) < self._format.head_size:
             return None
         length, id = len(data) - self._format.overhead, self._format.read_id(data)

@@ -2,9 +2,9 @@
 
 A receiver that is at least twice as fast as the sender samples each bit several times: the start
 bit fills the low bits with zeros, and the ones are consecutive. ``78 80 78``, seen at a wrong rate,
-is an example. So a byte *fits* if it is even, not zero, and its ones are consecutive. Of random
-bytes, 28 in 256 fit; of the small numbers that protocols often send, a larger share. If the
-receiver is the slower one, garbage looks like data. Hence the finding is a guess.
+is an example. So a byte *fits* if it is even, not zero, and its ones are consecutive. Of the 256
+byte values, 28 fit. Small numbers, which protocols often send, fit more often. If the receiver is
+the slower one, garbage looks like data. Hence the finding is a guess.
 """
 
 from __future__ import annotations

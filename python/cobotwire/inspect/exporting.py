@@ -19,7 +19,7 @@ class InstalledEditions:
     default: str = editions.DEFAULT
 
     def codec(self, name: str) -> Codec:
-        """Return the codec of an edition; of the default edition if ``name`` is empty.
+        """Return the codec of an edition, or of the default edition if ``name`` is empty.
 
         Raises:
             UsageError: no edition of that name is installed.

@@ -340,7 +340,7 @@ def _known(found: Identification) -> str:
 def _found(
     port: str, baudrate: int | None, timeout: float | None
 ) -> tuple[Identification, Transport]:
-    """Identify the arm at a port; return the open transport and the baud rate of its reply, too."""
+    """Identify the arm at a port; return the result and the open transport."""
     evidence: list[Evidence] = []
     rates = rates_of(port, baudrate)
     while True:

@@ -53,8 +53,8 @@ def descend(
 ) -> Angles:
     """Return angles inside the limits, near ``start``, at which the flange is nearest to a target.
 
-    ``radian`` is the number of millimetres that weigh as much as a turn by one radian. If the
-    ``effort`` is used up first, they are the nearest angles so far.
+    A turn by one radian counts as a distance of ``radian`` millimetres. If the ``effort`` is used
+    up first, return the nearest angles so far.
     """
     angles, damping = clamped(start, limits), DAMPING
     here = frames(geometry, angles)

@@ -6,7 +6,7 @@ from cobotwire.protocol.error_texts import error_text
 from cobotwire.protocol.errors import UsageError
 from cobotwire.protocol.table import Address, Command, Table
 
-# Repliers of broadcasts: any device, none, or one of them.
+# Repliers without an address of their own: any device, none, or one for all.
 ANYBODY = -1
 NOBODY = -2
 SOMEBODY = -3

@@ -225,8 +225,8 @@ class SimulatedArm:
     def perform(self, command: Command, fields: Mapping[str, Any], address: int | None) -> Done:
         """Perform a command; return the reply or some of its fields; the arm fills in the rest.
 
-        ``fields`` are those of the request, as the codec decodes them; ``address`` is that of the
-        device, None if it has none.
+        ``fields`` are the fields of the request, as the codec decodes them. ``address`` is the
+        address of the device; None if it has none.
         """
         state, now = self._states[address], self.clock()
         state.record(now)

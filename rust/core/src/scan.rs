@@ -19,8 +19,8 @@ const LONG_RUN: usize = 8;
 const STEP: usize = 16;
 
 /// Validate the positions from `at` to `stop`. Return the first position that cannot be decided
-/// without more bytes. Without such a position, return the end of the scan; a frame may extend it
-/// beyond `stop`. At the end of the stream (`at_end`) every position can be decided.
+/// without more bytes, or the end of the scan, which is after `stop` if a frame ends there. At the
+/// end of the stream (`at_end`) every position can be decided.
 #[inline]
 pub(crate) fn scan<'a>(
     rules: &Rules,

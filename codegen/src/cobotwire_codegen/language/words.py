@@ -41,7 +41,7 @@ ROLES = {
     "version": "Reports the version of the firmware.",
     "gripper": "Opens or closes the gripper, at a speed.",
     "halt": "Ends a motion or discards targets, and starts no motion.",
-    "light": "Sets the colour of a light; nothing moves, and nothing need be restored.",
+    "light": "Sets the colour of a light; nothing moves, and nothing has to be restored.",
 }
 MOVED = {
     "joints": "All joints.",

@@ -258,7 +258,7 @@ def _parts(table: Table, command: Command) -> Iterator[Setting]:
 
 
 def _of_corner_sizes(variants: tuple[Variant, ...]) -> Iterator[Variant]:
-    """Yield the variants; of a list of varying size, only the shortest and the longest."""
+    """Yield the variants in which each list of varying size is at its shortest or longest."""
     for variant in variants:
         sized = [field for field in variant.fields if field.sizes and not field.counts]
         if all(field.dimensions[0] in (field.sizes or ()) for field in sized):

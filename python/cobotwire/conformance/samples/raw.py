@@ -44,7 +44,7 @@ def ordinary_number(field: Field, number: Number, count: int) -> int:
 
 
 def nearest(field: Field, number: Number, raw: int) -> int:
-    """Return the legal raw value nearest to ``raw``; of a closed list, the first."""
+    """Return the legal raw value nearest to ``raw``, or the first of a closed list."""
     return next(iter(listed(field, number)), number.clamp(raw))
 
 
@@ -107,7 +107,7 @@ def ordinary(variant: Variant, picked: dict[int, int] | None = None, turn: int =
 
 
 def plainest(variant: Variant, near: int = 0) -> RawValues:
-    """Return the legal raw values nearest to ``near``; of a closed list, the first."""
+    """Return the legal raw value of each number nearest to ``near``, or the first of its list."""
     picked = next(picks(variant))
     return tuple(
         (picked[index],)

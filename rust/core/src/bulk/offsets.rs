@@ -45,7 +45,7 @@ impl OffsetReader {
         }
     }
 
-    /// Read large chunks with several threads; what is found does not depend on that.
+    /// Read large chunks with several threads; the result is the same with any number of them.
     pub fn set_workers(&mut self, workers: Workers) {
         self.workers = workers;
     }

@@ -62,7 +62,7 @@ def examples(edition: Edition) -> Iterator[Example]:
 
 
 def variants(edition: Edition) -> Iterator[tuple[Command, Direction, int, Variant]]:
-    """Yield every variant of every framed message with its number; of many sizes, yield some."""
+    """Yield every variant of every framed message, with its number and with some of its sizes."""
     for command in edition.commands:
         for direction in DIRECTIONS:
             for number, variant in enumerate(command.variants(direction)):
