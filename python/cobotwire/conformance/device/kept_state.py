@@ -1,8 +1,8 @@
 """The state that queries read, compared after each malformed request: nothing may change it.
 
-Reading everything each time would take minutes. So one value is read after each malformed request,
-another one each time, and all values at the end. If one has changed, the requests since it was read
-last are sent again, one by one, to find the one that changes it.
+Reading everything each time would take minutes. So after each malformed request one value is read,
+in turn, and at the end all of them. If a value has changed, the requests since its last reading are
+sent again, one by one, to find the one that changes it.
 """
 
 from __future__ import annotations
@@ -65,9 +65,9 @@ class KeptState:
     """Everything that is set and can be read, in the order in which it is compared."""
 
     def __init__(self, device: Device) -> None:
-        """Read the state. Before that, give each setting that the run may change another value.
+        """Change each setting that the run may change, then read the state.
 
-        A value that has its default would hide that the device returned to its defaults.
+        A setting with its default value would hide that the device has returned to its defaults.
         """
         self._device = device
         self._marked: list[str] = []
@@ -100,7 +100,7 @@ class KeptState:
     def check(self, sent: Malformed, reply: Reply[Any] | None = None) -> str:
         """Compare the next value in turn; return what has changed, empty if nothing has.
 
-        ``reply`` is that to :meth:`next_query`; left out: the query is sent.
+        ``reply`` is the reply to :meth:`next_query`; left out: the query is sent.
         """
         for kept in self._values:
             kept.since.append(sent)

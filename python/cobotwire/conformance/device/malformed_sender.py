@@ -102,9 +102,9 @@ class MalformedSender:
     ) -> None:
         """Compare one value of the state with what it was.
 
-        ``again`` sends the malformed request again; ``reply`` is that to the query of the value, if
-        it has been sent. After one lost value, later ones are not reported: they would only end the
-        test case early.
+        ``again`` sends the malformed request again; ``reply`` is the reply to the query of the
+        value, if it has been sent. After one lost value, later ones are not reported: they would
+        only end the test case early.
         """
         sent = Malformed(f"{what}, {self._request.command.name}", data, again)
         changed = self._kept.check(sent, reply)

@@ -307,7 +307,7 @@ def setter_of(table: Table, query: Command, value: int) -> Command | None:
 
 
 def _query_variant(query: Command, variant: Variant) -> Variant | None:
-    """Return the fullest variant of the query with all its arguments among the setting's."""
+    """Return the query's fullest variant whose arguments are all arguments of the setting, too."""
     names = {field.name for field in variant.fields}
     fitting = [f for f in query.request if set(named_fields((f,))) <= names]
     return max(fitting, key=lambda f: len(f.fields), default=None)

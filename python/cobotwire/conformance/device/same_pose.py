@@ -15,7 +15,7 @@ from cobotwire.simulator.start import steps
 # The number of sections of the path between two sets of angles, and the most steps that bring the
 # end of a section back to the pose.
 SECTIONS, STEPS = 32, 8
-# A section may be DETOUR times as long as in an even division, and always FREE_SECTION degrees.
+# A section may be DETOUR times as long as the average, and FREE_SECTION degrees in any case.
 DETOUR, FREE_SECTION = 4.0, 1.0
 NO_LIMIT = (-math.inf, math.inf)
 

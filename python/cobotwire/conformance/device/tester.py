@@ -30,8 +30,8 @@ from cobotwire.protocol.table import Command, Table
 
 # From this angle on, a joint shows a wrong scale, order or direction; in degrees.
 AWAY = 5.0
-# The words of a reason if no valid reply was received, or only the noise of a healthy line; a
-# second query may still have had a reply.
+# A reason contains one of these if no valid reply to a query was received. A second query may still
+# have had a reply.
 SILENCE = ("received nothing", "received no valid reply", "received noise ")
 
 Progress = Callable[[Step, int, int], None]

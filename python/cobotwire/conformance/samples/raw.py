@@ -33,7 +33,7 @@ def listed(field: Field, number: Number) -> tuple[int, ...]:
 
 
 def ordinary_number(field: Field, number: Number, count: int) -> int:
-    """Return an ordinary raw value; the values for neighbouring counts differ."""
+    """Return an ordinary raw value, which differs between ``count`` and ``count + 1``."""
     if choices := listed(field, number):
         return choices[count % len(choices)]
     if field.kind == "text":

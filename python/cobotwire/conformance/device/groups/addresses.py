@@ -16,7 +16,7 @@ OTHERS = TestCase("others-rest", "A motion that is sent to one device moves no o
 
 
 def _is_sent_to_several(table: Table, command: Command) -> bool:
-    """Return whether a command moves all joints, and several devices have that many."""
+    """Return whether a command moves all joints, and several devices have all of them."""
     return command is table.find_role("joint targets") and len(_arms(table)) > 1
 
 

@@ -116,7 +116,7 @@ def _likely(mine: Command, other: Command, compared: list[Pair]) -> str:
         (mine, other, likely_mistake(compared)),
         (other, mine, likely_mistake([pair.exchanged for pair in compared])),
     ]
-    # No mistake, and another order, do not depend on which query is right: they come last.
+    # "No mistake" and "another order" are the same, whichever query is right: they come last.
     guesses.sort(key=lambda guess: guess[2] in ("", ANOTHER_ORDER))
     right, wrong, mistake = guesses[0]
     return f"; if {right.name} is right, {wrong.name} has {mistake}" if mistake else ""

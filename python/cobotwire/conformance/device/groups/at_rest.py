@@ -43,7 +43,7 @@ def _stated_geometry(table: Table, command: Command) -> Geometry | None:
 
 
 def _geometry(probe: Probe, geometry: Geometry) -> None:
-    """Compare the coordinates with those of the angles."""
+    """Compare the coordinates with those computed from the angles."""
     device, field = probe.device, probe.command.reply[0].fields[0]
     joints = device.table.in_role("joints")
     for state, label in (("reference_frame", "the base"), ("end_type", "the flange")):

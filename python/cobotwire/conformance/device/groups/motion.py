@@ -106,7 +106,7 @@ def _replays(probe: Probe) -> None:
 def _targets(
     mover: Mover, motion: Setting, query: Request[Any], first: Reply[Any], second: Reply[Any]
 ) -> list[Request[Any]]:
-    """Return the request for the first pose; samples, if the query reports the same at both."""
+    """Return the request that sets the first reading; samples if both readings are the same."""
     target = motion.again(query, first, mover.speed)
     if target != motion.again(query, second, mover.speed):
         return [target]

@@ -161,7 +161,7 @@ def _faster(probe: Probe) -> None:
 
 
 class _Departure(NamedTuple):
-    """How far a joint has moved, in degrees, and the least and most seconds since its command."""
+    """How far a joint has moved, in degrees, and the bounds of the seconds since its command."""
 
     way: float
     least: float
