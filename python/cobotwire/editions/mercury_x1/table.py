@@ -3,4 +3,4 @@
 
 from cobotwire.protocol.loading import load_table
 
-TABLE = load_table(__package__, checksum="bd2f84fc")
+TABLE = load_table(__package__, checksum="72829b8d")
