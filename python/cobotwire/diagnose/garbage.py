@@ -38,7 +38,7 @@ _FITTING = frozenset(
 class Garbage(Finding):
     """Bytes that may have been sent at a lower baud rate; this is a guess.
 
-    ``fitting`` bytes look stretched; ``chance`` is the probability that as many random bytes do.
+    ``fitting`` bytes look stretched; ``chance`` is the probability for random bytes.
     """
 
     fitting: int

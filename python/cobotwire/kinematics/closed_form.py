@@ -1,10 +1,9 @@
 """Inverse kinematics in closed form, for arms with the axes of the 280, the 320 or the mechArm.
 
 The second and the third joint are parallel, and the first crosses the second at a right angle. On
-the 280 and the 320 the fourth joint is parallel to them too. The axis of the fifth intersects that
-of the fourth at a right angle, and the axis of the sixth that of the fifth. On the mechArm the last
-three axes meet in one point. So a pose has at most eight solutions: two shoulders, two wrists, two
-elbows.
+the 280 and the 320 the fourth joint is parallel to them too. The axes of the fifth and the sixth
+each intersect the axis before them at a right angle. On the mechArm the last three axes meet in one
+point. So a pose has at most eight solutions: two shoulders, two wrists, two elbows.
 """
 
 from __future__ import annotations

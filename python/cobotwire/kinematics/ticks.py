@@ -13,8 +13,8 @@ class Steps(NamedTuple):
     """How many raw values of a reply make a unit; 0: the reply is a float, and is not truncated.
 
     Attributes:
-        angle: of a degree of a joint.
-        coords: of a millimetre or a degree of x, y, z, rx, ry and rz.
+        angle: raw values per degree of a joint.
+        coords: raw values per millimetre or degree of x, y, z, rx, ry and rz.
     """
 
     angle: float = 0.0

@@ -168,7 +168,7 @@ def until_reached(table: Table, goal: Goal, limit: float, started: float) -> Ste
     """Yield the steps of waiting until the arm is at a target.
 
     Two readings of the position show when the arm will arrive. Until shortly before that the
-    position is queried rarely; then the arm is queried often whether it is there. An event or
+    position is queried rarely; then queries follow each other quickly. An event or
     acknowledgement of the end may belong to an earlier motion, so a query confirms it.
 
     A query without a reply is not an error: the arm is busy. It is repeated until the time is over.

@@ -42,7 +42,7 @@ def missing_joints(
 
 
 def replies_to(table: Table, address: int | None, replies: list[bytes]) -> list[bytes]:
-    """Return those replies of all devices that are sent after a request to an address."""
+    """Select, from the replies of all devices, those that answer a request to an address."""
     receiver = _device(table, address)
     if receiver is None or receiver.replies in ("own", "any"):
         return replies

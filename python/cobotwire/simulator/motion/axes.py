@@ -18,7 +18,7 @@ class Axes:
     """
 
     def __init__(self, position: Sequence[float], acceleration: float, lag: float = 0.0) -> None:
-        """Rest; ``acceleration`` is the largest one, in units per square second.
+        """Rest; ``acceleration`` is the largest one, in units per second squared.
 
         With a ``lag``, in seconds, the axes reach each planned position that much later, as servos
         do.

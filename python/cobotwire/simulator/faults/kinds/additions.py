@@ -43,7 +43,7 @@ class Addition(Damage):
         """Return the bytes to add once."""
 
     def spoil(self, data: bytes, context: Context) -> bytes:
-        """Add the bytes; ``inside`` data that is too short, they are added after it."""
+        """Add the bytes. If the data is too short for ``inside``, add them after it."""
         cut, added = self._addition(len(data), context)
         return data[:cut] + added + data[cut:]
 
@@ -126,7 +126,7 @@ class ServoLeak(Addition):
 @kind("command-error")
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CommandError(Fault):
-    """The firmware replies ``cmd_len error``; to malformed input, if ``only`` is left out.
+    """The firmware replies ``cmd_len error``, by default only to malformed input.
 
     Attributes:
         times: how many times.
