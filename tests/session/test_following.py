@@ -8,7 +8,7 @@ from itertools import pairwise
 from typing import Any
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from cobotwire import FollowFailed, PathLimits, UsageError, Waypoint
@@ -25,6 +25,7 @@ Rows = list[tuple[float, ...]]
 CODEC = load(TABLE, "native")
 ENCODER = RequestEncoder(CODEC)
 RATE = 50.0
+STEADY = Bounds((76.0,) * 3, (124.0,) * 3, (200.0,) * 3)
 # What sampling and rounding may add to a bound.
 SLACK = 1.03
 angle = st.floats(-140, 140)
@@ -82,6 +83,13 @@ def test_path_with_times_is_at_its_points_in_time_or_is_refused(
 
 @settings(max_examples=25)
 @given(triple, st.lists(st.tuples(triple, st.integers(1, 40)), max_size=6), bounds)
+# Joint 3 needs the longest; joint 2 must not swing past its target to arrive together with it.
+@example((0, 91, 96), [((0, 0, 0), 11), ((0, 0, 1.6e-140), 11), ((0, 0, 0), 1)], STEADY)
+@example(
+    (-63, 113, 112),
+    [((0, 0, -16), 11), ((-61, 0, 0), 38), ((19, 0, 0), 39), ((22, 0, 128), 38)],
+    Bounds((100,) * 3, (160,) * 3, (260,) * 3),
+)
 def test_live_targets_are_approached_within_the_bounds_and_never_passed(
     start: tuple[float, ...], targets: list[tuple[tuple[float, ...], int]], bounds: Bounds
 ) -> None:

@@ -20,6 +20,8 @@ from cobotwire.protocol.lazy import import_aside
 
 # A derivative that is smaller than this counts as zero.
 STRAIGHT = 1e-9
+# A joint that is this far outside the range from where it is to its target has passed one of both.
+PASSED_DEGREES = 1e-8
 # How often bends are slowed down further, and what counts as slow enough.
 ROUNDS, ENOUGH = 30, 1.02
 # The longest time between two checks of a motion, and the least number of checks.
@@ -120,13 +122,18 @@ def excesses(motion: Along | InTime, bounds: Bounds) -> list[Excess]:
 
 
 class Tracker:
-    """Moves joints towards a target that may change at each step, and stops them there."""
+    """Moves joints towards a target that may change at each step, and stops them there.
+
+    The joints arrive together, if none of them has to pass its target for that. Otherwise each
+    joint takes the shortest time.
+    """
 
     def __init__(self, start: Point, bounds: Bounds, step: float) -> None:
         """Rest at first; ``step`` is the time of a step in seconds."""
         ruckig = load_ruckig()
         joints = len(start)
-        self._finished = ruckig.Result.Finished
+        self._finished, self._failure = ruckig.Result.Finished, ruckig.RuckigError
+        self._together, self._alone = ruckig.Synchronization.Time, ruckig.Synchronization.No
         self._ruckig = ruckig.Ruckig(joints, step)
         self._state, self._next = ruckig.InputParameter(joints), ruckig.OutputParameter(joints)
         self._state.current_position = self._state.target_position = list(start)
@@ -137,10 +144,28 @@ class Tracker:
 
     def step(self, target: Sequence[float]) -> tuple[Point, float]:
         """Advance by one step; return where the joints are, and the highest speed."""
-        self._state.target_position = list(target)
-        self.arrived = self._ruckig.update(self._state, self._next) == self._finished
+        if (aim := list(target)) != self._state.target_position:
+            self._state.target_position, self._state.synchronization = aim, self._together
+        try:
+            result = self._ruckig.update(self._state, self._next)
+            if self._next.new_calculation and self._passes():
+                raise self._failure
+        except self._failure:
+            # A joint that is on its way may have to swing past its target to arrive later, and a
+            # distance near 0 may have no solution.
+            self._state.synchronization = self._alone
+            result = self._ruckig.update(self._state, self._next)
+        self.arrived = result == self._finished
         self._next.pass_to_input(self._state)
         return tuple(self._next.new_position), max(map(abs, self._next.new_velocity))
+
+    def _passes(self) -> bool:
+        """Return whether the planned motion leaves the range from the position to the target."""
+        ranges = zip(self._state.current_position, self._state.target_position)
+        return any(
+            reached.min < min(ends) - PASSED_DEGREES or reached.max > max(ends) + PASSED_DEGREES
+            for ends, reached in zip(ranges, self._next.trajectory.position_extrema)
+        )
 
 
 def paced(points: Sequence[Point], bounds: Bounds) -> Curve:
