@@ -26,6 +26,7 @@ CODEC = load(TABLE, "native")
 ENCODER = RequestEncoder(CODEC)
 RATE = 50.0
 STEADY = Bounds((76.0,) * 3, (124.0,) * 3, (200.0,) * 3)
+SUDDEN = Bounds((90.0,) * 3, (100.0,) * 3, (1000.0,) * 3)
 # What sampling and rounding may add to a bound.
 SLACK = 1.03
 angle = st.floats(-140, 140)
@@ -90,6 +91,8 @@ def test_path_with_times_is_at_its_points_in_time_or_is_refused(
     [((0, 0, -16), 11), ((-61, 0, 0), 38), ((19, 0, 0), 39), ((22, 0, 128), 38)],
     Bounds((100,) * 3, (160,) * 3, (260,) * 3),
 )
+# Ruckig finds no motion from a state on the way.
+@example((0, 0, 0), [((0, 0, -6), 20), ((0, 0, -78), 21), ((0, 0, 31), 17)], SUDDEN)
 def test_live_targets_are_approached_within_the_bounds_and_never_passed(
     start: tuple[float, ...], targets: list[tuple[tuple[float, ...], int]], bounds: Bounds
 ) -> None:

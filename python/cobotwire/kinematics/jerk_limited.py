@@ -8,6 +8,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from contextlib import suppress
+from functools import partial
 from importlib import import_module
 from itertools import accumulate, pairwise
 from operator import truediv
@@ -132,39 +134,50 @@ class Tracker:
         """Rest at first; ``step`` is the time of a step in seconds."""
         ruckig = load_ruckig()
         joints = len(start)
-        self._finished, self._failure = ruckig.Result.Finished, ruckig.RuckigError
+        self._ruckig, self._new_law = ruckig.Ruckig(joints), partial(ruckig.Trajectory, joints)
+        self._failure = ruckig.RuckigError
         self._together, self._alone = ruckig.Synchronization.Time, ruckig.Synchronization.No
-        self._ruckig = ruckig.Ruckig(joints, step)
-        self._state, self._next = ruckig.InputParameter(joints), ruckig.OutputParameter(joints)
-        self._state.current_position = self._state.target_position = list(start)
+        self._state = ruckig.InputParameter(joints)
+        self._state.current_position = list(start)
         self._state.max_velocity = list(bounds.speed)
         self._state.max_acceleration = list(bounds.acceleration)
         self._state.max_jerk = list(bounds.jerk)
+        self._step, self._time = step, 0.0
+        self._target: list[float] = []
+        self._plan(list(start))
         self.arrived = True
 
     def step(self, target: Sequence[float]) -> tuple[Point, float]:
         """Advance by one step; return where the joints are, and the highest speed."""
-        if (aim := list(target)) != self._state.target_position:
-            self._state.target_position, self._state.synchronization = aim, self._together
-        try:
-            result = self._ruckig.update(self._state, self._next)
-            if self._next.new_calculation and self._passes():
-                raise self._failure
-        except self._failure:
-            # A joint that is on its way may have to swing past its target to arrive later, and a
-            # distance near 0 may have no solution.
-            self._state.synchronization = self._alone
-            result = self._ruckig.update(self._state, self._next)
-        self.arrived = result == self._finished
-        self._next.pass_to_input(self._state)
-        return tuple(self._next.new_position), max(map(abs, self._next.new_velocity))
+        aim, state = list(target), self._state
+        # Ruckig finds no motion from about one state in a million. The joints then continue to
+        # their previous target for a step.
+        if aim != self._target and not self._plan(aim) and self._time > self._law.duration:
+            raise self._failure(f"no motion leads to {aim}")
+        self._time += self._step
+        found = self._law.at_time(self._time)
+        state.current_position, state.current_velocity, state.current_acceleration = found
+        self.arrived = aim == self._target and self._time > self._law.duration
+        return tuple(found[0]), max(map(abs, found[1]))
 
-    def _passes(self) -> bool:
-        """Return whether the planned motion leaves the range from the position to the target."""
+    def _plan(self, target: list[float]) -> bool:
+        """Plan the motion to a target; return whether there is one."""
+        self._state.target_position = target
+        for way in (self._together, self._alone):
+            self._state.synchronization, law = way, self._new_law()
+            with suppress(self._failure):
+                self._ruckig.calculate(self._state, law)
+                if way == self._alone or not self._passes(law):
+                    self._law, self._time, self._target = law, 0.0, target
+                    return True
+        return False
+
+    def _passes(self, law: Any) -> bool:
+        """Return whether a motion leaves the range from the position to the target of a joint."""
         ranges = zip(self._state.current_position, self._state.target_position)
         return any(
             reached.min < min(ends) - PASSED_DEGREES or reached.max > max(ends) + PASSED_DEGREES
-            for ends, reached in zip(ranges, self._next.trajectory.position_extrema)
+            for ends, reached in zip(ranges, law.position_extrema)
         )
 
 
