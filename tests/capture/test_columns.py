@@ -78,3 +78,18 @@ def test_columns_have_the_frames_and_times_of_the_python_reader(
     expected = framed(data)
     assert placed([read_columns(data, codecs)]) == expected
     assert placed(list(read_batches(data, codecs, piece=piece))) == expected
+
+
+def test_frame_has_the_time_of_its_first_byte_if_each_byte_came_by_itself() -> None:
+    # A reader that forgets the first byte of an unfinished frame reports the time of a later one.
+    start, step = 10**18, 10**6
+    line = b"".join(FRAMES)
+    data = written(
+        Packet(start + at * step, "received", line[at : at + 1]) for at in range(len(line))
+    )
+    expected = {
+        "get_angles": [(0, "received", 5, start + 5 * step)],
+        "is_power_on": [(0, "received", 22, start + 22 * step)],
+    }
+    for piece in (1, 40, len(data)):
+        assert placed(list(read_batches(data, codecs, piece=piece))) == (expected, [])
