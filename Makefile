@@ -3,7 +3,7 @@
 PYTHON ?= python3
 BIN := .venv/bin
 RUST_SOURCES := $(shell find rust/core rust/py rust/simd -name '*.rs' -o -name Cargo.toml) Cargo.toml
-# This stamp is newer than the data of the Rust tests and examples, which git does not have.
+# This stamp is newer than the editions of the Rust client, which git does not have.
 RUST_DATA := .venv/.rust-data
 # Exclude the Python module: it has no Rust tests, and compiles its dependencies with more features.
 TESTED := --workspace --exclude cobotwire-native
@@ -245,7 +245,7 @@ figures: .venv/.tools .venv/.native ## count files and lines of each folder, and
 
 clean: ## remove the environment and all build products
 	git clean -dfqX docs spec
-	rm -rf .venv target targets rust/core/tests/data rust/client/src/editions .cargo-tools rust/fuzz/target
+	rm -rf .venv target targets rust/client/src/editions .cargo-tools rust/fuzz/target
 	cd clients/typescript && rm -rf dist editions node_modules
 
 .venv/.base: pyproject.toml

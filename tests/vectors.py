@@ -6,6 +6,7 @@ import os
 import pickle
 import sys
 from collections.abc import Container, Iterator, Sequence
+from fractions import Fraction
 from functools import lru_cache
 from hashlib import sha256
 from importlib import import_module
@@ -14,8 +15,8 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from cobotwire_codegen import project
-from cobotwire_codegen.model import Edition, Octets, Vector
-from cobotwire_codegen.render.vectors_json import plain
+from cobotwire_codegen.model import Edition, Enum, Octets, Vector
+from cobotwire_codegen.wire import encode_variant
 
 ROOT = Path(__file__).parent.parent
 A = TypeVar("A")
@@ -120,6 +121,25 @@ def _fields(name: str, vector: Vector) -> dict[str, Any]:
 
 # Keep the vector too, so that no other object gets its id.
 _FIELDS: dict[tuple[str, int], tuple[Vector, dict[str, Any]]] = {}
+
+
+def plain(edition: Edition, vector: Vector, name: str, value: object) -> Any:
+    """Return a vector's value as the codecs expect it: members as integers, fractions as floats."""
+    if isinstance(value, tuple):
+        return [plain(edition, vector, name, item) for item in value]
+    if isinstance(value, Fraction):
+        return float(value)
+    # Only a text or a truth value can stand for the number of a member.
+    if vector.frame is None or type(value) is int:
+        return value
+    command = edition.by_name[vector.command]
+    variant, _ = encode_variant(command, vector.direction, dict(vector.values))
+    field = next(field for field in variant if field.name == name)
+    if not isinstance(field.type, Enum):
+        return value
+    if field.const is not None:
+        return field.const
+    return next(member.value for member in field.type.members if member.name == value)
 
 
 def _decoded(value: Any, octets: bool) -> Any:

@@ -1,7 +1,4 @@
-"""Replay the inputs of ``tests/found``, which once revealed faults, on both codecs.
-
-The Rust core's own tests read the same files (``rust/core/tests/found.rs``).
-"""
+"""Replay the inputs of ``tests/found``, which once revealed faults, on both codecs."""
 
 from __future__ import annotations
 
@@ -14,10 +11,7 @@ from cobotwire.codec.interface import Codec, Event, Frame, Listening, Noise, Noi
 from cobotwire.protocol.errors import ProtocolError
 from cobotwire.protocol.table import Direction
 from framed_events import joined
-from json_tables import codec_of
-from vectors import ROOT
-
-FOUND = ROOT / "tests" / "found"
+from json_tables import FOUND, codec_of
 
 
 class Stream(NamedTuple):
@@ -104,6 +98,9 @@ def test_found_stream_has_its_events_in_any_chunks(codec: Codec, stream: Stream)
     for size in range(1, len(data) + 1):
         chunks = [(data[at : at + size], False) for at in range(0, len(data), size)]
         assert _events(codec, stream, chunks) == stream.events
+    scan = codec.scan(data, stream.listening, accept_unknown=stream.unknown)
+    frames = [event.offset for event in stream.events if isinstance(event, Frame)]
+    assert list(scan.offset) == frames
 
 
 @pytest.mark.parametrize("single", SINGLES, ids=lambda single: f"{single.table} {single.data!r}")

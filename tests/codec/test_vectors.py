@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import pytest
 
+import json_tables
 import vectors
 from cobotwire.codec.interface import Codec, Frame
 from cobotwire.protocol.errors import ProtocolError, UsageError
@@ -128,3 +131,69 @@ def test_older_variant_of_a_reply_decodes_without_the_joint(codec: Codec, editio
 def test_degrees_are_rounded_to_the_nearest_raw_value(codec: Codec, edition: str) -> None:
     frame = codec_of(edition, codec.name).encode("send_angle", "request", (1, 0.29, 20))
     assert frame == bytes.fromhex("FEFE06210100 1D14FA"), "0.29 degrees is 29 steps, not 28"
+
+
+BLOCK = (0xFEFEFEFE,) * 31
+# Features that no edition has; the frames of "crc" are those of a real arm.
+SAMPLES: list[tuple[str, str, Direction, str, tuple[Any, ...]]] = [
+    ("sample", "get_angles", "request", "FEFE0220FA", ()),
+    (
+        *("sample", "get_angles", "reply", "FEFE0E20FEFE001D80E880E900002328FA"),
+        ((-2.58, 0.29, 330.0, -325.35, 0, 90),),
+    ),
+    (
+        *("sample", "send_angles", "request", "FEFE0F2200640000000000000000FF9C32FA"),
+        ((1, 0, 0, 0, 0, -1), 50),
+    ),
+    (
+        *("sample", "in_position", "request", "FEFE0F2A00640000000000000000000000FA"),
+        ((1, 0, 0, 0, 0, 0), 0),
+    ),
+    (
+        *("sample", "in_position", "request", "FEFE0F2A000A0000000000640000000001FA"),
+        ((1, 0, 0, 1, 0, 0), 1),
+    ),
+    ("sample", "in_position", "reply", "FEFE032A01FA", (True,)),
+    ("sample", "is_servo_on", "reply", "FEFE04500300FA", (3, False)),
+    ("sample", "is_servo_on", "reply", "FEFE035001FA", (True,)),
+    ("sample", "get_ticks", "reply", "FEFE0660FEFFFFFFFA", (-2,)),
+    ("long", "get_memory", "reply", "FEFEFE30" + 253 * "FA", ((0xFAFAFAFA,) * 63,)),
+    ("long", "get_part", "reply", "FEFE7E31" + 124 * "00" + "FA", ((0,) * 31,)),
+    ("long", "get_part", "reply", "FEFE8031" + 126 * "FE" + "FA", (BLOCK, (0xFE, 0xFE))),
+    (
+        *("long", "get_kinds", "reply", "FEFE1633" + 10 * "FF" + "FEFFFFFF010000FFFFFEFA"),
+        (255, -1, 65535, -1, 0xFFFFFFFF, -2, 1, -2),
+    ),
+    (
+        *("long", "get_edges", "reply", "FEFE183400FF0100FF80FF7F00FF0000FFFF000100007FFFFFFFFA"),
+        (255, 256, -128, -129, 255, 65535, 65536, 0x7FFFFFFF),
+    ),
+    (
+        *("long", "get_scaled", "reply", "FEFE103501FFFF00010002FFFF00000006FFFA"),
+        (1 / 3, (-0.1, 0.01, 0.002), -3 / 7, -0.7, -10),
+    ),
+    ("alike", "jog", "request", "FEFE036119FA", (25,)),
+    ("alike", "set_right", "request", "FEFE04600205FA", (2, 5)),
+    ("crc", "set_free_mode", "request", "FEFE045801FD87", (1,)),
+    ("crc", "set_free_mode", "reply", "FEFE0558FF013E3D", (255, 1)),
+    ("crc", "get_robot_status", "request", "FEFE036E20D1", ()),
+    ("crc", "get_robot_status", "reply", "FEFE046E009D51", (0,)),
+    ("crc", "set_break", "reply", "FEFE054DFF01FA2C", (255, 1)),
+    ("crc", "set_speed", "reply", "FEFE064C03F90CD43D", (3, (-1780,))),
+    ("crc", "motion_end", "reply", "FEFE045B010D87", (1,)),
+    ("sum", "power_on", "request", "FEFE01021010", ()),
+]
+
+
+@pytest.mark.parametrize(("table", "command", "direction", "frame", "values"), SAMPLES)
+def test_values_of_sample_encode_to_frame_and_frame_decodes_to_them(
+    codec: Codec,
+    table: str,
+    command: str,
+    direction: Direction,
+    frame: str,
+    values: tuple[Any, ...],
+) -> None:
+    codec, data = json_tables.codec_of(table, codec.name), bytes.fromhex(frame)
+    assert codec.encode(command, direction, values) == data
+    assert tuple(codec.decode(direction, data, of=command).fields.values()) == values

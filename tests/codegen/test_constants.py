@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 import small_specs
-from cobotwire_codegen.render.vectors_json import plain
+from vectors import plain
 
 SELECT = """
 select:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import os
 import shutil
 import subprocess
@@ -15,7 +14,6 @@ import in_process
 import vectors
 from cobotwire_codegen.cli import main
 from cobotwire_codegen.language.reference import language_page
-from cobotwire_codegen.render.vectors_json import vectors_json
 from in_process import Ended
 
 EDITIONS = ("mycobot", "mycobot280")
@@ -108,7 +106,7 @@ def test_products_are_written_only_with_their_option(generated: Path) -> None:
     assert run(generated, "--products").returncode == 0
     for product in ("c/mycobot280/mycobot280.h", "vectors/schema.json", "wireshark/mycobot.lua"):
         assert (generated / "targets" / product).stat().st_size > 1000
-    assert (generated / "rust/core/tests/data/mycobot280.json").exists()
+    assert (generated / "rust/client/src/editions/mycobot280.rs").exists()
     assert (generated / "docs/_static/decoder/editions/mycobot280.js").exists()
     assert (generated / "docs/reference/language.md").read_text() == language_page()
     (generated / "targets/wireshark/mycobot.lua").unlink()
@@ -116,15 +114,13 @@ def test_products_are_written_only_with_their_option(generated: Path) -> None:
     assert run(generated, "--products", "--check").returncode == 1
 
 
-def test_option_rust_data_writes_only_the_files_of_the_rust_crates(generated: Path) -> None:
+def test_option_rust_data_writes_only_the_editions_of_the_rust_client(generated: Path) -> None:
     stale = generated / GENERATED[0] / "values.py"
     stale.write_text("")
     assert run(generated, "--rust-data", "--check").returncode == 1
-    assert "7 file(s) changed" in run(generated, "--rust-data").stdout
+    assert "5 file(s) changed" in run(generated, "--rust-data").stdout
     assert run(generated, "--rust-data", "--check").stdout == "fresh\n"
-    data = generated / "rust/core/tests/data"
     for name in EDITIONS:
-        assert data.joinpath(f"{name}.json").read_text() == vectors_json(vectors.edition(name))
         assert (generated / f"rust/client/src/editions/{name}.rs").exists()
     assert not (generated / "targets").exists()
     assert stale.read_text() == ""
@@ -192,36 +188,3 @@ def test_command_added_in_yaml_works_without_other_changes(project: Path) -> Non
     )
     assert called.stdout == "native 0.0\n", called.stderr
     assert "## get_gripper_load" in (project / "docs/reference/mycobot/gripper.md").read_text()
-
-
-def _plain(value: object) -> object:
-    if isinstance(value, bytes):
-        return list(value)
-    if hasattr(value, "_asdict"):
-        return {key: _plain(part) for key, part in value._asdict().items()}
-    return [_plain(part) for part in value] if isinstance(value, tuple | list) else value
-
-
-def _stated(record: object, value: object) -> object:
-    """Return a value without the keys that the record leaves out."""
-    if isinstance(record, dict) and isinstance(value, dict):
-        return {key: _stated(part, value.get(key)) for key, part in record.items()}
-    if isinstance(record, list) and isinstance(value, list) and len(record) == len(value):
-        return [_stated(part, other) for part, other in zip(record, value)]
-    return value
-
-
-def test_table_as_json_equals_the_table_of_python() -> None:
-    """The JSON that the Rust tests read states the table; what it leaves out has its default."""
-    from cobotwire.editions.mycobot import TABLE
-    from json_tables import table_of
-
-    record = json.loads(vectors_json(vectors.edition()))["table"]
-    made = table_of(record)
-    assert made.frame == TABLE.frame
-    for command, other in zip(made.commands, TABLE.commands, strict=True):
-        assert command.request == other.request
-        assert command.reply == other.reply
-    # The frame was compared above: its check is a word here, and an object in Python.
-    del record["frame"]
-    assert record == _stated(record, _plain(TABLE))

@@ -23,7 +23,7 @@ from cobotwire_codegen.language.schema import records
 from cobotwire_codegen.language.shapes import Text, Texts
 from cobotwire_codegen.legal import odd_character
 from cobotwire_codegen.model import Edition
-from cobotwire_codegen.render import render_python, render_reference, render_vectors
+from cobotwire_codegen.render import render_python, render_reference
 from cobotwire_codegen.targets.c import render_c
 from cobotwire_codegen.targets.decoder import render_decoder
 from cobotwire_codegen.targets.wireshark import render_wireshark
@@ -48,7 +48,6 @@ def _edition(whole: dict[str, Any], folder: Path) -> Edition:
 def _outputs(edition: Edition) -> dict[str, str]:
     made = dict(render_python(edition))
     made |= {PurePosixPath("docs", name): text for name, text in render_reference(edition).items()}
-    made |= {PurePosixPath("vectors", name): text for name, text in render_vectors(edition).items()}
     made |= render_c(edition) | render_wireshark([edition]) | render_decoder([edition])
     return {str(name): text for name, text in made.items()}
 

@@ -21,12 +21,12 @@ from cobotwire_codegen.build import build_edition
 from cobotwire_codegen.check import check
 from cobotwire_codegen.model import Edition
 from cobotwire_codegen.model.shapes import Shaped
-from cobotwire_codegen.render.vectors_json import plain
 from cobotwire_codegen.targets.c import render_c
 from cobotwire_codegen.targets.vectors.law import Law, Reading
 from cobotwire_codegen.targets.wireshark import render_wireshark
 from conformance.device.testing import prepared
 from targets.specs import FILES, edition_of
+from vectors import plain
 
 NAMES = ["feetech", "ublox"]
 CODECS: tuple[codecs.CodecName, ...] = ("reference", "native")

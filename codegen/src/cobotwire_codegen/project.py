@@ -19,7 +19,6 @@ from cobotwire_codegen.render import (
     Files,
     render_python,
     render_reference,
-    render_vectors,
     with_used_types,
 )
 from cobotwire_codegen.render.robot_page import robot_pages
@@ -177,10 +176,6 @@ def _every_c(found: Sequence[Edition]) -> Files:
     return made
 
 
-def _every_vectors(found: Sequence[Edition]) -> Files:
-    return {path: text for edition in found for path, text in render_vectors(edition).items()}
-
-
 def _reference(root: Path, found: Sequence[Edition]) -> Files:
     """Return all generated pages of the docs site, also those that are committed."""
     made = {PurePosixPath("language.md"): language_page()}
@@ -197,8 +192,6 @@ def _robots(root: Path, found: Sequence[Edition]) -> Files:
     return robot_pages([(each, confirmed(each, sources[each.name])) for each in found])
 
 
-# The files that tests of this project's crates need.
-RUST_DATA = "rust/core/tests/data"
 RUST_EDITIONS = "rust/client/src/editions"
 TYPESCRIPT_EDITIONS = "clients/typescript/editions"
 REFERENCE = "docs/reference"
@@ -210,7 +203,6 @@ PRODUCTS: dict[str, Callable[[Path, Sequence[Edition]], Files]] = {
     REFERENCE: _reference,
     ROBOTS: _robots,
     "docs/_static/decoder/editions": lambda _, found: render_decoder(found),
-    RUST_DATA: lambda _, found: _every_vectors(found),
     RUST_EDITIONS: lambda _, found: render_every_rust(found),
     TYPESCRIPT_EDITIONS: lambda _, found: render_every_typescript(found),
     "targets/c": lambda _, found: _every_c(found),

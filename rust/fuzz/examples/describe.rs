@@ -60,7 +60,7 @@ fn stream(input: &Input) {
     }
     let events = events.iter().map(|(size, word)| format!("{word} {size}"));
     let events = events.collect::<Vec<_>>().join(", ");
-    let name = input.subject.name;
+    let name = &input.subject.name;
     println!("{name} {listening}{unknown} | {} | {events}", chunks.trim());
 }
 
@@ -113,10 +113,10 @@ fn outcome(input: &Input, oracle: &Oracle, direction: Direction, bytes: &[u8]) -
 }
 
 fn value(input: &Input, direction: Direction, bytes: &[u8]) -> String {
-    let table: &Table = &input.subject.edition.table;
+    let table: &Table = &input.subject.table;
     match reading::read(table, direction, bytes, None).expect("a legal frame has a variant") {
         Ok(decoded) => {
-            let name = &input.subject.edition.names[decoded.variant.command];
+            let name = &input.subject.names[decoded.variant.command];
             format!("{name} {}", decoded.variant.variant)
         }
         Err(bad) => format!("bad-value {}", bad.offset),

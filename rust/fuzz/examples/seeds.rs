@@ -1,13 +1,12 @@
 //! Writes the initial corpus: `seeds FOLDER` makes a folder for each target there, with a file for
-//! each vector of each table, for all vectors of a table in a row, and for each input of
-//! `tests/found`.
+//! a frame of each variant of each table, for all these frames of a table in a row, and for each
+//! input of `tests/found`.
 
 use std::path::Path;
 use std::{env, fs, io};
 
 use cobotwire_core::Listening;
 use cobotwire_fuzz::input::Input;
-use cobotwire_fuzz::records::Vector;
 use cobotwire_fuzz::replay;
 use cobotwire_fuzz::subjects::{self, LISTENING};
 
@@ -25,7 +24,7 @@ fn main() -> io::Result<()> {
     let folder = env::args_os().nth(1).expect("seeds FOLDER");
     let folder = Path::new(&folder);
     let streams: Vec<Vec<u8>> = rows().chain(found()).collect();
-    let all: Vec<Vec<u8>> = vectors().chain(streams.clone()).collect();
+    let all: Vec<Vec<u8>> = frames().chain(streams.clone()).collect();
     for target in TARGETS {
         write(&folder.join(target), &all)?;
     }
@@ -61,30 +60,21 @@ fn dice() -> Vec<Vec<u8>> {
         .collect()
 }
 
-/// Return a seed for each vector.
-fn vectors() -> impl Iterator<Item = Vec<u8>> {
+/// Return a seed for a frame of each variant.
+fn frames() -> impl Iterator<Item = Vec<u8>> {
     let subjects = subjects::all().iter().enumerate();
     subjects.flat_map(|(index, subject)| {
-        let vectors = subject.edition.vectors.iter();
-        vectors.flat_map(move |vector| {
-            let way = Listening::To(vector.direction);
-            bytes(vector).map(move |bytes| seed(index, way, false, bytes))
+        let frames = subject.variants.iter().zip(&subject.frames);
+        frames.map(move |(variant, frame)| {
+            seed(index, Listening::To(variant.direction), false, frame)
         })
     })
 }
 
-/// Return a seed for each table: all its vectors, one after the other.
+/// Return a seed for each table: all its frames, one after the other.
 fn rows() -> impl Iterator<Item = Vec<u8>> {
     let subjects = subjects::all().iter().enumerate();
-    subjects.map(|(index, subject)| {
-        let vectors = subject.edition.vectors.iter().flat_map(bytes);
-        let row: Vec<u8> = vectors.flatten().copied().collect();
-        seed(index, Listening::Both, false, &row)
-    })
-}
-
-fn bytes(vector: &Vector) -> impl Iterator<Item = &Vec<u8>> {
-    vector.frame.iter().chain(&vector.printed)
+    subjects.map(|(index, subject)| seed(index, Listening::Both, false, &subject.frames.concat()))
 }
 
 fn found() -> impl Iterator<Item = Vec<u8>> {

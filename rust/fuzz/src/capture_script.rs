@@ -57,9 +57,8 @@ pub fn play(subject: &Subject, mut bytes: Bytes<'_>) -> Vec<u8> {
             }
             6 => writer.packet(&mut bytes.clone(), bytes.clone().take(9)),
             _ => {
-                let vectors = &subject.edition.vectors;
-                let frame = vectors[bytes.pick(vectors.len())].frame.as_deref();
-                writer.packet(&mut bytes, frame.unwrap_or(b"noise"));
+                let picked = subject.frames.get(bytes.pick(subject.frames.len() + 1));
+                writer.packet(&mut bytes, picked.map_or(b"noise", |frame| &frame[..]));
             }
         }
     }

@@ -40,7 +40,7 @@ impl Input {
         let stream = if flags & SCRIPT == 0 {
             bytes.0.to_vec()
         } else {
-            script::play(&subject.edition.table, &subject.variants, bytes)
+            script::play(&subject.table, &subject.variants, bytes)
         };
         Self {
             subject,

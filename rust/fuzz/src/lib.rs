@@ -5,14 +5,6 @@
 
 #![forbid(unsafe_code)]
 
-// The core's own test helpers: reading the generator's tables, values to encode.
-#[path = "../../core/tests/common/mod.rs"]
-pub mod common;
-#[path = "../../core/tests/records/mod.rs"]
-pub mod records;
-#[path = "../../core/tests/replay/mod.rs"]
-pub mod replay;
-
 pub mod bytes;
 pub mod capture_script;
 pub mod damage;
@@ -22,5 +14,7 @@ pub mod oracle;
 pub mod plain_capture;
 pub mod random;
 pub mod reading;
+pub mod replay;
+pub mod sample;
 pub mod script;
 pub mod subjects;

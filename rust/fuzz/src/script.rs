@@ -89,6 +89,16 @@ fn any_data(table: &Table, variants: &[VariantId], script: &mut Bytes<'_>) -> Ve
     })
 }
 
+/// Return a legal frame of each variant; each takes its values from other bytes.
+pub fn every(table: &Table, variants: &[VariantId]) -> Vec<Vec<u8>> {
+    let numbered = variants.iter().zip(0_usize..);
+    let made = numbered.map(|(variant, number)| {
+        let script: Vec<u8> = (0..256).map(|at| (at * number) as u8).collect();
+        legal(table, &[*variant], &mut Bytes(&script))
+    });
+    made.collect()
+}
+
 fn around(table: &Table, variants: &[VariantId], script: &mut Bytes<'_>, inner: &[u8]) -> Vec<u8> {
     build(table, variants, script, |_, _| inner.to_vec())
 }

@@ -3,29 +3,20 @@
 use std::sync::{Arc, LazyLock, OnceLock};
 
 use cobotwire_core::{Direction, Listening, Plans, Rules, Table, VariantId};
+use cobotwire_table::Edition;
 
 use crate::oracle::Oracle;
-use crate::records::Edition;
+use crate::script;
 
-/// The files of the core's tests; a new edition is a new line here. `make products` writes the
-/// first two.
-const FILES: [(&str, &str); 7] = [
-    (
-        "mycobot",
-        include_str!("../../core/tests/data/mycobot.json"),
-    ),
-    (
-        "mycobot280",
-        include_str!("../../core/tests/data/mycobot280.json"),
-    ),
-    (
-        "sample",
-        include_str!("../../core/tests/samples/sample.json"),
-    ),
-    ("crc", include_str!("../../core/tests/samples/crc.json")),
-    ("sum", include_str!("../../core/tests/samples/sum.json")),
-    ("long", include_str!("../../core/tests/samples/long.json")),
-    ("alike", include_str!("../../core/tests/samples/alike.json")),
+/// The files of the tables; a new edition is a new line here.
+const FILES: [&[u8]; 7] = [
+    include_bytes!("../../../python/cobotwire/editions/mycobot/edition.json"),
+    include_bytes!("../../../python/cobotwire/editions/mycobot280/edition.json"),
+    include_bytes!("../../../tests/found/sample.json"),
+    include_bytes!("../../../tests/found/crc.json"),
+    include_bytes!("../../../tests/found/sum.json"),
+    include_bytes!("../../../tests/found/long.json"),
+    include_bytes!("../../../tests/found/alike.json"),
 ];
 
 /// The ways to listen, in the order in which fuzz bytes pick them.
@@ -39,13 +30,14 @@ pub const LISTENING: [Listening; 3] = [
 /// bytes.
 pub struct Subject {
     /// Its name in `tests/found`.
-    pub name: &'static str,
-    /// The table, with names and vectors.
-    pub edition: Edition,
-    /// The same table behind an `Arc`.
+    pub name: String,
     pub table: Arc<Table>,
+    /// The names of the table's commands.
+    pub names: Vec<String>,
     /// Every variant of its messages, for the script to pick from.
     pub variants: Vec<VariantId>,
+    /// A legal frame of each variant, in the same order.
+    pub frames: Vec<Vec<u8>>,
     oracles: Vec<Oracle>,
     rules: Vec<Rules>,
     plans: [OnceLock<Arc<Plans>>; LISTENING.len()],
@@ -76,9 +68,9 @@ pub fn all() -> &'static [Subject] {
     &ALL
 }
 
-fn subject((name, text): (&'static str, &str)) -> Subject {
-    let edition = Edition::read(text);
-    let table = &edition.table;
+fn subject(file: &[u8]) -> Subject {
+    let edition = Edition::read(file).expect("the file is the table of a protocol");
+    let table = &edition.protocol.table;
     let each = || {
         LISTENING
             .iter()
@@ -86,14 +78,16 @@ fn subject((name, text): (&'static str, &str)) -> Subject {
     };
     let oracles = each().map(|(way, unknown)| Oracle::new(table, way, unknown));
     let rules = each().map(|(way, unknown)| rules(table, way, unknown));
+    let variants = variants(table);
     Subject {
-        name,
         oracles: oracles.collect(),
         rules: rules.collect(),
-        variants: variants(table),
-        table: Arc::new(table.clone()),
+        frames: script::every(table, &variants),
+        variants,
         plans: Default::default(),
-        edition,
+        name: edition.name,
+        names: edition.commands.into_iter().map(|each| each.name).collect(),
+        table: Arc::new(edition.protocol.table),
     }
 }
 

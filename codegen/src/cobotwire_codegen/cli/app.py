@@ -39,7 +39,7 @@ _EPILOG = (
     "--products", "with_products", is_flag=True, help="Also generate files that are not committed."
 )
 @click.option(
-    "--rust-data", is_flag=True, help="Generate only what this project's Rust crates need."
+    "--rust-data", is_flag=True, help="Generate only the editions of this project's Rust client."
 )
 @root_option
 @click.option(

@@ -12,7 +12,6 @@ from cobotwire_codegen.cli.shared import report_problems, root_option
 from cobotwire_codegen.emit import Target, compare, write
 from cobotwire_codegen.project import (
     PRODUCTS,
-    RUST_DATA,
     RUST_EDITIONS,
     committed,
     editions,
@@ -31,7 +30,7 @@ def generate(check_only: bool, with_products: bool, rust_data: bool, root: str) 
     """Generate what is committed, the editions and their reference, and the schema for editors.
 
     With --products, also generate what is not committed: the other pages of the docs site, output
-    targets, what the Rust crates need. With --rust-data, generate only the latter.
+    targets, the editions of the Rust client. With --rust-data, generate only the latter.
     """
     if rust_data and with_products:
         raise click.UsageError("--products includes the data of --rust-data: give one of them")
@@ -41,7 +40,7 @@ def generate(check_only: bool, with_products: bool, rust_data: bool, root: str) 
         wanted = [] if rust_data else committed(path, found)
     changed = 0 if check_only else write_all(wanted)
     all_or_none: Iterable[str] = PRODUCTS if with_products else ()
-    folders = [RUST_DATA, RUST_EDITIONS] if rust_data else all_or_none
+    folders = [RUST_EDITIONS] if rust_data else all_or_none
     try:
         # After the editions, because the pages of the test suite list their commands.
         others = products(path, found, folders)

@@ -32,7 +32,6 @@ from cobotwire_codegen.render.example_call import example_call, example_result
 from cobotwire_codegen.render.literal import literal, quoted
 from cobotwire_codegen.render.messages import message_classes
 from cobotwire_codegen.render.sharing import Sharing, local_imports
-from cobotwire_codegen.render.vectors_json import vectors_json
 from cobotwire_codegen.wire import size
 
 Files = dict[PurePosixPath, str]
@@ -169,11 +168,6 @@ def render_reference(edition: Edition, templates: Path | None = None) -> Files:
         text = template.render(edition=edition, family=family)
         files[PurePosixPath(f"{family.name}.md")] = text
     return files
-
-
-def render_vectors(edition: Edition) -> Files:
-    """Return the table and vectors as JSON."""
-    return {PurePosixPath(f"{edition.name}.json"): vectors_json(edition)}
 
 
 def template_names() -> list[str]:

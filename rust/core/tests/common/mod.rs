@@ -1,81 +1,9 @@
-//! Helpers of the tests: values to encode, and small tables.
-
-use std::convert::Infallible;
+//! Helpers of the tests: small tables and random streams.
 
 use cobotwire_core::{
-    Algorithm, Case, Check, Command, Computed, Crc, CrcParameters, Encoding, Event, Field,
-    FrameFormat, Framer, Given, Layout, Number, Order, Reason, Row, Shape, Table, Unread,
-    ValueFault, Variant,
+    Algorithm, Case, Check, Command, Computed, Crc, CrcParameters, Field, FrameFormat, Layout,
+    Number, Order, Shape, Table, Variant,
 };
-
-/// A value as a caller may have it.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Sample {
-    Integer(i64),
-    Real(f64),
-    Bool(bool),
-    Text,
-    Row(Vec<Sample>),
-}
-
-#[derive(Clone, Debug, PartialEq)]
-pub struct Samples(pub Vec<Sample>);
-
-impl Given for Sample {
-    type Error = Infallible;
-    type Row = Samples;
-
-    fn integer(&self, flag: bool) -> Result<i64, Unread<Infallible>> {
-        match self {
-            Self::Integer(integer) => Ok(*integer),
-            Self::Bool(set) if flag => Ok(i64::from(*set)),
-            _ => Err(Unread::Fault(ValueFault::Type)),
-        }
-    }
-
-    fn real(&self) -> Result<f64, Unread<Infallible>> {
-        match self {
-            Self::Integer(integer) => Ok(*integer as f64),
-            Self::Real(real) => Ok(*real),
-            _ => Err(Unread::Fault(ValueFault::Type)),
-        }
-    }
-
-    fn row(&self) -> Result<Samples, Unread<Infallible>> {
-        match self {
-            Self::Row(all) => Ok(Samples(all.clone())),
-            _ => Err(Unread::Fault(ValueFault::Type)),
-        }
-    }
-
-    fn counted(&self) -> bool {
-        false
-    }
-
-    fn bytes(&self) -> Result<Option<Vec<u8>>, Unread<Infallible>> {
-        Ok(None)
-    }
-
-    fn text(&self, _: Encoding) -> Result<Vec<u8>, Unread<Infallible>> {
-        Err(Unread::Fault(ValueFault::Type))
-    }
-}
-
-impl Row for Samples {
-    type Item = Sample;
-
-    fn count(&self) -> usize {
-        self.0.len()
-    }
-
-    fn at(&self, index: usize) -> Option<Sample> {
-        self.0.get(index).cloned()
-    }
-
-    fn into_value(self) -> Sample {
-        Sample::Row(self.0)
-    }
-}
 
 /// Return an unsigned number of `width` bytes.
 pub fn number(width: usize, divide: i64, minimum: i64, maximum: i64) -> Number {
@@ -132,37 +60,6 @@ pub fn table_of(frame: FrameFormat, variants: Vec<Vec<Field>>) -> Table {
     };
     let commands = (0x20..).zip(variants).map(command).collect();
     Table::new(frame, commands).expect("the tests' tables are valid")
-}
-
-/// An event with its own bytes; `None` is a frame.
-pub type Owned = (u64, Vec<u8>, Option<Reason>);
-
-pub fn owned(event: Event<'_>) -> Owned {
-    match event {
-        Event::Frame { offset, frame } => (offset, frame.bytes().to_vec(), None),
-        Event::Noise {
-            offset,
-            reason,
-            data,
-        } => (offset, data.concat(), Some(reason)),
-    }
-}
-
-/// Return the events of a stream in chunks; noise of one reason is joined across calls.
-pub fn events<'a>(framer: &mut Framer, chunks: impl IntoIterator<Item = &'a [u8]>) -> Vec<Owned> {
-    let mut all: Vec<Owned> = Vec::new();
-    let mut add = |event: Event<'_>| {
-        let (offset, data, reason) = owned(event);
-        match all.last_mut() {
-            Some(last) if reason.is_some() && last.2 == reason => last.1.extend(data),
-            _ => all.push((offset, data, reason)),
-        }
-    };
-    for chunk in chunks {
-        framer.feed(chunk, &mut add);
-    }
-    framer.flush(&mut add);
-    all
 }
 
 /// A small random number generator, so that the tests need no crate for it.

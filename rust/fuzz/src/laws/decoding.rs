@@ -5,10 +5,10 @@ use cobotwire_core::{
     Variant, decode, encode, read,
 };
 
-use crate::common::{Sample, Samples};
 use crate::input::Input;
 use crate::oracle::{Found, Oracle, number};
 use crate::reading;
+use crate::sample::{Sample, Samples};
 use crate::subjects::LISTENING;
 
 /// Check that the whole stream, taken as one frame, and each frame in it have the oracle's result:

@@ -1,9 +1,8 @@
 //! Checks the laws of framing, and that the core cuts streams as the oracle does.
 
-use cobotwire_core::{Event, Framer, OwnedFrame, Rules};
+use cobotwire_core::{Event, Framer, OwnedFrame, Reason, Rules};
 
 use super::tally::Count;
-use crate::common::{Owned, owned};
 use crate::input::{Chunk, Cutting, Input};
 use crate::oracle::{Oracle, number};
 
@@ -117,5 +116,36 @@ fn cut(input: &Input, class: u8) -> Vec<Owned> {
     };
     let chunks = cutting.cut(&input.stream);
     let chunks = chunks.iter().map(|chunk| chunk.bytes);
-    crate::common::events(&mut input.framer(), chunks)
+    joined(&mut input.framer(), chunks)
+}
+
+/// An event with its own bytes; `None` is a frame.
+type Owned = (u64, Vec<u8>, Option<Reason>);
+
+fn owned(event: Event<'_>) -> Owned {
+    match event {
+        Event::Frame { offset, frame } => (offset, frame.bytes().to_vec(), None),
+        Event::Noise {
+            offset,
+            reason,
+            data,
+        } => (offset, data.concat(), Some(reason)),
+    }
+}
+
+/// Return the events of a stream in chunks; noise of one reason is joined across calls.
+fn joined<'a>(framer: &mut Framer, chunks: impl IntoIterator<Item = &'a [u8]>) -> Vec<Owned> {
+    let mut all: Vec<Owned> = Vec::new();
+    let mut add = |event: Event<'_>| {
+        let (offset, data, reason) = owned(event);
+        match all.last_mut() {
+            Some(last) if reason.is_some() && last.2 == reason => last.1.extend(data),
+            _ => all.push((offset, data, reason)),
+        }
+    };
+    for chunk in chunks {
+        framer.feed(chunk, &mut add);
+    }
+    framer.flush(&mut add);
+    all
 }
