@@ -7,8 +7,6 @@ import os
 from pathlib import Path
 
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 from serial.tools import list_ports
 
 from cobotwire.transport.serial import ports as listing
@@ -29,11 +27,20 @@ def test_built_in_port_of_a_board_in_the_base_is_likely(device: str) -> None:
     assert "built-in port" in why
 
 
-@given(st.text(), st.text())
-def test_every_port_has_a_reason(device: str, usb: str) -> None:
+@pytest.mark.parametrize(
+    ("device", "usb", "reason"),
+    [
+        ("/dev/ttyUSB0", "2341:0043", "a USB device that no such arm has"),
+        ("/dev/ttyAMA0", "2341:0043", "a USB device that no such arm has"),
+        ("/dev/ttyS0", "", "neither a USB device nor a built-in port"),
+        ("COM1", "", "neither a USB device nor a built-in port"),
+        ("", "", "neither a USB device nor a built-in port"),
+    ],
+)
+def test_other_port_is_unlikely_and_has_a_reason(device: str, usb: str, reason: str) -> None:
     likely, why = recognise(device, usb)
-    assert why
-    assert likely or usb not in {chip.usb for chip in CHIPS}
+    assert not likely
+    assert why.startswith(reason)
 
 
 class Info:
