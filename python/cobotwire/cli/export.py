@@ -67,7 +67,11 @@ def _keys(context: click.Context, option: click.Parameter, value: str) -> tuple[
 )
 @reading_options
 @click.option(
-    "--from", "begin_ns", callback=_time, metavar="TIME", help="Write messages from this time (UTC) on."
+    "--from",
+    "begin_ns",
+    callback=_time,
+    metavar="TIME",
+    help="Write messages from this time (UTC).",
 )
 @click.option(
     "--to", "end_ns", callback=_time, metavar="TIME", help="Write messages before this time (UTC)."
