@@ -13,7 +13,7 @@ from cobotwire.protocol.table import Table
 
 
 def device(table: Table, message: DecodedMessage) -> dict[str, Any]:
-    """Return the column of the device that a message belongs to, if its frame has an address."""
+    """Return the address column of a message; empty if its frame has no address."""
     if message.address is None:
         return {}
     return {"address": address_name(table, message.address)}

@@ -95,7 +95,7 @@ Opener = Callable[..., Any]
 
 
 def openers(blocking: type[Client], asynchronous: type[AsyncClient]) -> dict[str, Opener]:
-    """Return functions that open either client; a test uses the results alike."""
+    """Return functions that open the blocking or the asyncio client, both with one interface."""
 
     def in_loop(*arguments: Any, **options: Any) -> InLoop:
         return InLoop(asynchronous, *arguments, **options)

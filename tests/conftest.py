@@ -60,7 +60,7 @@ def pytest_configure(config: pytest.Config) -> None:
     signal.signal(signal.SIGINT, signal.default_int_handler)
     config.stash[TEMPORARY] = tempfile.TemporaryDirectory(prefix="cw-")
     os.environ["TMPDIR"] = config.stash[TEMPORARY].name
-    # The runs of pytest that tests start have no test of Hypothesis, and to import it takes longer
+    # Tests start pytest in other processes, which need no Hypothesis. Importing it takes longer
     # than the rest of their start.
     os.environ["PYTEST_ADDOPTS"] = "-p no:hypothesispytest"
 
@@ -74,7 +74,7 @@ def pytest_collection_finish() -> None:
 
 
 def pytest_unconfigure(config: pytest.Config) -> None:
-    """Let objects be freed when the interpreter ends; some libraries report those that are not."""
+    """Let objects be freed at exit; some libraries report objects that remain."""
     gc.unfreeze()
     config.stash[TEMPORARY].cleanup()
 
@@ -107,7 +107,7 @@ def probe() -> Iterator[Probe]:
 
 @pytest.fixture
 def repeated_in_rust(request: pytest.FixtureRequest) -> Iterator[None]:
-    """Have the Rust core repeat what the exchanges of a test do, and compare."""
+    """Repeat the exchanges of a test in the Rust core, and compare the results."""
     if needed.args[0]:
         yield
         return

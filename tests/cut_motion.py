@@ -1,4 +1,4 @@
-"""A motion that a pseudo-terminal cuts if nothing reads it, and what an arm finds afterwards."""
+"""A motion request that a full pseudo-terminal truncates, and the frames that an arm then reads."""
 
 from __future__ import annotations
 

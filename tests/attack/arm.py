@@ -40,7 +40,7 @@ class Span(NamedTuple):
 
     Attributes:
         data: the bytes.
-        made: the reply that these bytes replace; None: they replace none.
+        made: the reply that the faults turned into these bytes; None: no reply.
         label: ``reply``: exactly that reply. ``echo``: the request's own bytes. ``damage``:
             anything else.
     """
@@ -104,7 +104,7 @@ def result_of(codec: Codec, name: str, frame: bytes) -> Any:
 
 
 class HostilePeer(FaultyPeer):
-    """A faulty peer around the numbering arm, that knows what each byte it sends is."""
+    """A faulty peer around the numbering arm; it labels each byte that it sends."""
 
     def __init__(self, codec: Codec, faults: Sequence[Fault], seed: int) -> None:
         self.arm = NumberingArm(codec, time.monotonic)
@@ -150,7 +150,7 @@ class LabellingOutlet(Outlet):
         return data
 
     def drop(self) -> int:
-        # The rest of a reply that is being sent never comes.
+        # If the line breaks while a reply is sent, the rest of the reply is lost.
         unsent = sum(len(span.data) for span in self.sent) - self._taken
         while unsent > 0:
             span = self.sent.pop()
@@ -172,7 +172,7 @@ class LabellingOutlet(Outlet):
         return super()._begin(now)
 
     def _label(self, data: bytes) -> list[Span]:
-        """Find the reply in what the faults made of it; the rest is echo or damage."""
+        """Find the reply in the bytes that the faults made; label the rest as echo or damage."""
         made = self._arm.last
         spans: list[Span] = []
         while data:

@@ -20,7 +20,7 @@ class Found(NamedTuple):
     Attributes:
         at: when its last byte was delivered.
         data: its bytes.
-        spans: the contents of the bytes; for each, whether it is an additional copy of a reply.
+        spans: the spans that hold the bytes, each with whether it is a further copy of a reply.
         torn: whether bytes between its own were lost when the line broke.
     """
 

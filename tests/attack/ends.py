@@ -22,11 +22,11 @@ NO_LINGER = struct.pack("ii", 1, 0)
 class PtyEnd:
     """The master of a pty; the URL is a link, since each new pty has another name.
 
-    An OSError of ``read`` and ``write`` says that nobody is connected.
+    ``read`` and ``write`` raise an OSError if no client is connected.
 
     Attributes:
         url: what clients open.
-        descriptor: the descriptor to read and write; -1: nobody is connected.
+        descriptor: the descriptor to read and write; -1: no client is connected.
         waiting: the descriptor that is readable when a client connects; -1: clients need no
             accept().
     """
@@ -68,7 +68,7 @@ class PtyEnd:
     def fill(self, room: int, receive: Callable[[bytes], None]) -> int:
         """Fill the unread line except for ``room`` bytes; return how many bytes that took.
 
-        ``receive`` is called with what is read meanwhile.
+        ``receive`` is called with the bytes that are read meanwhile.
         """
         if self.descriptor < 0:
             return 0

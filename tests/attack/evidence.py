@@ -13,7 +13,7 @@ from cobotwire.codec.interface import Codec
 from cobotwire.protocol.errors import ProtocolError
 from cobotwire.session.pending import GRACE_SECONDS
 
-# The limits, by the names that the table's page explains.
+# The names of the limits, as docs/contribute/attack.md explains them.
 DAMAGE = "damage"
 ECHO = "echo"
 COPY = "copy"
@@ -25,7 +25,7 @@ KEPT_SECONDS = 3.0
 
 
 class Evidence:
-    """Which replies a call can have taken, and which documented limits explain it."""
+    """Finds the replies that a call can have taken, and the documented limit that explains it."""
 
     def __init__(
         self,
@@ -62,7 +62,7 @@ class Evidence:
         return ""
 
     def explain(self, call: Call) -> list[str]:
-        """Return where the result of a call was delivered, and as what."""
+        """Return when the value of a call was delivered, and as a reply, copy, echo or damage."""
         return [
             f"delivered at {found.at:.3f}{' torn' if found.torn else ''}: "
             + ", ".join(self._origin(span, copy) for span, copy in found.spans)
@@ -129,7 +129,7 @@ class Evidence:
         return self._displaced(found, made)
 
     def _displaced(self, found: Found, made: Made) -> str:
-        """Return the known limit that explains why the call took another reply than this one."""
+        """Return the known limit that explains why the call of this reply took another reply."""
         for call in self._calls_of(made):
             # A call cannot take a reply that was delivered after its end, even of equal value.
             took_another = call.value != made.value or call.ended < found.at
@@ -141,8 +141,7 @@ class Evidence:
 
     def _limit_of_taken(self, call: Call) -> str:
         if call.number not in self._limits:
-            # The chain of calls that took each other's replies may come back to this call: end it
-            # there.
+            # Calls that took each other's replies may form a cycle: end it at this call.
             self._limits[call.number] = ""
             self._limits[call.number] = self._limit_of_query(call, kept=False)
         return self._limits[call.number]
@@ -160,7 +159,7 @@ class Evidence:
         return ""
 
     def _last_handed(self, request: bytes, before: float) -> float:
-        """Return when a request was last handed to the system before that time; else that time."""
+        """Return when a request was last handed over before a time; if never, that time."""
         handed = self._record.handed
         for place in range(bisect_right(handed, (before, b"\xff")) - 1, -1, -1):
             if handed[place][1].endswith(request):

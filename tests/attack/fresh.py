@@ -1,4 +1,4 @@
-"""Run the users of a plan in a fresh process, whose first calls are part of what is attacked."""
+"""Run the users of a plan in a fresh process, so that its first calls are attacked, too."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ START_SECONDS = 5.0
 def run_fresh(setting: Setting, settle: Callable[[], None]) -> str:
     """Run the users in a new process, and take over its record.
 
-    ``settle`` waits for what was written.
+    ``settle`` waits until the written bytes have arrived.
 
     Returns:
         A description of the failure of the process; empty if it succeeded.
@@ -53,7 +53,7 @@ def run_fresh(setting: Setting, settle: Callable[[], None]) -> str:
 
 
 def main() -> None:
-    """Run the users of the plan and the URL in the argument; write the record."""
+    """Run the users of the plan in the first argument; write the record to standard output."""
     plan: Plan
     plan, url = pickle.loads(base64.b64decode(sys.argv[1]))
     setting = Setting(plan, url)
@@ -64,7 +64,7 @@ def main() -> None:
             time.sleep(0.005)
         setting.over = True
 
-    # A line that is closed with unread bytes loses what was written last, if it is TCP.
+    # A TCP connection that is closed with unread bytes loses the bytes that were written last.
     run_threads(setting, during, lambda: time.sleep(0.1 * plan.tcp))
     record: Record = setting.record
     found = (record.calls, record.handed, record.taken, record.bytes_taken)

@@ -1,7 +1,7 @@
-"""Measure how long the machine kept a single thread or processor from working, on Linux.
+"""Measure for how long single threads and processors were stopped, on Linux.
 
-A :class:`stalls.StallMeter` sees what stops the whole process. The system may also stop one thread,
-and the host of a virtual machine one processor, while all others run.
+A :class:`stalls.StallMeter` measures stops of the whole process. The system may also stop one
+thread, and the host of a virtual machine one processor, while all others run.
 """
 
 from __future__ import annotations

@@ -18,7 +18,7 @@ class Plan:
         profile: what happens.
         seed: repeats the draws of the run, not its timing.
         tcp: whether the line is TCP or a pty.
-        client: blocking or asyncio, the Rust client that resembles it, or the one in Node.
+        client: the blocking or asyncio client of Python, either client of Rust, or Node's.
         codec: the codec of the Python client, native or reference.
         edition: the edition's package.
         users: how many threads or tasks share the client.
@@ -59,7 +59,7 @@ class Plan:
         return self.client.startswith(("rust", "node"))
 
     @property
-    def _way(self) -> str:
+    def _recovery(self) -> str:
         if not self.restores:
             return ""
         return ", reopens" if self.reopens else ", new clients"
@@ -69,7 +69,7 @@ class Plan:
         return (
             f"profile {self.profile.name}, seed {self.seed}: {kind}, {self.client}, {self.codec}, "
             f"{self.edition}, {self.users} users, timeout {self.timeout} s x {self.attempts}, "
-            f"grace {self.grace} s, deadline {self.deadline}" + self._way
+            f"grace {self.grace} s, deadline {self.deadline}" + self._recovery
         )
 
 
@@ -89,8 +89,8 @@ def plan(profile: Profile, seed: int, seconds: float | None = None, calls: int =
     return Plan(
         profile,
         seed,
-        # Only a pty can take a part of a frame. TCP may lose what is written just before it is
-        # closed. Serial ports in Node need a third-party package.
+        # Only a pty accepts part of a frame. TCP may lose bytes that are written just before it
+        # is closed. Serial ports in Node need a third-party package.
         tcp=(random.random() < (0.2 if profile.stalls else 0.5) and not profile.signals)
         or client == "node",
         client=client,
@@ -104,7 +104,7 @@ def plan(profile: Profile, seed: int, seconds: float | None = None, calls: int =
         grace=random.choice((0.3, 1.0)),
         seconds=profile.seconds if seconds is None else seconds,
         calls=calls,
-        restores=profile.parts or (profile.stalls and random.random() < 0.4),
+        restores=profile.disconnects or (profile.stalls and random.random() < 0.4),
         reopens=client == "blocking" and random.random() < 0.5,
         deadline=random.choice((None, None, 0.4)),
     )

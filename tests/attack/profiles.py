@@ -61,7 +61,7 @@ class Profile:
     clients: tuple[Clients, ...] = field(default=("blocking", "asyncio"))
 
     @property
-    def parts(self) -> bool:
+    def disconnects(self) -> bool:
         """Whether the connection ends during the run."""
         return bool(self.breaks or self.closes)
 

@@ -20,7 +20,7 @@ class Call(NamedTuple):
     """A call that has ended, or was given up as lost.
 
     Attributes:
-        number: the place in the order in which calls began.
+        number: its position in the order in which calls began, from 1.
         user: the thread or task that called.
         name: the command.
         request: the bytes of its request.
@@ -57,9 +57,10 @@ class Record:
         handed: the time before each write, and its bytes.
         taken: the time after each write that was taken whole, and its bytes.
         bytes_taken: how many bytes the system has taken.
-        filling: held while the run fills the line, which must not come between parts of a request.
-        measured: when the call of a thread began and ended by the client's own measure, if it is in
-            another process.
+        filling: a lock that the run holds while it fills the line, so that no byte of the filling
+            is inside a request.
+        measured: when the call of each thread began and ended, as a client in another process
+            measured it.
     """
 
     def __init__(self) -> None:
@@ -115,7 +116,7 @@ def open_observed(url: str, baudrate: int, record: Record, *, small: bool) -> Op
     ``small``: give a socket the smallest buffer, so that a peer that reads nothing stalls it.
     """
     transport = open_transport(url, baudrate)
-    assert isinstance(transport, DescriptorTransport), "ports and sockets are"
+    assert isinstance(transport, DescriptorTransport), "ports and sockets have a descriptor"
     write_now, connect = transport._write_now, transport._connect
 
     def observed(data: bytes) -> int:

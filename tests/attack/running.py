@@ -29,7 +29,7 @@ from stalls import StallMeter
 
 
 def attack(chosen: Plan, change: Callable[[Any], Any] | None = None) -> Tally:
-    """Run a plan and validate it; ``change`` replaces the edition's client by another."""
+    """Run a plan and validate it; ``change`` maps the client class to another."""
     codec = codecs.load(table_of(chosen), "reference")
     peer = HostilePeer(codec, chosen.faults, chosen.seed)
     end = TcpEnd(small=chosen.profile.stalls) if chosen.tcp else PtyEnd()
@@ -58,7 +58,7 @@ def attack(chosen: Plan, change: Callable[[Any], Any] | None = None) -> Tally:
 
 
 def _settle(line: HostileLine, setting: Setting) -> None:
-    """Wait for what was written; closing would lose it."""
+    """Wait until the written bytes have arrived; closing would lose them."""
     if not setting.plan.restores:
         line.settle(setting.record.bytes_taken)
 

@@ -33,10 +33,10 @@ class Setting:
         over: whether users are to stop.
         flooding: whether users send only one-way requests, to fill a line that nobody reads.
         flood: the name of these requests; if empty, any are drawn.
-        longest: seconds that a call can take by its rules, the wait for its turn included.
+        longest: the most seconds that a correct call takes, including the wait for its turn.
         options: the arguments of the clients.
-        processes: where the ids of the processes that clients start are written down.
-        stops: when the run had stopped the process of a client, and for how many seconds.
+        processes: the ids of the processes that clients start.
+        stops: when the run stopped a client's process, and for how many seconds.
     """
 
     def __init__(self, plan: Plan, url: str) -> None:

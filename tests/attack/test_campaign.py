@@ -1,7 +1,7 @@
 """A short campaign: nothing forbidden happens in any profile.
 
-`make attack` runs it for minutes, with CLIENT=rust or CLIENT=node on these clients. A failure here
-shows the seed and the calls around it.
+`make attack` runs it for minutes; CLIENT=rust and CLIENT=node choose those clients. A failure shows
+the seed and the calls around it.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ SECONDS = 0.5
 PROCESSES = 4
 RUNS = [(name, client) for name, profile in PROFILES.items() for client in profile.clients]
 one_clock = pytest.mark.skipif(
-    sys.platform != "linux", reason="only there other languages and Python share a clock"
+    sys.platform != "linux", reason="only on Linux, other languages share a clock with Python"
 )
 needs_node = pytest.mark.skipif(bool(npm_package.missing()), reason=npm_package.missing())
 # The most different profiles; each costs processor time.
@@ -79,7 +79,7 @@ def test_nothing_forbidden_happens_in_another_language(name: str, client: Any) -
 
 @one_clock
 @probe.needed
-def test_result_of_another_call_is_found_in_rust(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_rust_call_with_the_result_of_another_is_wrong(monkeypatch: pytest.MonkeyPatch) -> None:
     ask, answers = ProbeClient._ask, list[Future[dict[str, Any]]]()
 
     def asked(client: ProbeClient, line: dict[str, Any], number: int = 0) -> Any:

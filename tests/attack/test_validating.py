@@ -1,5 +1,4 @@
-"""Each column counts what its title says: each broken client shows in one column, and a correct
-client in none."""
+"""Each broken client is counted in exactly one forbidden column, and a correct client in none."""
 
 from __future__ import annotations
 
@@ -59,7 +58,7 @@ def test_late_reply_that_is_not_waited_for_is_silently_wrong(
 
 
 def previous(call: Method) -> Method:
-    """Return the value of the request before."""
+    """Return the value of the previous request."""
     values = [0]
 
     def instead(arm: Any, *arguments: Any) -> Any:
@@ -90,7 +89,7 @@ def another(call: Method) -> Method:
 
 
 def raising(call: Method) -> Method:
-    """Raise an error that no page describes."""
+    """Raise an undocumented error."""
 
     def instead(arm: Any) -> Any:
         raise AssertionError("not for users")

@@ -38,7 +38,7 @@ class Shared:
         self._open()
 
     def restore(self, age: int) -> None:
-        """Open it again, unless that has been done since ``age``, or the run is over."""
+        """Reopen the client, unless another thread has since ``age``, or the run is over."""
         with self._lock:
             if self.age != age or self.setting.over:
                 return
@@ -55,11 +55,11 @@ class Shared:
             self.age += 1
 
     def close(self) -> None:
-        """Close it; calls in other threads end with an error."""
+        """Close the client; calls in other threads end with an error."""
         self.client.close()
 
     def end(self) -> None:
-        """End the loops of asyncio clients, in which no call runs any more, or the process."""
+        """End the loops of asyncio clients, or the client's process, after the last call."""
         for loop in self._loops:
             loop.end()
         if self.setting.plan.apart:
@@ -89,11 +89,11 @@ class Shared:
 
 
 class Interrupts:
-    """Ctrl-C for the main thread, as often as there is a call that it can hit.
+    """Raises Ctrl-C in the main thread at random times, while a call runs there.
 
     Attributes:
-        armed: whether a call can be hit.
-        raised: how many were.
+        armed: whether a call runs that may be interrupted.
+        raised: the number of interrupts.
     """
 
     def __init__(self, random: Random, signals: bool) -> None:
@@ -129,10 +129,10 @@ class Interrupts:
 def run_threads(
     setting: Setting, during: Callable[[Shared], None], settle: Callable[[], None]
 ) -> None:
-    """Let the users of a run call until it is over.
+    """Run the users' calls until the run is over.
 
-    ``during`` makes the other events and ends the run; ``settle`` waits for written bytes before
-    the client is closed.
+    ``during`` breaks, stalls or closes the line and ends the run; ``settle`` waits for written
+    bytes before the client is closed.
     """
     shared = Shared(setting)
     plan = setting.plan
@@ -170,7 +170,7 @@ def _signal_main() -> None:
 
 
 def _end_block(shared: Shared, random: Random, interrupts: Interrupts) -> None:
-    """Call in a ``with`` block until one of the signals ends it: stop is sent once.
+    """Call in a ``with`` block until a signal ends it; the client must then send stop once.
 
     Other threads call meanwhile, and afterwards on the closed client.
     """

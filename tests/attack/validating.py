@@ -25,13 +25,13 @@ MOST_FAILURES = 4
 
 
 class Scene(NamedTuple):
-    """Everything that a run left behind.
+    """The records of a run.
 
     Attributes:
         setting: the plan and the record of the users.
         line: what arrived and what was delivered.
         peer: what the arm received and sent.
-        stalls: for each measure, when the machine stalled, and for how many seconds.
+        stalls: for each meter, when the machine stalled, and for how many seconds.
     """
 
     setting: Setting
@@ -95,7 +95,7 @@ class Validator:
         self._validate_time(call)
 
     def _is_right(self, call: Call) -> bool:
-        """Return whether the arm made the value for the same request, during the call."""
+        """Return whether the arm replied to the call's request with this value during the call."""
         if call.query:
             return any(
                 made.value == call.value
@@ -202,7 +202,7 @@ class Validator:
 
 
 def _stalled(call: Call, stalls: Iterable[tuple[float, float]]) -> float:
-    """Return for how many seconds of a call something was kept from running.
+    """Return for how many seconds of a call a thread or processor was stalled.
 
     A call waits for several threads in turn, so stalls of different threads add up; a time at which
     two were stalled counts once.

@@ -14,7 +14,7 @@ from compare import Compared
         ([1.05, 1.06, 1.05, 1.07, 1.04], "faster"),
         ([0.95, 0.94, 0.96, 0.95, 0.93], "slower"),
         ([0.99, 1.01, 1.02, 0.98, 1.0], "the same"),
-        ([1.011, 1.012, 1.013, 1.014, 1.015], "the same"),  # the memory of the processes differs
+        ([1.011, 1.012, 1.013, 1.014, 1.015], "the same"),  # as much as memory layout changes
         ([1.05, 1.06, 0.7, 1.07, 1.04], "faster"),  # one disturbed round
     ],
 )
