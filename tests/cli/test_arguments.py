@@ -36,8 +36,8 @@ def test_parsed_arguments_fit_the_client_method_and_the_codec(
 
 def _word(field: Field) -> str:
     numbers = field.cases[0].numbers
-    steps = [field.choices[0] if field.choices else number.minimum for number in numbers]
-    values = (n.physical(step) for step, n in zip(steps, numbers))
+    raw = [field.choices[0] if field.choices else number.minimum for number in numbers]
+    values = (number.physical(value) for value, number in zip(raw, numbers))
     return ",".join(map(str, values))
 
 

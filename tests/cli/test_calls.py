@@ -1,4 +1,4 @@
-"""Run motions with ``cobotwire call``, and read what it says about requests without a reply."""
+"""Run motions with ``cobotwire call``, and check its report on requests without a reply."""
 
 from __future__ import annotations
 

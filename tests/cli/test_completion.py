@@ -37,7 +37,7 @@ def complete(shell: str, line: str) -> set[str]:
     given = {"COMP_WORDS": " ".join(words), "COMP_CWORD": str(len(words) - 1)}
     if shell == "fish":  # it gives the word instead of its index
         given["COMP_CWORD"] = words[-1]
-    # The scripts below run it as a program.
+    # CliRunner runs the program in this process; the tests of scripts below run it in a shell.
     given |= {"_COBOTWIRE_COMPLETE": f"{shell}_complete"}
     lines = CliRunner(env=given).invoke(app, prog_name="cobotwire").stdout.splitlines()
     if shell == "zsh":  # three lines for each word: its type, the word, a description

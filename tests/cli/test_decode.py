@@ -92,7 +92,7 @@ def test_summary_counts_frames_noise_and_findings(capture: str) -> None:
     assert "get_angles(" not in words
 
 
-def test_colour_of_hex_words_tells_the_parts_of_a_frame(capture: str) -> None:
+def test_colours_distinguish_the_parts_of_a_frame(capture: str) -> None:
     shown = _on_a_terminal([*COMMAND, capture], None)
     assert "\x1b[2mFE FE 03\x1b[0m \x1b[36m\x1b[1m12\x1b[0m 01 \x1b[2mFA\x1b[0m" in shown
     assert "\x1b[33mFF FF 01 04 02 38 02 BE\x1b[0m" in shown

@@ -1,4 +1,4 @@
-"""Check what verbs do with files of other programs, and with files that hold nothing."""
+"""Run verbs on files of other programs, and on empty files."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A hostile file or peer is shown, or causes a plain error, never a traceback."""
+"""A hostile file or peer causes normal output or a plain error, never a traceback."""
 
 from __future__ import annotations
 
@@ -64,7 +64,7 @@ def test_number_with_thousands_of_digits_in_a_comment_changes_nothing(
         f"in pieces: {'0' * 5000}17 bytes at +1 ns",
     )
     code, _ = show(verb, recording)
-    # The recording lacks the mark of its end; only decode reports this.
+    # The recording lacks its end marker; only decode reports this.
     assert code == (verb[0] == "decode")
     *others, last = (packet.pieces for packet in read(recording))
     assert others == [()] * 3
@@ -134,7 +134,7 @@ def test_panic_with_a_core_of_thousands_of_digits_is_decoded(
 def test_panic_with_a_core_of_thousands_of_digits_is_reported(words: list[str]) -> None:
     with ScriptedPeer(*[[PANIC.encode()]] * 200) as peer:
         _, text = run(*(peer.url if word == "URL" else word for word in words))
-    # A command that keeps only the start of what it received sees the cause of the panic cut off.
+    # A command that keeps only the first received bytes may lose the cause of the panic.
     assert re.search("panic (LoadProhibited|of unknown cause)", text)
 
 
@@ -165,7 +165,7 @@ def test_argument_with_thousands_of_digits_is_wrong_usage(server: PtyServer, val
         assert len(text) < 300
 
 
-def test_recording_that_cannot_be_begun_leaves_no_file(server: PtyServer, tmp_path: Path) -> None:
+def test_recording_that_cannot_be_started_leaves_no_file(server: PtyServer, tmp_path: Path) -> None:
     file = tmp_path / "arm.pcapng"
     call = ["call", server.url, "get_angles", "--record", str(file)]
     # No file may grow: each write fails, as on a full disk.
@@ -175,5 +175,5 @@ def test_recording_that_cannot_be_begun_leaves_no_file(server: PtyServer, tmp_pa
         ended = subprocess.run(command, capture_output=True, text=True, check=False)
         assert (ended.returncode, ended.stdout) == (2, "")
         assert ended.stderr == f"cobotwire: {file}: File too large\n"
-        # Nothing remains that would keep the next attempt from recording.
+        # A leftover file would make the next attempt fail.
         assert not file.exists()

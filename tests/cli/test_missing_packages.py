@@ -1,4 +1,4 @@
-"""Check what the command line needs, and what it says if a package is missing."""
+"""Check the packages that the command line needs, and the error if one is missing."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ def _imported(path: Path) -> set[str]:
     return {name.partition(".")[0] for name in names}
 
 
-# That of `plot` is in newcomer/test_newcomer.py.
+# newcomer/test_newcomer.py tests `plot`.
 @pytest.mark.parametrize(
     ("package", "words", "sentence"),
     [
@@ -107,7 +107,7 @@ def test_export_names_the_extra_of_a_missing_package(
     assert f"needs {package}: pip install 'cobotwire[{extra}]'" in done.stderr
 
 
-def test_package_that_was_built_without_the_page_leaves_out_the_verb_and_says_why(
+def test_studio_of_a_build_without_its_page_is_hidden_and_says_why(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     assert " studio " in run(app, "cobotwire", "--help").stdout or not extras.CURVES.is_file()

@@ -55,7 +55,7 @@ def test_json_output_holds_values_errors_and_noise() -> None:
     first, second = map(json.loads, result.stdout.splitlines())
     assert first["values"]["get_angles"]["j1"] == 1.4
     assert first["values"]["get_coords"] is None
-    # Each query is sent three times; only the first one of all gets a reply.
+    # A query without a reply is sent three times; only the very first request gets a reply.
     assert [(s["sent"], s["unanswered"]) for s in (first, second)] == [(4, 3), (10, 9)]
     assert first["noise"] == len(LEAK)
     assert first["diagnosis"].startswith("servo bus leak")
@@ -63,7 +63,7 @@ def test_json_output_holds_values_errors_and_noise() -> None:
 
 
 def test_requests_that_were_repeated_are_counted_as_unanswered() -> None:
-    # The device counts on its own: it gets each request, and replies to every second one.
+    # The peer replies to every second request.
     with ScriptedPeer([], [ANGLES], [], [COORDS]) as peer:
         result = run(peer.url, "--count", "1", "--json")
     (sample,) = map(json.loads, result.stdout.splitlines())

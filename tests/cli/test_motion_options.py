@@ -1,4 +1,4 @@
-"""Parse the options of verbs that let others move an arm."""
+"""Parse the options of verbs that let other programs move an arm."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Send motions from the command line to arms that do not obey them; examine such arms."""
+"""Send motions to arms that are not ready for them; examine these arms with ``doctor``."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ STATES = [
 
 
 @pytest.mark.parametrize(("spoil", "kind", "text"), STATES)
-def test_motion_that_the_arm_does_not_obey_is_not_sent_unless_forced(
+def test_motion_to_an_arm_that_is_not_ready_is_not_sent_unless_forced(
     spoil: Callable[[SimulatedArm], None], kind: str, text: str
 ) -> None:
     arm = SimulatedArm(mycobot280.TABLE, powered=True)
@@ -58,7 +58,7 @@ def test_motion_that_the_arm_does_not_obey_is_not_sent_unless_forced(
     assert (forced.returncode, forced.stderr.startswith("sent; acknowledged")) == (0, True)
 
 
-def test_doctor_reports_why_an_arm_does_not_obey_a_motion() -> None:
+def test_doctor_reports_why_an_arm_is_not_ready_for_motion() -> None:
     arm = SimulatedArm(mycobot280.TABLE, powered=True)
     for spoil in (_cut, _pause, _fail):
         spoil(arm)

@@ -1,4 +1,4 @@
-"""Check that all verbs name a port in one way, and ask for JSON in one way."""
+"""All verbs use the same words for the port, for the edition and for JSON output."""
 
 from __future__ import annotations
 

@@ -36,7 +36,7 @@ def sim(request: pytest.FixtureRequest) -> Iterator[Popen[str]]:
 
 
 def end(sim: Popen[str], how: signal.Signals = signal.SIGTERM) -> None:
-    """End the program with a signal; check that it obeys."""
+    """End the program with a signal; check its exit code."""
     sim.send_signal(how)
     assert sim.wait(timeout=10) == (143 if how == signal.SIGTERM else 0)
 
@@ -74,7 +74,7 @@ def test_sim_continues_when_its_output_is_closed(sim: Popen[str]) -> None:
 @pytest.mark.parametrize("words", [[], ["--json"]], ids=["text", "json"])
 def test_arm_replies_while_nobody_reads_the_output(words: list[str]) -> None:
     assert line_output.KEPT <= 1 << 20
-    # With the 64 KiB that a pipe holds, less than these lines.
+    # This buffer and the pipe's 64 KiB are too small for all lines.
     less = "from cobotwire.cli.shared import line_output; line_output.KEPT = 1 << 16"
     requests = 2500
     with started("sim", *words, first=less) as sim:
@@ -83,13 +83,13 @@ def test_arm_replies_while_nobody_reads_the_output(words: list[str]) -> None:
         with MyCobot(url, timeout=5.0) as arm:
             for _ in range(requests):
                 assert arm.is_power_on() is False
-            # A reader that comes late gets the first lines, and how many are missing.
+            # A late reader gets the first lines, and the number of missing ones.
             lines = []
             while "left out" not in (line := printed(sim)):
                 assert "FE FE 02 12 FA" in line
                 lines.append(line)
             assert len(lines) + int(re.findall(r"\d+", line)[0]) == requests
-            # From then on no line is missing.
+            # No later line is missing.
             arm.power_on()
             assert "power_on" in printed(sim)
         end(sim)
@@ -267,7 +267,7 @@ def test_list_scenarios_prints_a_sentence_for_each() -> None:
 def test_sim_solves_a_target_at_the_edge_of_the_reach_without_numpy_and_scipy(
     sim: Popen[str],
 ) -> None:
-    # Their import takes longer than the deadline of the reply.
+    # Importing NumPy and SciPy takes longer than the deadline of the reply.
     stretched, given = (48.6, -64.6, 410.9, -90.0, 0.0, -90.0), (0.0, 0.0, 10.0, 0.0, 0.0, 0.0)
     with MyCobot280(printed(sim).strip()) as arm:
         assert arm.solve_inv_kinematics(stretched, given) != given

@@ -64,7 +64,7 @@ def test_file_holds_facts_with_frames_and_recording_but_nothing_personal(tmp_pat
     assert secret.id not in {data[3] for data in sent}
     assert content["simulated"] is True
     assert str(tmp_path) not in text
-    # A short name can be in bytes, or in a word, by chance.
+    # A short name can occur in bytes, or inside a word, by chance.
     for name in filter(None, (platform.node(), os.environ.get("USER", ""))):
         assert not re.search(rf"\b{re.escape(name)}\b", json.dumps(content))
         assert len(name) < 6 or name not in text
@@ -79,7 +79,7 @@ def test_survey_at_a_network_port_is_of_a_real_arm_only_if_the_owner_states_it(
     with TcpServer(SimulatedArm(TABLE).connect) as server:
         done = cobotwire("survey", server.url, "-o", path)
         assert "add --real-arm" in done.stderr
-        # What was not stated before the facts were recorded cannot be stated of them afterwards.
+        # --real-arm does not apply to facts that were recorded without it.
         done = cobotwire("survey", server.url, "--real-arm", "--continue", "-o", path)
         assert "not seen; of a simulated arm" in done.stdout
         done = cobotwire("survey", server.url, "--real-arm", "-o", stated)
@@ -140,7 +140,7 @@ def test_recording_is_evaluated_by_the_requests_that_it_has(path: Path, tmp_path
     assert found[recording]["simulated"] is True
     assert found[recording]["date"] <= whole["date"]
     decided = {f["fact"]: f["verdict"] for f in found[half]["facts"] if f["verdict"] != "not seen"}
-    # The device is silent to what was not recorded, which contradicts nothing.
+    # Requests that were not recorded get no reply; this silence contradicts nothing.
     assert {*decided.values()} == {"confirmed"}
     assert 20 < len(decided) < sum(f["verdict"] == "confirmed" for f in whole["facts"])
     assert found[half]["finished"] is False
@@ -182,7 +182,7 @@ def test_silence_of_a_recording_that_may_have_a_late_reply_contradicts_nothing(
     assert found["mycobot280/get_angles/command/present"] == "confirmed"
 
 
-def test_times_that_no_clock_shows_are_refused(tmp_path: Path) -> None:
+def test_recording_with_times_before_1970_is_refused(tmp_path: Path) -> None:
     tap = Recording(tmp_path / "late.pcapng", None)
     tap.record("sent", b"\0", 0.0)
     tap.close()
@@ -284,7 +284,7 @@ def test_any_key_stops_the_motion_and_the_file_holds_what_was_found(tmp_path: Pa
 
 
 @pytest.mark.parametrize("verb", ["doctor", "identify"])
-def test_verb_names_tenths_of_degrees_by_the_coordinates(verb: str) -> None:
+def test_verb_detects_angles_in_tenths_of_degrees_from_the_coordinates(verb: str) -> None:
     table = editions.load("mycobot320").TABLE
     [change] = [arm.change for arm in WRONG_ARMS if arm.name == "tenths" and arm.change]
     shown = []

@@ -1,4 +1,4 @@
-"""Run ``cobotwire tap`` between real programs and a simulated arm on a pty, and end it each way."""
+"""Run ``cobotwire tap`` between programs and a simulated arm on a pty, and end it in each way."""
 
 from __future__ import annotations
 
