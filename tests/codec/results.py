@@ -1,4 +1,4 @@
-"""Everything that columns or scans hold, as plain values that tests compare."""
+"""Convert columns and scans to plain values, which tests compare."""
 
 from __future__ import annotations
 

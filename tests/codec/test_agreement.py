@@ -68,7 +68,7 @@ def test_both_framers_return_the_same_events_and_keep_the_same_bytes(
 def test_chunk_that_is_one_frame_has_the_same_events_and_counts(
     chunks: list[bytes], accept_unknown: bool
 ) -> None:
-    """The native framer has a path of its own for such a chunk."""
+    """The native framer has a fast path for such a chunk."""
 
     def events(codec: Codec) -> list[Any]:
         framer = codec.framer("reply", accept_unknown=accept_unknown)
@@ -79,7 +79,7 @@ def test_chunk_that_is_one_frame_has_the_same_events_and_counts(
 
 
 def _readings(codec: Codec, frame: Frame, names: list[str]) -> Iterator[Any]:
-    """Yield how a framer's frame decodes in each direction and as each of the commands."""
+    """Yield the results of decoding a framer's frame in each direction and as each command."""
     yield _outcome(lambda: repr(frame.message)), _outcome(lambda: repr(frame.values))
     for name in [None, *names]:
         yield _outcome(lambda: repr(frame.decode(of=name)))  # noqa: B023  (called at once)

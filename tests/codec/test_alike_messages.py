@@ -1,6 +1,6 @@
 """Messages that share an id and a size: the errors of their values, and which one is encoded.
 
-``tests/found/frames.txt`` has what each frame is decoded as, or why it is rejected.
+``tests/found/frames.txt`` states how each frame is decoded, or why it is rejected.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """The native codec reads large streams in blocks of 128 KiB, three positions of each at once.
 
-It finds what its framer and decoder find one by one, whichever frames a position in the middle of
-a block seems to start.
+It finds the same frames as its framer and decoder, even if bytes at a position inside a block look
+like the start of another frame.
 """
 
 from __future__ import annotations

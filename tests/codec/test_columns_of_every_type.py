@@ -35,7 +35,7 @@ def sensor(table: Any, request: pytest.FixtureRequest) -> Codec:
     return codecs.load(table, request.param)
 
 
-def test_types_are_those_of_the_fields_and_stay_without_rows(sensor: Codec) -> None:
+def test_column_types_follow_the_fields_even_without_rows(sensor: Codec) -> None:
     right = {
         ("get_name", "label"): pa.utf8(),
         ("get_name", "serial"): pa.binary(),

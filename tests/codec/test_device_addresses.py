@@ -1,4 +1,4 @@
-"""Rows of devices that share a line say which device each of them belongs to.
+"""Each row of devices that share a line has the address of its device.
 
 ``test_agreement.py``, ``test_segments.py`` and ``test_message_tables.py`` compare the addresses of
 all rows of such an edition.

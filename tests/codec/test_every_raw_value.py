@@ -17,7 +17,7 @@ EACH = 64
 
 
 def _kinds() -> list[Number]:
-    """Return each kind of scaled 16-bit number of the shipped editions: what its bytes mean."""
+    """Return each different scaled 16-bit number of the shipped editions, without its name."""
     tables = [editions.load(name).TABLE for name in editions.names()]
     found = {
         number._replace(name="", unit="")

@@ -1,4 +1,4 @@
-"""The framing laws, as properties of both codecs, and the lines that showed why they are needed.
+"""The framing laws, as properties of both codecs, and the streams that showed the need for them.
 
 Every frame sent is known. The tests decide by the table, without a codec, which frames are legal.
 """
@@ -27,7 +27,7 @@ EACH_CODEC = pytest.mark.parametrize("name", strategies.CODECS)
 
 
 def _legal(table: Table, listening: Listening, data: bytes) -> bool:
-    """Return whether the bytes are a frame by the table."""
+    """Return whether the bytes are a legal frame of the table."""
     for command in table.commands:
         for direction in strategies.DIRECTIONS:
             for variant in command.variants(direction) if listening in (direction, "both") else ():

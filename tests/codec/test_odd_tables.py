@@ -1,4 +1,4 @@
-"""Both codecs on tables that no edition has: signs of zero, order and sizes of lists."""
+"""Run both codecs on tables that no edition has: signs of zero, order and sizes of lists."""
 
 from __future__ import annotations
 

@@ -99,7 +99,7 @@ def test_noise_of_longer_out_is_not_in_the_result(codec: Codec) -> None:
 
 
 def test_out_with_commands_that_the_edition_lacks_is_accepted(codec: Codec) -> None:
-    # The reference keeps the memory of any ``out``, of whatever edition.
+    # ``out`` may come from another edition.
     table = small_tables.table(
         small_tables.command(
             1, "unknown", (Variant((small_tables.field("a", small_tables.number()),)),)
@@ -128,7 +128,7 @@ def _without_reply(table: Table) -> Any:
 
 
 def test_views_and_reuse_in_several_threads_never_change_a_viewed_column(codec: Codec) -> None:
-    # A view shows the three rows of the earlier columns, or none if their memory was taken before.
+    # A view shows the three rows of the earlier columns, or none if their memory is already reused.
     stream = ANGLES * 3 + FLAG
     shared = codec.decode_columns(stream, "reply")
     seen: list[Any] = []
@@ -158,7 +158,7 @@ def test_views_and_reuse_in_several_threads_never_change_a_viewed_column(codec: 
     not sysconfig.get_config_var("Py_GIL_DISABLED"),
     reason="this interpreter is not free-threaded",
 )
-def test_free_threaded_interpreter_takes_its_lock_again() -> None:
+def test_native_codec_enables_the_lock_of_a_free_threaded_interpreter() -> None:
     # The native codec does not claim to be safe without the lock, since no test shows that.
     import cobotwire._native
 

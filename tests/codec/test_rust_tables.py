@@ -1,4 +1,4 @@
-"""Rust reads the table that Python has from an ``edition.json``, and makes the same error texts.
+"""Rust reads the same table as Python from an ``edition.json``, and makes the same error texts.
 
 The codec in Rust is tested as the native codec: it interprets the same tables.
 """
@@ -53,7 +53,7 @@ def text_of(act: Callable[..., object], *arguments: object) -> str | None:
 
 
 def given_value(value: Any) -> Any:
-    """Return a value that Python and the Rust clients both know."""
+    """Return a value that Python and the Rust clients can both represent."""
     if isinstance(value, tuple | list):
         return tuple(map(given_value, value))
     if isinstance(value, bytearray | memoryview):
@@ -103,7 +103,7 @@ def check_texts(data: st.DataObject, probe: Probe, path: Path, table: Table, tim
 
 
 def native_table(table: Table) -> str:
-    """Return the table that the native codec interprets, in Rust's words."""
+    """Return the table that the native codec interprets, as Rust prints it."""
     codec: Any = NativeCodec(table)
     text: str = codec._core_table()
     return text
@@ -137,7 +137,7 @@ def test_random_edition_has_same_table_and_texts(
 
 
 def changed(document: Any, dice: Random) -> Any:
-    """Return a document in which a random value is another one."""
+    """Return a copy of a document with one random value replaced."""
     keys = [*range(len(document))] if isinstance(document, list) else []
     keys = [*document] if isinstance(document, dict) else keys
     if not keys or dice.random() < 0.1:
@@ -148,7 +148,7 @@ def changed(document: Any, dice: Random) -> Any:
 
 
 @pytest.mark.parametrize("name", DAMAGED)
-def test_damaged_file_gives_table_or_sentence(probe: Probe, tmp_path: Path, name: str) -> None:
+def test_damaged_file_gives_table_or_text(probe: Probe, tmp_path: Path, name: str) -> None:
     dice, data = Random(name), MYCOBOT.parent.with_name(name).joinpath("edition.json").read_bytes()
     document = json.loads(data)
     for number in range(80):
@@ -162,7 +162,7 @@ def test_damaged_file_gives_table_or_sentence(probe: Probe, tmp_path: Path, name
         assert all(text is None or " " in text for text in probe.ask(steps))
 
 
-def test_mistake_is_named_with_its_place(probe: Probe, tmp_path: Path) -> None:
+def test_error_text_names_the_part_of_the_file_that_is_wrong(probe: Probe, tmp_path: Path) -> None:
     text, deadline = MYCOBOT.read_text("utf-8"), '"deadline_ms": 500, "reply"'
     version, wrong = '"version": 3', deadline.replace("500", '"x"')
     joint, wire = '"name": "joint", "type": "joint"', '"kind": "quantity", "wire": "byte"'

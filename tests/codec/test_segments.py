@@ -82,7 +82,7 @@ def divided(
 
 @st.composite
 def cuts(draw: st.DrawFn, size: int) -> list[int]:
-    """Draw any cuts, also several at one byte, or even ones."""
+    """Draw arbitrary cuts, of which some may be equal, or evenly spaced ones."""
     if draw(st.booleans()):
         return list(even_cuts(size, draw(st.integers(1 + size // 12, size + 1))))
     return sorted(draw(st.lists(st.integers(0, size), max_size=6)))

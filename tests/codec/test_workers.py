@@ -1,6 +1,6 @@
 """Several threads that read one stream return what one thread returns.
 
-``rust/core/tests/workers.rs`` cuts small streams at every place.
+``rust/core/tests/workers.rs`` cuts small streams at every offset.
 """
 
 from __future__ import annotations
@@ -125,7 +125,7 @@ def mapped(data: bytes) -> mmap.mmap:
     return found
 
 
-@pytest.mark.skipif(processors() < 2, reason="one processor has no use for two threads")
+@pytest.mark.skipif(processors() < 2, reason="needs two processors")
 def test_threads_share_the_work() -> None:
     codec = codec_of("mycobot280", "native")
     stream = ANGLES * (4 * LARGE // 17)
