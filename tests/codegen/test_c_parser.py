@@ -17,7 +17,7 @@ from cobotwire_codegen.load import DEEPEST, loaded
 from vectors import ROOT
 
 SPECS = sorted((ROOT / "spec").rglob("*.yaml"))
-# Enough of real specs to be changed: flow and block style, quotes, folded texts, comments.
+# The styles of real specs, for tests that change them: flow, block, quotes, folded texts, comments.
 SAMPLE = """\
 # a command
 commands:
@@ -38,7 +38,7 @@ commands:
 """
 
 
-def _told(node: Node | None) -> Any:
+def _content(node: Node | None) -> Any:
     """Return what the generator reads from a node: kind, tag, place, content."""
     if node is None:
         return None
@@ -46,13 +46,13 @@ def _told(node: Node | None) -> Any:
     if isinstance(node, ScalarNode):
         return ("scalar", str(node.tag), place, node.value)
     if isinstance(node, MappingNode):
-        return ("mapping", place, [(_told(key), _told(value)) for key, value in node.value])
-    return ("sequence", place, [_told(item) for item in node.value])
+        return ("mapping", place, [(_content(key), _content(value)) for key, value in node.value])
+    return ("sequence", place, [_content(item) for item in node.value])
 
 
 def _in_python(text: str) -> Any:
     try:
-        return _told(YAML(typ="safe", pure=True).compose(text))
+        return _content(YAML(typ="safe", pure=True).compose(text))
     except YAMLError as error:
         return f"rejected: {error}"
 
@@ -62,7 +62,7 @@ def _agree(text: str) -> bool:
     root = plain_root(text, DEEPEST)
     if root is None:
         return False
-    assert _told(root) == _in_python(text)
+    assert _content(root) == _in_python(text)
     return True
 
 
@@ -82,7 +82,7 @@ def test_most_spec_files_are_plain() -> None:
 
 @st.composite
 def changed_samples(draw: st.DrawFn) -> str:
-    """Draw the sample with some pieces replaced by characters that mean something to YAML."""
+    """Draw the sample with some pieces replaced by characters that have a meaning in YAML."""
     text = SAMPLE
     for _ in range(draw(st.integers(1, 4))):
         start = draw(st.integers(0, len(text)))

@@ -141,7 +141,7 @@ def test_moved_id_is_in_the_derived_vectors() -> None:
     assert (after.frame[4:], after.values) == (after.derived.frame[4:], after.derived.values)
 
 
-def test_removed_command_takes_its_vectors_along() -> None:
+def test_vectors_of_a_removed_command_are_removed() -> None:
     edition = built(f"changes:\n  - remove: [get_coords, send_coords]\n    {WHY}")
     assert not {"get_coords", "send_coords"} & {vector.command for vector in edition.vectors}
     assert not [found for found in problems(edition) if "vector" in found.partition(":")[0]]

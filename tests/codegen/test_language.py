@@ -63,7 +63,7 @@ def test_example_of_a_record_is_valid_by_schema_and_reader(record: type[Record])
 
 
 def _refused(record: type[Record], text: str) -> tuple[list[str], list[str]]:
-    """Return what the schema and the reader say about a record that is written like this."""
+    """Return the errors of the schema and of the reader for the text of a record."""
     node, problems = parse(text, "example.yaml"), list[Problem]()
     rule = {"$ref": f"#/definitions/{record.definition()}", "definitions": DEFINITIONS}
     reader = Reader(node, record, "the example", problems)
@@ -75,12 +75,12 @@ def _refused(record: type[Record], text: str) -> tuple[list[str], list[str]]:
 
 @pytest.mark.parametrize("record", RECORDS, ids=_name)
 def test_unknown_key_or_word_is_rejected_by_schema_and_reader(record: type[Record]) -> None:
-    for said in _refused(record, "zz_unknown: 1"):
-        assert any("zz_unknown" in text for text in said)
+    for errors in _refused(record, "zz_unknown: 1"):
+        assert any("zz_unknown" in text for text in errors)
     for key in record.keys().values():
         if isinstance(key.shape, Word):
-            for said in _refused(record, f"{key.name}: zzz"):
-                assert any("zzz" in text for text in said), key.name
+            for errors in _refused(record, f"{key.name}: zzz"):
+                assert any("zzz" in text for text in errors), key.name
 
 
 @pytest.mark.parametrize("record", RECORDS, ids=_name)
@@ -139,7 +139,7 @@ def test_command_without_an_id_is_refused_by_name() -> None:
 
 
 def _refusals(frame: dict[str, Any]) -> list[str]:
-    """Return the code of each problem of a frame format, and what it says cannot be stated."""
+    """Return the code of each problem of a frame format, with the limit that it names."""
     try:
         in_format({key: value for key, value in (USUAL | frame).items() if value is not None})
     except SpecError as error:
@@ -151,7 +151,7 @@ def _refusals(frame: dict[str, Any]) -> list[str]:
     return []
 
 
-# What authors write for well-known protocols, most of it as their documents say.
+# What authors write for well-known protocols, mostly in the words of their documents.
 USUAL = {
     "header": "FF FF",
     "length_counts": ["command", "data", "check"],

@@ -29,7 +29,7 @@ def leaves(value: Any) -> Iterator[str]:
             yield from leaves(part)
     elif is_dataclass(value) and not isinstance(value, type):
         for field in fields(value):
-            # ``gone`` is the place where the delta removes a command; its changes say so too.
+            # ``gone`` is where the delta removes a command; the place of that change is the same.
             if field.name == "gone":
                 continue
             if field.name != "place" or type(value).__name__ not in WITHOUT_PLACE:

@@ -22,7 +22,7 @@ def acknowledged(edition: Edition) -> set[str]:
     return {command.name for command in edition.commands if command.ack}
 
 
-def test_withdrawn_acks_leave_setters_without_reply_and_take_their_vectors_along() -> None:
+def test_withdrawn_acks_leave_setters_without_replies_and_reply_vectors() -> None:
     base = built()
     delta = built(f"changes:\n  - withdraw_acks: all\n    {WHY}")
     assert acknowledged(base)

@@ -19,8 +19,8 @@ from codegen.author import samples
 
 SOURCES = vectors.ROOT / "codegen/src/cobotwire_codegen"
 EXPLAINED: dict[str, list[str]] = YAML(typ="safe").load(Path(__file__).with_name("explained.yaml"))
-# Codes about a folder and about files that do not belong to an edition. Without the lines of its
-# commands, an edition has other problems first.
+# Codes about a folder, and about files that do not belong to an edition. An edition without
+# commands reports other problems first.
 WITHOUT_LINES = {
     "no-edition",
     "no-command",

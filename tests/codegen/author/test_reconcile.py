@@ -152,7 +152,7 @@ def test_capture_is_read_as_raw_bytes_or_hex_text() -> None:
     assert samples.run(vectors.ROOT, "reconcile", "-", given="FE F").returncode == 2
 
 
-def test_directions_of_a_recording_tell_requests_from_replies(tmp_path: Path) -> None:
+def test_directions_of_a_recording_distinguish_requests_from_replies(tmp_path: Path) -> None:
     path = tmp_path / "arm.pcapng"
     with path.open("wb") as file:
         writer = CaptureWriter(file)
@@ -161,7 +161,7 @@ def test_directions_of_a_recording_tell_requests_from_replies(tmp_path: Path) ->
             value, torn = bytes([7 * i]), _frame(0xE8, bytes([i, 3]))
             sent = _frame(0xEA, value) + _frame(0xEB, b"") + _frame(0x20, b"")
             writer.packet(Packet(i, "sent", sent, "bytes", interface=arms[0]))
-            # Between the parts of a reply of this arm comes one of the other arm.
+            # A reply of the other arm arrives between the two parts of this arm's reply.
             replies = torn[:3], _frame(0xE9, b"\1"), torn[3:] + _frame(0xEB, value)
             for arm, data in zip((arms[0], arms[1], arms[0]), replies):
                 writer.packet(Packet(i, "received", data, "bytes", interface=arm))

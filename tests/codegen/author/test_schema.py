@@ -1,6 +1,6 @@
-"""The schema is complete and closed, and is written for the project and for users.
+"""The schema knows all keys and rejects others; the project and users can generate it.
 
-``test_language.py`` tests for each record that it rejects the same as the reader.
+``test_language.py`` tests that the schema and the reader reject the same, for each record.
 """
 
 from __future__ import annotations

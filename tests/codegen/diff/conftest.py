@@ -23,7 +23,7 @@ def build(tmp_path: Path) -> Build:
         base = (HERE / "base.yaml").read_text()
         folder = tmp_path / f"spec-{len(list(tmp_path.iterdir()))}"
         folder.mkdir()
-        # The same base again, for a delta that extends another one.
+        # A second copy of the base, for a delta whose base changes.
         for name in ("base", "former"):
             (folder / f"{name}.yaml").write_text(base)
         text = (HERE / f"{file}.yaml").read_text()

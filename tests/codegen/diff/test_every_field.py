@@ -23,7 +23,7 @@ from cobotwire_codegen.model import Edition
 
 HERE = Path(__file__).parent
 PLACE = Place("test", 1, 1)
-# Fields that say where something stands or stood in the spec, or that follow from other fields.
+# Fields that hold a position in the spec, or that follow from other fields.
 PLACES = ("place", "root", "gone", "by_role", "read_by")
 RECORDS = [
     item
@@ -31,8 +31,8 @@ RECORDS = [
     if isinstance(item, type)
     and is_dataclass(item)
     and item.__module__.startswith(model.__name__)
-    # The frames of the small spec have only a footer; below, a check is put in its place. Which
-    # query reads a command back follows from effects.
+    # Frames of the small spec have a footer and no check; a test below adds one. ReadBack follows
+    # from effects.
     and item not in (model.FrameCheck, model.ReadBack)
 ]
 FIELDS = [
@@ -184,7 +184,7 @@ def test_diff_of_random_specs_has_findings_exactly_if_they_differ(chosen: list[i
 
 
 def moved(value: Any) -> Any:
-    """Return a part of a model at other places in its files."""
+    """Return a part of a model with every position one line further down."""
     if isinstance(value, Place):
         return replace(value, line=value.line + 1)
     if isinstance(value, tuple):
@@ -195,7 +195,7 @@ def moved(value: Any) -> Any:
 
 
 def test_edition_has_no_difference_from_itself_at_other_places() -> None:
-    # Parts that are equal with their places are not compared further.
+    # Without other positions, the parts would be equal, and ``diff`` would not look into them.
     assert moved(vectors.edition()).commands[0] != vectors.edition().commands[0]
     assert diff(vectors.edition(), moved(vectors.edition())) == ()
     assert diff(vectors.edition(), vectors.edition()) == ()

@@ -51,7 +51,7 @@ def test_proposals_follow_from_the_position(text: str, expected: set[str]) -> No
     assert expected <= set(proposed(text))
 
 
-def test_every_position_of_broken_text_has_an_answer() -> None:
+def test_completion_raises_nothing_at_any_position_of_incomplete_text() -> None:
     text = COMMANDS.replace("|", "")
     for end in range(len(text)):
         cut = text[:end]

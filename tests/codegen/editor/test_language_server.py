@@ -21,7 +21,7 @@ SECONDS = 30.0
 
 
 class Editor:
-    """What an editor does."""
+    """An editor that shows files and sends requests to the server."""
 
     def __init__(self, client: LanguageClient) -> None:
         self.client = client
