@@ -1,4 +1,4 @@
-"""Reports state the circumstances of a run, without what belongs to the tester's machine."""
+"""Reports state the circumstances of a run, without paths of the tester's machine."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ def test_removing_paths_twice_equals_removing_them_once(text: str, paths: str) -
         assert without_paths(without_paths(each)) == without_paths(each)
 
 
-def test_bytes_of_a_line_stay_as_they_were() -> None:
+def test_paths_are_removed_from_the_bytes_of_codecs_but_not_of_devices() -> None:
     data = b"/home/me/x"
     result = Result("a", "b", Verdict.FAIL, "see /home/me/x", (Exchange(0.1, "sent", data),))
     for kind, kept in (("device", data), ("codec", b"x")):

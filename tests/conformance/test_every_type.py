@@ -62,7 +62,7 @@ def test_device_that_changes_a_byte_of_a_value_fails(
 def test_right_codec_conforms(
     sensor: Any, questions: list[Question], name: codecs.CodecName
 ) -> None:
-    # All 43,000 take a few seconds; a prime step meets every kind.
+    # All 43,000 questions take seconds; a prime step still includes every kind.
     codec = OurCodec(codecs.load(sensor.TABLE, name))
     assert Run(sensor.TABLE, codec).ask_all(questions[::43]).conforms
 

@@ -1,4 +1,4 @@
-"""The kind of a mistake is guessed from the expected and the received numbers of a row."""
+"""The likely mistake is derived from the right numbers of a row and the received ones."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ NUMBERS = TABLE.command("get_angles").reply[0].fields[0].cases[0].numbers
 RIGHT = (17.57, -13.18, 7.91, 26.36, -5.27, 36.03)
 
 
-def guess(came: Sequence[float], right: Sequence[float] = RIGHT) -> str:
-    rows = zip(NUMBERS, right, came)
+def guess(received: Sequence[float], right: Sequence[float] = RIGHT) -> str:
+    rows = zip(NUMBERS, right, received)
     return likely_mistake([Pair(number.name, a, b, 0.1, number) for number, a, b in rows])
 
 
 @pytest.mark.parametrize(
-    ("came", "words"),
+    ("received", "words"),
     [
         (RIGHT, ""),
         ([n + 0.05 for n in RIGHT], ""),
@@ -35,9 +35,9 @@ def guess(came: Sequence[float], right: Sequence[float] = RIGHT) -> str:
     ],
 )
 def test_likely_mistake_names_what_explains_all_wrong_numbers(
-    came: Sequence[float], words: str
+    received: Sequence[float], words: str
 ) -> None:
-    assert words in guess(came) if words else guess(came) == ""
+    assert words in guess(received) if words else guess(received) == ""
 
 
 def test_swapped_bytes_are_recognised() -> None:

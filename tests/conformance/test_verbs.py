@@ -1,4 +1,4 @@
-"""Run the verbs; check output, files and exit codes."""
+"""Run the verbs of ``cobotwire conform``; check output, files and exit codes."""
 
 from __future__ import annotations
 

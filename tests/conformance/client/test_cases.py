@@ -64,7 +64,7 @@ def line(name: str, *values: object) -> ScriptLine:
 
 
 LOST = ("lost",)
-# The faults of the line, what the client writes, and what the reason says.
+# The faults of the line, the writes of the client, and a part of the reason.
 FAILING: dict[str, tuple[Sequence[str], Writes, str]] = {
     "frame-length": (
         (),

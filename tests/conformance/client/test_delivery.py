@@ -64,6 +64,6 @@ def test_late_reply_to_an_equal_request_ends_the_wait(next_at: float, *, waits: 
     assert failed == (set() if waits else {"reply-awaited"})
 
 
-def test_late_replies_come_after_three_and_four_in_turns() -> None:
+def test_late_replies_come_alternately_after_three_and_four_requests() -> None:
     late = [at for at, _ in _replies("late", every=3, requests=15) if at % 1 > 0.5]
     assert [int(at) + 1 for at in late] == [3, 7, 10, 14]

@@ -1,6 +1,6 @@
 """A failure of a client names its cause: the command, LEN, every wrong value, each occurrence.
 
-All bytes are written by hand, from the document and the list of today's firmware.
+All bytes are written by hand, from the document and the command list of current firmware.
 """
 
 from __future__ import annotations

@@ -111,7 +111,7 @@ def test_request_must_reach_the_address_of_the_script(bus: Any, meant: int) -> N
 
 
 @pytest.mark.parametrize(("to", "failing"), [(1, {"late-reply-expected"}), (2, set())])
-def test_late_reply_of_another_address_is_no_risk(bus: Any, to: int, failing: set[str]) -> None:
+def test_late_reply_of_another_address_needs_no_wait(bus: Any, to: int, failing: set[str]) -> None:
     clock, codec = SteppedClock(), codecs.load(bus.TABLE)
     referee = Referee(bus.TABLE, scenario=faulty_replies(0.008, ["lost"], 1), clock=clock)
     # Both registers have the same id, and their replies differ only in the address.

@@ -1,4 +1,4 @@
-"""A run without motion says if the arm stood at zero, where wrong scales and orders do not show."""
+"""A run without motion names joints at zero, where a wrong scale or order does not show."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
-"""A device broken by hand fails the test case and the command that name its fault.
+"""A device with a fault fails the test case and the command that name the fault.
 
-Most broken devices are in tests/mutation and tests/defects; these are not.
+Most broken devices are in tests/mutation and tests/defects; this file has the others.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ BROKEN: Mapping[str, tuple[str, Callable[[bytes], bytes], str]] = {
         lambda reply: bytes.fromhex("FE FE 03 6A 00 FA"),
         "acknowledgement",
     ),
-    "unlike each other": (
+    "replies that differ": (
         "get_modify_version",
         lambda reply: reply[:4] + bytes([next(NUMBERS) % 256]) + reply[5:],
         "reply-repeats",
@@ -141,7 +141,7 @@ def test_wrong_speed_of_a_servo_fails(
     assert named in result.reason
 
 
-def test_message_names_what_a_query_reports_by_the_names_of_its_values() -> None:
+def test_reason_shows_enum_members_by_name() -> None:
     table = editions.load("mercury_a1").TABLE
     codec, query = codecs.load(table), table.command("is_drag_fifo_empty")
 

@@ -22,7 +22,7 @@ from vectors import sampled
 
 
 def _tester(edition: str, *, stated: bool = True, **options: Any) -> Tester:
-    """Return a tester with all permissions; ``stated``: the arm says which queries it lacks."""
+    """Return a tester with all permissions; ``stated``: the arm notes which queries it lacks."""
     table = editions.load(edition).TABLE
     clock, lacking = SteppedClock(), Lacking(table)
     arm = SimulatedArm(table, clock=clock, on_note=lacking.note if stated else None)
@@ -43,7 +43,7 @@ def test_simulated_arm_of_an_edition_conforms(edition: str) -> None:
     assert edition not in COMPLETE or passed == len(report.results)
 
 
-# The edition of the document and its delta have everything that the test cases are about.
+# The edition of the document and its delta have everything that the test cases need.
 COMPLETE = ("mycobot", "mycobot280")
 
 

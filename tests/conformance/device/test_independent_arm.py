@@ -1,4 +1,4 @@
-"""Runs on an arm that shares no code with the package end early, are resumed and are repeated."""
+"""End, resume and repeat runs on an arm that shares no code with the package."""
 
 from __future__ import annotations
 
@@ -40,8 +40,8 @@ def test_arm_that_stops_replying_ends_the_run_at_once() -> None:
 
 
 def test_resumed_run_runs_only_what_is_left_and_has_the_same_results() -> None:
-    alone = prepared_for("", "setting")
-    whole = alone.run()
+    uninterrupted = prepared_for("", "setting")
+    whole = uninterrupted.run()
     first = prepared_for("dies", "setting").run()
     again = prepared_for("", "setting")
     ended = again.run(plan=Plan(from_json(to_json(first)), resume=True))
@@ -49,8 +49,8 @@ def test_resumed_run_runs_only_what_is_left_and_has_the_same_results() -> None:
     assert [(r.group, r.outcome, r.case, r.command) for r in ended.results] == [
         (r.group, r.outcome, r.case, r.command) for r in whole.results
     ]
-    # What the first run had done is not sent again.
-    assert again.connection.mark < alone.connection.mark - 50
+    # Requests of the first run are not sent again.
+    assert again.connection.mark < uninterrupted.connection.mark - 50
 
 
 def test_repeated_run_keeps_the_order_of_the_report() -> None:

@@ -16,7 +16,7 @@ from conformance.device.testing import HELD, permissions, settings_of
 
 TABLE = editions.load("mycobot").TABLE
 ALLOWED = permissions("setting", "persistent-write", "power", "motion")
-# A joint that is stopped needs a moment to come to rest, in seconds.
+# Seconds in which a stopped joint comes to rest.
 SLOWS_DOWN = 0.5
 
 

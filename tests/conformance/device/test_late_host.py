@@ -1,6 +1,6 @@
 """Stalls of the host fail no device. The clock is stepped, so load does not matter.
 
-A stall is time that passes between a request and the next look at the port.
+A stall is a pause of the host between a request and the next read of the port.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from defects.devices import CLOSED_LOOP, OurTester
 
 
 class StallingTransport(MemoryTransport):
-    """A connection on which each ``every``-th write is followed by a stall, in seconds."""
+    """A connection that stalls for ``seconds`` after every ``every``-th write."""
 
     every, seconds, _writes = 1, 0.0, 0
 
@@ -31,22 +31,22 @@ class StallingTransport(MemoryTransport):
             self.clock.sleep(self.seconds)
 
 
-def run(way: str, every: int, seconds: float, table: Table = CLOSED_LOOP) -> Report:
+def run(arm: str, every: int, seconds: float, table: Table = CLOSED_LOOP) -> Report:
     clock = SteppedClock()
-    transport = StallingTransport(closed_loop_arm(clock, way), clock)
+    transport = StallingTransport(closed_loop_arm(clock, arm), clock)
     transport.every, transport.seconds = every, seconds
     allowed = permissions(*ALL_PERMISSIONS)
     return OurTester(DeviceConnection(transport, clock), table, permissions=allowed).run()
 
 
 STALLS = [(2, 0.02), (3, 0.06), (5, 0.3), (7, 0.8), (13, 3.0)]
-WAYS = ["", "acknowledges-late", "fast"]
+ARMS = ["", "acknowledges-late", "fast"]
 
 
-@pytest.mark.parametrize(("way", "stall"), vectors.sampled_pairs(WAYS, STALLS))
-def test_stalls_of_the_host_fail_no_device(way: str, stall: tuple[int, float]) -> None:
+@pytest.mark.parametrize(("arm", "stall"), vectors.sampled_pairs(ARMS, STALLS))
+def test_stalls_of_the_host_fail_no_device(arm: str, stall: tuple[int, float]) -> None:
     every, seconds = stall
-    report = run(way, every, seconds)
+    report = run(arm, every, seconds)
     assert [f"{r.group}, {r.case} {r.command}: {r.reason}" for r in report.failures] == []
 
 
@@ -64,7 +64,7 @@ def test_report_shows_the_pauses_that_were_made() -> None:
     assert "12 to 12 ms" in found[0].reason
 
 
-def test_case_moving_needs_a_slow_motion_of_an_arm_that_arrives_at_once() -> None:
+def test_case_moving_is_not_timed_on_an_arm_that_arrives_at_once() -> None:
     report = run("very-fast", 1, 0.02)
     found = {r.command: r for r in report.results if r.case == "moving"}
     assert found["send_angles"].outcome == "inconclusive (not timed)"

@@ -92,7 +92,7 @@ def _pytest(folder: Path, url: str, *words: str) -> subprocess.CompletedProcess[
     return subprocess.run(command, capture_output=True, text=True, check=False, cwd=folder)
 
 
-# The first command runs the verb; the second makes a test of each test case and command.
+# The first command runs the verb; the second runs each test case and command as a pytest test.
 @pytest.mark.parametrize("number", range(2))
 def test_commands_of_the_recipe_work(number: int, tmp_path: Path) -> None:
     page = (vectors.ROOT / "docs" / "conformance.md").read_text()

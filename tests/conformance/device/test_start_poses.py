@@ -1,4 +1,4 @@
-"""A simulated arm conforms from any start pose; a wrong calculation is found from any.
+"""From any start pose, a simulated arm conforms, and a wrong calculation is found.
 
 A straight elbow or wrist hides the angles from rounded coordinates. ``POSES=500`` draws more poses
 (``make conform`` does).

@@ -1,4 +1,4 @@
-"""A device that ignores a command fails by the query that reports what the command states."""
+"""A device that ignores a command fails if a query can report the stated effect."""
 
 from __future__ import annotations
 

@@ -51,7 +51,7 @@ def results_of(tester: Tester, *commands: str) -> list[Result]:
 
 
 class Altered:
-    """A peer that replies what ``alter`` returns for request, reply and number of the request."""
+    """A peer that replies with ``alter(request, reply, number of the request)``."""
 
     def __init__(self, peer: Peer, alter: Callable[[bytes, bytes, int], bytes]) -> None:
         self._peer = peer

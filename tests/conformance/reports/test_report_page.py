@@ -1,4 +1,4 @@
-"""The page of a whole run is short, says first what matters, and cannot be changed by a device."""
+"""The page of a whole run is short, shows failures first, and contains no markup of a device."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A report that was changed, or signed with another key, is noticed."""
+"""Verification detects a report that was changed, or signed with another key."""
 
 from __future__ import annotations
 
@@ -115,7 +115,7 @@ def test_changed_report_is_not_read() -> None:
         from_json(text.replace('"arm"', '"another"'))
 
 
-def test_signed_survey_is_verified_and_a_change_of_facts_or_recording_noticed(
+def test_signed_survey_is_verified_and_changed_facts_or_recordings_are_detected(
     tmp_path: Path,
 ) -> None:
     key, file = key_file(tmp_path), tmp_path / "survey.zip"

@@ -17,7 +17,7 @@ from defects.devices import LEFT_OUT
 
 CAN_LACK = [c for c in TABLE.commands if not is_mandatory(c) and c.name not in LEFT_OUT]
 ALL_QUERIES = [command for command in CAN_LACK if command.safety == "query"]
-# With a part of the commands, the device may have only one of two that refer to each other.
+# A device that lacks only some commands may have just one of two that refer to each other.
 QUERIES = {f"queries, share {at}": ALL_QUERIES[at::4] for at in range(4)}
 LACKED = {
     "all": CAN_LACK,

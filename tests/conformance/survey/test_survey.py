@@ -1,4 +1,4 @@
-"""A survey names what is wrong with an arm, and says nothing wrong about a correct one."""
+"""A survey names the fault of a wrong arm, and contradicts nothing on a correct one."""
 
 from __future__ import annotations
 
@@ -164,7 +164,7 @@ def test_long_evidence_of_a_fact_is_hex_that_a_reader_of_the_file_accepts() -> N
     assert [len(bytes.fromhex(fact["frames"][0][k])) for k in ("sent", "received")] == [60, 300]
 
 
-def test_query_that_a_part_of_the_robot_never_replies_to_contradicts_no_effect() -> None:
+def test_query_without_replies_at_one_address_contradicts_no_effect() -> None:
     table = editions.load("mybuddy").TABLE
     survey = Survey(connected(table), table, address="left")
     survey.run()
