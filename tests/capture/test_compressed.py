@@ -64,7 +64,7 @@ def test_cut_compressed_capture_is_truncated(compress: Compress, path: Path) -> 
 def test_damaged_compression_is_reported_after_everything_before_it(
     compress: Compress, path: Path
 ) -> None:
-    # The second part is damaged: neither format can go on after it.
+    # The second part is damaged: neither format can be read beyond it.
     path.write_bytes(compress(PLAIN[:64_000]) + b"\x1f\x8b\x08damage")
     with pytest.raises(CaptureError, match="compressed data is damaged") as caught:
         read_columns(path, NATIVE)

@@ -23,14 +23,14 @@ from cobotwire.editions.mybuddy import TABLE
 from cobotwire.simulator import MemoryTransport, SimulatedArm, SteppedClock
 
 LEFT, RIGHT = [10.0, -20.0, 30.0, -40.0, 50.0, -60.0], [1.0, 2.0, 3.0, 4.0, 5.0, 6.0]
-WHOSE = ["LEFT", "RIGHT"] * 3
+DEVICES = ["LEFT", "RIGHT"] * 3
 
 both_codecs = pytest.mark.parametrize("name", ["native", "reference"])
 
 
 @pytest.fixture(scope="module")
 def buddy(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Record a myBuddy: its arms stand elsewhere, and each reports its angles three times."""
+    """Record a myBuddy: its arms have different poses, and each reports its angles three times."""
     path = tmp_path_factory.mktemp("devices") / "reported.pcapng"
     clock = SteppedClock()
     robot = SimulatedArm(TABLE, clock=clock, powered=True)
@@ -48,7 +48,7 @@ def buddy(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @both_codecs
-def test_rows_of_a_recording_say_which_arm_stands_where(buddy: Path, name: Any) -> None:
+def test_rows_of_a_recording_have_the_address_of_their_arm(buddy: Path, name: Any) -> None:
     codec = codecs.load(TABLE, name)
     found = read_columns(buddy, codec)
     rows = found.rows("get_angles")
@@ -61,7 +61,7 @@ def test_rows_of_a_recording_say_which_arm_stands_where(buddy: Path, name: Any) 
         assert np.abs(reported - angles).max() < 0.1
     table = found.to_arrow("get_angles", wide=True)
     assert table.column_names[:5] == ["time", "direction", "interface", "offset", "address"]
-    assert table["address"].to_pylist() == WHOSE
+    assert table["address"].to_pylist() == DEVICES
     assert pa.table(rows).select(range(5)).equals(table.select(range(5)))
     assert found.rows("is_power_on", "request").to_arrow()["address"].to_pylist() == ["WAIST"]
     assert found.rows("get_coords").to_numpy()["address"].shape == (0,)
@@ -74,7 +74,7 @@ def test_batches_keep_the_devices(buddy: Path, name: Any, piece: int) -> None:
     filled = [batch for batch in batches if batch.streams]
     assert len(filled) > 2
     tables = [batch.to_arrow("get_angles") for batch in filled]
-    assert pa.concat_tables(tables)["address"].to_pylist() == WHOSE
+    assert pa.concat_tables(tables)["address"].to_pylist() == DEVICES
 
 
 @both_codecs

@@ -93,7 +93,7 @@ def test_repair_of_any_prefix_keeps_the_whole_packets(
         assert list(again) == expected
         assert again.finished
         assert done.packets == len(expected)
-        # The lost bytes and the kept ones are the whole file.
+        # Lost and kept bytes add up to the whole file.
         lost = sum(end - begin for begin, end, _ in done.losses)
         assert whole[: size - lost] == out.read_bytes()[: size - lost]
         assert (size < len(whole)) == bool(done.lost_ranges or done.marked)
@@ -176,7 +176,7 @@ def test_unknown_blocks_and_comments_are_kept_byte_for_byte(tmp_path: Path) -> N
     strange = writer.block(4, b"names") + writer.block(0x0BAD, b"\x01\x02\x03\x04private")
     whole = section + written([Packet(5, "sent", b"x")])[len(blocks.section("cobotwire")) :]
     source, out = tmp_path / "in.pcapng", tmp_path / "out.pcapng"
-    # Only the length of the section is not stated any more.
+    # Editing removes only the stated length of the section.
     source.write_bytes(stated + (whole + strange)[len(section) :])
     cut(source, out, end_ns=9)
     assert out.read_bytes() == whole + strange

@@ -1,4 +1,4 @@
-"""Read what other programs wrote (``written_by_others/README.md``), and report what is wrong."""
+"""Read files of other programs (``written_by_others/README.md``), and report their mistakes."""
 
 from __future__ import annotations
 

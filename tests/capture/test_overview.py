@@ -1,4 +1,4 @@
-"""Count what recordings hold."""
+"""Count the messages, noise and gaps of recordings."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A dead man's switch stops the arm once for each silence, and never while signs of life come."""
+"""A dead man's switch stops the arm once for each silence, and only then."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""No call takes longer than the client's deadline, whatever the line does and whoever else calls.
+"""No call takes longer than the client's deadline, on any line and with any number of callers.
 
 A request that was not sent by then is never sent. The error says whether it was sent.
 """

@@ -1,4 +1,4 @@
-"""Follow paths and live targets: without pauses, with each way to end, with exactly one stop."""
+"""Follow paths and live targets: motion without pauses, every ending, exactly one stop."""
 
 from __future__ import annotations
 
@@ -87,9 +87,9 @@ def test_each_edition_follows_or_says_why_not(name: str) -> None:
 
 
 def once(values: dict[float, Any], clock: Watched) -> Callable[[], Any]:
-    """Return a source that turns joint 1, until it gives or raises the newest of timed values.
+    """Return a source that turns joint 1, until it returns or raises the newest of timed values.
 
-    ``values`` has the time from which each value is given; a type is raised.
+    ``values`` has the time from which each value is returned; a type is raised.
     """
 
     def source() -> Any:

@@ -51,7 +51,7 @@ class InterruptAt:
     def __call__(self, frame: FrameType, event: str, argument: Any) -> Any:
         if not any(f"cobotwire/{folder}/" in frame.f_code.co_filename for folder in FOLDERS):
             return None
-        # Python reports an exception of __del__, and goes on: it reaches no caller.
+        # Python reports an exception of __del__ and continues: no caller gets the exception.
         if frame.f_code.co_name == "__del__":
             return None
         if event == "line" and not self._calls_nothing(frame):
@@ -140,7 +140,7 @@ CALLS: dict[str, Callable[[MyCobot], object]] = {
 
 
 class Lines:
-    """The numbers of the lines to interrupt, until calls end before them.
+    """The numbers of the lines at which to interrupt a call, until calls have fewer lines.
 
     Which lines a call runs depends on the other threads, so one short call is not the end. With the
     reference codec a call runs many lines, of which every fifth is interrupted. When a call listens
@@ -191,7 +191,7 @@ def test_interrupt_at_any_line_delays_no_other_call(name: str, codec: Any) -> No
             others.slowest = 0.0
             lines.note(interrupted(lambda: CALLS[name](arm), number))
             before = others.calls
-            # Until each of them has ended the call that was under way, and made another one.
+            # Wait until each thread has ended its current call, and made another one.
             while others.calls < before + 6 and others.slowest < 5:
                 time.sleep(0.001)
             return others.slowest

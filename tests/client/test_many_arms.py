@@ -115,6 +115,6 @@ def _peers() -> Iterator[list[str]]:
 
 
 def _open_files() -> int:
-    """Return how many descriptors are open; none is left in garbage of this or an earlier test."""
+    """Return how many descriptors are open, after collecting garbage that may hold some."""
     gc.collect()
     return len(list(OPEN_FILES.iterdir()))

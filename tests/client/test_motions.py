@@ -68,7 +68,7 @@ def test_slow_move_raises_a_timeout_and_is_stopped(arm: Any) -> None:
     assert error.state.powered is True
     assert error.state.position is not None
     assert 0 < error.state.position[0] < 150
-    time.sleep(0.2)  # the arm needs a moment to stop
+    time.sleep(0.2)  # the arm takes some time to stop
     assert arm.is_moving() is False
 
 
@@ -115,7 +115,7 @@ def test_ctrl_c_stops_the_arm(simulated: SimulatedArm) -> None:
         with pytest.raises(KeyboardInterrupt):
             arm.move_angles([150, 0, 0, 0, 0, 0], 10)
         assert [one.data for one in traffic if one.direction == "sent"][-1] == STOP
-        time.sleep(0.2)  # the arm needs a moment to stop
+        time.sleep(0.2)  # the arm takes some time to stop
         assert arm.is_moving() is False
 
 
@@ -126,7 +126,7 @@ def test_cancelled_move_stops_the_arm(simulated: SimulatedArm) -> None:
             with pytest.raises(TimeoutError):
                 async with asyncio.timeout(0.3):
                     await arm.move_angles([150, 0, 0, 0, 0, 0], 10)
-            await asyncio.sleep(0.2)  # the arm needs a moment to stop
+            await asyncio.sleep(0.2)  # the arm takes some time to stop
             return await arm.is_moving()
 
     with PtyServer(simulated) as server:
@@ -193,7 +193,7 @@ def test_exception_that_leaves_the_block_stops_a_moving_arm_once(
         assert sent(traffic).count(STOP) == 1
         assert sent(traffic)[-1] == STOP
         with MyCobot280(server.url) as arm:
-            time.sleep(0.2)  # the arm needs a moment to stop
+            time.sleep(0.2)  # the arm takes some time to stop
             assert arm.is_moving() is False
 
 

@@ -1,4 +1,4 @@
-"""What a session leaves on its port is respected by the next one, of any process."""
+"""The next session on a port, in any process, respects the persisted state of the last one."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Arms that report an emergency stop: no client takes it for power, in any edition."""
+"""No client counts a reported emergency stop as power, in any edition."""
 
 from __future__ import annotations
 

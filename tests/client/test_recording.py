@@ -49,7 +49,7 @@ def test_existing_file_is_refused_as_by_the_command_line(open_arm: Opener, tmp_p
             Recording(path, None)
         assert str(by_client.value) == str(by_command_line.value)
         assert peer.received == b""
-        # The port was closed: nobody else has it.
+        # The port was closed, so it can be opened again.
         open_arm(peer.url).__exit__(None, None, None)
     assert path.read_bytes() == b"mine"
 
@@ -86,7 +86,7 @@ def test_full_disk_stops_the_recording_and_not_the_arm(
 
 def test_transport_of_the_users_own_is_recorded(tmp_path: Path) -> None:
     class Plain:
-        """A transport with nothing but what every transport needs."""
+        """A transport with only the required members."""
 
         url = "plain"
 

@@ -71,4 +71,4 @@ def test_method_has_ack_within_if_the_edition_has_an_acknowledgement(edition: st
 def test_name_that_an_edition_lacks_is_an_attribute_error() -> None:
     package: Any = editions.load("mycobot")
     with pytest.raises(AttributeError, match="no attribute 'Nothing'"):
-        package.Nothing  # noqa: B018  (looking is the point)
+        package.Nothing  # noqa: B018  (the lookup raises)

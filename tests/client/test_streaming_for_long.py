@@ -14,7 +14,7 @@ from cobotwire.simulator.behaviour import Behaviours
 from cobotwire.simulator.faults import Late, Lost, Scenario
 
 SAMPLES = 6_500
-# At the end, memory is traced, which takes most of the time; before, objects are counted.
+# Memory is traced only for the last samples, since that is slow; before, objects are counted.
 TRACED = 1_500
 # Every n-th reply is lost, 30 ms late, or later than its deadline of 500 ms.
 LOST, LATE = 2_500, 5_503

@@ -37,15 +37,15 @@ def test_samples_are_numbered_timed_and_typed(open_arm: Opener, server: PtyServe
         started = time.monotonic()
         samples = list(islice(stream, 25))
         assert [sample.number for sample in samples] == list(range(25))
-        moments = [started]
+        times = [started]
         for sample in samples:
             angles, encoder, coords = sample.values
             assert type(angles) is Angles
             assert type(coords) is Coords
             assert encoder == sample[get_encoder(2)] == 2048
             for reading in sample.readings:
-                moments += [reading.requested_at, reading.replied_at]
-        assert moments == sorted(moments)
+                times += [reading.requested_at, reading.replied_at]
+        assert times == sorted(times)
         report = stream.report
         assert report.samples == 25
         # A busy machine sometimes wakes late; no other period may be missed.

@@ -103,7 +103,7 @@ def test_exception_stops_both_arms_once_and_closes_both_ports(
     assert (left.closed, right.closed) == (True, True)
 
 
-def test_arms_keep_moving_after_an_exception_if_the_user_says_so(
+def test_arms_keep_moving_after_an_exception_with_on_error_leave(
     opening: Any, arms: tuple[Arm, Arm]
 ) -> None:
     left, right = arms

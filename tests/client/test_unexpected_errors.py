@@ -1,4 +1,4 @@
-"""Whatever is raised in a block, or while it is left: stop is sent, and the port is closed."""
+"""After any error in a block, or while it is left, stop is sent and the port is closed."""
 
 from __future__ import annotations
 

@@ -69,7 +69,7 @@ def _files(folder: Path) -> list[Path]:
 
 
 class TwiceEngine:
-    """Runs each task twice, as a cluster does that takes a slow worker for dead."""
+    """Runs each task twice, like a cluster that considers a slow worker dead."""
 
     def run(
         self, function: Callable[[Any], Any], tasks: Sequence[Any]

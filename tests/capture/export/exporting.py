@@ -1,4 +1,4 @@
-"""Export bytes and recordings, and say what the files must contain."""
+"""Export bytes and recordings, and compute what the files must contain."""
 
 from __future__ import annotations
 

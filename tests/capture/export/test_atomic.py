@@ -1,4 +1,4 @@
-"""Whatever ends an export, no file with a final name is incomplete, and the next run succeeds."""
+"""However an export ends, no file with a final name is incomplete, and the next run succeeds."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def test_interrupted_export_leaves_no_final_file_and_can_be_repeated(
     tmp_path: Path, number: signal.Signals
 ) -> None:
     out = tmp_path / "out"
-    # An export of standard input waits for more, so it is in the middle until the signal comes.
+    # An export of standard input waits for more bytes, so the signal interrupts it.
     process = subprocess.Popen([*PROGRAM, "export", "-", "-o", str(out)], stdin=subprocess.PIPE)
     assert process.stdin is not None
     process.stdin.write((ANGLES * 99 + POWERED) * 11_000)
@@ -60,7 +60,7 @@ def test_interrupted_export_leaves_no_final_file_and_can_be_repeated(
 
 
 def limited(*words: str | Path, limit: int) -> subprocess.CompletedProcess[str]:
-    """Run the command line in a process whose files may have ``limit`` bytes: a full disk."""
+    """Run the command line with files of at most ``limit`` bytes, as if the disk were full."""
     script = (
         # Python would write a part of each compiled file, and use it in later processes.
         "import resource, sys\nsys.dont_write_bytecode = True\n"
