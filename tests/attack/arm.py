@@ -75,7 +75,7 @@ class NumberingArm:
         return b"" if self.last is None else self.last.frame
 
     def flush(self) -> bytes:
-        """Return nothing: replies never come later."""
+        """Return nothing: each reply was sent at once."""
         return b""
 
     def _handle(self, event: RequestReceived) -> None:
@@ -176,12 +176,12 @@ class LabellingOutlet(Outlet):
         made = self._arm.last
         spans: list[Span] = []
         while data:
-            place = data.find(made.frame) if made is not None else -1
-            other = data if place < 0 else data[:place]
+            start = data.find(made.frame) if made is not None else -1
+            other = data if start < 0 else data[:start]
             if other:
                 label = "echo" if other == self._arm.arrived else "damage"
                 spans.append(Span(other, made, label))
-            if made is not None and place >= 0:
+            if made is not None and start >= 0:
                 spans.append(Span(made.frame, made, "reply"))
-            data = data[len(other) + (len(made.frame) if made is not None and place >= 0 else 0) :]
+            data = data[len(other) + (len(made.frame) if made is not None and start >= 0 else 0) :]
         return spans

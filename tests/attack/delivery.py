@@ -39,14 +39,14 @@ class Delivery:
         self._format = format
         self._spans: list[tuple[Span, bool]] = []
         # Where each span begins in all bytes that the arm sent.
-        self._places: list[int] = []
-        place, seen = 0, set[int]()
+        self._offsets: list[int] = []
+        offset, seen = 0, set[int]()
         for span in spans:
-            self._places.append(place)
+            self._offsets.append(offset)
             self._spans.append((span, span.label == "reply" and id(span.made) in seen))
             if span.label == "reply":
                 seen.add(id(span.made))
-            place += len(span.data)
+            offset += len(span.data)
         self._chunks = delivered
         self._times = [chunk.at for chunk in delivered]
         # Where each chunk begins in the delivered bytes.
@@ -81,14 +81,14 @@ class Delivery:
         return self._chunk(index)[0].at
 
     def _found(self, start: int, size: int) -> Found:
-        places = []
+        offsets = []
         for index in range(start, start + size):
             chunk, inside = self._chunk(index)
-            places.append(chunk.start + inside)
-        numbers = sorted({bisect_right(self._places, place) - 1 for place in places})
+            offsets.append(chunk.start + inside)
+        numbers = sorted({bisect_right(self._offsets, offset) - 1 for offset in offsets})
         return Found(
             at=self._at(start + size - 1),
             data=self._stream[start : start + size],
             spans=[self._spans[number] for number in numbers],
-            torn=places[-1] - places[0] != size - 1,
+            torn=offsets[-1] - offsets[0] != size - 1,
         )

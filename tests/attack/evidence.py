@@ -72,22 +72,22 @@ class Evidence:
     def handed_at(self, call: Call) -> float | None:
         """Return when the call's request was first handed to the system; None: never."""
         handed = self._record.handed
-        place = bisect_right(handed, (call.began, b""))
-        while place < len(handed) and handed[place][0] <= call.ended:
-            if handed[place][1].endswith(call.request):
-                return handed[place][0]
-            place += 1
+        index = bisect_right(handed, (call.began, b""))
+        while index < len(handed) and handed[index][0] <= call.ended:
+            if handed[index][1].endswith(call.request):
+                return handed[index][0]
+            index += 1
         return None
 
     def written_at(self, call: Call, handed: float) -> float | None:
         """Return when the system had taken all of a request; None: never."""
         taken = self._record.taken
-        place = bisect_right(taken, (handed, b""))
-        while place < len(taken) and taken[place][0] <= call.ended:
+        index = bisect_right(taken, (handed, b""))
+        while index < len(taken) and taken[index][0] <= call.ended:
             # A request that was taken in pieces ends with the last piece.
-            if call.request.endswith(taken[place][1]):
-                return taken[place][0]
-            place += 1
+            if call.request.endswith(taken[index][1]):
+                return taken[index][0]
+            index += 1
         return None
 
     def _origin(self, span: Span, copy: bool) -> str:
@@ -161,9 +161,9 @@ class Evidence:
     def _last_handed(self, request: bytes, before: float) -> float:
         """Return when a request was last handed over before a time; if never, that time."""
         handed = self._record.handed
-        for place in range(bisect_right(handed, (before, b"\xff")) - 1, -1, -1):
-            if handed[place][1].endswith(request):
-                return handed[place][0]
+        for index in range(bisect_right(handed, (before, b"\xff")) - 1, -1, -1):
+            if handed[index][1].endswith(request):
+                return handed[index][0]
         return before
 
     def _answered(self, made: Made) -> bool:

@@ -38,7 +38,7 @@ class Profile:
         breaks: how many seconds pass between two breaks of the line; 0: it does not break.
         closes: how many seconds pass until the client is closed and opened; 0: it is not.
         stalls: whether the peer stops reading now and then.
-        interrupts: whether Ctrl-C comes in the main thread.
+        interrupts: whether Ctrl-C is raised in the main thread.
         cancels: whether calls are cancelled.
         fresh: whether the users run in a fresh process.
         signals: whether Ctrl-C is a real signal; one of them ends the ``with`` block of the client.

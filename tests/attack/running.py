@@ -85,7 +85,7 @@ def _happen(line: HostileLine, setting: Setting, shared: Shared) -> None:
 
 
 def _stall(line: HostileLine, setting: Setting, random: Random) -> None:
-    """Stop reading, mostly until writes fail; then read again while short requests come."""
+    """Stop reading, mostly until writes fail; then read again while short requests are sent."""
     line.stalled = True
     with setting.record.filling:
         line.fill(random.randint(10, 200))

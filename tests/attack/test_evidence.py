@@ -32,7 +32,7 @@ def evidence_of_a_chain(second_ended: float) -> tuple[Evidence, Call]:
     """Return the evidence of three calls, and the third, which took the reply to the second.
 
     The first reply is delivered twice, and all values are equal. So the second call took the copy
-    if it ended before its own reply came.
+    if it ended before its own reply arrived.
     """
     first, second = reply(1.0, 10.00, False), reply(2.0, 10.07, False)
     calls = [

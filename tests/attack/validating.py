@@ -106,8 +106,8 @@ class Validator:
         if call.ack_within is None:
             return True
         times = self._arrived.get(call.request, [])
-        place = bisect_left(times, call.began)
-        return place < len(times) and times[place] <= call.ended
+        index = bisect_left(times, call.began)
+        return index < len(times) and times[index] <= call.ended
 
     def _validate_wrong(self, call: Call) -> None:
         limit = self._evidence.limit_of(call, self._plan.restores)
@@ -179,8 +179,8 @@ class Validator:
         return self._codec.decode("request", frame).command.safety != "query"
 
     def _fail(self, call: Call, reason: str, *more: str) -> None:
-        place = bisect_right([c.number for c in self._calls], call.number)
-        near = self._calls[max(0, place - 6) : place + 3]
+        index = bisect_right([c.number for c in self._calls], call.number)
+        near = self._calls[max(0, index - 6) : index + 3]
         around = [f"{'>>' if c is call else '  '} {c}" for c in near]
         self._note(f"{reason}: {call}", [*more, *around])
 

@@ -25,7 +25,7 @@ TALK = {"sent": ASKED + MOVED + ASKED, "received": ANGLES * 3}
 
 
 def opened(data: bytes, format: str | None = None, ports: tuple[int, ...] = ()) -> Recognised:
-    """Recognise a file that comes in blocks of 61 bytes."""
+    """Recognise a file from blocks of 61 bytes."""
     blocks = (data[at : at + 61] for at in range(0, len(data), 61))
     return recognise(blocks, "file", format, ports)
 
@@ -258,7 +258,7 @@ def test_file_is_read_while_its_bytes_are_used(name: str) -> None:
     def blocks() -> Iterator[bytes]:
         nonlocal left
         data = b"" if name == "xxd" else (FILES / name).read_bytes()
-        # The header of a pcap file comes once.
+        # A pcap file has one header.
         head = 24 if name.endswith(".pcap") else 0
         if head:
             yield data[:head]

@@ -111,8 +111,10 @@ def test_motion_that_the_arm_rejects_is_reported_after_it_was_sent() -> None:
     with PtyServer(SimulatedArm(mycobot280.TABLE, powered=True)) as server:
         result = cobotwire("call", server.url, "send_coords", "281,281,281,0,0,0", "30")
     assert result.returncode == 7
-    said = "send_coords was sent, but the arm's error register is 32: the inverse kinematics has no"
-    assert said in result.stderr
+    reported = (
+        "send_coords was sent, but the arm's error register is 32: the inverse kinematics has no"
+    )
+    assert reported in result.stderr
 
 
 def test_commands_that_end_a_motion_are_sent_to_any_arm() -> None:

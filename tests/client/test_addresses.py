@@ -198,7 +198,7 @@ def test_reply_belongs_to_a_request_only_if_its_address_does(duo: Any, talk: Any
     for target, repliers in talk:
         request = RequestEncoder(codec, find_address(duo.TABLE, target)).encode("get_angles", [])
         pending = submit(exchange, request, now, policy)
-        # By this time no late reply can come.
+        # After this time no late reply can arrive.
         now += 5.0
         assert exchange.outgoing(now, drained=True) == request.frame
         right = [target in (ALL, replier) for replier in repliers]

@@ -42,7 +42,7 @@ def run(peer: Any, drive: Callable[[AsyncMyCobot], Awaitable[Any]], **options: A
 
 
 async def begun(stream: AsyncStream, peer: Any) -> asyncio.Task[Any]:
-    """Return the task that waits for the next sample, after its request has come to the peer."""
+    """Return the task that waits for the next sample, after its request has reached the peer."""
     known = len(peer.received)
     task = asyncio.create_task(anext(stream))
     while len(peer.received) == known:

@@ -83,10 +83,10 @@ def _readings(codec: Codec, frame: Frame, names: list[str]) -> Iterator[Any]:
     yield _outcome(lambda: repr(frame.message)), _outcome(lambda: repr(frame.values))
     for name in [None, *names]:
         yield _outcome(lambda: repr(frame.decode(of=name)))  # noqa: B023  (called at once)
-        for way in strategies.DIRECTIONS:
-            read = _outcome(lambda: repr(frame.decode(way, of=name)))  # noqa: B023
+        for direction in strategies.DIRECTIONS:
+            read = _outcome(lambda: repr(frame.decode(direction, of=name)))  # noqa: B023
             # Decoding a framer's frame skips the second check, with the same result.
-            again = _outcome(lambda: repr(codec.decode(way, frame.data, of=name)))  # noqa: B023
+            again = _outcome(lambda: repr(codec.decode(direction, frame.data, of=name)))  # noqa: B023
             assert read == again
             yield read
 
@@ -127,8 +127,8 @@ def test_values_are_encoded_alike_or_rejected_with_the_same_message(
     table: Table, data: st.DataObject
 ) -> None:
     command = data.draw(st.sampled_from(table.commands))
-    ways = strategies.DIRECTIONS if command.reply else strategies.DIRECTIONS[:1]
-    direction: Direction = data.draw(st.sampled_from(ways))
+    directions = strategies.DIRECTIONS if command.reply else strategies.DIRECTIONS[:1]
+    direction: Direction = data.draw(st.sampled_from(directions))
     variant = data.draw(st.sampled_from(command.variants(direction)))
     values = data.draw(random_tables.values(variant))
     values += data.draw(st.sampled_from([(), (), (), (5,)]))

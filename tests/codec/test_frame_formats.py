@@ -23,7 +23,7 @@ from targets.expected import codec_of_edition
 
 CRC, SUM = sample("crc"), sample("sum")
 NAMES: list[codecs.CodecName] = ["reference", "native"]
-WAYS: list[Direction] = ["request", "reply"]
+DIRECTIONS: list[Direction] = ["request", "reply"]
 
 
 @pytest.fixture(params=NAMES)
@@ -68,16 +68,18 @@ def test_every_format_that_a_spec_can_state_is_sent_and_read_as_stated(data: st.
     address = data.draw(st.sampled_from(edition.frame.address_values or (None,)))
     content = data.draw(st.binary(min_size=2, max_size=20))
     values: dict[str, object] = {"data": content.hex(" ")}
-    for way in WAYS:
-        frame = stated_frame(record, id, content, address or 0, reply=way == "reply")
-        assert build_frame(edition.frame, edition.commands[0], way, values, address) == frame
+    for direction in DIRECTIONS:
+        frame = stated_frame(record, id, content, address or 0, reply=direction == "reply")
+        assert build_frame(edition.frame, edition.commands[0], direction, values, address) == frame
         for name in NAMES:
             codec = codec_of_edition(edition, name)
             assert (
-                codec.encode("send", way, (content,), variant=len(content) - 2, address=address)
+                codec.encode(
+                    "send", direction, (content,), variant=len(content) - 2, address=address
+                )
                 == frame
             )
-            assert codec.decode(way, frame).values == (content,)
-            [event] = codec.framer(way).feed(frame)
+            assert codec.decode(direction, frame).values == (content,)
+            [event] = codec.framer(direction).feed(frame)
             assert isinstance(event, Frame)
             assert event.data == frame

@@ -94,19 +94,19 @@ def test_zero_of_a_negative_scale_has_the_sign_that_the_reference_gives_it(
 
 
 @pytest.mark.parametrize("listening", ["request", "reply", "both"])
-@pytest.mark.parametrize("way", [None, "request", "reply"])
+@pytest.mark.parametrize("direction", [None, "request", "reply"])
 def test_error_about_an_unknown_id_names_the_requested_direction(
-    listening: Listening, way: Any
+    listening: Listening, direction: Any
 ) -> None:
     empty = (Variant(()),)
     table = small_tables.table(small_tables.command(1, "get", empty, empty))
     stream = table.frame.enclose(0x77, b"")
-    meant = way or ("request" if listening == "both" else listening)
+    meant = direction or ("request" if listening == "both" else listening)
     for codec in both(table):
         [frame] = codec.framer(listening, accept_unknown=True).feed(stream)
         assert isinstance(frame, Frame)
-        actions: list[Callable[[], Any]] = [lambda: frame.decode(way)]  # noqa: B023
-        if way is None:
+        actions: list[Callable[[], Any]] = [lambda: frame.decode(direction)]  # noqa: B023
+        if direction is None:
             actions += [lambda: frame.message, lambda: frame.values]  # noqa: B023
         for action in actions:
             with pytest.raises(ProtocolError, match=f"small has no {meant} with id 77"):

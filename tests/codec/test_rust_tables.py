@@ -92,13 +92,13 @@ def check_texts(data: st.DataObject, probe: Probe, path: Path, table: Table, tim
     codec, steps, expected = codecs.load(table, "reference"), list[Any](), list[str | None]()
     for _ in range(times):
         command = data.draw(st.sampled_from(table.commands))
-        way = data.draw(st.sampled_from(random_tables.WAYS))
-        values = data.draw(given_values(command.variants(way)))
+        direction = data.draw(st.sampled_from(random_tables.WAYS))
+        values = data.draw(given_values(command.variants(direction)))
         frame = data.draw(near_frames(table))
-        steps.append(["encode", str(path), way, command.name, plain(values)])
-        expected.append(text_of(codec.encode, command.name, way, values))
-        steps.append(["decode", str(path), way, frame.hex()])
-        expected.append(text_of(codec.decode, way, frame))
+        steps.append(["encode", str(path), direction, command.name, plain(values)])
+        expected.append(text_of(codec.encode, command.name, direction, values))
+        steps.append(["decode", str(path), direction, frame.hex()])
+        expected.append(text_of(codec.decode, direction, frame))
     assert [*zip(steps, probe.ask(steps))] == [*zip(steps, expected)]
 
 
@@ -157,8 +157,10 @@ def test_damaged_file_gives_table_or_text(probe: Probe, tmp_path: Path, name: st
         path.write_bytes(dice.choice([cut, json.dumps(changed(document, dice)).encode()]))
         sent = [(size, dice.choice(document["commands"])["id"]) for size in (2, 3, 5) * 9]
         frames = [f"fefe{size:02x}{command:02x}" + "fa" * (size - 1) for size, command in sent]
-        ways = dice.choices(random_tables.WAYS, k=len(frames))
-        steps = [["decode", str(path), way, frame] for way, frame in zip(ways, frames)]
+        directions = dice.choices(random_tables.WAYS, k=len(frames))
+        steps = [
+            ["decode", str(path), direction, frame] for direction, frame in zip(directions, frames)
+        ]
         assert all(text is None or " " in text for text in probe.ask(steps))
 
 

@@ -21,7 +21,7 @@ def test_present_version_has_the_digest_of_the_test_cases() -> None:
 
 def _changed(**changes: object) -> Suite[object]:
     first, *rest = SUITE.groups
-    return Suite("device", (replace(first, **changes), *rest))  # type: ignore[arg-type]  # as they come
+    return Suite("device", (replace(first, **changes), *rest))  # type: ignore[arg-type]  # any fields
 
 
 @pytest.mark.parametrize(

@@ -88,7 +88,9 @@ GOOD = packed(
 def report(results: list[tuple[str, str, str]], **changed: Any) -> bytes:
     """Return the JSON of a conformance report with results: test case, command, verdict."""
     line = [("sent", LIT), ("received", ACK)]
-    evidence = [{"at": 0.1, "direction": way, "data": data, "note": ""} for way, data in line]
+    evidence = [
+        {"at": 0.1, "direction": direction, "data": data, "note": ""} for direction, data in line
+    ]
     rows = [
         {"case": c, "command": n, "verdict": v, "reason": "It was late.", "evidence": evidence}
         for c, n, v in results

@@ -1,4 +1,4 @@
-"""Events and replies of other addresses come before the reply: neither ends a request."""
+"""An event, or a reply of another address, that precedes the reply does not end a request."""
 
 from __future__ import annotations
 

@@ -32,7 +32,7 @@ SERVED = [
     *("--edition", "mycobot280", "sim", "--quiet"),
 ]
 # How a program is connected, and its command.
-WAYS = {
+CONNECTIONS = {
     "standard input and output": [*PROGRAM, "stdio"],
     "pseudo-terminal by its path": [*PROGRAM, "{port}"],
     "printed port": SERVED,
@@ -44,10 +44,10 @@ def first_queries(tester: Tester) -> list[Step]:
     return [step for step in tester.steps() if step.group.name == "queries"][:3]
 
 
-@pytest.mark.parametrize("way", WAYS)
-def test_started_program_is_tested_and_stopped(way: str) -> None:
+@pytest.mark.parametrize("connection", CONNECTIONS)
+def test_started_program_is_tested_and_stopped(connection: str) -> None:
     command, attach = parse_command(
-        shlex.join(WAYS[way]), "port" if way.startswith("printed") else None
+        shlex.join(CONNECTIONS[connection]), "port" if connection.startswith("printed") else None
     )
     with StartedDevice(command, attach, TABLE.baudrate) as started:
         tester = Tester(DeviceConnection(started.transport), TABLE)
@@ -95,9 +95,9 @@ def test_program_that_dies_ends_the_run_at_once(how: str, tmp_path: Path) -> Non
 def test_program_that_does_not_start_is_named(
     command: list[str], attach: str, message: str
 ) -> None:
-    words, way = parse_command(shlex.join(command), attach)
+    words, attachment = parse_command(shlex.join(command), attach)
     with pytest.raises(LinkError, match=message):
-        StartedDevice(words, way, TABLE.baudrate)
+        StartedDevice(words, attachment, TABLE.baudrate)
 
 
 @pytest.mark.parametrize(
