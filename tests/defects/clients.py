@@ -26,7 +26,7 @@ ALLOWED_STALL = 0.1
 
 
 def report_on_client(subject: str, defect: str = "", line: str = "") -> Report:
-    """Test a client; repeat the session if the machine stood still: its times are wrong."""
+    """Test a client; repeat the session if the machine stood still, which falsifies its times."""
     if subject == "c_client":
         command, calls = [str(built(HERE / "client.c", defect)), "PORT"], HERE / "calls_c.txt"
     else:

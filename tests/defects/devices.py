@@ -45,7 +45,7 @@ def _table(name: str) -> Table:
 
 
 CLOSED_LOOP, TWO_ARMS = _table("closed_loop"), _table("two_arms")
-# Not built in the arm: motion to coordinates.
+# The arm does not support motion to coordinates.
 LEFT_OUT = ("send_coord", "send_coords", "jog_coord")
 
 
@@ -88,7 +88,7 @@ def report_on_firmware(defect: str = "") -> Report:
 
 
 def report_on(transport: Transport, allow: Iterable[str]) -> Report:
-    """Test what a transport leads to, in real time, without motion."""
+    """Test the device on a transport, in real time, without motion."""
     allowed = Permissions.of(allow, joints=6)
     tester = OurTester(DeviceConnection(transport), TABLE, permissions=allowed)
     # The report says so if the connection is lost.

@@ -9,7 +9,8 @@ from defects.devices import report_on_firmware, report_on_peer
 from defects.makers_server import report_on_server
 
 LINES = ("", "lost", "late", "noise", "text", "split", "twice", "merged")
-# Where each subject must conform without a defect. The maker's server has its own defects.
+# The lines or variants with which each subject without a defect must conform. The maker's server
+# is left out: it has defects of its own.
 CORRECT = {
     "arm": ("",),
     "closed_loop": tuple(WAYS),

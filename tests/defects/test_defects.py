@@ -15,8 +15,8 @@ from defects.running import CORRECT, report_on
 
 EVERY = "EVERY_DEFECT" in os.environ
 KEY = list(defects())
-# For each rule one defect that only this rule finds, and one for each way to name a cause. For
-# wrong bytes and wrong parts there is one defect each; tests/mutation has a mutant of each kind.
+# For each rule, a defect that only this rule finds; for each way to name a cause, a defect. Wrong
+# bytes and wrong joints have one defect each; tests/mutation has a mutant of each kind.
 SAMPLE = {
     "arm": (
         *("reply-of-the-request-before", "echo", "replies-in-reverse", "settings-coupled"),
@@ -29,7 +29,7 @@ SAMPLE = {
     "two_arms": tuple(two_arms.DEFECTS),
     "client": ("truncates", "takes-text-for-the-reply", "moves-after-release"),
 }
-# Acknowledgements at other times, motions of another speed, bytes between frames; bad lines.
+# Correct subjects with varying delays, fast motions, or bytes between frames; and bad lines.
 WAYS = ("", "acknowledges-at-different-times", "very-fast", "nul-now-and-then", "text", "late")
 RUN = [defect for defect in KEY if EVERY or defect.switch in SAMPLE.get(defect.subject, ())]
 RIGHT = [

@@ -1,4 +1,4 @@
-"""Check the laws of diagnosis on random streams, with both codecs, also of other formats."""
+"""Check the laws of diagnosis on random streams, with both codecs and other frame formats."""
 
 from __future__ import annotations
 

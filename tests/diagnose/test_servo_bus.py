@@ -1,4 +1,4 @@
-"""Compare the reading of the servo bus with its spec, other specs and a plain statement of it."""
+"""Compare how servo packets are read with their spec, another spec and plain rules."""
 
 from __future__ import annotations
 

@@ -198,7 +198,7 @@ def test_lines_hold_texts_as_python_writes_them(texts: list[str]) -> None:
     assert summarized(codec, "both", False, [data]) == diagnosed(codec, "both", False, data)
 
 
-def test_summary_reads_servo_packets_in_noise_that_is_too_long_to_wait_for() -> None:
+def test_summary_reads_servo_packets_in_noise_longer_than_it_waits_for() -> None:
     codec = NATIVE["mycobot280"]
     apart = codec.encode("stop", "request", []) * 20
     packets = _read_of(1, 0x38, 2) + _status_of(1, 2) + _read_of(2, 0x3C, 2)

@@ -21,7 +21,7 @@ from cobotwire.simulator import MemoryTransport, SimulatedArm
 from live_page import POLICY
 
 STOP = bytes.fromhex("FE FE 02 29 FA")
-# The script of the page and the worker each have this port. A page with the hash #none has none.
+# The script of the page and the worker each have this port. A page with the hash #none has no port.
 PORT = """
 const port = {
   getInfo: () => ({ usbVendorId: 0x1a86, usbProductId: 0x55d4 }),
@@ -57,7 +57,7 @@ else {
 """
 
 
-# Else the browser keeps all files for each test.
+# With the real service worker, the browser would cache all files for each test.
 NO_SERVICE = {"service.js": ""}
 
 
@@ -66,10 +66,10 @@ class LiveSite:
 
     Attributes:
         table: what the next arm speaks.
-        instead: by name, the text of files that differ from those of the folder.
+        instead: the texts of files that replace those of the folder, by name.
         sent: the bytes that the page has written to its port.
         stopped_at: when the last stop was written, by the monotonic clock.
-        baudrate: with which the port was opened last.
+        baudrate: the baud rate with which the port was opened last.
         silent_after: how many further writes the arm replies to; None: to all.
     """
 
@@ -87,7 +87,7 @@ class LiveSite:
         return bool(self._sockets)
 
     def reset(self) -> None:
-        """Plug in another arm, as the first one was."""
+        """Plug in a new arm, in the state of the first one."""
         self.unplug()
         self.sent, self.table, self.silent_after = bytearray(), TABLE, None
         self.instead = dict(NO_SERVICE)
@@ -115,7 +115,7 @@ class LiveSite:
         kind = mimetypes.guess_type(name)[0] or "application/wasm"
         headers = Headers({"Content-Type": kind, "Cache-Control": "no-store"})
         headers["Content-Length"] = str(len(data))
-        if name != "index.html":  # which has the policy in itself
+        if name != "index.html":  # which contains the policy
             headers["Content-Security-Policy"] = POLICY
         return Response(200, "OK", headers, data)
 

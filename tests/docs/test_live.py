@@ -254,7 +254,7 @@ def test_jog_lasts_while_the_button_is_held_and_the_page_does_not_hang(
 
 
 @pytest.mark.parametrize("way", ["reload", "close"])
-def test_left_page_stops_an_arm_in_motion(site: LiveSite, page: Page, way: str) -> None:
+def test_leaving_the_page_stops_an_arm_in_motion(site: LiveSite, page: Page, way: str) -> None:
     _connect(page)
     _allow(page)
     assert page.send("send_angles", 160, 0, 0, 0, 0, 0, 10) == "sent"
@@ -294,7 +294,7 @@ def test_new_version_waits_for_the_old_page_and_works_offline(
 ) -> None:
     site.instead.clear()
     titles, names = "document.getElementById('edition').textContent", "caches.keys()"
-    # Each time the page is left, the version that waits begins.
+    # When the page is closed, the waiting version becomes active.
     _reopen(page, site.url)
     page.until(f"{names}.then((found) => found.length === 1)")
     page.until("navigator.serviceWorker.getRegistration().then(({ waiting }) => waiting)")
@@ -373,7 +373,7 @@ def test_wrong_edition_is_named_and_an_open_one_must_be_chosen(site: LiveSite, p
     page.click("#connect")
     page.until(f"{SAID}.includes('several editions, mercury_a1, mercury_b1, mercury_x1: ')")
     assert "116 of their 159 commands are the same; these differ: " in page.text("said")
-    # Between the frames of two formats it sends bytes that end a frame.
+    # Between frames of two formats, the page sends bytes that end an incomplete frame.
     assert b"\xfa\x00\xfe\xfe" in site.sent
     page.choose("edition", "mercury_x1")
     lock = "navigator.locks.request('arm', () => new Promise((done) => (self.free = done)))"
@@ -420,7 +420,7 @@ def test_tree_leads_to_the_editions_that_identify_finds(
     assert tuple(node["editions"]) == identify_on(arm()).candidates
 
 
-def test_survey_sends_queries_only_and_its_file_is_judged(
+def test_survey_sends_only_queries_and_its_file_is_validated(
     site: LiveSite, page: Page, tmp_path: Path
 ) -> None:
     lacks = {
@@ -435,7 +435,7 @@ def test_survey_sends_queries_only_and_its_file_is_judged(
     _allow(page)
     before = len(site.sent)
     page.click("#run")
-    # One of them shows that the arm is there, although it was silent to three in a row.
+    # Three queries in a row got no reply, but another one shows that the arm is still connected.
     page.until(f"{SURVEYED}.startsWith('98 queries were sent, and 93 got a reply')")
     assert page.get("document.getElementById('motion').checked") is False
     events = codec.load(TABLE).framer("request").feed(bytes(site.sent[before:]))
@@ -452,7 +452,7 @@ def test_survey_sends_queries_only_and_its_file_is_judged(
     )
     wrong = {fact.split("/")[1] for fact in found if found[fact] == "contradicted"}
     assert wrong == lacks
-    # What needs the position of the arm is not asked.
+    # Queries that need the position of the arm are not sent.
     differ = {fact.split("/")[1] for fact in found if found[fact] != expected[fact]}
     positions = {"is_in_position", "angles_to_coords", "solve_inv_kinematics", "get_coords"}
     assert differ <= positions | lacks
@@ -466,7 +466,7 @@ def test_survey_that_ends_early_says_why_and_its_file_contradicts_nothing(
     site: LiveSite, page: Page, tmp_path: Path
 ) -> None:
     def survey(why: str, end: Callable[[], object] = bool) -> None:
-        # Then silence is what a firmware that lacks the next commands would show.
+        # After 8 writes the arm is silent, as if its firmware lacked the next commands.
         site.silent_after = 8
         page.click("#run")
         _soon(lambda: (site.silent_after or 0) < 0)
@@ -495,7 +495,7 @@ def test_survey_that_ends_early_says_why_and_its_file_contradicts_nothing(
     survey("lost", site.unplug)
 
 
-def test_survey_refuses_a_question_that_is_no_query(
+def test_survey_refuses_a_command_that_is_not_a_query(
     site: LiveSite, page: Page, folder: Path
 ) -> None:
     facts = json.loads((folder / "editions/mycobot280.json").read_text("utf-8"))

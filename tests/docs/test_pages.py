@@ -18,7 +18,7 @@ BLOCKS = re.compile(r"^(```|:::).*?^\1$|^(?: {4}|\t)[^\n]*$", re.DOTALL | re.MUL
 
 
 @pytest.mark.parametrize("page", PAGES)
-def test_page_says_at_its_top_for_whom_it_is(page: str) -> None:
+def test_page_names_its_readers_at_the_top(page: str) -> None:
     lines = (ROOT / page).read_text(encoding="utf-8").splitlines()
     assert lines[0].startswith("# ")
     assert re.fullmatch(r"\*For .*\.\*", lines[2]), lines[2]

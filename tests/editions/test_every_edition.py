@@ -49,7 +49,7 @@ UNKNOWN = {
 }
 
 POWERS = {"power_on", "set_robot_power_on", "focus_all_servos"}
-# With mode 0, no joint is held after power_on, so later motions would be a mistake.
+# With mode 0, no joint is held after power_on, so later motions would be errors.
 HOLDING = {"mode": 1}
 CODECS: tuple[codecs.CodecName, ...] = ("native", "reference")
 
@@ -57,7 +57,7 @@ editions = pytest.mark.parametrize("edition", EDITIONS)
 
 
 def calls(table: Table) -> Iterator[tuple[Command, dict[str, Any]]]:
-    """Yield each command with arguments that do little, as a program gives them by name."""
+    """Yield each command with harmless arguments, by name as a program passes them."""
     for command in table.commands:
         if command.event:
             continue

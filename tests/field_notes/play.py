@@ -45,9 +45,9 @@ def _opened(library: str) -> Callable[[str], Any]:
     return opened
 
 
-# The clients that are called as the maker's library is, and do not know `with`.
+# Clients that have the maker's methods, and no `with`.
 AS_LIBRARY = {"layer", "pymycobot"}
-# Those in Rust and Node have a process of their own, and asyncio an event loop in a thread.
+# Clients in Rust and Node run in their own process; asyncio's runs in an event loop in a thread.
 OPENERS: dict[str, Callable[[str], Any]] = {
     "blocking": MyCobot280,
     "asyncio": partial(InLoop, AsyncMyCobot280),

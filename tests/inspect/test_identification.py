@@ -95,7 +95,7 @@ def test_connect_without_a_reply_or_a_decision_names_the_queries_and_closes_the_
 
 
 @pytest.mark.parametrize("edition", names())
-def test_identify_sends_few_queries_and_none_that_changes_something(edition: str) -> None:
+def test_identify_sends_few_requests_and_only_queries(edition: str) -> None:
     table = load(edition).TABLE
     received: list[str] = []
 
@@ -109,7 +109,7 @@ def test_identify_sends_few_queries_and_none_that_changes_something(edition: str
     assert found.edition == ("" if len(several) > 1 else edition)
     assert found.candidates == several
     assert {table.command(name).safety for name in received} == {"query"}
-    # The last ones read where the arm is, to compare angles with coordinates.
+    # The last queries read the arm's position, to compare angles with coordinates.
     assert len(received) <= 8
     assert len(found.evidence) <= 8
 
@@ -142,7 +142,7 @@ def test_arm_at_another_baud_rate_is_found(monkeypatch: pytest.MonkeyPatch) -> N
     found = identify("/dev/ttyS1", timeout=0.3)
     assert (found.edition, found.baudrate) == ("mycobot280_rdkx5", 1_000_000)
     assert found.evidence[-1].shows.endswith(", at 1,000,000 baud")
-    # The frames of the Mercury are not sent at a rate that no Mercury has.
+    # The Mercury's frames are sent only at rates that a Mercury has.
     assert sum("at 1,000,000 baud" not in each.shows for each in found.evidence) >= 2
     assert not any("mercury" in e.shows for e in found.evidence if "1,000,000" in e.shows)
     assert [rate for _, rate, _ in opened] == [115_200, 1_000_000]

@@ -1,4 +1,4 @@
-"""Probing with the frames of other editions does not upset an arm: it sees queries at most."""
+"""Probes in the frames of other editions do no harm: an arm reads them as queries or noise."""
 
 from __future__ import annotations
 

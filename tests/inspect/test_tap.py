@@ -1,4 +1,4 @@
-"""Forward between a program and an arm in this process: every byte, and only what may pass."""
+"""Forward bytes between a program and an arm in this process: all, or only what a guard permits."""
 
 from __future__ import annotations
 
@@ -152,7 +152,7 @@ def test_program_that_writes_faster_than_the_arm_reads_waits_and_loses_nothing(t
     assert b"".join(copy.data for copy in copies if copy.kind == "sent") == data
 
 
-def test_next_program_finds_no_reply_that_the_last_one_did_not_read(tap: Tap) -> None:
+def test_unread_replies_are_not_left_for_the_next_program(tap: Tap) -> None:
     with opened(tap.url) as program:
         os.write(program, QUERY)
         assert received(tap.arm, len(QUERY)) == QUERY

@@ -158,7 +158,7 @@ def test_solutions_lie_inside_the_limits_and_narrow_limits_exclude_all() -> None
 
 
 @pytest.mark.parametrize(("millimetres", "reachable"), [(0.15, True), (0.3, False)])
-def test_stretched_arm_reaches_as_far_as_the_wire_rounds(
+def test_stretched_arm_reaches_coordinates_that_the_wire_has_rounded(
     millimetres: float, reachable: bool
 ) -> None:
     stretched = flange(MYCOBOT_280, (0.0,) * 6)

@@ -1,4 +1,4 @@
-"""The classes of the Mercury and the Pro robots: motions that the arm reports back."""
+"""The classes of the Mercury and the Pro robots: the arm reports the end of each motion."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ HOME = [0, 0, 0, 0, 0, 90, 0]
 SEND_ANGLES, END, END_SIZE = 0x22, bytes([0xFE, 0xFE, 4, 0x5B]), 7
 
 
-class Deaf:
+class NeverReports:
     """A robot that never reports the end of a motion."""
 
     def __init__(self, arm: SimulatedArm) -> None:
@@ -46,7 +46,7 @@ class Deaf:
         return before + after[END_SIZE - len(END) :] if found else data
 
 
-class Early(Deaf):
+class Early(NeverReports):
     """A robot that reports the end of an earlier motion after it has accepted the next one."""
 
     def receive(self, data: bytes) -> bytes:
@@ -68,7 +68,7 @@ class Early(Deaf):
         ("Pro450Client", "", [10] * 6),
     ],
 )
-def test_motion_returns_when_the_arm_is_there(name: str, edition: str, target: list[float]) -> None:
+def test_motion_returns_when_the_arm_arrives(name: str, edition: str, target: list[float]) -> None:
     arm, _ = made(name, edition)
     before = arm.clock()
     assert arm.send_angles(target, 20) in (0, 1)
@@ -94,11 +94,11 @@ def test_failed_motion_raises_or_returns_its_status() -> None:
     assert arm.send_angles(HOME, 50) > 1
 
 
-def test_end_that_is_lost_is_noticed() -> None:
-    arm, _ = made("Mercury", "mercury_a1", peer=Deaf)
+def test_lost_end_of_a_motion_raises_reply_timeout() -> None:
+    arm, _ = made("Mercury", "mercury_a1", peer=NeverReports)
     with pytest.raises(ReplyTimeout, match=r"send_angles\(\) at the end of its motion"):
         arm.send_angles(HOME, 50)
-    arm, _ = made("Mercury", "mercury_a1", errors="return", peer=Deaf)
+    arm, _ = made("Mercury", "mercury_a1", errors="return", peer=NeverReports)
     assert arm.send_angles(HOME, 50) == -1
     assert arm.get_angles() == pytest.approx(HOME, abs=0.1)
 

@@ -1,4 +1,4 @@
-"""Errors of the layer name the library's parameters: what the caller wrote."""
+"""Errors of the layer use the library's parameter names, which the caller wrote."""
 
 from __future__ import annotations
 

@@ -90,7 +90,7 @@ class Gripper:
         (9600, True, False),
     ],
 )
-def test_gripper_is_searched_at_two_speeds(baud: int, modbus: bool, found: bool) -> None:
+def test_gripper_is_searched_for_at_two_speeds(baud: int, modbus: bool, found: bool) -> None:
     gripper = Gripper(baud, modbus)
     arm, _ = made("Pro450Client", behaviours=gripper.behaviours())
     assert arm.set_pro_gripper_init() is found

@@ -26,7 +26,7 @@ KINDS = {
 # The test cases of one command kill these, so a run takes milliseconds.
 QUICK = ("header", "LEN", "no reply")
 FRAMING = {"LEN", "id", "footer", "check", "header", "address"}
-# Each suite with the fewest mutants that it has, and how many of each kind are run.
+# For each suite: the least number of mutants it must have, and how many of each kind are run.
 SAMPLES = {
     Key("device", "mycobot280"): (2000, 1),
     Key("client with a script", "mycobot280"): (5000, 3),

@@ -14,7 +14,7 @@ README = Path(__file__).parents[2] / "README.md"
 
 
 def main() -> int:
-    """Return 1 if a command prints something else than the README shows."""
+    """Return 1 if a command prints something other than the README shows."""
     with tempfile.TemporaryDirectory() as folder:
         runs = list(run(README, Path(folder), ""))
     for done in runs:

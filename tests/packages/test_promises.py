@@ -1,4 +1,4 @@
-"""Compare two trees, as the release does with the last release."""
+"""Compare two source trees, as a release is compared with the last one."""
 
 from __future__ import annotations
 

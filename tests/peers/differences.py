@@ -17,7 +17,7 @@ RULED = Path(__file__).with_name("differences.txt")
 # The reasons begin with this mark.
 SECTION = "## "
 ALL = 3
-# What follows in a difference of values; a row without it rules any range.
+# Begins the range in a difference of values; a row without a range applies to any.
 RANGE = "; ours sends"
 CALLS, REPLIES = ("conversation",), ("of the edition", "documented", "with its number", "any")
 

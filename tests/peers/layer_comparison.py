@@ -1,4 +1,4 @@
-"""Call the maker's class and our class of that name alike, each on a simulated arm of its own.
+"""Make the same calls on the maker's class and on ours, each with its own simulated arm.
 
 Both arms are in this process, and time is stepped, so nothing waits.
 """
@@ -98,7 +98,7 @@ def limited(seconds: float) -> Iterator[None]:
         raise TimeoutError
 
     before = signal.signal(signal.SIGVTALRM, stop)
-    # Again and again: some of the maker's functions catch every exception.
+    # Raise repeatedly: some of the maker's functions catch every exception.
     signal.setitimer(signal.ITIMER_VIRTUAL, seconds, seconds)
     try:
         yield
@@ -180,7 +180,7 @@ def conversation(robot: Robot, theirs: Called, mine: Called) -> str:
     shows = [_frames(robot, theirs.written, mine.written)]
     if (mine.result, type(mine.result)) != (theirs.result, type(theirs.result)):
         differ = relation(theirs.result, mine.result)
-        # What the library truncates makes the arm calculate with other numbers.
+        # Values that the library truncates change what the arm calculates.
         is_truncated_only = theirs.written != mine.written and shows == [""]
         if not (is_truncated_only and differ.endswith("of other values")):
             shows.append(differ)

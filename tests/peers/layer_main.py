@@ -1,6 +1,6 @@
-"""Compare our classes with the maker's, and with what they are rewritten to: ``make layer``.
+"""Compare our classes with the maker's, and rewritten calls with the originals: ``make layer``.
 
-Compared are calls on simulated arms, drawn arguments, replies, and the calls that ``cobotwire
+It compares calls on simulated arms, drawn arguments, replies, and the calls that ``cobotwire
 migrate`` rewrites.
 """
 

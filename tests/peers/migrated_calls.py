@@ -27,7 +27,7 @@ SAME_METHODS = {
     "MyCobot320Socket": "MyCobot320",
     "MyArmSocket": "MyArm",
 }
-# Names that are no calls of an arm.
+# Names that are not calls of an arm.
 NO_CALLS = {"open", "wait"}
 # These are always compared.
 STOPPING = {"pause", "resume", "stop"}
@@ -44,7 +44,7 @@ class Done(NamedTuple):
 
 
 def lines_of(name: str, robot: Robot, stride: int) -> Iterator[str]:
-    """Return calls of methods: with all arguments, by keyword, and with those needed only."""
+    """Return calls of methods: with all arguments, by keyword, and with only the required ones."""
     given: dict[str, tuple[Any, ...]] = {}
     for call in calls_of(robot):
         given.setdefault(call.method, call.theirs)

@@ -39,11 +39,11 @@ from strategies import codec_of
 CLASSES = sorted(NAMES)
 # `make layer` compares all methods; here every n-th one.
 EVERY = {"calls": 24, "values": 90, "replies": 40}
-# A class that opens a TCP connection calls as the serial class of its robot does.
+# A class that opens a TCP connection sends the same as the serial class of its robot.
 SAMPLED = [name for name in ALL_ROBOTS if "EVERY_EDITION" in os.environ or name not in TCP_TWINS]
 FEW = settings(max_examples=max(1, (settings.default or settings()).max_examples // 10))
 FAILURES = (REJECTED, FAILED)
-# By class and method: where our parameters are others.
+# By class and method, why our parameters differ.
 PARAMETERS = {
     ("MyArmSocket", "sync_send_coords"): "mode has the default of the serial class",
     ("MyCobotSocket", "sync_send_coords"): "mode has the default of the serial class",
@@ -119,8 +119,9 @@ def test_drawn_reply_is_read_alike_or_its_method_has_a_ruling(
     codec = codec_of(robot.edition, "reference")
     call, reply = data.draw(drawn_reply(robot, codec))
     shows = compare_reply(robot, codec, call, reply)
-    # test_layer_results.py shows how the second one differs. The library takes a first byte 255 of
-    # a Mercury's reply for the mark of an acknowledgement, which few drawn replies have.
+    # Few drawn replies show how these two methods differ: test_layer_results.py covers
+    # get_solution_angles; the library takes a Mercury's reply that begins with 255 for an
+    # acknowledgement.
     ruled = {each for ruling in rulings() if name in ruling.names for each in ruling.methods}
     assert not shows or call.method in {*ruled, "get_servo_status", "get_solution_angles"}
 
@@ -144,7 +145,7 @@ def test_every_ruling_has_a_reason_and_names_classes_and_methods_that_exist() ->
         offered = [set(dir(library(each))) for each in ruling.names]
         assert ruling.methods <= set().union(*offered)
         assert all(each & ruling.methods for each in offered)
-        # Only a class whose robot has another class may leave out which values ours sends.
+        # A ruling states which values ours sends, unless all its classes are additional ones.
         assert ruling.shows not in (ONLY_OURS, ONLY_THEIRS, OTHER_BYTES) or not (
             ruling.names & ROBOTS.keys()
         )
@@ -174,7 +175,7 @@ def test_value_that_only_one_side_sends_is_noticed(monkeypatch: pytest.MonkeyPat
     ]
 
 
-def test_ruling_that_no_longer_differs_is_noticed() -> None:
+def test_ruling_without_a_difference_is_noticed() -> None:
     left = stale("MyCobot280", set(), {"values": {"set_server_port"}})
     assert left
     assert all(text.startswith("no longer differs: MyCobot280.set_server_port") for text in left)

@@ -57,7 +57,7 @@ _PLACE = [1, 2, 3, 4, 5, 6]
 @pytest.mark.parametrize(
     ("name", "method", "given", "command", "data"),
     [
-        # What the simulated robot does not reply, for each limb and for lengths and angles.
+        # Replies that the simulated robot never sends, for each limb and for lengths and angles.
         ("MyBuddy", "get_coord", (1, 1), 0x2D, words(1234)),
         ("MyBuddy", "get_coord", (2, 3), 0x2D, words(-1234)),
         ("MyBuddy", "get_coord", (1, 4), 0x2D, words(4567)),

@@ -82,7 +82,7 @@ def pretend(extras: Iterable[str] = ()) -> None:
     modules["selectors"].DefaultSelector = selectors.SelectSelector
     modules["selectors"].SelectSelector._select = staticmethod(_select_sockets)
     modules["select"].select = _select_sockets
-    # As the default loop of Windows.
+    # The default event loop of Windows lacks this method, too.
     modules["asyncio"].SelectorEventLoop.add_reader = _not_implemented
     modules["os"].replace = _replace_closed
     # Path() makes one of these where os.name is "nt", and it works on Windows alone.

@@ -12,7 +12,7 @@ from cobotwire.protocol.table import Table
 
 
 class Computed:
-    """A result that can be watched."""
+    """A result that can have weak references."""
 
 
 def test_result_is_computed_once_for_each_table() -> None:

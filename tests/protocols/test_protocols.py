@@ -33,7 +33,7 @@ CODECS: tuple[codecs.CodecName, ...] = ("reference", "native")
 
 
 def plainly_typed(edition: Edition) -> set[str]:
-    """Return the commands that the law of the published vectors can read."""
+    """Return the commands that the test of the published vectors can read."""
     commands = (
         c for c in edition.commands if not any(isinstance(f.type, Shaped) for f in c.fields)
     )

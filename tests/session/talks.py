@@ -209,7 +209,7 @@ class Talk:
         return self._reply(request.command, request)
 
     def _reply(self, command: Command, request: EncodedRequest | None) -> bytes:
-        """Return a reply of a command, mostly with what it repeats of its request."""
+        """Return a reply of a command, usually with the values that echo its request."""
         dice, frame = self._dice, self._table.frame
         if command.text is not None:
             parts = [prefix + dice.choice(["", "a b"]) for prefix in command.text.prefixes]
@@ -237,7 +237,7 @@ class Talk:
 
     def _rows(self, variant: Variant) -> list[list[int]]:
         rows: list[list[int]] = [[] for _ in variant.fields]
-        # A selector precedes in this order what it selects.
+        # In this order, a selector precedes the field that it selects.
         order = sorted(range(len(rows)), key=lambda index: variant.fields[index].selector >= 0)
         for index in order:
             field = variant.fields[index]

@@ -17,8 +17,8 @@ from session.exploring.__main__ import main
 from session.exploring.explorer import Search
 from session.exploring.topics import TOPICS
 
-# How many events in a row `make test` explores; `make explore` goes on from there. Each planted
-# fault that four events find in "settings", "damage" or "writes", three find too.
+# How many events in a row `make test` explores; `make explore` goes on from there. In
+# "settings", "damage" and "writes", three events find every planted fault that four events find.
 DEPTHS = {"everything": 2, "settings": 3, "damage": 3, "writes": 3, "unread": 5}
 USUAL_DEPTH = 4
 
@@ -63,7 +63,7 @@ def _only_late(exchange: Exchange, now: float) -> PersistedState:
 _held_until, _find = OutstandingReplies.held_until, OutstandingReplies.find
 _outgoing, _persist = Exchange.outgoing, Exchange.persist
 _late, _request = OutstandingReplies, PendingRequest
-# A rule that is replaced, and the topic, the requests and the promise that find this.
+# By fault: the topic, the requests and the promise that reveal it, and the rule that is replaced.
 FAULTS: dict[str, tuple[str, str, str, Any, str, Any]] = {
     "not held": ("queries", "plain", "settled by", _late, "held_until", _no),
     "held for too long": ("queries", "plain", "held", _late, "held_until", _held_longer),

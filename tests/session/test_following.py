@@ -59,7 +59,7 @@ def test_path_leads_from_the_start_to_the_last_target_within_the_bounds(
     assert rows[0] == pytest.approx(start, abs=1e-6)
     assert rows[-1] == pytest.approx(targets[-1], abs=1e-6)
     stays_within(rows, bounds, 1 / RATE)
-    # The path comes as near to each point as the distance that the arm moves in a tick or two.
+    # The path passes each point within the distance that the arm moves in two ticks.
     for target in targets:
         assert min(math.dist(target, row) for row in rows) <= 2 * max(bounds.speed) / RATE
 
@@ -124,7 +124,7 @@ def drive(
 ) -> list[tuple[float, EncodedRequest]]:
     """Take the steps of a call with an arm that is always at its last target; return what it sent.
 
-    ``late`` has the seconds by which each pause is too long, one after another.
+    ``late``: by how many seconds each pause is too long, in order.
     """
     now, mode, at = 100.0, 0, (0.0,) * 6
     sent: list[tuple[float, EncodedRequest]] = []

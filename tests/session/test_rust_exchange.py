@@ -1,4 +1,4 @@
-"""The exchange of the Rust core decides as the one of Python, which is its specification."""
+"""The exchange of the Rust core makes the same decisions as that of Python, its specification."""
 
 from __future__ import annotations
 

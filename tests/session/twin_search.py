@@ -55,7 +55,7 @@ class TwinSearch(Search):
     """A search that has Rust repeat each sequence of events, and compares the states."""
 
     def __init__(self, topic: Topic, path: str, ask: Callable[[Any], Any]) -> None:
-        """Take the path of the edition, and what asks the probe."""
+        """Take the path of the edition, and a function that sends the probe a question."""
         super().__init__(topic)
         self._path, self._ask = path, ask
         self._twins: dict[int, int] = {}

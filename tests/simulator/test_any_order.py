@@ -35,7 +35,7 @@ ROUNDING = 1e-6
 class AnyOrder(RuleBasedStateMachine):
     """An arm, and what a client may expect of its motion.
 
-    That a setting is read back: test_behaviours.py, and the conformance of every edition.
+    test_behaviours.py and the conformance of every edition check that settings are read back.
     """
 
     table: Table

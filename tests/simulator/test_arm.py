@@ -142,7 +142,7 @@ def test_gripper_does_not_move_without_power(bench: Bench) -> None:
     bench.send("power_off")
     bench.clock.sleep(9.0)
     assert bench.query("is_gripper_moving") == 0
-    assert bench.query("get_gripper_value") == 30, "it stands where the power left it"
+    assert bench.query("get_gripper_value") == 30, "it stays where it was when the power went off"
     bench.send("set_gripper_state", 0, 100)
     assert bench.query("is_gripper_moving") == 0
     bench.send("power_on")

@@ -128,7 +128,7 @@ def test_geometry_is_inherited_only_with_the_joints(
     assert (delta.robot.geometry is not None) == has_one
 
 
-def test_geometry_is_exact_and_belongs_to_no_name() -> None:
+def test_geometry_is_exact_and_does_not_depend_on_the_name_of_the_edition() -> None:
     known = geometry_of(TABLE._replace(edition="another"))
     assert known is not None
     assert (known.links[0].d, known.links[1].a, known.links[5].d) == (131.22, -110.4, 48.6)

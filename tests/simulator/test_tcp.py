@@ -127,7 +127,7 @@ def test_client_that_is_idle_for_longest_makes_room_for_a_new_one(server: TcpSer
     with ExitStack() as stack:
         clients = [stack.enter_context(_connect(server)) for _ in range(MOST_CLIENTS)]
         assert _comes(lambda: server.clients == MOST_CLIENTS)
-        # The first one has sent something, the last one still does; no other one ever did.
+        # Only the first and the last client send anything.
         for _ in range(2):
             clients[0].sendall(QUERY)
             assert clients[0].recv(100) == OFF

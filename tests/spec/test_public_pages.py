@@ -96,7 +96,8 @@ def _cites(fact: Fact) -> bool:
     )
 
 
-# What a page says beyond frames and sizes: of a command or a type, with how certain the reading is.
+# Statements of pages beyond frames and sizes: the edition, the command or type, the page, and how
+# certain the reading is.
 M750 = "the maker's page on the myArm M750"
 B1 = "the maker's page on the Mercury B1"
 ARDUINO = "the maker's Arduino library"

@@ -1,4 +1,4 @@
-"""The spec agrees with what names, descriptions and the maker's library state a second time."""
+"""The spec agrees with second sources: names, descriptions and the maker's library."""
 
 from __future__ import annotations
 
@@ -22,8 +22,8 @@ BY_MAKER = "The maker's library 4.0.7 sends the accepted values and raises for t
 
 
 # For each edition, how many calls have the same result as with the maker's class, and how many do
-# not. A wrong limit, default or type of a request changes the numbers. After a change with a
-# reason, state the new ones on the page.
+# not. A wrong limit, default or type of a request changes the numbers. After an
+# intended change, write the new numbers on the page.
 PAGE = (vectors.ROOT / "docs" / "robots.md").read_text("utf-8")
 AGREEMENT = {
     edition: (int(alike), int(differ))
@@ -109,7 +109,7 @@ def _sends(command: Command, values: dict[str, Any]) -> bool:
     return True
 
 
-def test_limits_of_the_makers_library_are_its_own() -> None:
+def test_limits_that_vectors_quote_are_those_of_the_makers_library() -> None:
     edition = vectors.edition("mycobot280")
     commands = {command.name: command for command in edition.commands}
     by_maker = _limits_by_maker()

@@ -1,4 +1,4 @@
-"""Finds the facts of a spec file with the description of the language, whatever keys it has."""
+"""Finds the facts of a spec file by the description of the spec language, also of new keys."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ STATED = {
     *(Moves.by, Moves.about, Moves.direction, Moves.speed),
     *(Lists.list, Lists.append, Computes.from_, Computes.near, ByCase.selector),
 }
-# These are no facts: names of other files, and the lines that facts are compared with.
+# These are not facts: names of other files, and the lines that facts are compared with.
 BESIDE = (InFile, InFiles, Lines)
 DEFINITIONS = {language.Command, *language.SECTIONS.values()}
 EVIDENCE = {language.Dispute, language.Evidence}

@@ -49,13 +49,13 @@ def files(edition: str) -> Iterator[Path]:
 
 @lru_cache(maxsize=len(PATHS))
 def built(edition: str) -> Edition:
-    """Return an edition as it is."""
+    """Return an unchanged edition."""
     return vectors.editions().get(edition) or build_edition(PATHS[edition], ROOT)
 
 
 @lru_cache(maxsize=256)
 def _users(path: Path) -> list[str]:
-    """Return the editions that a file, or one of their bases, is a part of."""
+    """Return the editions that use a file, directly or through a base."""
     owners = {name for name in PATHS if path in files(name)}
     return [name for name in PATHS if owners & {name, *built(name).bases}]
 

@@ -2,8 +2,8 @@
 
 An effect is written in a line, such as ``stores pins at pin``: the verb, what it is about, ``at``
 with the arguments that choose an index, and the other keys. This project chose the names of state.
-The state of a setter and its query follows from their names. What a state is like follows from the
-fields that report and set it.
+The state of a setter and its query follows from their names. The type and indices of a state follow
+from the fields that report and set it.
 """
 
 from __future__ import annotations
@@ -16,8 +16,8 @@ from cobotwire_codegen.language.words import BUILT_IN
 from cobotwire_codegen.model import Command, Edition, Effect, Quantity, Type
 from spec_statements.meanings import fits
 
-# Name, then description, and the effect, if it is no report and no motion. The first pattern that
-# fits decides.
+# The effects other than reports and motions: patterns of name and description, and the effect. The
+# first row that fits decides.
 EFFECTS = (
     (r"power_on", r"Switches", "sets powered=True held=True free=False connected=True"),
     (r"power_off", r"Switches .* disconnects", "sets powered=False held=False connected=False"),
@@ -82,7 +82,7 @@ SAYS: dict[str, str] = {
     "read": r"get|reads",
     "written": r"set|writes",
 }
-# The state that commands are about whose words name other state, too.
+# The state that a command is about, if its words also name other state.
 ABOUT = (
     (r"power_on", "powered held free connected"),
     (r"get_robot_power_status", "powered"),
@@ -115,8 +115,8 @@ ABOUT_ITS_OWN = {
 
 
 def named(edition: Edition) -> Iterator[str]:
-    """Report state that neither the name nor the words of a command mention, or that fits another
-    name better."""
+    """Report an effect on state that the command's words do not mention, or mention less than other
+    state."""
     states = [*BUILT_IN, *(state.name for state in edition.states)]
     for command in edition.commands:
         effect = command.effect
@@ -153,7 +153,7 @@ def named(edition: Edition) -> Iterator[str]:
 
 
 def _about(command: Command, states: list[str]) -> list[str]:
-    """Return the state that a command with ambiguous words is about; nothing for other commands."""
+    """Return the state that a command with ambiguous words is about; empty for other commands."""
     rows = (*ABOUT, *(row for state, row in ABOUT_ITS_OWN.items() if state in states))
     return [n for name, about in rows if re.fullmatch(name, command.name) for n in about.split()]
 
@@ -324,7 +324,7 @@ def openings(edition: Edition) -> Iterator[str]:
 
 
 def switches(edition: Edition) -> Iterator[str]:
-    """Report state that is set to true or false and is no flag."""
+    """Report state that is set to true or false but is not a flag."""
     flags = {state.name for state in edition.states if state.type and state.type.kind == "flag"}
     others = {state.name for state in edition.states} - flags
     for command in edition.commands:

@@ -39,7 +39,7 @@ BUS_BAUDRATE = 1000000
 
 
 def _baudrate(edition: str) -> int | None:
-    """Return the rate at which the library opens a port unless it is told another."""
+    """Return the baud rate at which the library opens a port by default."""
     if edition not in CLASSES:
         return BUS_BAUDRATE
     taken = inspect.signature(library(CLASSES[edition].peer).__init__).parameters
@@ -70,7 +70,7 @@ def transport(edition: Edition) -> Iterator[str]:
 def defaults(edition: Edition) -> Iterator[str]:
     """Report arguments with another default than those of the library's method, or without one.
 
-    A command of the library's name has its arguments in the library's order.
+    A command with the name of a library method has its arguments in the same order.
     """
     robot = CLASSES.get(edition.name)
     if robot is None:
@@ -95,8 +95,8 @@ def _defaults(peer: str, name: str) -> tuple[int | None, ...]:
     return tuple(None if p.default in (p.empty, None) else int(p.default) for p in given)
 
 
-# Tables of limits with another name than the class. The page on the X1 has the limits of its table,
-# which differ from those of the class for serial ports in joint 12.
+# Tables of limits with another name than the class. The page on the X1 has the limits of its
+# table; those of the class for serial ports differ in joint 12.
 TABLES = {
     "mercury_a1": "Mercury",
     "mercury_b1": "MercurySocket",

@@ -25,7 +25,7 @@ SAFETY = (
     ("motion", r"over_limit_return_zero|fourier_\w+|drag_teach_execute|write_\w+", r"Moves|Turns"),
     ("motion", r"set_(solution_angles|(hand|pro)_gripper_(abs_)?angles?)", r"Moves|Turns"),
     ("motion", r"set_(joints?_angle|servos?_encoder(_drag)?)", r"Moves"),
-    # The register decides whether a gripper moves or keeps a parameter.
+    # The register decides whether a gripper moves or stores a parameter.
     ("persistent write", r"set_pro_gripper", r"Writes a register"),
     ("motion", r"set_(pro|hand)_gripper", r"Writes a number into a register"),
     (
@@ -37,7 +37,7 @@ SAFETY = (
     ("motion", r"set_hand_gripper_pinch_action", r"Brings the hand into"),
     ("motion", r"stop_robot|clear_(waist|recv)_queue", r"Stops the motion|Discards the"),
     ("motion", r"set_encoders", r"The positions"),
-    # The firmware keeps what tunes a servo, a joint or a gripper.
+    # The firmware stores tuning parameters of servos, joints and grippers.
     ("persistent write", r"set_servo_(p|d|i|cww?)", r"Sets (the|how far a servo)"),
     ("persistent write", r"set_(pro|hand)_gripper_(\w+)", r"Sets (the|how far one joint)"),
     ("persistent write", r"set_(model_direction|dynamic_parameters|motor_type)", r"Sets"),

@@ -23,7 +23,7 @@ FIELDS = (
     (r"baud", {"baud"}),
     (r"timeout", {"millisecond"}),
 )
-# Exceptions, each as "EDITION COMMAND FIELD"; EDITION may also be a base of the edition.
+# Fields with other units than their names suggest: the edition or a base of it, command and field.
 OTHERWISE = (
     # The class has a method of its own for coordinates.
     (r"(mercury_a1|myarm300) is_in_position target", {"degree"}),
@@ -127,7 +127,7 @@ def flags(edition: Edition) -> Iterator[str]:
 
 
 def uniform(edition: Edition) -> Iterator[str]:
-    """Report a part with another type than the parts beside it, or a number that is missing.
+    """Report a numbered part with another type than its neighbours, or a gap in the numbers.
 
     Joints, servos and fingers count from 1. Only a type with a number or letter in its name is for
     a single joint or axis.

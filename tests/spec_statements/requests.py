@@ -32,9 +32,9 @@ OLDEST = ROBOTS["MyCobot"]
 
 
 def requests(edition: Edition) -> Iterator[str]:
-    """Report calls for which an edition sends other bytes than the maker's class, or rejects."""
+    """Report calls that an edition encodes differently from the maker's class, or rejects."""
     alike, _ = compared(edition.name)
-    # A command that is as in the unchanged edition sends the same bytes.
+    # A command that equals that of the unchanged edition sends the same bytes.
     known = vectors.edition(edition.name) if alike else edition
     same = {c.name for c in edition.commands if known.by_name.get(c.name) == c}
     if known.frame != edition.frame:

@@ -43,7 +43,7 @@ class Page:
     def open(self, url: str) -> None:
         """Open a page of the studio, and wait until it is connected."""
         self.tab.open("about:blank")
-        # What an earlier page reports is not about this one.
+        # Discard what an earlier page reported.
         self.tab.events.clear()
         self.tab.open(url)
         self.until("document.documentElement.dataset.ready")

@@ -1,4 +1,4 @@
-"""Show four hours of a line at 50 Hz, faster than they pass; memory must stay the same.
+"""Show four hours of traffic at 50 Hz, faster than real time; memory must not grow.
 
     python -m studio.four_hours [HOURS]
 
@@ -45,8 +45,8 @@ SECONDS_A_TIME = 2.5
 NOISE_EVERY = 100
 NOISE = b"ets Jun  8 2016 00:22:57\r\n"
 REPORTS = 8
-# The first part fills what is bounded. After that, growth up to this size is noise: a batch for a
-# slow page has up to 3 MB, and exists several times at once.
+# The first part fills the bounded buffers. After that, growth up to this size is noise: several
+# batches for slow pages may exist at once, each of up to 3 MB.
 FILLED = 3
 GROWTH, BATCHES_MB = 1.15, 10.0
 

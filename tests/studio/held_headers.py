@@ -1,4 +1,4 @@
-"""Hold connections without the token, and see whether pages with it still work."""
+"""Hold connections without the token, and check that pages with it still work."""
 
 from __future__ import annotations
 

@@ -109,7 +109,7 @@ def test_refusal_arrives_although_the_body_comes_late(studio: Studio) -> None:
         "Content-Length: 2",
     )
     # If the server closes while the body is on its way, the system resets the connection, and the
-    # answer can be lost. Before the server read the body first, 83 of 300 attempts ended like this.
+    # answer can be lost: 83 of 300 were, when the server did not read the body first.
     for _ in range(60):
         with socket.create_connection(("127.0.0.1", studio.port), 20) as raw:
             raw.sendall("\r\n".join([*lines, "", ""]).encode())
@@ -252,7 +252,7 @@ def test_values_that_the_edition_does_not_allow_are_not_sent(studio: Studio) -> 
             assert studio.post("/api/scenario", {"name": name}, page).status == 400
 
 
-def test_wishes_that_make_no_sense_are_ignored(studio: Studio) -> None:
+def test_invalid_wishes_are_ignored(studio: Studio) -> None:
     with watching(studio) as feed:
         feed.state("hello")
         for text in ("", "[]", "{", '{"wish":"play"}', '{"wish":"stop","number":[]}', "[" * 4000):

@@ -54,7 +54,7 @@ def test_bytes_that_are_no_text_are_answered_and_log_no_traceback() -> None:
                 with socket.create_connection(("127.0.0.1", studio.port), 20) as raw:
                     raw.sendall(request)
                     status = raw.makefile("rb").readline()
-                # A value that the page does not use is no reason to refuse its request.
+                # A request is not refused for a value that the server does not use.
                 assert status.split()[1].startswith((b"4", b"200")), (place, bad[:9], status)
         lines = {**studio.own, "Host": f"127.0.0.1:{studio.port}"}
         lines["Sec-WebSocket-Protocol"] = f"cobotwire-studio, token.{studio.token}"
@@ -66,8 +66,8 @@ def test_bytes_that_are_no_text_are_answered_and_log_no_traceback() -> None:
                 assert received.readline().split()[1] == b"101"
                 for first, content in message:
                     raw.sendall(struct.pack("!BBI", first, 0x80 | len(content), 0) + content)
-                # 1007: the message is not what its type says.
+                # 1007: the content of the message does not match its type.
                 assert b"\x03\xef" in received.read()[-60:]
-    # A line for each message whose text is none; requests log nothing.
+    # A line for each message that is not valid text; requests log nothing.
     assert len(studio.log[0].splitlines()) == 3, studio.log[0]
     assert "Traceback" not in studio.log[0]

@@ -98,7 +98,7 @@ def _closed(raw: socket.socket) -> bool:
     return False
 
 
-def test_connection_is_closed_only_for_others_without_the_token() -> None:
+def test_only_connections_without_the_token_are_closed() -> None:
     for seed in range(50):
         draw, connections = Random(seed), Connections()
         opened: list[Connection] = []

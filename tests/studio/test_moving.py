@@ -145,10 +145,10 @@ def test_jog_moves_while_it_is_held_and_release_stops(opened: Page, by: str) -> 
     opened.get(f"document.querySelector('{focus}').focus()")
     begin()
     opened.until(f"{ANGLES}[2] > 5")
-    # Longer than the server waits for a page that says nothing.
+    # Longer than the server waits for a silent page.
     _wait(opened, 800)
     held = opened.get(f"{ANGLES}[2]")
-    opened.until(f"{ANGLES}[2] > {held}")  # it moves on while it is held
+    opened.until(f"{ANGLES}[2] > {held}")  # it keeps moving while the button is held
     end()
     _wait(opened, 300)
     stopped = opened.get(f"{ANGLES}[2]")

@@ -45,7 +45,7 @@ def opened(page: Page, studio: Studio) -> Page:
     """Return the page on the simulated arm, at the width of a desktop."""
     page.show()
     page.open(studio.url)
-    # The page of the test before may hold the control until the server sees it close.
+    # The page of the previous test may keep control until the server sees it close.
     page.control()
     page.until(f"{ANGLES}.every(Number.isFinite)")
     return page

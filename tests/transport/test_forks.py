@@ -95,7 +95,7 @@ def test_child_that_closes_the_transport_leaves_it_to_the_parent(kind: str) -> N
 
 
 @pytest.mark.parametrize("kind", KINDS)
-def test_child_that_lives_on_does_not_keep_the_port_locked(kind: str) -> None:
+def test_long_lived_child_does_not_keep_the_port_locked(kind: str) -> None:
     with Line(kind) as line:
         ending, end = os.pipe()
         started, start = os.pipe()

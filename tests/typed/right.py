@@ -89,7 +89,7 @@ async def drive_async(port: str) -> float:
 
 
 class GuardedArm(MyArm300):
-    """A client whose user overrides methods that the delta takes from its base."""
+    """A client with overrides of methods that the delta takes from its base."""
 
     def is_paused(self) -> bool:
         """Check twice."""

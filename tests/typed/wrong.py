@@ -40,7 +40,7 @@ async def drive_async(arm: AsyncMyCobot) -> None:
 
 
 def drive_delta(arm: MyArm300) -> None:
-    """Use what a delta withdraws, and give the wrong arguments to a method of its base."""
+    """Use commands that a delta removes, and give the wrong arguments to a method of its base."""
     arm.jog_stop()  # type: ignore
     arm.get_angles_plan()  # type: ignore
     arm.set_HTS_gripper_torque("strong")  # type: ignore

@@ -64,7 +64,7 @@ def peer(serve: Callable[[socket.socket], object]) -> Iterator[str]:
 
 
 def read_all(connection: socket.socket) -> bytes:
-    """Return what a client sends until it ends."""
+    """Return what a client sends until it closes the connection."""
     return b"".join(iter(lambda: connection.recv(4096), b""))
 
 
@@ -76,7 +76,7 @@ def test_methods_return_values_with_their_types() -> None:
     assert fields == {"encoder": 2048}
 
 
-def test_mistakes_have_the_texts_of_python() -> None:
+def test_errors_have_the_texts_of_python() -> None:
     [found], _ = talk_with_arm("mistakes")
     with TcpServer(SimulatedArm(mycobot280.TABLE).connect) as server, MyCobot280(server.url) as arm:
         texts = []

@@ -1,5 +1,4 @@
-"""An arm in plain Python, written only from the document, that moves in time; and its planted
-defects.
+"""A simulated arm in plain Python, written only from the document, and its planted defects.
 
 Nothing in this folder imports the package that is tested.
 """

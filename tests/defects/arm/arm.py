@@ -45,7 +45,7 @@ class Arm:
         self.buffer, self._at, self.requests = b"", clock(), 0
         # In ticks of the encoders, so that angles and encoders agree exactly.
         self.travel = Travel(clock, [200, -150, 90, 300, -60, 410])
-        # In the mode of interpolation, targets wait for the one before.
+        # In interpolation mode, each target waits for the previous one.
         self._queue: list[tuple[list[int], float]] = []
         self._width, self._width_zero = Travel(clock, [50.0]), 0.0
         self._powered, self._free, self.enabled = True, 0, [1] * 6
@@ -65,18 +65,18 @@ class Arm:
 
     @property
     def wait(self) -> float | None:
-        """Seconds until half a request is given up, or something is due; None: never."""
+        """The seconds until an incomplete request is dropped or bytes are due; None: never."""
         times = [at for at, _ in self._due]
         if self.buffer and (gives_up := self.gives_up()) is not None:
             times.append(gives_up)
         return max(0.0, min(times) - self.clock()) if times else None
 
     def gives_up(self) -> float | None:
-        """Return when half a request is given up."""
+        """Return the time at which an incomplete request is dropped."""
         return self._at + IDLE
 
     def flush(self) -> bytes:
-        """Give up half a request; return what is due by now."""
+        """Drop an incomplete request; return the bytes that are due."""
         gives_up, now = self.gives_up(), self.clock()
         if self.buffer and gives_up is not None and now >= gives_up:
             self.lose_state("cut")
@@ -107,7 +107,7 @@ class Arm:
         return sent
 
     def frame(self, data: bytes) -> bytes | None:
-        """Return the frame at the start; empty if there cannot be one, None if it is cut off."""
+        """Return the frame at the start; empty if there cannot be one, None if it is incomplete."""
         if data[:2] != b"\xfe\xfe"[: len(data)]:
             return b""
         if len(data) < 4:
@@ -161,7 +161,7 @@ class Arm:
         return [2048 + sign * tick for sign, tick in zip(SIGNS, self.ticks)]
 
     def answer(self, id: int, data: bytes) -> bytes | None:
-        """Return the data of the reply to a query; None: it is no query."""
+        """Return the data of the reply to a query; None: the request is not a query."""
         joint = data[0] if data else 0
         flags = {0x1B: self._free, 0x86: self.flags[0x85], 0x8A: self.flags[0x89]}
         flags |= {0x12: self._powered, 0x14: 1, 0x51: all(self.enabled), 0x69: self._width.moves}
@@ -213,7 +213,7 @@ class Arm:
         return all(abs(a - b) <= near for a, b in zip(target, here))
 
     def change(self, id: int, data: bytes) -> None:
-        """Carry out a request that is no query."""
+        """Carry out a request that is not a query."""
         moves: dict[int, Callable[[bytes], None]] = {
             0x21: self.send_angle,
             0x22: self._send_angles,

@@ -1,6 +1,6 @@
 """The arm in a closed loop: it acknowledges each change, and reports the end of each motion.
 
-It conforms to the edition in ``closed_loop.yaml``, in each of the ways in ``CORRECT``.
+It conforms to the edition in ``closed_loop.yaml``, in each variant in ``CORRECT``.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from defects.arm.spoilt import Defect, Right
 
 STOPS = (0x11, 0x13, 0x29, 0x34)
 ENDED, ARRIVED, STOPPED = 0x5B, 0, 11
-# Two replies to different requests come at least this long after each other, in seconds.
+# The shortest time between the replies to two different requests, in seconds.
 LATE = 0.04
 # How long before the end of a motion a wrong arm reports it, in seconds.
 EARLY = 0.1
@@ -26,7 +26,7 @@ class ClosedLoopArm(Arm):
     ends_at: float | None = None
 
     def change(self, id: int, data: bytes) -> None:
-        """Carry out a request that is no query; note or report the end of a motion."""
+        """Carry out a request that is not a query; note or report the end of a motion."""
         moving = self.travel.moves or self.travel.held
         super().change(id, data)
         if id in STOPS and moving:
@@ -47,13 +47,13 @@ class ClosedLoopArm(Arm):
 
     @property
     def wait(self) -> float | None:
-        """Seconds until something is due; None: never."""
+        """The seconds until bytes are due; None: never."""
         before = super().wait
         left = None if self.ends_at is None else max(0.0, self.ends_at - self.clock())
         return min((each for each in (before, left) if each is not None), default=None)
 
     def flush(self) -> bytes:
-        """Return what is due by now."""
+        """Return the bytes that are due."""
         if self.ends_at is not None and self.clock() >= self.ends_at:
             # The motion has ended, even if a defect of end() holds back the event.
             self.ends_at = None
@@ -62,7 +62,7 @@ class ClosedLoopArm(Arm):
 
 
 def closed_loop_arm(clock: Callable[[], float], switch: str = "") -> Arm:
-    """Return the arm in a correct way or with a defect; without a name, the plain one."""
+    """Return a correct variant of the arm or one with a defect; without a name, the plain arm."""
     arm = ClosedLoopArm(clock)
     for method, hook in (CORRECT | DEFECTS)[switch].items():
         setattr(arm, method, partial(hook, arm, getattr(arm, method)))
@@ -126,7 +126,7 @@ def _refreshes(arm: Arm, right: Right, ticks: list[float], speed: int) -> None:
 
 
 def _ended(change: Callable[[Arm, Right, int], None]) -> Defect:
-    """Return the defect that ``change`` reports the end of a motion; it takes the status."""
+    """Return a defect in which ``change`` reports the end of a motion, given its status."""
     return {"end": change}
 
 

@@ -118,7 +118,7 @@ def _settings_coupled(arm: Arm, right: Right, id: int, data: bytes) -> None:
 
 
 def _read_as(wanted: int, read: Callable[[int], int]) -> Defect:
-    """Take another number for the first byte of a request, before it is checked."""
+    """Change the first byte of a request before it is checked."""
     return {
         "reply": lambda _, right, id, data: right(
             id, bytes([read(data[0])]) if id == wanted else data

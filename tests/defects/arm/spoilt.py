@@ -1,6 +1,6 @@
 """Planted defects: one command's reply has wrong bytes, or one command's request is misread.
 
-A defect replaces methods of an arm by functions, which are given the arm, the right method, and the
+A defect replaces methods of an arm by functions, which take the arm, the correct method, and its
 arguments.
 """
 

@@ -1,4 +1,4 @@
-"""Numbers on their way to their goals."""
+"""Positions that move to their goals."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 
 
 class Travel:
-    """Numbers on their way to their goals, all at the same rate; a pause stops them."""
+    """Positions that move to their goals, all at the same rate; a pause stops them."""
 
     _held_at: float | None
 
@@ -26,7 +26,7 @@ class Travel:
         self._since, self._held_at = self._clock(), None
 
     def place(self) -> list[float]:
-        """Return where the numbers are now."""
+        """Return the present positions."""
         until = self._clock() if self._held_at is None else self._held_at
         most = self._rate * (until - self._since)
         return [
@@ -45,16 +45,16 @@ class Travel:
 
     @property
     def ends_at(self) -> float:
-        """The time at which all numbers reach their goals, without regard to a pause."""
+        """The time at which all positions reach their goals, if nothing pauses them."""
         way = max(abs(b - a) for a, b in zip(self._start, self.goal))
         return self._since + way / self._rate
 
     @property
     def moves(self) -> bool:
-        """Whether any number is on its way."""
+        """Whether any position is changing."""
         return self._held_at is None and self.place() != self.goal
 
     @property
     def held(self) -> bool:
-        """Whether a pause holds the numbers."""
+        """Whether the motion is paused."""
         return self._held_at is not None

@@ -18,7 +18,7 @@ DEFECTS = {
 
 
 class TwoArms:
-    """Bytes in, bytes out: FE FE, address, LEN, id, data, and the sum of id and data."""
+    """The robot; its frames are FE FE, address, LEN, id, data, and the sum of id and data."""
 
     def __init__(self, clock: Callable[[], float], defect: str = "") -> None:
         self._clock, self._buffer, self._at = clock, b"", clock()
@@ -27,11 +27,11 @@ class TwoArms:
 
     @property
     def wait(self) -> float | None:
-        """Seconds until half a request is given up; None: never."""
+        """The seconds until an incomplete request is dropped; None: never."""
         return max(0.0, self._at + IDLE - self._clock()) if self._buffer else None
 
     def flush(self) -> bytes:
-        """Give up half a request."""
+        """Drop an incomplete request."""
         if self._clock() >= self._at + IDLE:
             self._buffer = b""
         return b""
@@ -52,7 +52,7 @@ class TwoArms:
         return sent
 
     def _size(self, data: bytes) -> int | None:
-        """Return the size of the frame at the start: 0 without a frame, None if it is cut off."""
+        """Return the size of the first frame: 0 without a frame, None if it is incomplete."""
         if data[:2] != HEADER[: len(data)]:
             return 0
         if len(data) < 5:

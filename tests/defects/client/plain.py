@@ -17,9 +17,9 @@ import time
 from collections.abc import Sequence
 
 PATIENCE, ATTEMPTS, BETWEEN = 0.17, 3, 0.004
-# How often two queries are sent in turns at the end.
+# How many times two queries are sent at the end, alternately.
 ROUNDS = 8
-# A late reply was seen after this time.
+# A late reply may come up to this many seconds after its request.
 LATEST = 0.75
 POSE, STEEP = (10, -20.5, 33.33, -45, 60, -70.07), -33.3
 PLACE = (160.5, -80.2, 210.7, -170, 10.5, 30)
@@ -135,13 +135,13 @@ class Client:
             raise TimeoutError(f"no reply to {id:02X}")
 
     def await_late_replies(self, id: int, data: bytes) -> None:
-        """Wait while a late reply to another query with this id could be taken for its reply."""
+        """Wait while a late reply to an earlier query with this id could be taken for the reply."""
         earlier, until = self._doubtful.pop(id, (data, 0.0))
         if earlier != data:
             time.sleep(max(0.0, until - time.monotonic()))
 
     def change(self, id: int, data: bytes) -> None:
-        """Send what changes something."""
+        """Send a request that changes something."""
         wrong = self._defect
         if wrong == "frame-in-two-writes" and id == 0x22:
             self._line.sendall(data[:7])
@@ -157,7 +157,7 @@ class Client:
         time.sleep(BETWEEN)
 
     def send(self, data: bytes) -> None:
-        """Send bytes; what came before them is dropped."""
+        """Drop what has been received so far, and send bytes."""
         self._line.setblocking(False)
         with contextlib.suppress(BlockingIOError):
             while self._line.recv(4096):

@@ -22,7 +22,7 @@ def wrong_frames(session: Session) -> Iterator[ClientMutant]:
     free = next(id for id in range(256) if id not in taken)
     others = (("id-unknown", free), ("id-of-another", session.other.id))
     wrong = [(name, whole[:at] + bytes([id]) + whole[at + 1 :]) for name, id in others]
-    # If two damages of a check are alike, both have the same name.
+    # Two kinds of damage to a check that give the same bytes have the same name.
     for name, data in dict((*damages(table, whole), *wrong)).items():
         if name == "twice" and session.command.safety == "query":
             continue  # a query may be repeated; a copy sent too soon is a mutant below

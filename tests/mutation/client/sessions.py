@@ -120,7 +120,7 @@ def sessions(table: Table) -> list[Session]:
         for index, variant in enumerate(command.request):
             session = Session(table, command, variant, index, ordinary(variant))
             values: list[Any] = list(physical_values(variant, session.raw_values).values())
-            # Skip a variant that no values select, because an earlier one allows them.
+            # Skip a variant if an earlier one accepts all its values.
             if codec.encode(command.name, "request", values) == session.frame:
                 found.append(session)
     return found

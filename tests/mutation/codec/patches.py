@@ -17,7 +17,7 @@ from cobotwire.protocol.checks import Check
 from cobotwire.protocol.table import Table
 from mutation.device.cells import Edit, with_address, with_length
 
-# A place is a module of the reference codec, and a passage that is there once.
+# A place: a module of the reference codec, and a passage that it contains once.
 CHECK = "validator", 'return size if rest[end:size] == frame.end(rest[:end]) else "bad-check"'
 KNOWN = "validator", 'return None if self.accept_unknown else "unknown-id"'
 LENGTH = "validator", 'heading.id) for index in self.indexes):\n            return "bad-length"'
@@ -43,7 +43,7 @@ ROUNDED = "encode", "return round(steps)"
 
 FORGET = "self._state = self._state._replace(waiting=b'', offset=self._state.offset + self.pending)"
 INNER = "any(isinstance(self._validator.validate(data[: start + verdict], i), int) for i in range("
-# The faults of framers: what is wrong, the place, and what is there in its stead.
+# The faults of framers: a description, the place, and its replacement.
 FLAWS = (
     ("ignores the footer", CHECK, "return size"),
     ("accepts ids that the edition lacks", KNOWN, "return None"),
@@ -137,7 +137,7 @@ FLAWS = (
         '                verdict = "bad-length"',
     ),
 )
-# The faults of single frames, also of those that only some formats have.
+# The faults of single frames, also of frames that only some formats have.
 CHECKS = (
     ("ignores check and footer", CHECK, "return size"),
     ("ignores the header", HEADER, "if False:"),
@@ -196,7 +196,7 @@ def patched(place: tuple[str, str], new: str, table: Table) -> Codec:
 
 
 class FramingCodec(ReferenceCodec):
-    """The reference codec with the framer of another codec, or for another direction, in one."""
+    """The reference codec; one direction uses the framer of another codec or direction."""
 
     def __init__(self, other: Make, listening: Listening, used: Listening, table: Table) -> None:
         super().__init__(table)
@@ -272,7 +272,7 @@ class TurnedCodec(OurCodec):
         self._message, self._name, self._first_two = (command, direction), name, first_two
 
     def ask(self, question: Json) -> Json:
-        """Return the answer, with the row turned in the question or in the answer."""
+        """Return the answer, with the row reordered in the question or in the answer."""
         message = question.get("command"), question.get("direction")
         if question["do"] == "encode" and message == self._message:
             question = self._turned(question)

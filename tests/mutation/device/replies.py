@@ -154,7 +154,7 @@ TIMES: tuple[tuple[str, str, Change], ...] = (
 
 
 def wrong_acks(table: Table) -> Iterator[Mutant]:
-    """Yield a mutant for every command without an acknowledgement, and for every one with it."""
+    """Yield mutants that omit the acknowledgement of a command, or send one that does not exist."""
     for command in distinct(table):
         if command.ack:
             yield mutant_of("wrong ack", "it is missing", command, lambda *_: b"")
@@ -175,7 +175,7 @@ def _acknowledged(command: Command, text: str, body: bytes) -> Mutant:
 
 
 def stale_replies(table: Table) -> Iterator[Mutant]:
-    """Yield a mutant for each query: it gets the reply to the same query before."""
+    """Yield a mutant for each query: it replies as it replied to the previous one."""
     for command in distinct(table):
         if command.safety == "query" and command.requires_reply:
             fault = partial(_stale, command)

@@ -26,7 +26,7 @@ from mutation.device.exchanges import distinct, next_value, pickers, request_fie
 
 
 def _ignored(command: Command) -> Fault:
-    """One setter gets its reply, the first variant with its usual value, but is not carried out."""
+    """Reply to one setter with the first variant and its usual value, but do not carry it out."""
 
     def reply(table: Table, request: DecodedMessage, data: bytes) -> bytes:
         if request.command is not command or not command.reply:

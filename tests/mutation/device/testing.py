@@ -43,7 +43,7 @@ def complaints(
     A run that ends early is a complaint too: its report says that the device stopped replying.
     """
     address = address or tested_addresses(table)[0]
-    # A command that the simulated arm says it does not support is no failure.
+    # A command that the simulated arm reports as not supported is not a failure.
     lacking = on_correct_arm(table, address).lacking
     for result in _results(table, peer, clock, only, address, lacking):
         if result.verdict is Verdict.FAIL:

@@ -1,6 +1,6 @@
 """Have long random conversations with a device, and repeat them with a mutant.
 
-They have legal and malformed requests.
+They contain legal and malformed requests.
 """
 
 from __future__ import annotations
@@ -160,7 +160,7 @@ _kept: dict[tuple[str, str], list[Conversation]] = {}
 def _conversation(table: Table, command: str, seed: int) -> Conversation:
     """Return a conversation about some of the commands, drawn at random.
 
-    If all commands took part, one that stops the arm for good would hide all motion.
+    If all commands took part, one that stops the arm permanently would hide all motion.
     """
     random = Random(f"{table.edition} {command} {seed}")
     # Nothing is sent for an event.

@@ -89,7 +89,7 @@ def _undefined(table: Table, mutant: Mutant) -> str:
 
 
 def _is_unwired(table: Table, name: str) -> bool:
-    """Return whether a command is of pins, and the edition does not say that outputs set inputs."""
+    """Return whether a command is about pins, and no source says that outputs set inputs."""
     query = WIRED.get(name, name)
     backs = (command.read_by for command in table.commands)
     return query in WIRED.values() and not any(back and back.query == query for back in backs)

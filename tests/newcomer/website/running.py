@@ -1,4 +1,4 @@
-"""Run a page by its plan, in a folder of its own, with a simulated arm behind its ports."""
+"""Run a page by its plan, in a folder of its own, with a simulated arm at its ports."""
 
 from __future__ import annotations
 

@@ -61,7 +61,7 @@ def corners(variant: Variant) -> Iterator[Arguments]:
 
 
 def inside(variant: Variant) -> Iterator[Arguments]:
-    """Return values inside of the corners, for the lowest selector: whole ones, and other ones.
+    """Return values inside of the corners, for the lowest selector: first midpoints, then others.
 
     The other values are a few steps above the lowest. Each field has more steps than the one
     before, so that all fields differ. The maker's classes truncate some of them.

@@ -1,7 +1,7 @@
 """Make objects of the maker's classes on a port in this process, also those that open a socket.
 
-Classes whose frames end with a CRC read their port in a thread that never ends. Here nothing runs
-beside the test: what the thread would have read is read when the class looks for a frame.
+Classes whose frames end with a CRC read their port in a thread that never ends. Here no such thread
+runs: the port is read when the class looks for a frame.
 """
 
 from __future__ import annotations
@@ -136,7 +136,7 @@ def opened_on_socket(peer_class: str, port: Any) -> Any:
 
 
 def opened_by_client(peer_class: str, port: Any) -> Any:
-    """Return an object of a class that has a serial class beside it, with a socket instead."""
+    """Return an object of a TCP class with a serial counterpart; its socket is a port here."""
     peer = opened_as(SINGLE)(peer_class, port)
     del peer._serial_port
     peer.sock = PortSocket(port)

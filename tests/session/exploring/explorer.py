@@ -1,4 +1,4 @@
-"""Explore every order of a topic's events, breadth first, so that the first find is the shortest.
+"""Explore every order of a topic's events, breadth first: the first failure is the shortest.
 
 A state that was seen is not explored again. A state is everything that a later decision can depend
 on: each attribute of the exchange, with times relative to now, and the state of the World.
@@ -33,7 +33,7 @@ IGNORED = {
         "_fields",
     ),
     *("queued_at", "requested_at", "replied_at", "policy", "_variant", "pending"),
-    # These have one value in all requests.
+    # Attributes with the same value in all requests.
     *("_wait", "silence"),
 }
 

@@ -16,7 +16,7 @@ from session.exploring.topics import POLICY, REPLIES, REQUESTS, WAIT
 if TYPE_CHECKING:
     from session.exploring.world import World
 
-# The only excuses for a broken promise: the bytes that decide are equal.
+# The limits of the protocol. Only these excuse a broken promise: the bytes show no difference.
 LIMITS = {
     "later than its grace": "a reply does not say which request it belongs to",
     "second copy": "the second copy of a reply that was taken looks like the next reply",
@@ -142,7 +142,7 @@ class Promises:
                 self._check_end(call)
 
     def _joined(self, event: SessionEvent) -> list[Arrival]:
-        """Return what came inside a frame, after a piece of a cut reply that begins it."""
+        """Return the arrivals inside a frame, which then began with a piece of a cut reply."""
         frame: Frame | None = getattr(event, "frame", None)
         if frame is None:
             return []
@@ -177,8 +177,8 @@ class Promises:
         return "second copy" if arrival.copy > 1 and not expected else call.misled
 
     def _echo_limit(self, call: Call, deadline: float) -> str | None:
-        """Return the known limit by which the echo of a request counts as its reply; None: no limit
-        does."""
+        """Return the known limit by which the echo of a request counts as its reply; None if
+        there is no limit."""
         looks_alike = REQUESTS[call.kind].frame in REPLIES[call.kind]
         unknown = self._world.topic.echoes and not self.echo_shown
         counts = looks_alike and unknown and self._world.now >= deadline

@@ -62,8 +62,8 @@ EVENT = CODEC.encode("motion_ended", "reply", (0,))
 class Topic(NamedTuple):
     """The requests and the events that may happen, and the ways in which a write may fail.
 
-    ``cut 3``: 3 bytes are taken, ``cut -1``: all but one; ``torn``: likewise, but nobody knows how
-    many; ``lost``: the transport takes all, the arm gets only these, and the transport is gone.
+    ``cut 3``: 3 bytes are taken, ``cut -1``: all but one; ``torn``: likewise, but the number is not
+    reported; ``lost``: all are taken, the arm gets only these, and the connection ends.
     """
 
     kinds: tuple[str, ...]

@@ -44,7 +44,7 @@ class World:
         self.fed = 0
         # The end of what was read, which the framer may not have parsed yet.
         self.tail = b""
-        # What was read from each offset of the stream on.
+        # By its first offset in the stream, each arrival that was read.
         self.arrivals: dict[int, Arrival] = {}
 
     @property
@@ -181,7 +181,7 @@ class World:
         alignment, received = self.exchange.alignment, call.received_by_arm
         align = alignment.align
         data = align + request
-        # A place may be counted from the end.
+        # A negative number counts from the end.
         taken = data[: int(place)] if place else data
         self.now += WAIT if how == "slow" else 0.0
         call.writes.append(self.now)

@@ -1,6 +1,6 @@
 """Diagnose the traffic of shipped scenarios.
 
-That our clients get right values on such lines: tests/client and tests/protocols.
+tests/client and tests/protocols check that our clients get correct values on these lines.
 """
 
 from __future__ import annotations
@@ -14,8 +14,8 @@ from diagnosing import diagnose
 from faulty_talk import CODEC, GET_ANGLES, talk
 
 BROKEN = {"nuls", "unrecognised", "text"}
-# The number of requests, what noise there must be, and what may come with it, where the bytes of a
-# broken frame are ambiguous.
+# The number of requests, the noise that must be found, and the noise that may be found because the
+# bytes of a broken frame are ambiguous.
 SHOWN: dict[str, tuple[int, set[str], set[str]]] = {
     "servo-leaks": (4, {"servo"}, set()),
     "servo-leak-inside": (3, {"servo", "damaged-frame"}, BROKEN),

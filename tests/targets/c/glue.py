@@ -1,7 +1,7 @@
 """Generate the harness's part for one edition: typed calls and the numbers of each struct.
 
 A message is a row of numbers: the numbers of each member in wire order. The elements of a list
-follow their count. Constants, and fields that count elements, are not among them.
+follow their count. Constants, and fields that count elements, are left out.
 """
 
 from __future__ import annotations

@@ -49,7 +49,7 @@ async function run(table, { messages, rejected, malformed, streams }) {
     });
     const names = fields.map((field) => field.name);
     const built = session.ask("encode", index, direction, command, record.variant, names, sent);
-    // Of a message with another address, or with bits that belong to no field, the codec builds other bytes.
+    // For another address, or bits that belong to no field, the codec builds other bytes.
     if (!record.parts && (!built || !same([...built], [...bytes]))) differs(record, `built ${built}`);
     found.fields += fields.length;
   }

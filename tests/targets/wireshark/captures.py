@@ -40,7 +40,7 @@ def timed(chunks: Sequence[Chunk]) -> list[Chunk]:
 def serial(chunks: Sequence[Chunk], edition: str | Sequence[str]) -> bytes:
     """Return a recording in which each line is an interface and each chunk a packet.
 
-    ``edition`` is that of every line, or one for each line.
+    ``edition`` is the edition of all lines, or a list with one for each line.
     """
     file = io.BytesIO()
     writer = CaptureWriter(file)

@@ -148,7 +148,7 @@ def _fill(item: Item, parent: ET.Element, edition: str) -> None:
 
 
 def _groups(element: ET.Element) -> bool:
-    """Return whether an element only groups others; a list may have none."""
+    """Return whether an element only groups others; an empty list has nothing to group."""
     # A name that fields of several kinds share has the kind as its suffix.
     name = re.sub(r"_(group|number|bytes|text)$", "", element.get("name", ""))
     inner = any(each.get("name", "").startswith(f"{name}.") for each in element.iter())

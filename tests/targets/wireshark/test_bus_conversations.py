@@ -78,7 +78,7 @@ def test_reply_with_the_constant_of_another_command_is_not_matched(
     torque, status = shown["constants"]
     assert torque.experts == ["unanswered"]
     assert (status.own["frame.command"], status.experts) == ("get_pro_gripper_status", [])
-    # A reply that no command allows is a faulty one of the request's command.
+    # A reply that no command allows is shown as a faulty reply to the request.
     _, faulty = shown["constant"]
     assert (faulty.own["frame.command"], faulty.experts) == (
         "get_pro_gripper_torque",

@@ -120,7 +120,7 @@ EXCHANGES: dict[str, tuple[list[Any], list[dict[str, str]]]] = {
 }
 
 
-def test_replies_are_matched_to_their_requests_on_lines_beside_each_other(tmp_path: Path) -> None:
+def test_replies_are_matched_to_their_requests_on_parallel_lines(tmp_path: Path) -> None:
     lines = [line("mycobot", *frames) for frames, _ in EXCHANGES.values()]
     chunks = [each._replace(line=at) for at, found in enumerate(lines) for each in found]
     path = tmp_path / "lines"

@@ -14,8 +14,8 @@ _PINS = frozenset(
 )
 _ZERO, _ANGLES = [0] * 6, [10, -20, 30, -40, 50, -60]
 _COORDS = [100, -50.5, 200, 90, -45.25, 10]
-_FIRST = "the maker's class takes the first argument for the address, and no robot has that address"
-_NONE = "it fails before it sends: the maker's class reads the address from missing arguments"
+_FIRST = "the first argument becomes the address, by a mistake of the maker; no robot has it"
+_NONE = "it fails before it sends: the maker's class takes the address from missing arguments"
 _FORM = "a variant of is_in_position in the maker's class"
 _WHOLE_ROBOT = frozenset(
     {"get_system_version", "focus_all_servos", "base_to_single_coords", "collision"}
