@@ -62,7 +62,7 @@ def test_packets_of_the_typed_feetech_spec_are_recognised(codec: Codec) -> None:
 def test_packet_with_unknown_code_is_named_by_its_number(codec: Codec) -> None:
     packet = only(codec, noise.servo_packet(b"\x03\x02\x10"))
     assert isinstance(packet, ServoPacket)
-    # Bit 4 is no error bit, so it is no status packet.
+    # Bit 4 is not an error bit, so this is not a status packet.
     assert (packet.role, packet.instruction, packet.errors) == ("instruction", "0x10", ())
 
 

@@ -32,7 +32,7 @@ class Rejected(str):
 
 
 class Crashed(str):
-    """The text of an error that is no rejection of an argument."""
+    """The text of an error that does not reject an argument."""
 
 
 def compare_values(robot: Robot, which: int | str = 1) -> Compared:

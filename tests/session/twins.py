@@ -1,7 +1,7 @@
 """Exchanges of Python whose steps are recorded, and their twins in Rust, which must do the same.
 
-The probe plays the steps of all exchanges at once. For each step it returns the
-result and the visible state afterwards: until when the exchange is idle, outcomes, and so on.
+The probe plays the steps of all exchanges at once. For each step it returns the result
+and the visible state afterwards: until when the exchange is idle, outcomes, and so on.
 Messages and errors are compared by their texts.
 """
 

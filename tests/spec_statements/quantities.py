@@ -119,7 +119,7 @@ def cases(edition: Edition) -> Iterator[str]:
 
 
 def flags(edition: Edition) -> Iterator[str]:
-    """Report fields that are described as true or false, and have a type that is no flag."""
+    """Report fields that are described as true or false but are not flags."""
     for command in edition.commands:
         for field in command.fields:
             if re.match(r"True\b", field.doc) and field.type.kind != "flag":

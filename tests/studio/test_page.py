@@ -278,7 +278,7 @@ def test_markup_on_the_line_stays_text(page: Page) -> None:
         page.open(studio.url)
         page.show_tab("line")
         page.choose("by-noise", "any")
-        # The rows move on, so one is found and clicked at once.
+        # The rows scroll, so one is found and clicked in one step.
         hostile = f"{ROWS}.find((row) => row.textContent.includes('onerror=document.title=1'))"
         page.until(f"((row) => row && (row.click(), true))({hostile})")
         page.until("document.getElementById('details').textContent.includes('onerror')")

@@ -9,14 +9,14 @@ const say = (value) => console.log(JSON.stringify(value, (_, each) => (each === 
 
 const wait = (milliseconds) => new Promise((done) => setTimeout(done, milliseconds));
 
-/** A transport whose writes take 2 ms, as in a browser; it notes them. */
+/** A transport whose writes take 2 ms, as in a browser; it logs them. */
 function slow(log) {
   let last = Promise.resolve();
   const write = (data) => (last = last.then(() => wait(2)).then(() => void log.push(Buffer.from(data).toString("hex"))));
   return { url: "memory", start() {}, write, close: () => last, abort() {} };
 }
 
-/** A port as the browser has it: it goes on after an error of a byte, and takes time to close. */
+/** A port as in a browser: it continues after a framing error, and takes time to close. */
 class SerialPort {
   async open() {
     if (this.opened) throw new Error("The port is already open.");

@@ -411,7 +411,7 @@ static void serve(void)
         if (ready > 0) {
             size = read(line, data, sizeof data);
             if (size < 0) {
-                usleep(10000); /* nobody has opened the port yet */
+                usleep(10000); /* no program has opened the port yet */
                 continue;
             }
         } else {

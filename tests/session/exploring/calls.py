@@ -23,7 +23,7 @@ class Call:
     # The texts that were read while it waited for a text.
     texts: list[Arrival] = field(default_factory=list)
     answered: bool = False
-    # If the reply to another request ended this call: the limit of the protocol that allows this.
+    # If the reply to another request ended this call: the limit of the protocol that excuses it.
     misled: str | None = None
 
     @property

@@ -11,7 +11,7 @@ from cobotwire.session.request import RequestEncoder
 
 Event = tuple[str, ...]
 POLICY = RetryPolicy(attempts=2, shortest_attempt=0.125, grace=0.5)
-WAIT, MOMENT = 0.25, 0.0625
+WAIT, TICK = 0.25, 0.0625
 
 
 class Kind(NamedTuple):
@@ -73,7 +73,7 @@ class Topic(NamedTuple):
 
 
 _WRITES = ("slow", "cut 1", "cut 3", "cut -1", "torn 3", "torn -1", "lost 3", "lost -1")
-_TIMES = ("pass", "moment")
+_TIMES = ("pass", "tick")
 _OTHERS = ("arrive", "arrive unread", "cut", "damaged", "give up", "babble", "event", "write")
 TOPICS = {
     "everything": Topic(tuple(KINDS), (*_TIMES, *_OTHERS, "lose", "reopen"), _WRITES),

@@ -15,7 +15,7 @@ from cobotwire.session import Exchange, PendingRequest
 from session.exploring import topics
 from session.exploring.calls import Arrival, Call, Reply
 from session.exploring.promises import Promises
-from session.exploring.topics import CODEC, KINDS, MOMENT, POLICY, REPLIES, REQUESTS, WAIT
+from session.exploring.topics import CODEC, KINDS, POLICY, REPLIES, REQUESTS, TICK, WAIT
 
 MOST_CALLS, MOST_REPLIES = 3, 3
 # A reply comes no later than this: longer than any grace.
@@ -115,10 +115,10 @@ class World:
     def _on_pass(self) -> None:
         """Let time pass until the exchange has something to do."""
         idle = self.exchange.idle_seconds(self.now)
-        self.now += POLICY.grace if idle is None else idle or MOMENT
+        self.now += POLICY.grace if idle is None else idle or TICK
 
-    def _on_moment(self) -> None:
-        self.now += min(MOMENT, self.exchange.idle_seconds(self.now) or MOMENT)
+    def _on_tick(self) -> None:
+        self.now += min(TICK, self.exchange.idle_seconds(self.now) or TICK)
 
     def _on_babble(self) -> None:
         """Let time pass in which the line brings more than the client reads."""

@@ -96,7 +96,7 @@ def test_no_scenario(simulated_arm):
 
 def test_example_of_the_guide_ports_and_marks_work_in_another_project(tmp_path: Path) -> None:
     (tmp_path / "sick.yaml").write_text("faults:\n  - {fault: lost, only: replies}\n")
-    # The example has 2 tests, the kinds of ports 3, and the marks, with a scenario beside them, 4.
+    # The example has 2 tests, PORTS 3, and MARKS, which reads the scenario file, 4.
     assert "9 passed" in (output := run(tmp_path, EXAMPLES[0], PORTS, MARKS)), output
 
 

@@ -117,7 +117,7 @@ class Tab:
         error: BaseException | None,
         traceback: TracebackType | None,
     ) -> None:
-        # The browser is a group of processes of its own.
+        # The browser has its own process group.
         os.killpg(self._process.pid, signal.SIGKILL)
         self._process.wait()
         self._in.close()
