@@ -43,7 +43,7 @@ class CommandRun(NamedTuple):
 
     @property
     def matches(self) -> bool:
-        """Return whether the output is as on the page, except for measured times."""
+        """Return whether the output equals that on the page, except where it depends on times."""
         printed = ARRIVED.sub("0.0", SLOW.sub("", self.printed))
         return re.fullmatch(output_pattern(self.expected), printed) is not None
 

@@ -45,8 +45,8 @@ def made(
 ) -> tuple[Any, Any]:
     """Return an arm of a class on a simulated robot in stepped time, and that robot.
 
-    ``edition`` is the client's, and the robot's unless ``robot`` names another one. ``peer`` makes
-    the peer that replaces the robot on the line; ``options`` are those of the robot.
+    ``edition`` is the edition of the client, and of the robot unless ``robot`` names another one.
+    ``peer`` makes a peer that replaces the robot on the line; ``options`` are passed to the robot.
     """
     kind = getattr(layer, name)
     native = load(edition).CLIENT if edition else kind.NATIVE

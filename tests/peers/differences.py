@@ -1,7 +1,7 @@
 """What differs between the maker's classes and ours, and the rulings on it.
 
-``differences.txt`` has a section for each reason. A row gives that reason to equal differences: its
-methods, their parts, the difference, and the classes, separated by tabs.
+``differences.txt`` has a section for each reason. A row states differences with this reason:
+methods, their parts, the difference, and classes, separated by tabs.
 """
 
 from __future__ import annotations

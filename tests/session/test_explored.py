@@ -17,7 +17,7 @@ from session.exploring.__main__ import main
 from session.exploring.explorer import Search
 from session.exploring.topics import TOPICS
 
-# How many events in a row `make test` explores; `make explore` goes on from there. In
+# How many events in a row `make test` explores; `make explore` explores longer sequences. In
 # "settings", "damage" and "writes", three events find every planted fault that four events find.
 DEPTHS = {"everything": 2, "settings": 3, "damage": 3, "writes": 3, "unread": 5}
 USUAL_DEPTH = 4

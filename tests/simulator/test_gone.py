@@ -10,7 +10,7 @@ from cobotwire.simulator import MemoryTransport, PtyServer, SimulatedArm, Steppe
 from cobotwire.simulator.peer import Peer, PeerDisconnected
 
 
-class Going:
+class Disconnecting:
     """A peer that disconnects when it receives something, or after a time."""
 
     def __init__(self, wait: float | None = None) -> None:
@@ -27,7 +27,7 @@ class Going:
 
 @pytest.mark.parametrize("wait", [None, 0.05])
 def test_pty_of_a_disconnected_peer_is_closed_and_serving_ends(wait: float | None) -> None:
-    with PtyServer(Going()) as server, MyCobot280(server.url) as arm:
+    with PtyServer(Disconnecting()) as server, MyCobot280(server.url) as arm:
         with pytest.raises(LinkError):
             arm.get_angles()
 
@@ -36,7 +36,7 @@ def test_pty_of_a_disconnected_peer_is_closed_and_serving_ends(wait: float | Non
 def test_tcp_client_of_a_disconnected_peer_is_dropped_and_the_next_can_connect(
     wait: float | None,
 ) -> None:
-    peers: list[Peer] = [Going(wait), SimulatedArm(TABLE)]
+    peers: list[Peer] = [Disconnecting(wait), SimulatedArm(TABLE)]
     with TcpServer(lambda: peers.pop(0)) as server:
         with MyCobot280(server.url) as arm:
             with pytest.raises(LinkError):
@@ -48,7 +48,7 @@ def test_tcp_client_of_a_disconnected_peer_is_dropped_and_the_next_can_connect(
 @pytest.mark.parametrize("wait", [None, 0.05])
 def test_memory_transport_of_a_disconnected_peer_is_closed(wait: float | None) -> None:
     clock = SteppedClock()
-    arm = MyCobot280(MemoryTransport(Going(wait), clock))
+    arm = MyCobot280(MemoryTransport(Disconnecting(wait), clock))
     for message in ("the peer is gone", "it is closed"):
         with pytest.raises(LinkError, match=message):
             arm.get_angles()

@@ -193,7 +193,7 @@ def effects(edition: Edition) -> Iterator[str]:
                 yield f"{command.name} {in_words(effect)}, but its description says {wanted}"
 
 
-# Queries report these for more or fewer joints than the edition counts, or setters narrow them.
+# Queries report these for another number of joints than the edition has, or setters accept less.
 # Such state has the type of the setter's field, or of each number that the query reports.
 PART_OF_FIELD = {
     *("calibrated", "collision_threshold", "torque_compensation", "model_direction", "run_errors"),
@@ -287,7 +287,7 @@ UNUSED = ("mybuddy", "set_encoders", "speeds")
 
 
 def arguments(edition: Edition) -> Iterator[str]:
-    """Report motions that do not use an argument, or not as its name says."""
+    """Report motions that ignore an argument, or use it differently from what its name says."""
     for command in edition.commands:
         effect = command.effect
         cases = () if effect is None else (effect, *(inner for _, inner in effect.cases))

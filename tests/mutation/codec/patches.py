@@ -262,7 +262,7 @@ def _with(check: Check, **changes: Any) -> Make:
     return lambda table: ReferenceCodec(table._replace(frame=table.frame._replace(check=other)))
 
 
-class TurnedCodec(OurCodec):
+class ReorderingCodec(OurCodec):
     """A codec that reads and writes the elements of a row in another order."""
 
     def __init__(
@@ -275,18 +275,22 @@ class TurnedCodec(OurCodec):
         """Return the answer, with the row reordered in the question or in the answer."""
         message = question.get("command"), question.get("direction")
         if question["do"] == "encode" and message == self._message:
-            question = self._turned(question)
+            question = self._reordered_in(question)
         answer = super().ask(question)
         read = question["do"] == "decode" and (answer.get("command"), message[1]) == self._message
-        return self._turned(answer) if read else answer
+        return self._reordered_in(answer) if read else answer
 
-    def _turned(self, given: Json) -> Json:
+    def _reordered_in(self, given: Json) -> Json:
         row = given["fields"].get(self._name)
-        return given | {"fields": given["fields"] | {self._name: self._turn(row)}} if row else given
+        return (
+            given | {"fields": given["fields"] | {self._name: self._reordered(row)}}
+            if row
+            else given
+        )
 
-    def _turn(self, row: Any) -> Any:
+    def _reordered(self, row: Any) -> Any:
         if isinstance(row, str):
-            return hexed(bytes(self._turn(list(bytes.fromhex(row)))))
+            return hexed(bytes(self._reordered(list(bytes.fromhex(row)))))
         if not isinstance(row, list) or len(row) < 2:
             return row
         return [row[1], row[0], *row[2:]] if self._first_two else row[::-1]

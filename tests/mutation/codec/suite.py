@@ -13,7 +13,7 @@ from cobotwire.conformance.codec import Implementation, Question, Run
 from cobotwire.conformance.codec.questions.our_codec import OurCodec
 from cobotwire.protocol.table import Table
 from conformance.codec.questions import questions_of
-from mutation.codec.patches import TurnedCodec, broken_framers, wrong_frames
+from mutation.codec.patches import ReorderingCodec, broken_framers, wrong_frames
 from mutation.codec.reasons import reason
 from mutation.suite import Suite
 from mutation.tables import WrongTable, wrong_tables
@@ -96,8 +96,10 @@ def codec_mutants(table: Table) -> Iterator[CodecMutant]:
                 for first_two in (False, True):
                     how = "first two swapped" if first_two else "last element first"
                     text = f"{command.name} {direction}: {name} {how}"
-                    turned = partial(TurnedCodec, table, command.name, direction, name, first_two)
-                    yield CodecMutant("order", text, command.name, turned)
+                    wrong = partial(
+                        ReorderingCodec, table, command.name, direction, name, first_two
+                    )
+                    yield CodecMutant("order", text, command.name, wrong)
     for name, broken in broken_framers():
         yield CodecMutant("framing", name, "", partial(_answering, broken, table))
     for name, wrong_frame in wrong_frames(table):

@@ -29,7 +29,7 @@ Change = Callable[[Table, DecodedMessage, bytes], bytes | list[TimedBytes]]
 
 
 class Fault(NamedTuple):
-    """A device fault: what it changes; what is left out is correct.
+    """The fault of a device: functions that replace correct behaviour; the defaults are correct.
 
     ``chunk`` notes a write, before its frames. ``request`` returns the bytes that the inner arm
     receives in place of a legal request, ``reply`` what is sent in place of the reply, which may be

@@ -79,7 +79,7 @@ def with_length(step: int) -> Edit:
 
 
 def with_address(address: int) -> Edit:
-    """Change only the address, and the check if it covers it."""
+    """Change only the address, and the check that covers it, if any."""
 
     def edit(table: Table, data: bytes) -> bytes:
         at = table.frame.address_at
