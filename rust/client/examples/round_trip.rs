@@ -1,4 +1,5 @@
-//! Compare a call over TCP with a bare round trip of the same bytes, in turns in one run.
+//! Compare a call over TCP with a bare round trip of the same bytes; one run alternates between
+//! both.
 
 use std::io::{Read, Write};
 use std::net::{TcpListener, TcpStream};
@@ -14,7 +15,7 @@ const REPLY: [u8; 17] = [
 const CALLS: u32 = 500;
 const ROUNDS: usize = 40;
 
-/// Reply to each request until the client has gone.
+/// Reply to each request until the client disconnects.
 fn serve(listener: &TcpListener) -> std::io::Result<()> {
     loop {
         let (mut stream, _) = listener.accept()?;

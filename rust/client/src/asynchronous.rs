@@ -1,4 +1,4 @@
-//! The asynchronous client: whichever future is polled reads and writes for all.
+//! The asynchronous client: the future that is polled reads and writes for all futures.
 
 use std::future::poll_fn;
 use std::io::{self, Read, Write};
@@ -26,20 +26,20 @@ pub trait ByteStream: AsyncRead + AsyncWrite + Send + Unpin + 'static {}
 
 impl<T: AsyncRead + AsyncWrite + Send + Unpin + 'static> ByteStream for T {}
 
-/// How long a future sleeps if nothing is to be done.
+/// How long a future sleeps if there is nothing to do.
 const LONGEST: Duration = Duration::from_secs(3600);
 
 /// An arm at the other end of a stream; clients of editions add a method for each command.
 ///
 /// A clone is a second handle of the same connection. If the future of a call is dropped, its
-/// request is given up: it is not sent if it was not yet, and never twice.
+/// request is given up: it is not sent if it has not been sent yet, and it is not sent again.
 #[derive(Clone)]
 pub struct AsyncClient {
     handle: Handle,
     shared: Arc<Shared<Arc<Arrived>>>,
 }
 
-/// Wakes every future that waits: the stream remembers only who has polled it last.
+/// Wakes every future that waits: the stream wakes only the task that polled it last.
 #[derive(Default)]
 struct Arrived(Notify);
 
@@ -97,7 +97,7 @@ impl AsyncClient {
     async fn perform(&self, prepared: &Prepared) -> Outcome {
         let called = Instant::now();
         if prepared.awaits_reply {
-            // Only after a yield does the runtime notice that earlier bytes have come.
+            // The runtime notices bytes that have already come only after a yield.
             tokio::task::yield_now().await;
         }
         let id = self.connection().submit(prepared, &self.handle, called);
@@ -105,8 +105,8 @@ impl AsyncClient {
         self.until(None, |session, _| session.take(call.id)).await
     }
 
-    /// Read and write for all until `done` returns something. Its argument is whether `longest` is
-    /// over.
+    /// Read and write for all until `done` returns something. Its argument is whether `longest` has
+    /// passed.
     async fn until<T>(
         &self,
         longest: Option<Duration>,
@@ -114,7 +114,7 @@ impl AsyncClient {
     ) -> T {
         let began = Instant::now();
         loop {
-            // This comes before the poll of the stream, so that no arrival is overlooked.
+            // Register before the stream is polled, so that no wake-up is missed.
             let arrived = self.shared.turns.0.notified();
             let left = longest.map_or(LONGEST, |longest| longest.saturating_sub(began.elapsed()));
             let idle = {
@@ -147,7 +147,7 @@ struct Call<'a> {
 impl Drop for Call<'_> {
     fn drop(&mut self) {
         self.client.connection().session.give_up(self.id);
-        // Another future must go on with reading and writing for all.
+        // Another future must continue to read and write for all.
         self.client.shared.turns.0.notify_waiters();
     }
 }
@@ -165,13 +165,14 @@ impl<T> Stream for Received<NextItem<T>> {
 }
 
 impl<T> Received<NextItem<T>> {
-    /// Wait for the next sample or event. Samples end with an error, events when their time is over.
+    /// Wait for the next sample or event. Samples end with an error, events when their timeout has
+    /// passed.
     pub async fn next(&mut self) -> Option<T> {
         poll_fn(|context| Pin::new(&mut *self).poll_next(context)).await
     }
 }
 
-/// A stream as a port: it never waits, and wakes those who wait for it.
+/// A stream as a port: it never blocks, and wakes the tasks that wait for it.
 struct Polled<S> {
     stream: S,
     waker: Waker,

@@ -15,7 +15,7 @@ use crate::{Error, Options, Sample, Value, lock};
 
 /// The longest that a thread reads before it checks whether others have something to do; threads that
 /// wait for the connection share that time. A timer that is due before the next tick of the system,
-/// usually 4 ms, would cost a third of a call.
+/// usually 4 ms, would cost a third of the time of a call.
 const SLICE: Duration = Duration::from_millis(5);
 /// How long a thread leaves the port to others.
 const TURN: Duration = Duration::from_micros(500);
@@ -27,7 +27,7 @@ const TURN: Duration = Duration::from_micros(500);
 #[derive(Clone)]
 pub struct Client {
     handle: Handle,
-    /// With the number of threads that want the connection.
+    /// It also counts the threads that wait for the connection.
     shared: Arc<Shared<AtomicU32>>,
 }
 
@@ -73,8 +73,8 @@ impl Client {
         self.until(None, |session, _| session.take(id))
     }
 
-    /// Read and write for all until `done` returns something. Its argument is whether `longest` is
-    /// over.
+    /// Read and write for all until `done` returns something. Its argument is whether `longest` has
+    /// passed.
     fn until<T>(
         &self,
         longest: Option<Duration>,

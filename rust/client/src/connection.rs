@@ -24,12 +24,12 @@ pub(crate) struct Shared<T> {
     pub turns: T,
 }
 
-/// The port with its session; whoever holds it reads and writes for all.
+/// The port with its session; the thread or task that holds it reads and writes for all.
 pub(crate) struct Connection {
     pub session: Session,
     /// `None`: it is closed.
     port: Option<Box<dyn Port>>,
-    /// Whether the port waits at no read or write.
+    /// Whether reads and writes of the port return at once.
     is_instant: bool,
     /// How long a dropped client may wait until the line takes a stop.
     patience: Duration,
@@ -68,7 +68,7 @@ impl Connection {
         self.session.submit(prepared, handle, called_at, now)
     }
 
-    /// Return for how long nothing is to be done unless bytes come.
+    /// Return how long there is nothing to do unless bytes come.
     pub fn idle(&self, longest: Duration) -> Duration {
         let idle = self.session.idle(self.now());
         idle.map_or(longest, |idle| longest.min(Duration::from_nanos(idle)))
@@ -95,7 +95,7 @@ impl Connection {
         read.is_ok()
     }
 
-    /// Write until nothing is to be sent, or the line takes no more.
+    /// Write until there is nothing left to send, or the line takes no more.
     fn write(&mut self, drained: bool, mut now: Nanos) {
         loop {
             let bytes = self.session.outgoing(now, drained).to_vec();
@@ -113,7 +113,7 @@ impl Connection {
         }
     }
 
-    /// Return the port, so that it waits for some time at most.
+    /// Return the port, with this limit on the time of its next read.
     fn port(&mut self, longest: Duration) -> std::io::Result<&mut dyn Port> {
         let port = self.port.as_mut().ok_or(ErrorKind::NotConnected)?;
         if !(self.is_instant && longest.is_zero()) {
@@ -173,7 +173,7 @@ impl Drop for Connection {
         };
         let now = Instant::now();
         if !stopped_by(now + self.patience) {
-            // What drops an asynchronous client must not wait.
+            // The task that drops an asynchronous client must not block.
             std::thread::spawn(move || stopped_by(now + LONGEST_STOP));
         }
     }

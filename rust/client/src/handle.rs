@@ -11,7 +11,7 @@ use crate::{Error, Options, Value};
 
 /// The values of a message with their names.
 pub type Named = Vec<(String, Value)>;
-/// The reply that a call has waited for; `None`: it did not.
+/// The reply that a call has waited for; `None` if it did not wait for one.
 pub type Outcome = Result<Option<Answer>, Error>;
 
 /// A request that is validated and encoded, not yet sent.
@@ -26,7 +26,7 @@ pub struct Prepared {
 /// A handle of a client: how it encodes requests, and with what it sends them.
 #[derive(Clone, Debug)]
 pub struct Handle {
-    /// The table, within the limits.
+    /// The table, with its ranges narrowed to the limits.
     pub edition: Table,
     pub options: Options,
     pub address: Option<u8>,
@@ -148,13 +148,14 @@ impl Handle {
         result(self.fields(of, answer), (R::RESULTS, true), R::RADIANS)
     }
 
-    /// Return the error that something happened to the port.
+    /// Return an error of the port.
     pub fn link(&self, detail: &str, written: Option<usize>) -> Error {
         let url = self.options.port_name.as_deref();
         Error::link(url.unwrap_or("port"), detail, written)
     }
 
-    /// Return the error of a request that failed; `None`: the transport has the error.
+    /// Return the error of a request that failed; `None` if the transport failed, which has its own
+    /// error.
     pub fn failure(&self, request: &Encoded, failure: &Failure) -> Option<Error> {
         let message = self.edition.failure(request, failure)?;
         Some(match failure {
@@ -198,7 +199,7 @@ pub(crate) fn result<T: Typed>(
         [one] if single => take(one),
         several => Value::Row(several.iter().map(take).collect()),
     };
-    let mismatch = || Error::usage("the generated module is not that of its table");
+    let mismatch = || Error::usage("the generated module does not match its table");
     T::from_value(value).ok_or_else(mismatch)
 }
 

@@ -1,5 +1,5 @@
-//! Drive robot arms of Elephant Robotics over a serial port or TCP: typed calls, each sent once, and
-//! never a wrong pairing of request and reply.
+//! Drive robot arms of Elephant Robotics over a serial port or TCP with typed calls. Only queries
+//! are sent again, and no reply is matched to a wrong request.
 //!
 //! ```no_run
 //! # #[cfg(feature = "mycobot280")]
@@ -72,24 +72,25 @@ pub mod machine {
     pub use cobotwire_core::exchange::PersistedState;
 }
 
-/// The result of a query at a time.
+/// The result of a query, with its times.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sample<T> {
     /// The result.
     pub value: T,
-    /// When its request was sent, since the client was opened.
+    /// When its request was sent, in nanoseconds since the client was opened.
     pub requested_at: Nanos,
     /// When its reply was read, likewise.
     pub replied_at: Nanos,
 }
 
-/// Read the table of a protocol: the text of an `edition.json`, which may come from a stranger.
+/// Read the table of a protocol: the text of an `edition.json`, which may come from an untrusted
+/// source.
 pub fn read_table(json: &[u8]) -> Result<typed::Table, Error> {
     let read = Edition::read(json).map_err(|error| Error::usage(error.to_string()));
     read.map(Arc::new)
 }
 
-/// Lock, also after a thread has panicked: each step leaves the state consistent.
+/// Lock a mutex, even if a thread panicked while it held it: each step leaves the state consistent.
 pub(crate) fn lock<T: ?Sized>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }

@@ -17,8 +17,8 @@ const AXES: [&str; 3] = ["x", "y", "z"];
 /// States that decide what coordinates mean.
 const FRAMES: [&str; 4] = ["tool", "world", "reference_frame", "end_type"];
 
-/// How fast an arm may be sent, and where. Requests that could exceed a limit are refused before
-/// a byte is sent, and so are persistent writes. Nothing limits `stop`.
+/// The highest speed of an arm, and where its end may go. Requests that could exceed a limit are
+/// refused before a byte is sent, and so are persistent writes. Nothing limits `stop`.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Limits {
     /// The highest speed in percent, 1..100.
@@ -83,7 +83,7 @@ impl Limits {
         Ok(())
     }
 
-    /// Narrow the range of a number of a request, if these limits do.
+    /// Narrow the range of a number of a request to these limits.
     fn narrow(
         &self,
         number: &mut Number,
@@ -119,7 +119,7 @@ impl Limits {
         Ok(())
     }
 
-    /// Return why a command is not sent within these limits; `None`: it may be sent.
+    /// Return why these limits refuse a command; `None` if they do not.
     pub(crate) fn refusal(&self, edition: &Edition, command: &Command) -> Option<String> {
         let (fast, far) = (self.speed.is_some(), self.workspace.is_some());
         if !fast && !far || matches!(&*command.role, "stop" | "halt") {

@@ -1,5 +1,6 @@
-//! What a client leaves on its port for the next one of this process: replies that may still come,
-//! which look like those to its own requests, and halves of requests that the device may hold.
+//! The state that a client stores for the next client of the same port in this process: replies
+//! that may still come and could be mistaken for replies to the next client, and incomplete
+//! requests that the device may hold.
 
 use std::collections::BTreeMap;
 use std::sync::Mutex;
@@ -9,21 +10,21 @@ use cobotwire_core::exchange::PersistedState;
 
 use crate::options::nanos;
 
-/// The entries of each kind that a note has at most.
+/// The largest number of entries of each kind in a note.
 const MOST_ENTRIES: usize = 64;
 
-/// What was left on each port, and when; its times count from then.
+/// The state stored for each port, and the instant from which its times count.
 static NOTES: Mutex<BTreeMap<String, (PersistedState, Instant)>> = Mutex::new(BTreeMap::new());
 
-/// The name of a port, and when its session began. `None`: the port has no lasting name, or the
-/// note was left already.
+/// The name of a port, and when its session began. `None`: the port has no lasting name, or its
+/// state was stored already.
 #[derive(Debug)]
 pub(crate) struct Note(Option<String>, Instant);
 
 impl Note {
-    /// Return the note of a port, and what was left there; its times count from now.
+    /// Return the note of a port, and the state stored for it; its times count from now.
     pub fn of(url: Option<&str>) -> (Self, PersistedState) {
-        // The next pseudo-terminal of this name leads to another device.
+        // A later pseudo-terminal with this name belongs to another device.
         let (name, now) = (
             url.filter(|url| !url.starts_with("/dev/pts/")),
             Instant::now(),
@@ -36,7 +37,7 @@ impl Note {
         (Self(name.map(str::to_owned), now), state)
     }
 
-    /// Leave a note once, unless the line is aligned and silent.
+    /// Store the state once, unless it is empty.
     pub fn leave(&mut self, mut state: PersistedState) {
         let (late, parts) = (&mut state.late, &mut state.parts);
         late.drain(..late.len().saturating_sub(MOST_ENTRIES));

@@ -24,7 +24,7 @@ pub struct Options {
     pub port_name: Option<String>,
     /// The rate of a serial port in bits a second; default: that of the edition.
     pub baudrate: Option<u32>,
-    /// How fast the arm may be sent, and where.
+    /// The highest speed of the arm, and where its end may go.
     pub limits: Limits,
     /// What happens to an arm in motion when the client is dropped without `close()`.
     pub on_drop: OnDrop,
@@ -41,7 +41,7 @@ pub enum OnDrop {
     Leave,
 }
 
-/// Check what Python checks, with the same texts.
+/// Check what Python checks, with the same error messages.
 pub(crate) fn check_times(options: &Options) -> Result<(), Error> {
     let (retry, least, time) = (options.retry, Duration::from_nanos(1), Duration::from_nanos);
     let seconds = |time: Duration| {

@@ -15,8 +15,9 @@ pub(crate) const CONNECT: Duration = Duration::from_secs(5);
 /// When the time is over or the line is full, `read` and `write_some` return `ErrorKind::WouldBlock` or
 /// `ErrorKind::TimedOut`. A `read` of 0 bytes says that the peer has closed the stream.
 pub trait Port: Read + Write + Send {
-    /// Limit the next `read`, or wait that long for bytes instead. Zero holds until the next limit:
-    /// `read` returns at once, and so does `write_some`, which is called only then.
+    /// Limit the time of the next `read`, or wait here for bytes for at most that time. Zero stays
+    /// in force until the next call of this method: `read` and `write_some` then return at once.
+    /// `write_some` is called only while the limit is zero.
     fn wait_at_most(&mut self, longest: Duration) -> io::Result<()>;
 
     /// Write some of the bytes at once, and return how many; by default, with `write`.
@@ -38,7 +39,7 @@ impl Port for TcpStream {
         #[cfg(unix)]
         {
             use rustix::event::{PollFd, PollFlags, Timespec, poll};
-            // This is as exact as the system can be, and takes one call of it.
+            // This is as exact as the system allows, and takes one system call.
             let longest = Timespec::try_from(longest).map_err(io::Error::other)?;
             let ready = poll(&mut [PollFd::new(self, PollFlags::IN)], Some(&longest))?;
             (ready > 0)
@@ -60,8 +61,8 @@ impl Port for Box<dyn serialport::SerialPort> {
     }
 
     fn write_some(&mut self, data: &[u8]) -> io::Result<usize> {
-        // It waits within its limit until the line takes bytes, then for all of them. A driver that
-        // is ready takes so few without a wait.
+        // `write` waits, within the limit, until the line takes bytes; then it waits, without a
+        // limit, until all bytes are taken. A driver that is ready takes this few bytes at once.
         self.write(data.get(..32).unwrap_or(data))
     }
 

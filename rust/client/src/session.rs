@@ -98,7 +98,7 @@ impl Session {
         }
     }
 
-    /// Return for how long nothing is to be done unless bytes come.
+    /// Return how long there is nothing to do unless bytes come.
     pub fn idle(&self, now: Nanos) -> Option<Nanos> {
         match &self.writing {
             Some(_) => Some(FULL),
@@ -170,7 +170,8 @@ impl Session {
         Some(outcome)
     }
 
-    /// End a request whose caller waits no longer. It is not sent, unless it has been begun.
+    /// End a request whose caller waits no longer. It is not sent, unless its first bytes have been
+    /// written.
     pub fn give_up(&mut self, id: CallId) {
         self.one_ways.retain(|other| *other != id);
         let has_begun = |writing: &mut Writing| writing.id != id || writing.taken > 0;
@@ -226,7 +227,7 @@ impl Session {
         let command = call.prepared.request.command;
         let command = self.handle.edition.commands.get(command)?;
         let (address, stops) = (call.prepared.address, command.role == "stop");
-        // Only a stop that was written whole ends a motion for sure.
+        // Only a stop that was written completely is certain to end a motion.
         if command.safety == Safety::Motion && !stops && !self.moved.contains(&address) {
             self.moved.push(address);
         }

@@ -1,4 +1,5 @@
-//! Samples of queries and events of devices, as iterators and streams; and what both clients have.
+//! Samples of queries and events of devices, as iterators and streams; and the methods that both
+//! clients have.
 
 use std::time::{Duration, Instant};
 
@@ -35,7 +36,7 @@ impl<T> Iterator for Received<Option<T>> {
     }
 }
 
-/// Says when a query is to be sampled, and counts the periods without a sample.
+/// Determines when a query is sampled, and counts the periods without a sample.
 pub(crate) struct Polling {
     prepared: Prepared,
     period: Duration,
@@ -66,8 +67,8 @@ impl Polling {
         })
     }
 
-    /// Return the query, and for how long to wait for its next period; those that have passed are
-    /// missed. `None`: the samples have ended.
+    /// Return the query, and how long to wait for its next period. Periods that have passed count
+    /// as missed. `None`: the samples have ended.
     pub fn tick(&mut self) -> Option<(Prepared, Duration)> {
         if self.ended {
             return None;
@@ -84,8 +85,8 @@ impl Polling {
 }
 
 /// Makes the methods of a client with the fields `handle` and `shared`, and with private methods
-/// `perform`, `until` and `connection`. The rest are the words of asynchronous ones; `$next_item` is
-/// the type of the future of an item.
+/// `perform`, `until` and `connection`. The lists in brackets are empty, or hold the keywords of
+/// asynchronous methods; `$next_item` is the type of the future of an item.
 macro_rules! client_methods {
     (
         $client:ident $next_item:ident $sleep:path,

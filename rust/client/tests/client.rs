@@ -200,7 +200,7 @@ fn cut_request_is_ended_before_the_next_one() {
     port.line().room = None;
     arm.stop().unwrap();
     let sent = port.written();
-    // The rest of the frame that was begun is filled up, so that the stop stands alone.
+    // The frame that was begun is filled up, so that the stop is a frame of its own.
     assert!(sent.len() >= 18 + STOP.len() && sent.ends_with(&STOP));
 }
 

@@ -20,7 +20,7 @@ pub enum Check {
 pub struct Computed {
     /// The number; `None`: there is only a footer.
     pub algorithm: Option<Algorithm>,
-    /// The bytes of the number: at most 16.
+    /// The width of the number in bytes: at most 16.
     pub width: usize,
     /// Their order.
     pub order: Order,

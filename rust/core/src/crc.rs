@@ -5,7 +5,7 @@ use alloc::boxed::Box;
 /// The parameters of a CRC.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct CrcParameters {
-    /// Its bits: 1 to 120.
+    /// Its width in bits: 1 to 120.
     pub width: u32,
     /// The polynomial, without its highest bit.
     pub poly: u128,
@@ -27,7 +27,7 @@ pub struct Crc {
 }
 
 impl Crc {
-    /// Return the CRC with these parameters; `None` if it has no bit or more than 120.
+    /// Return the CRC with these parameters; `None` if its width is not 1 to 120 bits.
     #[must_use]
     pub fn new(parameters: CrcParameters) -> Option<Self> {
         if !(1..=120).contains(&parameters.width) {

@@ -54,7 +54,7 @@ pub fn encode<V: Given>(
                 frame.check.end(&mut bytes);
                 return Ok(bytes);
             }
-            // A mistake in the variant of the right size says more.
+            // The error of a variant of the right size is more informative.
             Err(EncodeError::Value(bad)) if of_other_size(variant, &bad) => {
                 other_size = other_size.or(Some(bad));
             }

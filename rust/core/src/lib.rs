@@ -2,10 +2,10 @@
 //!
 //! A [`Table`] defines the messages; [`encode`] and [`decode`] turn values into bytes and back, and
 //! a [`Framer`] cuts frames out of a stream. This crate knows no command by name, does no I/O,
-//! reads no clock and writes no error texts: an error is a kind and a place. The Python reference in
-//! `python/cobotwire/codec/reference` is the specification; this crate returns the same results.
-//! An [`exchange::Exchange`] matches requests and replies on a line; `python/cobotwire/session` is
-//! its specification.
+//! reads no clock and writes no error texts: an error is a kind and a position. The Python
+//! reference in `python/cobotwire/codec/reference` is the specification; this crate returns the
+//! same results. An [`exchange::Exchange`] matches requests and replies on a line;
+//! `python/cobotwire/session` is its specification.
 //!
 //! Without the feature `std`, which is on by default, it needs only `alloc`. Then a
 //! [`Table`] stays in the thread that made it, and there is no bulk decoding, no reading of captures

@@ -107,7 +107,8 @@ pub enum Encoding {
 /// A part of a table that cannot be interpreted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Misfit {
-    /// An integer is not one to four bytes wide, a float not four or eight, or bits are outside.
+    /// An integer is not one to four bytes wide, a float not four or eight, or its bits are not
+    /// within its bytes.
     Width,
     /// A scale is zero, or too fine for an exact double.
     Scale,
@@ -126,7 +127,7 @@ impl fmt::Display for Misfit {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
         out.write_str(match self {
             Self::Width => {
-                "an integer must have one to four bytes, a float four or eight, and bits be inside"
+                "an integer must have one to four bytes, a float four or eight; bits must fit"
             }
             Self::Scale => "a scale is zero, or too fine for an exact double",
             Self::Bounds => "a bound is an integer that a double cannot represent exactly",

@@ -84,7 +84,8 @@ impl Table {
         command.variants(variant.direction).get(variant.variant)
     }
 
-    /// Return the index of a field's case that the data bytes of a message select; `None`: none.
+    /// Return the index of a field's case that the data bytes of a message select; `None` if they
+    /// select none.
     #[must_use]
     pub fn case(&self, id: VariantId, field: usize, data: &[u8]) -> Option<usize> {
         let variant = self.variant(id)?;

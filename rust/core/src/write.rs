@@ -51,7 +51,7 @@ pub(crate) struct Writer<'a, V: Given> {
     pub(crate) shared: bool,
 }
 
-/// The place of a value in a variant.
+/// The position of a value in a variant.
 #[derive(Clone, Copy)]
 struct Place<'a> {
     index: usize,

@@ -1,5 +1,5 @@
-//! What the comparison with the exchange in Python cannot show, since the comparison takes each
-//! outcome at once.
+//! Tests what the comparison with the exchange in Python does not cover: outcomes that are taken
+//! later. The comparison takes each outcome at once.
 
 use std::sync::Arc;
 

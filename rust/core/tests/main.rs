@@ -1,4 +1,5 @@
-//! The tests of the core, in one program: each further one would be compiled and linked by itself.
+//! The tests of the core. They are one program, since cargo compiles and links each program
+//! separately.
 //!
 //! They cover what the Python tests do not reach. `tests/codec` and `tests/capture` compare the core
 //! with the codec in Python, its specification: vectors, found inputs, framing, values, tables,

@@ -264,7 +264,7 @@ fn wide_ids_are_counted_once() {
     check(&table, &[&stream], [(2, 700), (3, 50_000)]);
 }
 
-/// Starting threads is not worth it for little input, whatever is requested.
+/// Little input is read by one thread, even if more are requested.
 #[test]
 fn more_threads_than_pieces_are_not_started() {
     let (table, frames) = family(0);

@@ -1,6 +1,6 @@
-//! The steps of an exchange. Each result comes with what can be seen of the exchange afterwards.
-//! Times are nanoseconds; bytes are hexadecimal digits; a request is given by the number of its
-//! ticket, messages and errors by their texts. `tests/session/twins.py` is the other end.
+//! The steps of an exchange. Each result comes with the observable state of the exchange after the
+//! step. Times are nanoseconds; bytes are hexadecimal digits; a request is given by the number of
+//! its ticket, messages and errors by their texts. `tests/session/twins.py` is the other end.
 
 use std::sync::Arc;
 
@@ -99,7 +99,7 @@ impl Open {
         events.iter().map(|event| self.event(event)).collect()
     }
 
-    /// Return what can be seen of the exchange; outcomes are taken.
+    /// Return the observable state of the exchange; this takes the outcomes.
     fn look(&mut self, now: Nanos) -> Json {
         let exchange = &mut self.exchange;
         let tickets = self.requests.iter().enumerate();

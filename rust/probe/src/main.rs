@@ -1,5 +1,5 @@
-//! Answers the tests in Python: each line is a list of steps in JSON, and gets a list of results.
-//! With `client`, it is a client instead: see `client.rs`.
+//! Serves the Python tests: each line of input is a list of steps in JSON, and each line of output
+//! the list of their results. With the argument `client` it is a client instead: see `client.rs`.
 
 // A test with a wrong step fails: the program ends.
 #![allow(clippy::indexing_slicing, clippy::unwrap_used)]

@@ -5,7 +5,7 @@ use cobotwire_table::Edition;
 use serde_json::{Value as Json, json};
 
 /// Return a value of a caller: a number, a truth value, a text, `{"bytes": "FE"}`,
-/// `{"real": "inf"}`, a row, `"count"` in an object for a number that the encoder counts, or null.
+/// `{"real": "inf"}`, a row, null, or any other object for a number that the encoder counts.
 pub fn value_of(json: &Json) -> Value {
     match json {
         Json::Null => Value::Absent,

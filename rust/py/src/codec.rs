@@ -43,7 +43,7 @@ impl NativeCodec {
         "native"
     }
 
-    /// Return the table that the core interprets, in Rust's words: for tests.
+    /// Return the core's table as Rust's debug output, for tests.
     fn _core_table(&self) -> String {
         let core = &self.edition.core;
         format!("{:?} {:?}", core.frame(), core.commands())

@@ -7,7 +7,7 @@ use pyo3::prelude::*;
 use crate::errors;
 
 /// State that belongs to one call at a time. A call from a second thread fails; it never waits,
-/// since a wait would hide that the threads disturb each other.
+/// since a wait would hide the conflict.
 pub struct Exclusive<T> {
     state: Mutex<T>,
     /// The name of the object in errors.

@@ -31,7 +31,7 @@ pub struct NativeFrame {
     frame: OwnedFrame,
 }
 
-/// What a frame says.
+/// The decoded message of a frame.
 struct Message<'py> {
     variant: VariantId,
     values: Bound<'py, PyTuple>,

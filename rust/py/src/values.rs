@@ -82,7 +82,7 @@ impl<'py, I: ExactSizeIterator<Item = Number>> IntoPyObject<'py> for PlainField<
     }
 }
 
-/// Return whether a value is more than a number.
+/// Return whether a value is not a single number.
 fn compound(value: &Value) -> bool {
     !matches!(value, Value::Integer(_) | Value::Real(_))
 }

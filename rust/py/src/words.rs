@@ -9,7 +9,7 @@ use pyo3::types::{PyBytes, PyInt, PyList, PyString};
 
 use crate::errors;
 
-/// The number of threads that read.
+/// The argument `workers`: the number of threads that read.
 #[derive(Clone, Copy)]
 pub struct WorkerCount(pub Workers);
 

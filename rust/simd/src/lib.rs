@@ -1,4 +1,4 @@
-//! Instructions that plain Rust cannot express: the one place with unsafe code below the binding.
+//! Instructions that plain Rust cannot express: the only unsafe code outside the Python binding.
 //!
 //! Each function has the same result as a plain version. The plain version runs on processors
 //! without the instructions, and the tests compare the two.

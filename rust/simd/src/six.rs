@@ -1,4 +1,4 @@
-//! Reads rows of six big-endian numbers of two bytes, as joint angles and coordinates are.
+//! Reads rows of six big-endian numbers of two bytes, such as joint angles and coordinates.
 
 /// The numbers in a row.
 #[cfg(target_arch = "x86_64")]
@@ -39,8 +39,8 @@ impl Six {
         None
     }
 
-    /// Do the same with the raw values. Those within their bounds fit the type. `None` also if a
-    /// bound is no raw value.
+    /// Append the raw values of rows, with the same results. Those within their bounds fit the
+    /// type. `None` also if a bound is no raw value.
     #[inline]
     pub fn append_raw(
         &self,

@@ -28,7 +28,7 @@ fn six(bias: i32, bounds: (i32, i32), divide: [f64; 8]) -> Six {
     }
 }
 
-/// Every pair of bytes in every place of a row; the bytes of a block, and where its rows start.
+/// Return a block with every pair of bytes at every position of a row, and where its rows start.
 fn every_word() -> (Vec<u8>, Vec<usize>) {
     let mut block = vec![0; BEFORE];
     let rows: Vec<usize> = (0..1 << 16).map(|row| BEFORE + 12 * row).collect();

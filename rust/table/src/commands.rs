@@ -14,7 +14,7 @@ use crate::texts::text;
 use crate::value::join;
 use crate::{BadEdition, Command, Edition, Field, Outcome, Value, Within};
 
-/// The longest time of a file, in milliseconds: a day.
+/// The longest time that a file may state, in milliseconds: a day.
 const LONGEST_MS: Nanos = 24 * 3600 * 1000;
 
 /// A command in the forms that the table, the exchange and the clients need.

@@ -1,4 +1,4 @@
-//! Says what each byte of a frame means; `frame_parts` of `python/cobotwire/diagnose/explain.py` is
+//! Explains each byte of a frame; `frame_parts` of `python/cobotwire/diagnose/explain.py` is
 //! the specification.
 
 use alloc::format;

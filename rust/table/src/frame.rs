@@ -89,8 +89,8 @@ pub(crate) fn frame_format(
         || !matches!(last, Some(Length | Command))
     {
         return BadEdition::because(
-            "layout must have an address if frames have it, length and command, each once; the \
-             last is length or command, and command if replies have none",
+            "layout must have length and command once each, and address if frames have one; the \
+             last part must be length or command, or command if replies have no command",
         );
     }
     if counted.iter().any(|part| times(&counted, *part) != 1)
@@ -98,8 +98,8 @@ pub(crate) fn frame_format(
         || !(reply_has_id || counted.contains(&Command))
     {
         return BadEdition::because(
-            "counted must have data and other parts of a frame, each once, and command if replies \
-             have data in its place",
+            "counted must have data, command if replies have no command, and each part at most \
+             once",
         );
     }
     let offset = |part: Place| {
@@ -131,7 +131,7 @@ pub(crate) fn frame_format(
             let fixed = order.contains(&from) && size(&from) > 0;
             if from != Header && !fixed && !(from == Data && reply_has_id) {
                 return BadEdition::because(
-                    "check_from must be a part before the check that all frames have",
+                    "check_from must be a part that all frames have, before the check",
                 );
             }
             Check::Computed(Box::new(Computed {
@@ -240,7 +240,7 @@ pub(crate) fn addresses(record: Record<'_>) -> Outcome<Vec<Addressee>> {
             "any" => Replier::Anybody,
             "one" => Replier::Somebody,
             "none" => Replier::Nobody,
-            _ => return BadEdition::because("replies must be own, any, one, none"),
+            _ => return BadEdition::because("replies must be own, any, one or none"),
         };
         Ok(Addressee {
             name: record.get("name")?,

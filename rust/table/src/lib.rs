@@ -1,8 +1,8 @@
 //! Reads the `edition.json` of a protocol: the table of `cobotwire-core`, with its names, units,
 //! labels, roles and limits.
 //!
-//! The file may come from a stranger: [`Edition::read`] checks every property on which this crate
-//! and the core rely. `python/cobotwire/protocol/loading.py` is its specification.
+//! The file may come from an untrusted source: [`Edition::read`] checks every property on which
+//! this crate and the core rely. `python/cobotwire/protocol/loading.py` is its specification.
 
 #![no_std]
 
@@ -55,7 +55,7 @@ pub struct Edition {
 #[allow(missing_docs)] // of fields, whose names say what they are
 pub struct Command {
     pub name: String,
-    /// What it is, in a few words; a table for clients does not say it.
+    /// A short description; a table for clients lacks it.
     pub title: String,
     pub family: String,
     pub safety: Safety,
@@ -177,7 +177,7 @@ impl Edition {
     }
 }
 
-/// Why a file is not the table of a protocol, as a sentence that says where it is wrong.
+/// Why a file is not the table of a protocol: a sentence that names the position of the mistake.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct BadEdition(String);
 
@@ -196,12 +196,12 @@ impl fmt::Display for BadEdition {
 
 impl core::error::Error for BadEdition {}
 
-/// What was made, or why it could not be.
+/// A result, or why the file was rejected.
 pub(crate) type Outcome<T> = Result<T, BadEdition>;
 
-/// Says in an error where the mistake is.
+/// Adds to an error where the mistake is.
 pub(crate) trait Within {
-    /// Put where the mistake is before the sentence of an error.
+    /// Prefix the error with the position of the mistake.
     fn within(self, what: &str, name: &str) -> Self;
 }
 

@@ -266,8 +266,8 @@ fn labels(of: Record<'_>) -> Outcome<Vec<String>> {
     members.map(|member| member.get("name")).collect()
 }
 
-/// Set the numbers of elements of the next variant; the last list changes first. The lists may take
-/// `room` bytes more than in the shortest variant. Return false after the last variant.
+/// Set the next numbers of elements; the last list changes first. All lists together may take
+/// `room` bytes more than with their smallest sizes. Return false after the last variant.
 fn lengthen(mut lists: &mut [Varying<'_>], room: usize) -> bool {
     let more = |list: &Varying<'_>| (list.count - list.least) * list.each;
     while let Some((last, earlier)) = lists.split_last_mut() {

@@ -21,7 +21,7 @@ const MOST: usize = 80;
 /// This many bytes of what was received meanwhile are shown.
 const SHOWN: usize = 24;
 
-/// Return what a file says of a key. Each entry has its own line, and no escapes.
+/// Return the text of a key in a file. Each entry is on a line of its own, without escapes.
 pub(crate) fn entry(file: &'static str, key: &str) -> Option<&'static str> {
     let text = file.lines().find_map(|line| {
         let rest = line.strip_prefix('"')?.strip_prefix(key)?;
@@ -30,7 +30,7 @@ pub(crate) fn entry(file: &'static str, key: &str) -> Option<&'static str> {
     text.strip_suffix("\",").or(text.strip_suffix('"'))
 }
 
-/// Return the text of a kind, with a value in each of its places.
+/// Return the text of a kind, with a value for each of its placeholders.
 #[must_use]
 pub fn error_text(kind: &str, values: &[(&str, &dyn Display)]) -> String {
     let mut parts = entry(TEMPLATES, kind).unwrap_or(kind).split('{');
@@ -44,7 +44,8 @@ pub fn error_text(kind: &str, values: &[(&str, &dyn Display)]) -> String {
     text
 }
 
-/// `text!(kind; place, place = value)`: a text with the variables of these names, or these values.
+/// `text!(kind; name, name = value)`: a text whose placeholders have these values; `name` alone
+/// stands for the variable of that name.
 macro_rules! text {
     (@ $place:ident) => { $place };
     (@ $place:ident $value:expr) => { $value };

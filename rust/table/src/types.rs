@@ -150,7 +150,7 @@ impl<'a> Types<'a> {
     }
 }
 
-/// Return about how many bytes words take.
+/// Return about how many bytes labels take.
 pub(crate) fn words(labels: &[String]) -> usize {
     labels.iter().map(|label| 24 + label.len()).sum()
 }

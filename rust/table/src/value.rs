@@ -210,8 +210,8 @@ pub(crate) fn printable(text: &str) -> String {
     all.map(|char| escaped(char, is_printable(char))).collect()
 }
 
-/// Return whether a character is printable. The standard library escapes the others where it shows
-/// a text; of the first character it escapes more.
+/// Return whether a character is printable. `escape_debug` leaves printable characters unchanged,
+/// except for some at the start of a text.
 pub(crate) fn is_printable(char: char) -> bool {
     let text: String = ['a', char].iter().collect();
     matches!(char, '\'' | '"' | '\\') || text.escape_debug().nth(1) == Some(char)

@@ -1,7 +1,7 @@
 //! A block of a stream, and a fast check of one position in it.
 //!
-//! A margin follows the last position, so no frame that starts in the block reaches beyond its
-//! array. Positions are cut to the size of the block; the compiler then needs no bounds checks.
+//! A margin follows the last position, so a frame that starts in the block ends in the array.
+//! Positions are taken modulo the size of the block; so the compiler needs no bounds checks.
 
 use crate::check::Check;
 use crate::legal::{ACCEPTED, Headings, UNKNOWN_ID};
@@ -9,17 +9,18 @@ use crate::reason::Reason;
 use crate::rules::Rules;
 use cobotwire_simd::{Pattern, SEEN, Window};
 
-/// Positions of a block.
+/// The number of positions in a block.
 pub(crate) const BLOCK: usize = 1 << PLACE;
-/// The bits of a position in a block. A larger block has more frames of each rare message; a smaller
-/// one leaves more of the cache to other data.
+/// The number of bits of a position in a block. A larger block has more frames of each rare
+/// message; a smaller one leaves more of the cache to other data.
 const PLACE: u32 = 17;
-/// The bytes after the last position: more than the longest frame that LEN can express has.
+/// The number of bytes after the last position: more than the longest frame that LEN can express.
 pub(crate) const MARGIN: usize = 1 << 10;
-/// More than the number of frames that can start in a block; the shortest has more than four bytes.
+/// More than the number of frames that can start in a block; the shortest frame has more than four
+/// bytes.
 pub(crate) const MOST: usize = BLOCK / 4;
-/// The number of places in which a block is scanned at once. Two are 1.4 times as fast as one, and
-/// three 1.5 times; four need more registers than there are.
+/// The number of lanes: parts of a block whose scans are interleaved. Two lanes are 1.4 times as
+/// fast as one, and three are 1.5 times as fast; four need more registers than the processor has.
 pub(crate) const LANES: usize = 3;
 /// The bytes of a block.
 pub(crate) type Block = [u8; BLOCK + MARGIN];
@@ -55,7 +56,7 @@ impl Found {
 /// The rules of a plain format with a footer, in compact form.
 #[derive(Clone, Copy)]
 pub(crate) struct Quick<'a> {
-    /// The first byte is the low one.
+    /// The header; its first byte is the low byte.
     header: u16,
     footer: u8,
     headings: &'a Headings,

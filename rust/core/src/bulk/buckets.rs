@@ -4,20 +4,20 @@ use super::block::{Found, LANES};
 
 /// The frames of some lanes, by group and lane.
 ///
-/// They are counted first, and then put into their places. Counting reads and writes a number, and
-/// the processor waits for that if the next frame is of the same group. Therefore the lanes
-/// alternate, and each has its own numbers.
+/// A counting sort: the frames of each group are counted first, and then stored at their indices.
+/// If two consecutive frames increment the same counter, the processor waits for the first
+/// increment. Therefore the lanes alternate, and each has its own counters.
 #[derive(Default)]
 pub(crate) struct Buckets {
-    /// For each group, the number of frames in each lane; later the place of the next one.
+    /// For each group, the number of frames in each lane; later the index of the next one.
     next: Vec<[u32; LANES]>,
     /// The positions of all frames.
     sorted: Vec<u32>,
 }
 
 impl Buckets {
-    /// Sort the frames of all lanes into that number of groups. Pass on each group that has frames,
-    /// in the order of the lanes.
+    /// Sort the frames of all lanes by group. Pass each group that has frames to `take`; its frames
+    /// are in the order of the lanes.
     pub(crate) fn sort(
         &mut self,
         groups: usize,

@@ -96,7 +96,7 @@ impl Cells {
         }
     }
 
-    /// Return the number of its numbers.
+    /// Return how many numbers it has.
     #[must_use]
     pub fn len(&self) -> usize {
         each!(self, all => all.len())

@@ -38,7 +38,7 @@ pub(crate) struct Progress<'a> {
     pub(crate) open_noise: Option<u64>,
 }
 
-/// Memory for reading, which readers that are used in turn share.
+/// Memory for reading, shared by readers of which only one runs at a time.
 #[derive(Default)]
 pub(crate) struct Workspace {
     space: Space,
@@ -100,7 +100,7 @@ impl ColumnReader {
         self
     }
 
-    /// Read large chunks with several threads; the result is the same with any number of them.
+    /// Read large chunks with several threads; the results stay the same.
     pub fn set_workers(&mut self, workers: Workers) {
         self.workers = workers;
     }

@@ -32,7 +32,7 @@ impl Job<'_> {
         {
             return;
         }
-        // One damaged frame is no reason to read all the others one by one.
+        // Split the group, so that one damaged frame does not make all others be read one by one.
         if plan.fields.is_some() && self.frames.len() > FEW {
             let (first, second) = self.frames.split_at(self.frames.len() / 2);
             for frames in [first, second] {
@@ -70,7 +70,7 @@ impl Job<'_> {
         self.offset + u64::from(at)
     }
 
-    /// Return the address byte of a frame. There is one: a frame ends in its block.
+    /// Return the address byte of a frame, never `None`: a frame ends in its block.
     fn address(&self, at: u32, place: usize) -> Option<u8> {
         self.block.get(at as usize + place).copied()
     }

@@ -1,4 +1,4 @@
-//! Finds the frames of a block in three places at once.
+//! Finds the frames of a block with three interleaved scans.
 //!
 //! A scan has no state: the verdict on a position depends only on the bytes from there on. But the
 //! start of the next frame depends on this frame's LEN, and the processor waits for that. Therefore
@@ -16,7 +16,7 @@ use cobotwire_simd::WINDOW;
 const GUESSING: usize = 512;
 const AHEAD: usize = 512;
 
-/// Memory for what the lanes find in a block. It is one piece, so that one register points to it.
+/// Memory for what the lanes find in a block: one struct, so that one register can point to it.
 #[derive(Clone)]
 pub(crate) struct Lanes {
     found: Box<[[Found; MOST]; LANES]>,
@@ -46,7 +46,7 @@ impl Lanes {
         }
     }
 
-    /// Return the first lanes.
+    /// Return the first `counted` lanes.
     pub(crate) fn first(&self, counted: usize) -> impl Iterator<Item = Lane<'_>> + Clone {
         let all = self.found.iter().zip(&self.counts);
         let all = all.zip(self.ids.iter()).zip(&self.noise).take(counted);

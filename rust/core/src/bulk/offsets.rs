@@ -45,7 +45,7 @@ impl OffsetReader {
         }
     }
 
-    /// Read large chunks with several threads; the result is the same with any number of them.
+    /// Read large chunks with several threads; the results stay the same.
     pub fn set_workers(&mut self, workers: Workers) {
         self.workers = workers;
     }

@@ -41,7 +41,7 @@ pub(crate) struct Plan {
     pub(crate) id: u16,
     /// The variants that a frame can be, in order of precedence.
     pub(crate) variants: Vec<VariantId>,
-    /// The index of the first one's rows among those of all variants.
+    /// The index of the first variant's rows in the rows of all variants.
     pub(crate) rows: usize,
     /// How to read the first variant column by column, if that is possible.
     pub(crate) fields: Option<Vec<FieldPlan>>,

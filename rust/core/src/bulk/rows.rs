@@ -13,7 +13,7 @@ pub struct Rows {
     pub offsets: Vec<u64>,
     /// The address byte of each frame; empty if the format has no addresses.
     pub addresses: Vec<u8>,
-    /// A column for each field. A field with a row of numbers has several cells for each frame.
+    /// A column for each field. A field with an array of numbers has several cells for each frame.
     pub fields: Vec<Cells>,
 }
 

@@ -189,7 +189,7 @@ impl Search {
     }
 }
 
-/// The finds of a scan, in the form of a lane.
+/// What a scan found, stored as for a lane.
 struct Finds<'a> {
     rules: &'a Rules,
     tally: &'a mut Tally,

@@ -87,7 +87,7 @@ impl Noise {
                 self.open = Some((from, to));
             }
         }
-        // A frame lies between each of the others and the one before it.
+        // A frame precedes each of the other spans.
         if let [next, ..] = rest
             && let [others @ .., last] = rest
         {

@@ -1,12 +1,12 @@
 //! Reads contiguous bytes with several threads, with the results of one.
 //!
-//! The bytes are cut into pieces, which the threads read in turn. A piece starts at a guess: a
-//! position after its cut at which a frame seems to start. Each thread reads its piece into its own
-//! memory, and then waits until the scan of the stream has reached the piece. A scan has no state:
-//! if the scan of the stream reaches exactly the guessed position, it would find the same frames as
-//! the thread. If not, the thread reads the piece again, from the position at which the scan
-//! stands. Then it appends what it found to the results, and hands over to the thread with the next
-//! piece. So the results are in the order of the stream, whatever was guessed.
+//! The bytes are cut into pieces, which are assigned to the threads in rotation. A piece starts at
+//! a guess: a position after its cut at which a frame seems to start. Each thread reads its piece
+//! into its own memory, and then waits until the scan of the stream has reached the piece. A scan
+//! has no state: if the scan of the stream reaches exactly the guessed position, it would find the
+//! same frames as the thread. If not, the thread reads the piece again, from the position at which
+//! the scan stands. Then it appends what it found to the results, and hands over to the thread with
+//! the next piece. So the results are in the order of the stream, even if a guess was wrong.
 
 use std::hint::spin_loop;
 use std::sync::mpsc::{Receiver, Sender, TryRecvError, channel};
@@ -22,7 +22,7 @@ const GUESSING: usize = 512;
 /// How often a thread checks whether its turn has come, before it sleeps: waking another thread
 /// costs both of them more.
 const CHECKS: usize = 5_000;
-/// More threads do not help, since one after the other appends its results.
+/// More threads do not help, since the threads append their results one after another.
 const MOST: usize = 16;
 /// For less input, starting threads costs more than it saves.
 const WORTH: usize = 1 << 23;
@@ -42,8 +42,8 @@ impl Workers {
     /// Read in the calling thread only.
     pub const ONE: Self = Self::new(1);
 
-    /// Read large input with this number of threads, the calling one included; but not with more
-    /// than there are processors, nor more than 16.
+    /// Read large input with at most this number of threads, including the calling one. The number
+    /// of processors and 16 are upper limits.
     #[must_use]
     pub const fn new(count: usize) -> Self {
         Self {
@@ -137,7 +137,7 @@ struct Turn<'a, C> {
     at: &'a mut usize,
 }
 
-/// The place of a thread in the ring of those that read in turn.
+/// A thread's position in the ring of threads that read in rotation.
 struct Seat<'a, C> {
     index: usize,
     count: usize,
@@ -177,7 +177,8 @@ impl<'a, C> Seat<'a, C> {
 }
 
 /// Read most of `data`, which is at `offset` in the stream; return the position at which the search
-/// stands then. It stays at the start if that is not worth several threads, or none can be started.
+/// stands then. It stays at the start if the input is too small for several threads, or if no
+/// thread can be started.
 pub(crate) fn read<C: Share>(
     workers: Workers,
     search: &mut Search,

@@ -80,8 +80,8 @@ impl Stream {
         self.search.noise.end();
     }
 
-    /// Scan the bytes that wait, and then a chunk. `start` may scan the first bytes of the chunk, and
-    /// returns how many.
+    /// Scan the pending bytes, and then a chunk. `start` may scan bytes at the start of the chunk;
+    /// it returns how many it scanned.
     fn cut<C: Collect>(
         &mut self,
         chunk: &[u8],

@@ -1,4 +1,4 @@
-//! Reads fields whose numbers are single bytes or big-endian pairs, as nearly all fields are.
+//! Reads fields whose numbers are single bytes or big-endian pairs, as in nearly all fields.
 
 use super::block::{BLOCK, Block, MARGIN};
 use super::cells::Cell;
@@ -135,7 +135,7 @@ impl Bounds {
     /// All raw values are allowed.
     pub(crate) const NONE: Self = Self([(i32::MIN, u32::MAX); MOST]);
 
-    /// Return the bounds of a field whose numbers have no choices; `None`: one of them has some.
+    /// Return the bounds of a field whose numbers have no choices; `None` if a number has choices.
     pub(crate) fn new(numbers: &[Number]) -> Option<Self> {
         let mut all = [(0, u32::MAX); MOST];
         for (number, bounds) in numbers.iter().zip(&mut all) {

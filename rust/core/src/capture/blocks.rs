@@ -27,7 +27,7 @@ pub(crate) struct Block<'a> {
 pub(crate) enum Step<'a> {
     /// A block, and its length.
     Block(Block<'a>, usize),
-    /// The block has at least this number of bytes, which is more than there are.
+    /// The block has at least this number of bytes, more than are available.
     Needs(usize),
 }
 
@@ -48,7 +48,7 @@ impl Cutter {
         })
     }
 
-    /// Pass a block of that length.
+    /// Skip a block of that length.
     pub(crate) fn pass(&mut self, size: usize) {
         self.offset += size as u64;
     }

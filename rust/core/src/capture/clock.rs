@@ -3,7 +3,7 @@
 /// How many pieces a search passes one by one before it halves the rest.
 const NEAR: usize = 8;
 
-/// The pieces of a stream that came together: where each starts, and its time.
+/// The pieces of a stream, each received at once: where it starts, and its time.
 #[derive(Debug, Default)]
 pub(crate) struct Clock {
     starts: Vec<u64>,

@@ -84,7 +84,7 @@ impl Format {
         if self.resolution & 0x80 != 0 {
             return all >> exponent;
         }
-        // A unit that 128 bits cannot hold is longer than any time stamp.
+        // A divisor of more than 128 bits is larger than any dividend, so the quotient is 0.
         10_u128.checked_pow(exponent).map_or(0, |units| all / units)
     }
 }

@@ -1,4 +1,4 @@
-//! Reads from a packet's comment when its bytes came, if not all came at once.
+//! Reads from a packet's comment when its bytes arrived, if they did not arrive at once.
 
 use super::damage::Fault;
 use super::packet::Packet;
@@ -8,7 +8,7 @@ const SEPARATOR: &[u8] = b"; ";
 /// The most digits that a number can have: it then fits 64 bits.
 const DIGITS: usize = 19;
 
-/// Some bytes of a packet that came together.
+/// Bytes of a packet that arrived together.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Piece {
     pub(crate) size: u64,

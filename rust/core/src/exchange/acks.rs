@@ -38,9 +38,9 @@ struct ExpectedAck {
     doubts: Vec<Nanos>,
     /// Whether it may still come, if each one belongs to the oldest request.
     expected: bool,
-    /// Whether a caller waits for it; so it is doubted until it is certain.
+    /// Whether a caller waits for it, and it is not yet certain.
     uncertain: bool,
-    /// Whether it has come for sure: other requests cannot account for all acknowledgements.
+    /// Whether it has certainly come, whichever requests the other ones belong to.
     certain: bool,
 }
 
@@ -138,7 +138,8 @@ impl CommandAcks {
     fn forget_expired(&mut self, now: Nanos) {
         let mut expired = true;
         for ack in &mut self.known {
-            // Only the oldest ones: what follows one that may still come stays.
+            // Only the oldest ones expire: one that follows an acknowledgement that may still come
+            // stays.
             expired &= !ack.expected || ack.until <= now;
             ack.expected &= !expired;
             ack.uncertain &= ack.until > now && !ack.certain;
@@ -146,11 +147,11 @@ impl CommandAcks {
         self.known.retain(|ack| ack.expected || ack.uncertain);
     }
 
-    /// Return whether motions are acknowledged at once, as an acknowledgement of `newest` shows.
+    /// Return whether an acknowledgement of `newest` shows that motions are acknowledged at once.
     ///
-    /// They are if the acknowledgement of a single motion comes at once. They are too if the newest
-    /// motion always seems to be the acknowledged one for longer than a motion may take: then an
-    /// earlier acknowledgement was lost.
+    /// It must come at once. Also, either no acknowledgement was expected when `newest` was sent,
+    /// or some have been expected without a break for longer than a motion may take. In the second
+    /// case an earlier acknowledgement was lost.
     fn are_motions_at_once(&self, protocol: &Protocol, newest: &ExpectedAck, now: Nanos) -> bool {
         let at_once = now.saturating_sub(newest.sent_at) < GRACE;
         let single = self.began_at == newest.sent_at;

@@ -1,4 +1,4 @@
-//! Half a request on the line: what must be sent before the next one.
+//! A request that was only partly written: what must be sent before the next one.
 //!
 //! A write may end after a part of a frame. The peer's parser then waits for the rest, and takes the
 //! next request as that rest: both together can be a legal frame that nobody sent. So fill bytes are
@@ -44,7 +44,7 @@ pub(super) struct Alignment {
     pub(super) align: Vec<u8>,
     /// Every part that the peer may hold; empty on an aligned line.
     pub(super) held: Vec<Part>,
-    /// The frame that was sent last; empty if none was since the transport was lost.
+    /// The last frame sent on this transport; empty if none was sent.
     pub(super) last_request: Vec<u8>,
 }
 
@@ -79,7 +79,7 @@ impl Alignment {
     }
 }
 
-/// Half a request on the line.
+/// A request that was only partly written.
 impl Exchange {
     /// Return what must be written before the next request; empty on an aligned line.
     #[must_use]
@@ -87,7 +87,7 @@ impl Exchange {
         &self.alignment.align
     }
 
-    /// Note that these bytes and a request after them were taken whole.
+    /// Note that these bytes and the request after them were written completely.
     pub fn aligned(&mut self) {
         self.alignment.align.clear();
         self.alignment.held.clear();

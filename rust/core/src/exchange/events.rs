@@ -72,7 +72,7 @@ pub enum Event {
         decoded: Decoded,
         frame: SeenFrame,
     },
-    /// A legal frame that replies to nothing.
+    /// A legal frame that matches no request.
     Unexpected { frame: SeenFrame },
     /// The request's own bytes: an echo, or a reply that looks the same.
     Echo { frame: SeenFrame },

@@ -77,7 +77,7 @@ pub enum Replier {
     Address(u8),
     /// Any device: each that received the request may reply.
     Anybody,
-    /// One device for all.
+    /// One device, on behalf of all.
     Somebody,
     /// Nobody.
     Nobody,

@@ -1,4 +1,4 @@
-//! What a received frame can be, by pure functions. The protocol has no sequence numbers to tell.
+//! Decides what a received frame can be, with pure functions. The protocol has no sequence numbers.
 
 use alloc::boxed::Box;
 use alloc::vec::Vec;
@@ -113,7 +113,8 @@ impl Protocol {
         Event::Unexpected { frame }
     }
 
-    /// Return whether a frame replies to another command with the same id.
+    /// Return whether a frame that is not a legal reply of a command is the reply of another
+    /// command with the same id.
     ///
     /// The frame is not a legal reply of `of`. A constant in the replies distinguishes commands that
     /// share an id, such as the register number of a device that the arm forwards to. The rest of the

@@ -1,14 +1,14 @@
 //! The exchange of requests and replies over one transport: bytes and times go in, bytes, finished
 //! requests and events come out.
 //!
-//! Everything that decides a state stands in this file. It has no thread, clock or port.
-//! `python/cobotwire/session` is its specification: both decide alike on the same bytes and times.
-//! `docs/contribute/exchange.md` shows its states and what it promises.
+//! Every decision about a state is made in this file. It has no thread, clock or port.
+//! `python/cobotwire/session` is its specification: both make the same decisions for the same bytes
+//! and times. `docs/contribute/exchange.md` shows its states and what it promises.
 //!
 //! Only one request waits at a time, since the protocol has no sequence numbers. The others queue in
-//! the order of submission; one that is held for an outstanding reply is overtaken. One-way requests
-//! are sent at once, and only once, also while another request waits. Times are nanoseconds of a
-//! clock that never goes back; those that are too large saturate, and never come.
+//! the order of submission; later ones may overtake one that is held for an outstanding reply.
+//! One-way requests are sent at once, and only once, also while another request waits. Times are
+//! nanoseconds of a clock that never goes back; those that are too large saturate, and never come.
 
 mod acks;
 mod alignment;
@@ -170,7 +170,7 @@ impl Exchange {
         self.end_waiting(0, |_| Err(Failure::Link));
     }
 
-    // What one session leaves to the next one on its port.
+    // What one session passes to the next one on its port.
 
     /// Return what the next session on this port must respect.
     #[must_use]
@@ -283,7 +283,7 @@ impl Exchange {
         }
     }
 
-    /// Return for how long nothing is to be done unless bytes come; `None`: without limit.
+    /// Return how long there is nothing to do unless bytes come; `None`: without limit.
     #[must_use]
     pub fn idle(&self, now: Nanos) -> Option<Nanos> {
         let waiting = self.waiting();
@@ -356,8 +356,9 @@ impl Exchange {
         self.last.insert(pending).request.frame.clone()
     }
 
-    /// Return whether a queued request is sent on a line that brings more than can be read, which is
-    /// never drained. End the request if the late reply that held it may be among the unread bytes.
+    /// Return whether a queued request is sent although the line was never drained, because bytes
+    /// come faster than they can be read. End the request if the late reply that held it may be
+    /// among the unread bytes.
     fn sends_undrained(&mut self, index: usize, now: Nanos) -> bool {
         let Some(pending) = self.queue.get_mut(index) else {
             return false;

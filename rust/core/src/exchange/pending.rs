@@ -25,7 +25,7 @@ pub struct Ticket(pub(super) u64);
 pub struct RetryPolicy {
     /// How often a query is sent at most; 0 counts as 1.
     pub attempts: u8,
-    /// What each attempt gets at least; a shorter time has fewer attempts.
+    /// The shortest time of an attempt; a shorter wait is split into fewer attempts.
     pub shortest_attempt: Nanos,
     /// For how long after an attempt its late reply is still expected.
     pub grace: Nanos,

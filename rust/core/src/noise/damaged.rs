@@ -8,7 +8,7 @@ use crate::direction::Direction;
 use crate::reason::Reason;
 use crate::table::Table;
 
-/// The number of bytes that a damaged frame may have more or less; nearest first.
+/// By how many bytes the size of a damaged frame may differ; the smallest differences first.
 const SLACK: [isize; 5] = [0, -1, 1, -2, 2];
 const MOST_SLACK: usize = 2;
 

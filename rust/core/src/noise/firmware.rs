@@ -8,7 +8,7 @@ const FEWEST: usize = 6;
 pub(super) const LINE: usize = 1024;
 const PANIC: &[u8] = b"Guru Meditation Error";
 const COMMAND_ERROR: &[u8] = b"cmd_len error";
-/// A line with this may tell the cause of a boot.
+/// A line with this may state the cause of a boot.
 const RESET: &[u8] = b"rst:0x";
 
 /// Return whether a byte is text.

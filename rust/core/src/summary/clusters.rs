@@ -57,7 +57,7 @@ impl Clusters {
         Some(std::mem::replace(&mut self.spans, vec![(to, to)]))
     }
 
-    /// Give back memory.
+    /// Store the memory of `spans` for later use.
     pub(super) fn reuse(&mut self, mut spans: Vec<Span>) {
         spans.clear();
         self.spans = spans;

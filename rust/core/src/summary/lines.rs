@@ -33,7 +33,7 @@ pub struct Described<'a> {
     pub id: Option<u16>,
 }
 
-/// A finding with its place in the stream.
+/// A finding with its position in the stream.
 pub(super) struct Noise<'a> {
     pub(super) described: Described<'a>,
     pub(super) spans: &'a [(u64, u64)],

@@ -1,6 +1,6 @@
 //! Writes numbers as Python does.
 
-/// Doubles distinguish all decimal numbers of 15 digits, which this number bounds.
+/// Below this number, doubles distinguish all decimal numbers with 15 digits.
 const EXACT: f64 = 1e15;
 /// Most values are multiples of a thousandth.
 const FINE: f64 = 1000.0;
