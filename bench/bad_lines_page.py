@@ -156,7 +156,7 @@ def _summary(results: Results, clients: tuple[str, ...]) -> str:
 def _cases(
     cases: tuple[Case, ...], results: Results, clients: tuple[str, ...], limit: float
 ) -> str:
-    """Return how our clients and the peer end; an entry has all cases that end alike."""
+    """Return the outcomes of our clients and of the peer; cases with equal ones share an entry."""
     *ours, peer = clients
     entries: dict[tuple[str, str], list[str]] = {}
     for case in cases:

@@ -93,7 +93,7 @@ class Turn:
 
 
 def _round_trips(url: str, simulated: str) -> None:
-    """Time each candidate. It holds the port, which is locked then, only for its turn."""
+    """Time the candidates in turns; each opens the port, which locks it, only for its turn."""
     candidates: dict[str, Callable[[str, Call], Turn]] = {
         "simulated arm": lambda _, floor: _bare(simulated, floor),
         "blocking": _blocking,

@@ -70,7 +70,7 @@ def main() -> None:
 
 
 def compare(trees: tuple[Path, Path], rounds: int, more: Sequence[str]) -> list[Compared]:
-    """Return what each row took on both trees, which read the same streams."""
+    """Return the seconds of each row on both trees, which read the same streams."""
     ours: list[dict[str, float]] = []
     theirs: list[dict[str, float]] = []
     with TemporaryDirectory() as folder:

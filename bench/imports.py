@@ -4,8 +4,8 @@ Each import runs in its own process, and all candidates take turns. Only the imp
 the start of Python. The median counts. ``import cobotwire`` loads a name only on its first use, so
 a second row imports the client.
 
-A program imports a client and opens it, so both together have one limit. The same through the layer
-with the maker's names may take 1.3 times as long.
+A program imports a client and opens it, so both together have one limit. With the layer that has
+the maker's names, both together may take 1.3 times as long.
 
 The size has a limit for each edition, since editions are added, and one for all else.
 """
@@ -40,7 +40,7 @@ class Memory:
     def close(self): pass
 """
 OPEN = f"from cobotwire import MyCobot280{MEMORY}MyCobot280(Memory())"
-# The maker's class takes the name of a port; it opens the transport here instead.
+# The layer's class takes the name of a port; this subclass opens the memory instead.
 LAYER = "from cobotwire.pymycobot import MyCobot280"
 OPEN_LAYER = f"""{LAYER}{MEMORY}
 class Arm(MyCobot280):
@@ -120,7 +120,7 @@ def _starts() -> None:
         times = statistics.median(taken[name]) / statistics.median(bare)
         verdict = "" if limit is None else f"   {within(times <= limit)} {limit:.0f} x"
         print(f"{name:44} {times:5.1f} x a bare interpreter{verdict}")
-    # The speed of a machine may change between turns, so the two of one turn are compared.
+    # The machine's speed may change between turns, so the ratio is of two times of one turn.
     shares = [layer / ours for layer, ours in zip(taken[THE_LAYER], taken[OUR_CLIENT])]
     share = statistics.median(shares)
     verdict = within(share <= LAYER_LIMIT)

@@ -8,10 +8,10 @@ from typing import Any
 READERS = ("cobotwire", "any LEN to 64", "textbook", "pymycobot", "pymycobot by request")
 
 HEAD = f"""\
-Lost: undamaged frames that a reader did not find; covered: those of ours that a false frame covers,
-which the table allows. The readers: ours; the same scan with any id and any LEN up to 64; a
-textbook state machine; pymycobot's own code, reading continuously, and with a request for each
-reply.
+Lost: undamaged frames that a reader did not find. Covered: those that our reader did not find
+because a false frame, legal by the table, covers them. The readers: ours; the same scan with any id
+and any LEN up to 64; a textbook state machine; pymycobot's own code, reading continuously, and with
+a request for each reply.
 
 {"edition":10} {"stream":9} {"damage":12} {"rate":>6} {"undamaged":>9}   lost by each reader"""
 

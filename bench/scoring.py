@@ -1,4 +1,4 @@
-"""Score the frames that a reader found, by the truth about the line and by the table."""
+"""Score the frames that a reader found, against the ground truth of the line and the table."""
 
 from __future__ import annotations
 

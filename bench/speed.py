@@ -87,7 +87,7 @@ def _measured(
 
 
 def _caches(megabytes: float) -> str:
-    """Describe how large the input is beside the last cache, as far as Linux reports it."""
+    """Compare the size of the input with that of the last cache, as far as Linux reports it."""
     sizes = Path("/sys/devices/system/cpu/cpu0/cache").glob("index*/size")
     last = max((int(each.read_text().strip().rstrip("K")) for each in sizes), default=0) / 1024
     if not last:

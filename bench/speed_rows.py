@@ -21,7 +21,7 @@ ANGLES = [1.5, -20.25, 30.0, 0.01, 0.29, -179.99]
 CHUNK = 4096
 # The calls in a round, for rows with one frame.
 MANY = 20_000
-# The frames that a large stream repeats: too many for any cache to learn.
+# The number of frames that a large stream repeats: too many for caches and branch predictors.
 REPEATED = 1_000_000
 
 

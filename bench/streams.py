@@ -1,4 +1,4 @@
-"""Make byte streams from an edition's table, with the truth about every frame in them.
+"""Make byte streams from an edition's table, with the ground truth about every frame in them.
 
 ``frames_alike`` builds many frames of one variant at once, with random legal values. It uses NumPy
 and no codec, so that no codec is validated by its own stream. The same seed gives the same stream.
@@ -27,7 +27,7 @@ def _none() -> Places:
 
 @dataclass(frozen=True)
 class Line:
-    """The bytes that a reader gets, and the truth about each frame in them.
+    """The bytes that a reader gets, and the ground truth about each frame in them.
 
     Attributes:
         data: the bytes.

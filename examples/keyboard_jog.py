@@ -6,7 +6,7 @@
     space    stop the arm
     q        quit
 
-The terminal must be of Linux or macOS.
+It runs on Linux and macOS.
 """
 
 import os
@@ -68,7 +68,7 @@ def keys() -> Iterator[str]:
     try:
         while True:
             ready, _, _ = select.select([terminal], [], [], SHOW_SECONDS)
-            # Not by sys.stdin: its buffer would hold keys that select() no longer sees.
+            # Not with sys.stdin: its buffer may hold keys, which select() does not see.
             yield os.read(terminal, 1).decode(errors="replace") if ready else ""
     finally:
         termios.tcsetattr(terminal, termios.TCSADRAIN, before)

@@ -1,4 +1,4 @@
-"""Write what ``cobotwire identify`` does as trees, through which the page live/ walks.
+"""Write the decisions of ``cobotwire identify`` as trees, which the page live/ follows.
 
 A node has a query, the edition with which it is sent, and what follows each outcome. A leaf has the
 editions that remain. The Python code is run for every outcome, so the rules exist only there.
@@ -20,7 +20,7 @@ from cobotwire.protocol.table import Command
 from cobotwire.session.alignment import fill_bytes
 from cobotwire.session.request import RequestEncoder
 
-# How often the page sends a query at most, and how many commands that differ are named.
+# How often the page sends a query, and how many differing commands it names, at most.
 ATTEMPTS, MOST_NAMED = 3, 8
 
 
@@ -90,13 +90,13 @@ def _remaining(among: Sequence[str], outcomes: Sequence[Evidence]) -> tuple[str,
 
 
 def _limits(node: dict[str, Any], silent: dict[str, Any]) -> list[float]:
-    """Return the limits that the editions in question state; ``silent`` leads to all of these."""
+    """Return the limits that the remaining editions state; ``silent`` leads to their leaf."""
     while "editions" not in silent:
         silent = silent["silent"]
     end, joint = LIMIT_QUERIES.index(node["query"]), node["given"]["joint"]
     rows = [target_ranges(editions.load(name).TABLE) for name in silent["editions"]]
     found = sorted({row[joint - 1][end] for row in rows})
-    assert all(high - low > 2 * NEAR for low, high in pairwise(found)), "a limit is near to one"
+    assert all(high - low > 2 * NEAR for low, high in pairwise(found)), "two limits are too close"
     return found
 
 

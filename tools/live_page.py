@@ -33,11 +33,11 @@ from cobotwire.studio.samples import ends_target
 from cobotwire_codegen.model import Edition as Model
 
 HERE = npm_package.ROOT / "docs" / "live"
-# A page can state no policy about its own frame, and WebAssembly needs a permission of its own.
+# A <meta> element cannot state frame-ancestors, and WebAssembly needs an extra permission.
 POLICY = HEADERS["content-security-policy"].replace("; frame-ancestors 'none'", "")
 POLICY = POLICY.replace("script-src 'self'", "script-src 'self' 'wasm-unsafe-eval'")
 META = f'<meta http-equiv="Content-Security-Policy" content="{POLICY}; worker-src \'self\'">'
-# A state that no edition names.
+# A raw value that no edition names.
 UNNAMED = 173
 
 

@@ -70,7 +70,7 @@ def record(program: Sequence[str] = PROGRAM, port: int = 9000) -> Recorded:
         arm = stack.enter_context(MyCobot280(url))
         found = Recorded([], [], [])
         for _ in _typed(python, ["from cobotwire import MyCobot280", f'arm = MyCobot280("{url}")']):
-            # A terminal that nobody reads stops its program.
+            # A program blocks if the output on its terminal is not read.
             monitor.read()
             time.sleep(1 / FRAMES_A_SECOND)
         began = time.monotonic()

@@ -1,4 +1,4 @@
-"""Package the crates, unpack them in a clean folder, and use them there as a stranger would.
+"""Package the crates, unpack them in a clean folder, and use them there as a user would.
 
 The program of the README runs against ``cobotwire sim``. A program with the generated module of a
 protocol that has hostile texts compiles. Every feature compiles alone, and all together; the

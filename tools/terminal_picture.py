@@ -1,8 +1,8 @@
 """Draw what the screens of terminals show over time as an animated SVG.
 
 The animation is SMIL, which a browser also plays in an ``<img>``. For each line of the terminal,
-the different texts are written once, one below the other. The animation moves them behind a window
-of one line's height, so that one text is visible at a time.
+the different texts are written once, one below the other. The animation moves them within a clipped
+area of one line's height, so that one text is visible at a time.
 """
 
 from __future__ import annotations
@@ -79,7 +79,7 @@ class Film(NamedTuple):
         return "\n".join(filter(None, lines))
 
     def _line(self, line: int, rows: list[Row], seconds: float) -> str:
-        """Return a window as high as one line, behind which the texts of the frames move."""
+        """Return an area as high as one line, within which the texts of the frames move."""
         different = list(dict.fromkeys(rows))
         if different == [()]:
             return ""

@@ -1,4 +1,4 @@
-"""Build and install the distributions as a user does (not LeRobot), and run the pages of the docs.
+"""Build the distributions, install them as a user does (without LeRobot), and run the docs.
 
     python tools/wheels_check.py [PYTHON ...]    # make wheels-check PYTHONS="python3.11 ..."
 
@@ -23,7 +23,7 @@ import release
 ROOT = Path(__file__).parents[1]
 TESTS = ROOT / "tests"
 SYSTEM = "/usr/bin:/bin"
-# What pages and tests use beside the wheels and their extras.
+# What pages and tests use besides the wheels and their extras.
 OTHERS = ("pytest", "hypothesis", "polars", "duckdb", "pandas", "s3fs", "dask", "numpy", "scipy")
 
 

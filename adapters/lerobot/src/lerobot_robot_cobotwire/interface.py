@@ -1,4 +1,4 @@
-"""What this package uses of LeRobot, as in 0.4.4 to 0.6.1; no other module imports it."""
+"""Import what this package uses of LeRobot 0.4.4 to 0.6.1; no other module imports LeRobot."""
 
 from lerobot.cameras import CameraConfig as CameraConfig
 from lerobot.cameras import make_cameras_from_configs as make_cameras_from_configs

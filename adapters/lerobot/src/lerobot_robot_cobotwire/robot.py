@@ -25,7 +25,7 @@ from lerobot_robot_cobotwire.interface import (
 class CobotwireRobotConfig(ArmConfig, RobotConfig):
     """An arm with motors, and its limits."""
 
-    # The speed at which the arm follows targets, and the highest it may have, in percent.
+    # The speed at which the arm follows targets, in percent; it is also the highest speed allowed.
     max_speed: int = 50
     # The lowest and the highest angle of each joint in degrees; by default those of the edition.
     joint_limits: list[tuple[float, float] | None] | None = None
@@ -84,7 +84,7 @@ class CobotwireRobot(ArmDevice, Robot):
         self._sent, self._is_inside = self.positions.read(self.arm), True
 
     def connect(self, calibrate: bool = True) -> None:
-        """Also start the switch that stops the arm when no action comes."""
+        """Connect, and start the dead-man switch, which stops the arm if no action comes."""
         super().connect(calibrate)
         self._dead_man = self._opened.enter_context(DeadMan(self.arm, self.config.silence))
 
