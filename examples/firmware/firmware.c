@@ -6,8 +6,8 @@
  *     ./firmware                                 # prints the port
  *     cobotwire call PORT get_angles             # in another terminal
  *
- * It moves at once, and knows four commands. cobotwire-gen wrote arm280.h and arm280.c from the
- * spec. On a microcontroller, only main(), line_read() and line_write() are different.
+ * It reaches each target at once, and handles four commands. cobotwire-gen wrote arm280.h and
+ * arm280.c from the spec. On a microcontroller, only main(), line_read() and line_write() differ.
  */
 #define _XOPEN_SOURCE 600
 
@@ -35,7 +35,7 @@ static void line_write(const uint8_t *data, size_t size)
     }
 }
 
-/* Reply to one request; whatever is not known is ignored, as the arm does. */
+/* Reply to one request. Like the arm, ignore unknown requests. */
 static void serve(arm280_message_t message, const arm280_any_t *request)
 {
     uint8_t out[ARM280_LONGEST_FRAME];
@@ -92,7 +92,7 @@ int main(void)
         perror("no pseudo-terminal");
         return 1;
     }
-    /* While this program has the other end open, the port stays when a client closes it. */
+    /* Keep the other end open, so that the port remains when a client closes it. */
     if (open(ptsname(line), O_RDWR | O_NOCTTY) < 0) {
         perror(ptsname(line));
         return 1;

@@ -170,7 +170,7 @@ impl Session {
         Some(outcome)
     }
 
-    /// End a request whose caller waits no longer. It is not sent, unless its first bytes have been
+    /// End a request whose caller no longer waits. It is not sent, unless its first bytes have been
     /// written.
     pub fn give_up(&mut self, id: CallId) {
         self.one_ways.retain(|other| *other != id);

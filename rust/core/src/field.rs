@@ -6,7 +6,7 @@ use crate::number::{Encoding, Misfit, Number};
 
 /// The numbers of a field whose selector holds one of `when`.
 #[derive(Clone, Debug, PartialEq, Eq)]
-#[allow(missing_docs)] // of fields, whose names say what they are
+#[allow(missing_docs)] // the names of the fields explain them
 pub struct Case {
     pub when: Vec<i64>,
     pub numbers: Vec<Number>,

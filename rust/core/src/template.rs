@@ -29,7 +29,7 @@ pub enum Exact {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Place {
     /// The value of the field with that index.
-    Alone(usize),
+    Single(usize),
     /// The first number of a field's array: the index of the field, and the length of the array.
     First(usize, usize),
     /// The number with that index in the same array.
@@ -108,7 +108,7 @@ impl Template {
             for (element, number) in numbers.iter().enumerate() {
                 slots.push(Slot {
                     place: match (field.many, element) {
-                        (false, _) => Place::Alone(index),
+                        (false, _) => Place::Single(index),
                         (true, 0) => Place::First(index, numbers.len()),
                         (true, _) => Place::Next(element),
                     },

@@ -64,9 +64,10 @@ fn dice() -> Vec<Vec<u8>> {
 fn frames() -> impl Iterator<Item = Vec<u8>> {
     let subjects = subjects::all().iter().enumerate();
     subjects.flat_map(|(index, subject)| {
-        let frames = subject.variants.iter().zip(&subject.frames);
-        frames.map(move |(variant, frame)| {
-            seed(index, Listening::To(variant.direction), false, frame)
+        let vectors = subject.edition.vectors.iter();
+        vectors.flat_map(move |vector| {
+            let listening = Listening::To(vector.direction);
+            bytes(vector).map(move |bytes| seed(index, listening, false, bytes))
         })
     })
 }
@@ -84,8 +85,8 @@ fn found() -> impl Iterator<Item = Vec<u8>> {
         seed(table, stream.listening, stream.unknown, &stream.bytes())
     });
     let singles = replay::singles(singles).into_iter().map(|single| {
-        let way = Listening::To(single.direction);
-        seed(table(&single.table), way, false, &single.bytes)
+        let listening = Listening::To(single.direction);
+        seed(table(&single.table), listening, false, &single.bytes)
     });
     streams.chain(singles)
 }

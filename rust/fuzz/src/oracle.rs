@@ -42,10 +42,10 @@ impl Oracle {
         };
         let mut legal = HashSet::new();
         for command in table.commands() {
-            for way in directions {
-                let id = frame.has_id(*way).then_some(command.id);
-                for variant in command.variants(*way) {
-                    legal.insert((id, length_of(frame, *way, variant.size())));
+            for direction in directions {
+                let id = frame.has_id(*direction).then_some(command.id);
+                for variant in command.variants(*direction) {
+                    legal.insert((id, length_of(frame, *direction, variant.size())));
                 }
             }
         }

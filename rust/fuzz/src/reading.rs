@@ -27,13 +27,14 @@ pub fn received(
     listening: Listening,
     frame: &[u8],
 ) -> Option<Result<(VariantId, Vec<Read>), BadRaw>> {
-    let ways: &[Direction] = match &listening {
-        Listening::To(way) => std::slice::from_ref(way),
+    let directions: &[Direction] = match &listening {
+        Listening::To(direction) => std::slice::from_ref(direction),
         Listening::Both => &[Direction::Request, Direction::Reply],
     };
     let read = || {
-        ways.iter()
-            .filter_map(|way| numbers(table, *way, frame, None))
+        directions
+            .iter()
+            .filter_map(|direction| numbers(table, *direction, frame, None))
     };
     read().find(Result::is_ok).or_else(|| read().next())
 }

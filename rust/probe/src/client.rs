@@ -256,7 +256,7 @@ fn say(id: u64, mut line: Json) {
     print(&line);
 }
 
-/// Print a line, unless nobody reads any more.
+/// Print a line; ignore the error if nobody reads the output.
 fn print(line: &Json) {
     let _ = writeln!(io::stdout().lock(), "{line}");
 }

@@ -13,7 +13,7 @@ use crate::framer::NativeFramer;
 use crate::given::Object;
 use crate::plain;
 use crate::values::{objects, row};
-use crate::words::{WorkerCount, one_way, word};
+use crate::words::{WorkerCount, read_direction, word};
 use crate::{errors, words};
 
 /// One edition's encoder, decoder and framer.
@@ -67,24 +67,24 @@ impl NativeCodec {
             ..
         } = &*self.edition;
         let index = commands.find(table, command)?;
-        let way = one_way(direction)?;
+        let parsed = read_direction(direction)?;
         let objects = commands.get(index)?;
         if address.is_none()
-            && let Some(frame) = plain::encode(core, (index, way), values, variant)
+            && let Some(frame) = plain::encode(core, (index, parsed), values, variant)
         {
             return Ok(frame);
         }
         let values = row(values)?;
         let format = core.frame();
         let address = address.map(|given| words::address(given, table, &format.addresses));
-        let variant = variant.map(|given| words::variant(given, objects.variants(way).len()));
+        let variant = variant.map(|given| words::variant(given, objects.variants(parsed).len()));
         let choice = Choice {
             address: address.transpose()?,
             variant: variant.transpose()?,
         };
         let record = core.commands().get(index);
         let encoded = record.map_or(Err(EncodeError::VariantId), |record| {
-            cobotwire_core::encode::<Object<'_>>(format, record, way, &values, choice)
+            cobotwire_core::encode::<Object<'_>>(format, record, parsed, &values, choice)
         });
         match encoded {
             Ok(frame) => Ok(PyBytes::new(py, &frame)),
@@ -96,7 +96,7 @@ impl NativeCodec {
                 values.0.len(),
             )),
             Err(EncodeError::Value(bad)) => Err(errors::bad_value(
-                objects.variant(py, way, bad.variant)?,
+                objects.variant(py, parsed, bad.variant)?,
                 bad,
             )),
         }
@@ -118,7 +118,7 @@ impl NativeCodec {
         } = &*self.edition;
         let of = of.map(|name| commands.find(table, name));
         let of = of.transpose()?;
-        let way = one_way(direction)?;
+        let parsed = read_direction(direction)?;
         let copy;
         let data = match data.cast_exact::<PyBytes>() {
             Ok(bytes) => bytes,
@@ -129,7 +129,7 @@ impl NativeCodec {
             }
         };
         let py = direction.py();
-        match cobotwire_core::decode(core, way, data.as_bytes(), of) {
+        match cobotwire_core::decode(core, parsed, data.as_bytes(), of) {
             Ok(decoded) => {
                 let values = objects(py, &decoded.values)?;
                 let address = decoded.address;
@@ -244,6 +244,6 @@ pub fn listen(given: Option<&Bound<'_, PyAny>>) -> PyResult<Listening> {
     match given {
         None => Ok(Listening::Both),
         Some(given) if word(given) == Some("both") => Ok(Listening::Both),
-        Some(given) => Ok(Listening::To(one_way(given)?)),
+        Some(given) => Ok(Listening::To(read_direction(given)?)),
     }
 }

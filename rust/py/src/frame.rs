@@ -10,7 +10,7 @@ use crate::edition::Edition;
 use crate::memory::untrack;
 use crate::names::Names;
 use crate::values::{objects, plain_objects};
-use crate::words::one_way;
+use crate::words::read_direction;
 
 /// The data that all frames of one framer share.
 pub struct Origin {
@@ -178,7 +178,7 @@ impl NativeFrame {
             table, commands, ..
         } = &*self.origin.edition;
         let of = of.map(|name| commands.find(table, name)).transpose()?;
-        self.tuple_of(&self.read(py, direction.map(one_way).transpose()?, of)?)
+        self.tuple_of(&self.read(py, direction.map(read_direction).transpose()?, of)?)
     }
 
     fn __eq__(&self, other: &Self) -> bool {

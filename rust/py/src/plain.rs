@@ -21,7 +21,7 @@ pub fn encode<'py>(
     };
     let mut row = None;
     let number = |place| match place {
-        Place::Alone(index) => exact(&item(values, index)?),
+        Place::Single(index) => exact(&item(values, index)?),
         Place::First(index, count) => {
             let row = row.insert(item(values, index)?);
             (length(row)? == count).then_some(())?;

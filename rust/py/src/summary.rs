@@ -225,10 +225,10 @@ impl<'a, 'py> Parts<'a, 'py> {
         self.rest.call_method1("describe", given)?.extract()
     }
 
-    fn detail_of(&self, way: Direction, error: DecodeError, data: &[u8]) -> PyResult<String> {
+    fn detail_of(&self, direction: Direction, error: DecodeError, data: &[u8]) -> PyResult<String> {
         let py = self.rest.py();
-        let way = self.names.direction(py, way);
-        let error = self.edition.rejected(py, error, way, data);
+        let direction = self.names.direction(py, direction);
+        let error = self.edition.rejected(py, error, direction, data);
         error.value(py).getattr("detail")?.extract()
     }
 }
@@ -250,8 +250,8 @@ impl Sink for Parts<'_, '_> {
         *expected = self.made(found);
     }
 
-    fn detail(&mut self, way: Direction, error: DecodeError, data: &[u8]) -> String {
-        let detail = self.detail_of(way, error, data);
+    fn detail(&mut self, direction: Direction, error: DecodeError, data: &[u8]) -> String {
+        let detail = self.detail_of(direction, error, data);
         self.made(detail)
     }
 

@@ -28,7 +28,7 @@ pub fn word<'a>(given: &'a Bound<'_, PyAny>) -> Option<&'a str> {
     given.cast::<PyString>().ok()?.to_str().ok()
 }
 
-pub fn one_way(given: &Bound<'_, PyAny>) -> PyResult<Direction> {
+pub fn read_direction(given: &Bound<'_, PyAny>) -> PyResult<Direction> {
     // Literals in programs are interned, so most words need no comparison.
     if given.is(intern!(given.py(), "request")) {
         return Ok(Direction::Request);

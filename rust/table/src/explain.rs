@@ -16,7 +16,7 @@ use crate::{Edition, Value};
 /// A run of bytes inside a frame, and what it means. If several parts are bits of one word, only the
 /// last of them lists the bytes.
 #[derive(Clone, Debug, PartialEq, Eq)]
-#[allow(missing_docs)] // of fields, whose names say what they are
+#[allow(missing_docs)] // the names of the fields explain them
 pub struct Explained {
     pub bytes: Range<usize>,
     pub name: String,

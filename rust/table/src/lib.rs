@@ -41,7 +41,7 @@ const LARGEST: usize = 4 << 20;
 
 /// A protocol as data. Commands are in the order of the table.
 #[derive(Clone, Debug)]
-#[allow(missing_docs)] // of fields, whose names say what they are
+#[allow(missing_docs)] // the names of the fields explain them
 pub struct Edition {
     pub name: String,
     pub baudrate: u32,
@@ -52,7 +52,7 @@ pub struct Edition {
 
 /// What texts and clients need of a command.
 #[derive(Clone, Debug)]
-#[allow(missing_docs)] // of fields, whose names say what they are
+#[allow(missing_docs)] // the names of the fields explain them
 pub struct Command {
     pub name: String,
     /// A short description; a table for clients lacks it.
@@ -83,7 +83,7 @@ impl Command {
 
 /// What texts and clients need of a field.
 #[derive(Clone, Debug, Default)]
-#[allow(missing_docs)] // of fields, whose names say what they are
+#[allow(missing_docs)] // the names of the fields explain them
 pub struct Field {
     pub name: String,
     /// The words of its choices, in their order; empty: they have none.
@@ -115,7 +115,7 @@ impl Field {
 /// What texts need of a number: its name in a named tuple, its unit, and the words of its choices;
 /// each is empty if there is none.
 #[derive(Clone, Debug, Default)]
-#[allow(missing_docs)] // of fields, whose names say what they are
+#[allow(missing_docs)] // the names of the fields explain them
 pub struct Number {
     pub name: String,
     pub unit: String,

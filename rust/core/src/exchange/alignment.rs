@@ -20,7 +20,7 @@ use crate::framer::{Event, Framer};
 
 /// The first `written` bytes of a request, which is all that the peer has of it.
 #[derive(Clone, Debug, PartialEq, Eq)]
-#[allow(missing_docs)] // of fields, whose names say what they are
+#[allow(missing_docs)] // the names of the fields explain them
 pub struct Part {
     pub request: Arc<[u8]>,
     pub written: usize,

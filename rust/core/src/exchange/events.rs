@@ -37,7 +37,7 @@ pub enum ReplyError {
 
 /// What received bytes are, or which wait has ended by time. `command` is an index in the table.
 #[derive(Clone, Debug, PartialEq)]
-#[allow(missing_docs)] // of fields, whose names say what they are
+#[allow(missing_docs)] // the names of the fields explain them
 pub enum Event {
     /// Bytes that belong to no frame, all rejected for the same reason.
     Noise {

@@ -26,7 +26,7 @@ pub enum Safety {
 /// The name of a field. `echo`: a reply repeats the argument of that name. `status`: the field can
 /// report success or failure; only a constant without labels cannot.
 #[derive(Clone, Debug, PartialEq, Eq)]
-#[allow(missing_docs)] // of fields, whose names say what they are
+#[allow(missing_docs)] // the names of the fields explain them
 pub struct Named {
     pub name: Box<str>,
     pub echo: bool,
@@ -36,7 +36,7 @@ pub struct Named {
 /// A text outside any frame: `prefix field prefix field suffix`. A `silence` ends it; 0 for a text
 /// that is sent.
 #[derive(Clone, Debug, PartialEq, Eq)]
-#[allow(missing_docs)] // of fields, whose names say what they are
+#[allow(missing_docs)] // the names of the fields explain them
 pub struct TextForm {
     pub prefixes: Vec<Box<str>>,
     pub fields: Vec<Box<str>>,
@@ -86,7 +86,7 @@ pub enum Replier {
 /// An address of the frame format: its byte, who replies, and how many joints the device has. If
 /// `joints` is 0, the device has all joints of the protocol.
 #[derive(Clone, Debug, PartialEq, Eq)]
-#[allow(missing_docs)] // of fields, whose names say what they are
+#[allow(missing_docs)] // the names of the fields explain them
 pub struct Addressee {
     pub name: Box<str>,
     pub value: u8,
@@ -96,7 +96,7 @@ pub struct Addressee {
 
 /// A table, and what the exchange must know of each of its commands, in the same order.
 #[derive(Clone, Debug)]
-#[allow(missing_docs)] // of fields, whose names say what they are
+#[allow(missing_docs)] // the names of the fields explain them
 pub struct Protocol {
     pub table: Table,
     pub facts: Vec<Facts>,

@@ -138,7 +138,7 @@ impl Exchange {
         (data, ticket)
     }
 
-    /// End a request whose caller waits no longer. A reply that still comes is late.
+    /// End a request whose caller no longer waits. A reply that still comes is late.
     pub fn give_up(&mut self, ticket: Ticket) {
         self.queue.retain(|pending| pending.ticket != ticket);
         self.acks.waiting.retain(|pending| pending.ticket != ticket);
@@ -222,7 +222,7 @@ impl Exchange {
         events
     }
 
-    /// End the requests of callers that wait no longer; return what happened to a sent one.
+    /// End the requests of callers that no longer wait; return what happened to a sent one.
     pub fn end_overdue(&mut self, now: Nanos) -> Vec<Event> {
         let ended = self.acks.wake(&self.protocol, now, self.echo.proven);
         self.finished.extend(ended);

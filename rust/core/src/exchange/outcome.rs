@@ -14,7 +14,7 @@ pub(super) type Got = (Option<Decoded>, Vec<String>);
 
 /// The result of a request that succeeded.
 #[derive(Clone, Debug, PartialEq)]
-#[allow(missing_docs)] // of times, whose names say what they are
+#[allow(missing_docs)] // the names of the times explain them
 pub struct Answer {
     /// The reply; `None`: it was text, or the request has only an acknowledgement.
     pub decoded: Option<Decoded>,
@@ -27,7 +27,7 @@ pub struct Answer {
 /// What a request waited for when its caller's deadline passed: its turn, the end of the time in
 /// which a late reply could be mistaken for its own (hold), a line that took no bytes, or its reply.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[allow(missing_docs)] // of fields, whose names say what they are
+#[allow(missing_docs)] // the names of the fields explain them
 pub enum WaitedFor {
     Turn,
     Hold,

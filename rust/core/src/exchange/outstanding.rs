@@ -12,7 +12,7 @@ use super::{Nanos, Part, Protocol, Request, SeenFrame};
 
 /// A reply to a request that may come before `until`.
 #[derive(Clone, Debug, PartialEq)]
-#[allow(missing_docs)] // of fields, whose names say what they are
+#[allow(missing_docs)] // the names of the fields explain them
 pub struct OutstandingReply {
     pub request: Arc<Request>,
     pub until: Nanos,

@@ -59,7 +59,7 @@ impl RetryPolicy {
 pub(super) struct Pending {
     pub(super) ticket: Ticket,
     pub(super) request: Arc<Request>,
-    /// When its caller waits no longer.
+    /// When its caller no longer waits.
     pub(super) ends_by: Nanos,
     pub(super) done: bool,
     /// The last frames and spans of noise, for the text of a timeout.
@@ -138,7 +138,7 @@ impl Pending {
         silence.unwrap_or(self.deadline)
     }
 
-    /// Return when the wait ends, or its caller waits no longer.
+    /// Return when the wait ends, or its caller no longer waits.
     pub(super) fn ends_first(&self) -> Nanos {
         self.ends_at().min(self.ends_by)
     }

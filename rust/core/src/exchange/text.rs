@@ -12,7 +12,7 @@ const SHOWN: usize = 64;
 
 /// What is wrong with a text that was received, and the index of the wrong byte.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[allow(missing_docs)] // of fields, whose names say what they are
+#[allow(missing_docs)] // the names of the fields explain them
 pub struct TextError {
     pub mistake: TextMistake,
     pub offset: usize,

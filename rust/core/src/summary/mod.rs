@@ -45,7 +45,7 @@ pub trait Sink {
     fn diagnose(&mut self, closed: bool, expected: &mut Expected);
 
     /// Return what is wrong with bytes that are not a legal message.
-    fn detail(&mut self, way: Direction, error: DecodeError, data: &[u8]) -> String;
+    fn detail(&mut self, direction: Direction, error: DecodeError, data: &[u8]) -> String;
 
     /// Return text and facts of noise, as they are in a line of JSON.
     fn describe(&mut self, noise: &Described<'_>) -> String;

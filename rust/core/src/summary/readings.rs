@@ -26,14 +26,14 @@ pub struct Names {
 pub(super) struct Readings {
     table: Arc<Table>,
     names: Names,
-    ways: Vec<Direction>,
+    directions: Vec<Direction>,
     errors: Memo<Cause>,
 }
 
 /// The values that the text of an error depends on; the others are `None`.
 #[derive(PartialEq, Eq, Hash)]
 struct Cause {
-    way: Direction,
+    direction: Direction,
     reason: Reason,
     length: Option<u16>,
     id: Option<u16>,
@@ -43,15 +43,15 @@ struct Cause {
 
 impl Readings {
     pub(super) fn new(table: Arc<Table>, names: Names, listening: Listening) -> Self {
-        let ways = match listening {
-            Listening::To(way) => vec![way],
+        let directions = match listening {
+            Listening::To(direction) => vec![direction],
             Listening::Both => vec![Direction::Request, Direction::Reply],
         };
         let errors = Memo::default();
         Self {
             table,
             names,
-            ways,
+            directions,
             errors,
         }
     }
@@ -59,8 +59,8 @@ impl Readings {
     /// Append the messages that a frame can be; return false if there are none.
     pub(super) fn messages(&self, out: &mut Vec<u8>, frame: Frame<'_>) -> bool {
         let start = out.len();
-        for way in &self.ways {
-            let rules = self.table.rules(Listening::To(*way));
+        for direction in &self.directions {
+            let rules = self.table.rules(Listening::To(*direction));
             if rules.variants(frame).is_empty() {
                 continue;
             }
@@ -77,20 +77,25 @@ impl Readings {
         if !data.starts_with(&self.table.frame().header) {
             return;
         }
-        let read = |way: &Direction| (*way, decode::decode(&self.table, *way, data, None));
+        let read = |direction: &Direction| {
+            (
+                *direction,
+                decode::decode(&self.table, *direction, data, None),
+            )
+        };
         let fitting: Vec<_> = self
-            .ways
+            .directions
             .iter()
-            .filter(|way| self.fits(**way, data))
+            .filter(|direction| self.fits(**direction, data))
             .collect();
         let found: Vec<_> = if fitting.is_empty() {
-            self.ways.iter().map(read).collect()
+            self.directions.iter().map(read).collect()
         } else {
             fitting.into_iter().map(read).collect()
         };
         let any_message = found.iter().any(|(_, reading)| reading.is_ok());
         let start = out.len();
-        for (way, reading) in found {
+        for (direction, reading) in found {
             match reading {
                 Ok(message) => {
                     separate(out, start);
@@ -98,7 +103,7 @@ impl Readings {
                 }
                 Err(error) if !any_message => {
                     separate(out, start);
-                    self.error(out, way, error, data, sink);
+                    self.error(out, direction, error, data, sink);
                 }
                 Err(_) => {}
             }
@@ -106,9 +111,9 @@ impl Readings {
     }
 
     /// Return whether LEN and id are those of a message of that direction.
-    fn fits(&self, way: Direction, data: &[u8]) -> bool {
+    fn fits(&self, direction: Direction, data: &[u8]) -> bool {
         let layout = self.table.frame().layout;
-        let rules = self.table.rules(Listening::To(way));
+        let rules = self.table.rules(Listening::To(direction));
         let claim = layout.length.read(data).zip(layout.id.read(data));
         claim.is_some_and(|(length, id)| !rules.claimed(Claim { length, id }).is_empty())
     }
@@ -152,21 +157,21 @@ impl Readings {
     fn error(
         &mut self,
         out: &mut Vec<u8>,
-        way: Direction,
+        direction: Direction,
         error: DecodeError,
         data: &[u8],
         sink: &mut impl Sink,
     ) {
-        begin(out, way);
+        begin(out, direction);
         out.extend_from_slice(b"\"error\": \"");
         let offset = match error {
             DecodeError::Raw(bad) => {
-                repr::characters(out, sink.detail(way, error, data).chars());
+                repr::characters(out, sink.detail(direction, error, data).chars());
                 bad.offset
             }
             DecodeError::Frame { reason, offset } => {
-                let cause = self.cause(way, reason, data);
-                let make = || sink.detail(way, error, data);
+                let cause = self.cause(direction, reason, data);
+                let make = || sink.detail(direction, error, data);
                 repr::characters(out, self.errors.text(cause, make).chars());
                 offset
             }
@@ -178,7 +183,7 @@ impl Readings {
         out.extend_from_slice(b")\"}");
     }
 
-    fn cause(&self, way: Direction, reason: Reason, data: &[u8]) -> Cause {
+    fn cause(&self, direction: Direction, reason: Reason, data: &[u8]) -> Cause {
         let layout = self.table.frame().layout;
         let length = layout.length.read(data);
         let id = layout.id.read(data);
@@ -192,7 +197,7 @@ impl Readings {
             Reason::Trailing => (length, None, None, None),
         };
         Cause {
-            way,
+            direction,
             reason,
             length,
             id,
@@ -202,8 +207,8 @@ impl Readings {
     }
 }
 
-fn begin(out: &mut Vec<u8>, way: Direction) {
-    out.extend_from_slice(match way {
+fn begin(out: &mut Vec<u8>, direction: Direction) {
+    out.extend_from_slice(match direction {
         Direction::Request => b"{\"direction\": \"request\", ",
         Direction::Reply => b"{\"direction\": \"reply\", ",
     });
