@@ -127,7 +127,7 @@ def _collapse(app: Sphinx, page: str, template: str, context: dict[str, Any], tr
 def _folded(tree: str) -> str:
     """Return the sidebar with a fold for each section.
 
-    The section of the page is open; the first two are on a page that is in none.
+    The section of the page is open; on a page outside of all sections, the first two are.
     """
     caption = r'<p class="caption".*?<span class="caption-text">(.*?)</span></p>'
     _, *parts = re.split(caption, tree)

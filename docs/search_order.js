@@ -32,7 +32,7 @@ const Order = {
     return folder + best;
   },
 
-  /* Return how well words fit the query; words of others count less. */
+  /* Return how well words fit the query; words that only others have count less. */
   fit: (own, ...others) => {
     const query = [...Order.query];
     const mine = query.filter((word) => own.has(word)).length;
@@ -47,7 +47,7 @@ const Order = {
 
   get stemmer() { return (Order._stemmer ??= new Stemmer()); },
 
-  /* The words of the query, without one that says nothing here. */
+  /* The words of the query without "arm", which is on every page. */
   get query() {
     const words = () => Order.words(new URLSearchParams(location.search).get("q") ?? "");
     return (Order._query ??= words().difference(new Set(["arm"])));

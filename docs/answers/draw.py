@@ -36,7 +36,7 @@ def temperatures(archive: Path) -> Figure:
     table = pl.read_parquet(archive / "get_servo_temps.reply.parquet").sort("time")
     figure, axes = _canvas("Temperatures of the joints; the line marks a reboot")
     for joint, colour in enumerate(COLOURS, 1):
-        # A step of a degree is a corner of the curve; the rows between two steps add nothing.
+        # Only rows where the temperature changes are drawn; the others add no corner to the curve.
         column = pl.col(f"j{joint}")
         corners = table.filter((column.diff() != 0).fill_null(True) | (column.diff(-1) != 0))
         axes.plot(corners["time"], corners[f"j{joint}"], color=colour, label=f"joint {joint}")

@@ -1,5 +1,5 @@
-// Find out which edition an arm speaks: walk through a tree of identification.json, which has what `cobotwire identify`
-// does. All that is sent are queries, and bytes that end half a frame.
+// Find out which edition an arm speaks: walk through a tree of identification.json, with the
+// steps of `cobotwire identify`. Only queries are sent, and bytes that end half a frame.
 
 import { ProtocolError, ReplyTimeout } from "./cobotwire/dist/errors.js";
 import { nameOf, openWebSerial, within } from "./cobotwire/dist/transport.js";
@@ -20,11 +20,11 @@ class Port {
   }
 }
 
-// Return the class of clients that a module of an edition has.
+// Return the client class of the module of an edition.
 export const clientOf = (module) => Object.values(module).find((each) => typeof each === "function");
 
-// Return the edition of the arm, the open port with its rate, and what shows it in words. `chosen` is what the user chose;
-// empty: nothing. Throw if that is wrong, or if several editions are possible and none of them was chosen.
+// Return the edition of the arm, the open port with its rate, and the evidence in words. `chosen` is the choice of the
+// user, or empty. Throw if the choice is wrong, or if several editions are possible and none of them was chosen.
 export async function identify(port, chosen) {
   const evidence = [];
   for (const { baudrate, near, tree } of await (await fetch("identification.json")).json()) {

@@ -7,7 +7,7 @@ import { Session, Stream } from "./session.js";
 const POLL_MS = 100;
 // If one query gets no reply and another one does, the first is sent again only after a pause.
 const [UNANSWERED, PAUSE_MS] = [2, 60_000];
-// After as many queries without a reply, a survey checks that the arm is there.
+// After this many queries without a reply, a survey checks that the arm is there.
 const MOST_SILENT = 3;
 // The longest silence of a page that holds a button; how long noise waits for more bytes.
 const [SILENCE_MS, IDLE_MS] = [500, 300];

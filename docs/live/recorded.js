@@ -1,10 +1,10 @@
-// A recording, and its player: what studio/recorded.py does.
+// Play a recording, as studio/recorded.py does.
 
 import { Sampler } from "./samples.js";
 import { MOST_ENTRIES, Session, Stream } from "./session.js";
 
 const [STEP_MS, GAP_NS] = [50, 500_000_000n];
-// The entries before the target of a jump that the page also gets.
+// How many entries before the target of a jump the page also gets.
 const [PAST_ENTRIES, PAST_SAMPLED] = [400, 4000];
 
 export class Recorded extends Session {

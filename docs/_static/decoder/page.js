@@ -8,8 +8,8 @@
     "noise between": "FF FF 01 04 02 38 02 BE FE FE 03 12 01 FA 00 00",
     "a false header": "FE FE 0E 20 FE FE 03 12 01 FA FE FE 03 53 87 FA 00",
   };
-  const FIRST_EDITION = "mycobot280"; // the edition of today's arm
-  // The colours of parts of a frame; the others are data.
+  const FIRST_EDITION = "mycobot280"; // the edition of the current 280
+  // The colours of the parts of a frame; a part without one is data.
   const KINDS = { header: "header", address: "header", LEN: "length", CMD: "command", check: "footer", footer: "footer" };
 
   // At first, at most this many events and this many bytes of each event are shown. Each click on "more" shows as
@@ -80,7 +80,7 @@
   let job = 0;
   let busy = false;
 
-  // Give the worker a job. A worker that is still busy with outdated input is replaced.
+  // Give the worker a job. A worker that is still busy with an outdated input is terminated.
   function ask(root, request, answered) {
     if (worker === null || (busy && request.text !== undefined)) {
       if (worker !== null) worker.terminate();

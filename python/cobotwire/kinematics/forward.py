@@ -1,6 +1,6 @@
 """Forward kinematics as the firmware computes them: the frames of the links, from the base on.
 
-In double precision. Pure Python is fast enough for a hundred calls per second.
+Numbers have double precision. Pure Python is fast enough for a hundred calls per second.
 """
 
 from __future__ import annotations

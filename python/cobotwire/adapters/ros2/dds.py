@@ -21,7 +21,7 @@ from cyclonedds.util import duration
 from cobotwire.capture.export.ros_messages import Message, fields_of, serialised
 from cobotwire.protocol.errors import LinkError, UsageError
 
-# The longest delay of a message by a reader that does not acknowledge; then the message is dropped.
+# How long a reader that does not acknowledge may delay a message; then the message is dropped.
 BLOCKED_MS = 100
 # The number of messages that ROS 2 keeps for a slow reader, unless a topic needs more.
 DEPTH = 10

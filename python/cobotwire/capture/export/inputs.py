@@ -35,7 +35,7 @@ class Input:
 
     @property
     def robot(self) -> str:
-        """The robot: NAME of a folder ``robot=NAME``, else the file's name without extensions."""
+        """The name of its robot: from a folder ``robot=NAME``, else the input without extensions."""
         url = self.url.replace(os.sep, "/")
         if found := _HIVE_ROBOT.search(url):
             return found[1]

@@ -24,7 +24,7 @@ JOINT_STATE = "sensor_msgs/msg/JointState"
 TF_MESSAGE = "tf2_msgs/msg/TFMessage"
 DIAGNOSTICS = "diagnostic_msgs/msg/DiagnosticArray"
 JOINT_TRAJECTORY = "trajectory_msgs/msg/JointTrajectory"
-# The frame of reference of poses: the foot of the arm; and the frame at its end.
+# The frames of poses: the foot of the arm, and the end of the arm.
 BASE, END = "base", "end"
 
 _TIME = "int32 sec\nuint32 nanosec\n"
@@ -100,7 +100,7 @@ def serialised(kind: str, message: Message) -> bytes:
 
 
 def header(time_ns: int, frame: str = "") -> Message:
-    """Return the header of a message; a time after ROS's latest one, in 2038, becomes that one."""
+    """Return the header of a message; ROS cannot state times after 2038, so they become its last."""
     sec, nanosec = divmod(time_ns, 1_000_000_000)
     return {"stamp": {"sec": min(sec, _LATEST), "nanosec": nanosec}, "frame_id": frame}
 

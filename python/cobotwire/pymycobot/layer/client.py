@@ -36,7 +36,7 @@ class CompatibleClient:
     """
 
     NATIVE: ClassVar[type[Client]]
-    # How long an acknowledgement is waited for, and what a call returns that does not wait for it.
+    # How long a call waits for an acknowledgement, and what a call that does not wait returns.
     ACK_SECONDS: ClassVar[float] = ACK_SECONDS
     QUIET: ClassVar[int | None] = None
     # What a one-way request returns, and when. Older classes serve firmware of any age, and old

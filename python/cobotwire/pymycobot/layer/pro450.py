@@ -238,7 +238,7 @@ class MethodsOfPro450(ClosedLoop, Gripper450):
         return switched and any(self._is_there(gripper_id) for _ in range(SEARCH_TIMES))
 
     def get_force_sensor_data(self) -> Any:
-        """Read the force sensor at the end: six numbers."""
+        """Read the force sensor at the end of the arm: six numbers."""
         return self._query(_six_numbers, self.arm.tool_serial_write_data, FORCE_SENSOR)
 
 

@@ -1,4 +1,4 @@
-"""Derive what robotics tools draw from the angles that an arm reports: its joints, its end."""
+"""Derive joint states and poses of the end of the arm from reported angles, for robotics tools."""
 
 from __future__ import annotations
 
